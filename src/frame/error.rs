@@ -39,7 +39,7 @@ pub enum FrameError {
         /// The size of the visible part of the frame.
         expected: MatrixSize,
     },
-    /// A threshold is not a number, or out of range.
+    /// A threshold or a part of a tare is not a number, or out of range.
     Rule {
         /// The name of the value: its key in JSON.
         what: &'static str,

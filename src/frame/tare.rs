@@ -1,7 +1,7 @@
 //! The tare: the value of each cell when nothing touches it (the median over some frames), and how much it varies.
 
 use crate::frame::error::{FrameError, check_size};
-use crate::frame::recorded::Frame;
+use crate::frame::recorded::{Frame, LARGEST_VALUE};
 use crate::frame::view::View;
 use crate::matrix::Matrix;
 use crate::sensor::MatrixSize;
@@ -59,7 +59,8 @@ impl TareFrames {
         Ok(())
     }
 
-    /// Adds a frame; does nothing if there are enough.
+    /// Adds a frame, in the sensor's unit; does nothing if there are enough. A value that is infinite or beyond
+    /// ±[`LARGEST_VALUE`] counts as missing, like NaN.
     ///
     /// # Errors
     /// Returns an error if the frame differs in size from the first one, or if the needed number of frames of this size
@@ -78,7 +79,9 @@ impl TareFrames {
                 expected: size,
             });
         }
-        self.values.extend_from_slice(frame.values());
+        let values = frame.values().iter();
+        let known = values.map(|&value| if is_value(value) { value } else { f64::NAN });
+        self.values.extend(known);
         self.frames += 1;
         Ok(())
     }
@@ -129,6 +132,11 @@ impl TareFrames {
     }
 }
 
+/// Returns true if a number is a value; false for NaN and for what may become infinite.
+fn is_value(value: f64) -> bool {
+    value.abs() <= LARGEST_VALUE
+}
+
 /// Returns the median: the middle value, or the mean of the two middle ones if their number is even; NaN without
 /// values.
 fn median(values: &mut [f64]) -> f64 {
@@ -170,10 +178,12 @@ impl Tare {
     }
 
     /// Rebuilds a tare from the median of each cell, the median absolute deviation of each cell, and the step of the
-    /// values. The deviation defaults to 0 and the step to 1.
+    /// values, all in the sensor's unit; NaN where a cell never had a value. The deviation defaults to 0 and the step
+    /// to 1. The number of frames is at least 1; 0 counts as 1.
     ///
     /// # Errors
-    /// Returns an error if the sizes differ.
+    /// Returns an error if the sizes differ, if a median is infinite or beyond ±[`LARGEST_VALUE`], if a deviation is
+    /// below 0 or infinite, or if the step is not above 0 and finite.
     pub fn from_parts(
         baseline: Matrix<f64>,
         deviation: Option<Matrix<f64>>,
@@ -182,20 +192,39 @@ impl Tare {
     ) -> Result<Self, FrameError> {
         let deviation = deviation.unwrap_or_else(|| Matrix::filled(baseline.size(), 0.0));
         check_size("tare", &deviation, &baseline)?;
+        let step = step.unwrap_or(1.0);
+        let check = |what, values: &[f64], fits: fn(f64) -> bool, allowed| {
+            let wrong = values.iter().find(|&&value| !fits(value));
+            wrong.map_or(Ok(()), |&found| {
+                let (what, allowed) = (what, allowed);
+                Err(FrameError::Rule {
+                    what,
+                    found,
+                    allowed,
+                })
+            })
+        };
+        let fits = |value: f64| value.is_nan() || is_value(value);
+        check("tare", baseline.values(), fits, "-1e300 to 1e300")?;
+        let fits = |value: f64| value.is_nan() || (0.0..f64::INFINITY).contains(&value);
+        check("tare_spread", deviation.values(), fits, "0 or more")?;
+        let fits = |value: f64| value > 0.0 && value < f64::INFINITY;
+        check("tare_step", &[step], fits, "above 0")?;
         Ok(Self {
             baseline,
             deviation,
-            step: step.unwrap_or(1.0),
-            frames,
+            step,
+            frames: frames.max(1),
         })
     }
 
-    /// Returns the median absolute deviation of each cell.
+    /// Returns the median absolute deviation of each cell, in the sensor's unit; NaN where a cell never had a value.
     pub fn median_absolute_deviation(&self) -> &Matrix<f64> {
         &self.deviation
     }
 
-    /// Returns the step of the values: the smallest difference between two of them.
+    /// Returns the step of the values, in the sensor's unit: the smallest difference between two of them; 1 if all are
+    /// equal.
     pub fn step(&self) -> f64 {
         self.step
     }
@@ -289,6 +318,32 @@ mod tests {
         tare.add_frame(&frame, &view).expect("it fits");
         let tare = tare.finish().expect("two frames");
         assert_eq!(tare.baseline().values(), [3.0, 2.0, 1.0]);
+    }
+
+    #[test]
+    fn what_is_not_a_value_is_missing() {
+        let tare = tare(&[[1.0, f64::INFINITY], [f64::NEG_INFINITY, 2.0], [3.0, 1e301]]);
+        let tare = tare.expect("three frames");
+        assert_eq!(tare.baseline().values(), [2.0, 2.0]);
+    }
+
+    #[test]
+    fn parts_out_of_range_are_refused() {
+        let part = |value: f64| Matrix::filled(MatrixSize::of(2, 1), value);
+        let refused = |baseline: f64, deviation: f64, step: f64| {
+            let tare = Tare::from_parts(part(baseline), Some(part(deviation)), Some(step), 0);
+            tare.map(|tare| tare.frames())
+                .map_err(|error| error.to_string())
+        };
+        assert_eq!(refused(f64::NAN, f64::NAN, 0.1), Ok(1));
+        assert_eq!(refused(-1e300, 0.0, 1e300), Ok(1));
+        let message = |part: &str| Err(part.to_owned());
+        let baseline = "tare: -inf is out of range (allowed: -1e300 to 1e300)";
+        assert_eq!(refused(f64::NEG_INFINITY, 0.0, 1.0), message(baseline));
+        let deviation = "tare_spread: -5 is out of range (allowed: 0 or more)";
+        assert_eq!(refused(0.0, -5.0, 1.0), message(deviation));
+        let step = "tare_step: NaN is out of range (allowed: above 0)";
+        assert_eq!(refused(0.0, 0.0, f64::NAN), message(step));
     }
 
     #[test]
