@@ -15,16 +15,16 @@
 use crate::imprint::Imprint;
 
 /// The number of frames that it takes to call a taxel stuck.
-const ENOUGH: u32 = 10;
+const ENOUGH: u64 = 10;
 
 /// The counts of a taxel's states.
 #[derive(Clone, Copy, Debug, Default)]
 struct TaxelCounts {
     /// The number of frames in which no neighbour was active, and in how many of them the taxel was active.
-    alone: (u32, u32),
+    alone: (u64, u64),
     /// The number of frames in which three quarters of the neighbours were active, and in how many of them the taxel
     /// was active.
-    amid: (u32, u32),
+    amid: (u64, u64),
 }
 
 /// Counts flips in the frames of a recording.
@@ -125,7 +125,7 @@ impl FlipCounter {
                     }
                 }
             }
-            let own = u32::from(imprint.get(column, row));
+            let own = u64::from(imprint.get(column, row));
             if active == 0 {
                 counts.alone.0 += 1;
                 counts.alone.1 += own;
