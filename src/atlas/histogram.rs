@@ -24,9 +24,17 @@ const ARCS: [f64; 12] = [
     1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0,
 ];
 
+/// The largest number of intervals. The smallest width is far below the range of most features, so without this limit
+/// their memory has none.
+const MOST_INTERVALS: usize = 10_000;
+
+/// The largest value, so that differences are finite.
+const LARGEST: f64 = 1e300;
+
 impl Histogram {
-    /// Counts the poses of an atlas in at most `most` intervals, or in the smallest possible number. `values` are those
-    /// of the feature, one per imprint ([`Atlas::values`]). If all are whole, the width is at least 1.
+    /// Counts the poses of an atlas in at most `most` intervals (of which there are never more than 10,000), or in the
+    /// smallest possible number. `values` are those of the feature, one per imprint ([`Atlas::values`]). If all are
+    /// whole, the width is at least 1. A value that is missing, not finite or beyond ±1e300 counts as none.
     ///
     /// ```
     /// # use taxel::prelude::*;
@@ -41,14 +49,16 @@ impl Histogram {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn of(atlas: &Atlas, feature: &Feature, values: &[Option<f64>], most: usize) -> Self {
-        let found = values.iter().copied().flatten();
+        let is_value = |value: &f64| value.abs() <= LARGEST;
+        let found = values.iter().copied().flatten().filter(is_value);
         let (low, high) = found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
             (low.min(value), high.max(value))
         });
+        let most = most.min(MOST_INTERVALS);
         let (start, width, bins) = if feature.circular {
             around(most)
         } else if low <= high {
-            let mut found = values.iter().flatten();
+            let mut found = values.iter().flatten().filter(|value| is_value(value));
             let least = if found.all(|value| value.fract() == 0.0) {
                 1.0
             } else {
@@ -64,8 +74,9 @@ impl Histogram {
             poses: vec![0; if low <= high { bins } else { 0 }],
             without: 0,
         };
-        for (value, count) in values.iter().zip(atlas.counts()) {
-            let bin = value.and_then(|value| {
+        let values = values.iter().copied().chain(std::iter::repeat(None));
+        for (value, count) in values.zip(atlas.counts()) {
+            let bin = value.filter(is_value).and_then(|value| {
                 let last = histogram.poses.len().checked_sub(1)?;
                 Some(interval(value - start, width).min(last))
             });
@@ -193,6 +204,31 @@ mod tests {
                     assert_eq!(poses, expected, "{} from {from}", feature.key);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn any_number_of_intervals_may_be_allowed() {
+        let result = result("5");
+        for (index, feature) in features().iter().enumerate() {
+            let values = result.atlas.values(index);
+            let histogram = Histogram::of(&result.atlas, feature, &values, usize::MAX);
+            assert!(histogram.poses.len() <= MOST_INTERVALS, "{}", feature.key);
+            let poses = histogram.poses.iter().sum::<u64>() + histogram.without;
+            assert_eq!(poses, result.poses, "{}", feature.key);
+        }
+    }
+
+    #[test]
+    fn values_that_are_missing_or_no_numbers_are_counted_as_none() {
+        let result = result("5");
+        let (atlas, feature) = (&result.atlas, &features()[0]);
+        let counts: Vec<u64> = atlas.counts().collect();
+        let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX];
+        for strange in strange {
+            let histogram = Histogram::of(atlas, feature, &[Some(strange), Some(2.0)], 10);
+            assert_eq!((histogram.start, histogram.poses), (2.0, vec![counts[1]]));
+            assert_eq!(histogram.without, result.poses - counts[1], "{strange}");
         }
     }
 

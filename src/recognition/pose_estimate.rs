@@ -218,7 +218,8 @@ fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<
         count += 1;
     }
     seen.truncate(count);
-    let others = most.max(2) - 1;
+    // `most` may be any number, and is multiplied.
+    let others = most.clamp(2, count + 2) - 1;
     let mut index = 0;
     seen.retain(|_| {
         // The first pose, the first of each further part, and the last one.
@@ -398,6 +399,13 @@ mod tests {
                 "only a disc has no angle"
             );
         }
+        let imprint = Plane::new(*grids[0].sensor()).touch(&grids[0].placed(4321));
+        let seen = |most| {
+            let poses = model.poses_of(0, &imprint, most, &|_| true);
+            poses.map_or(0, |(_, poses)| poses.len())
+        };
+        assert!(seen(usize::MAX) > 2, "all of them");
+        assert_eq!(seen(usize::MAX), seen(1_000_000));
         assert_eq!(
             model.pose_of(7, &Imprint::empty(MatrixSize::of(4, 4)), &|_| true),
             None

@@ -11,7 +11,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
-use crate::index::{index, lower_word};
+use crate::index::{index, lower_word, wide};
 use crate::parameter::number::share;
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, add_log_counts, first_of_most, float};
@@ -378,8 +378,11 @@ impl Model {
     }
 
     /// Draws touches of each shape until some shape is as probable as `until` (0 to 1), `runs` times, and returns the
-    /// number of touches for each shape, in the order of the set. None if `progress` stopped it. If `until` is above
-    /// 1 or NaN, no run reaches it; if it is 0 or less, every run reaches it with its first touch.
+    /// number of touches for each shape, in the order of the set. If `until` is above 1 or NaN, no run reaches it; if it
+    /// is 0 or less, every run reaches it with its first touch.
+    ///
+    /// `progress` is called with 1 after each run, from any thread, and stops the simulation by returning `false`.
+    /// Returns None if it was stopped.
     pub fn touches_until(
         &self,
         until: f64,
@@ -387,29 +390,22 @@ impl Model {
         seed: u64,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<Vec<TouchesUntil>> {
-        let stopped = AtomicBool::new(false);
         let draws = Draw::all(self, |_| 1);
-        let results: Vec<TouchesUntil> = (draws.iter().enumerate())
-            .map(|(shape, draw)| {
-                let lengths: Vec<Option<(u32, bool)>> = (0..runs)
-                    .into_par_iter()
-                    .map(|run| {
-                        if stopped.load(Ordering::Relaxed) {
-                            return None;
-                        }
-                        let mut random =
-                            generator(seed, run * self.shapes().len() as u64 + shape as u64);
-                        let length = self.run_until(until, draw, shape, &mut random);
-                        if !progress(1) {
-                            stopped.store(true, Ordering::Relaxed);
-                        }
-                        length
-                    })
-                    .collect();
-                summary(runs, &lengths)
-            })
-            .collect();
-        (!stopped.into_inner()).then_some(results)
+        let shapes = self.shapes().len() as u64;
+        let of_shape = |(shape, draw): (usize, &Draw)| {
+            let run = |counts: RunCounts, run: u64| {
+                let task = run.wrapping_mul(shapes).wrapping_add(shape as u64);
+                let mut random = generator(seed, task);
+                let length = self.run_until(until, draw, shape, &mut random);
+                progress(1).then(|| counts.with(length))
+            };
+            (0..runs)
+                .into_par_iter()
+                .try_fold(RunCounts::default, run)
+                .try_reduce(RunCounts::default, |one, other| Some(one.sum(&other)))
+        };
+        let counts = draws.iter().enumerate().map(of_shape);
+        counts.map(|own| Some(own?.summary())).collect()
     }
 
     /// Returns the number of touches of one run, and whether it ended with the right shape. None if the run was
@@ -435,26 +431,65 @@ impl Model {
     }
 }
 
-/// Returns the mean and standard error of runs. Both are None if a run was abandoned: without it, the mean would be too
-/// small.
-fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
-    let own: Vec<f64> = lengths
-        .iter()
-        .flatten()
-        .map(|(length, _)| f64::from(*length))
-        .collect();
-    let reached = own.len() as u64;
-    let mean = (reached == runs && runs > 0).then(|| own.iter().sum::<f64>() / float(runs));
-    let standard_error = mean.filter(|_| runs > 1).map(|mean| {
-        let squares = own.iter().map(|length| (length - mean) * (length - mean));
-        (squares.sum::<f64>() / float(runs - 1) / float(runs)).sqrt()
-    });
-    TouchesUntil {
-        mean,
-        standard_error,
-        reached,
-        runs,
-        right: lengths.iter().flatten().filter(|(_, right)| *right).count() as u64,
+/// The counts of the runs of a shape. They are whole numbers, so their order does not matter, and they take no more
+/// memory for more runs.
+#[derive(Default)]
+struct RunCounts {
+    runs: u64,
+    right: u64,
+    /// The number of runs of each length, from 0 touches on, that reached the probability.
+    of_length: Vec<u64>,
+}
+
+impl RunCounts {
+    /// Counts a run: its number of touches, and whether it ended with the right shape; None if it was abandoned.
+    fn with(mut self, run: Option<(u32, bool)>) -> Self {
+        self.runs += 1;
+        if let Some((length, right)) = run {
+            let length = wide(length);
+            self.right += u64::from(right);
+            let longest = self.of_length.len().max(length + 1);
+            self.of_length.resize(longest, 0);
+            self.of_length[length] += 1;
+        }
+        self
+    }
+
+    /// Returns the counts of the runs of both.
+    fn sum(mut self, other: &Self) -> Self {
+        self.runs += other.runs;
+        self.right += other.right;
+        let longest = self.of_length.len().max(other.of_length.len());
+        self.of_length.resize(longest, 0);
+        for (own, more) in self.of_length.iter_mut().zip(&other.of_length) {
+            *own += more;
+        }
+        self
+    }
+
+    /// Returns the mean and its standard error. Both are None if a run was abandoned: without it, the mean would be too
+    /// small.
+    fn summary(&self) -> TouchesUntil {
+        let runs = self.runs;
+        let reached = self.of_length.iter().sum();
+        let sum_of = |value: &dyn Fn(f64) -> f64| -> f64 {
+            let lengths = (0..).map(float).zip(&self.of_length);
+            lengths
+                .map(|(length, &runs)| value(length) * float(runs))
+                .sum()
+        };
+        let mean = (reached == runs && runs > 0).then(|| sum_of(&|length| length) / float(runs));
+        let standard_error = mean.filter(|_| runs > 1).map(|mean| {
+            let squares = sum_of(&|length| (length - mean) * (length - mean));
+            (squares / float(runs - 1) / float(runs)).sqrt()
+        });
+        TouchesUntil {
+            mean,
+            standard_error,
+            reached,
+            runs,
+            right: self.right,
+        }
     }
 }
 
@@ -572,11 +607,33 @@ mod tests {
         assert_eq!((rate(5), rate(4), rate(1)), (Some(10), None, None));
     }
 
+    fn summary(runs: &[Option<(u32, bool)>]) -> TouchesUntil {
+        let counts = runs.iter().copied();
+        let half = counts
+            .clone()
+            .take(1)
+            .fold(RunCounts::default(), RunCounts::with);
+        let rest = counts.skip(1).fold(RunCounts::default(), RunCounts::with);
+        half.sum(&rest).summary()
+    }
+
+    #[test]
+    fn any_number_of_runs_can_be_stopped() {
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(4.0, 2.0).on(&sensor).expect("in range");
+        let shapes = [NamedShape::new("bar", bar)];
+        let training = Training::new(shapes, sensor, Anchor::Centre, Ranges::default());
+        let model = training.expect("a set").run().expect("not stopped");
+        for runs in [1_000_000_000, u64::MAX] {
+            assert_eq!(model.touches_until(0.9, runs, 0, &|_| false), None);
+        }
+    }
+
     #[test]
     fn an_abandoned_run_leaves_no_mean() {
-        let known = summary(2, &[Some((2, true)), Some((4, true))]);
+        let known = summary(&[Some((2, true)), Some((4, true))]);
         assert_eq!((known.mean, known.standard_error), (Some(3.0), Some(1.0)));
-        let unknown = summary(3, &[Some((2, true)), None, Some((4, true))]);
+        let unknown = summary(&[Some((2, true)), None, Some((4, true))]);
         assert_eq!((unknown.mean, unknown.standard_error), (None, None));
         assert_eq!((unknown.reached, unknown.runs), (2, 3));
     }
@@ -629,9 +686,9 @@ mod tests {
 
     #[test]
     fn a_single_run_has_a_mean_but_no_error() {
-        let found = summary(1, &[Some((3, true))]);
+        let found = summary(&[Some((3, true))]);
         assert_eq!((found.mean, found.standard_error), (Some(3.0), None));
-        let found = summary(2, &[Some((3, true)), Some((5, false))]);
+        let found = summary(&[Some((3, true)), Some((5, false))]);
         assert_eq!((found.mean, found.standard_error), (Some(4.0), Some(1.0)));
         assert_eq!((found.reached, found.right), (2, 1));
     }
