@@ -10,7 +10,7 @@ use crate::parameter::number::counted;
 pub enum RecordingError {
     /// An error of the system.
     #[error("cannot read: {0}")]
-    Io(#[from] io::Error),
+    Io(io::Error),
     /// Not one of the known formats.
     #[error("not a recording of a known format: expected {FORMS}")]
     Unknown,
@@ -60,6 +60,13 @@ fn prefix(line: Option<u64>, column: Option<u64>) -> String {
         (Some(line), Some(column)) => format!("line {line}, column {column}: "),
         (Some(line), None) => format!("line {line}: "),
         _ => String::new(),
+    }
+}
+
+impl From<io::Error> for RecordingError {
+    /// Converts an error of the system. It is part of the message, so it is not the source of this error, too.
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
     }
 }
 
