@@ -4,8 +4,9 @@
 //! threshold. Parts of the shape beyond the sensor are cut off.
 //!
 //! **A coverage of exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote.
-//! Coverages are first computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]). If one lies
-//! within 1e-10 of the threshold, it is computed again with 32 digits ([`Double`]), and the taxel is active unless
+//! Coverages are first computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]) for every shape of
+//! the program ([`Plane::coverages`] says how errors grow). If one lies within 1e-10 of the threshold, it is computed
+//! again with 32 digits ([`Double`]), and the taxel is active unless
 //! the coverage falls short of the threshold by more than 1e-20 ([`Real::TIE`]). For ellipses at a threshold of one
 //! half, hardly any coverage needs to be computed at all: the positions of the cells' centres decide.
 //!
@@ -81,6 +82,9 @@ impl Plane {
 
     /// Returns the imprint that a shape leaves. It never fails: the imprint is empty if the shape has no boundary, or
     /// has (as your own shapes may) a coordinate that is not finite or an ellipse with a coordinate of 1e70 or more.
+    ///
+    /// An ellipse with a coordinate above 500 may leave a taxel wrong whose coverage lies nearer to the threshold than
+    /// the error of [`Self::coverages`].
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
         let mut imprint = Imprint::empty(self.sensor.size());
         self.activate(solid, &mut imprint);
@@ -213,6 +217,9 @@ impl Plane {
     }
 
     /// Returns the share of each taxel's cell that the shape of the last touch covers, 0 to 1.
+    ///
+    /// The error is below 1e-11 for shapes about as large as the sensor. It grows with the square of the largest
+    /// coordinate of an ellipse: 3e-12 was measured at 100 cells, 4e-8 at 10,000 and 3e-4 at a million.
     pub fn coverages(&self) -> Matrix<f64> {
         let mut all = Matrix::filled(self.sensor.size(), 0.0);
         let width = usize::from(self.sensor.columns());

@@ -18,6 +18,13 @@ pub struct Atlas {
     summaries: Vec<ImprintSummary>,
 }
 
+impl PartialEq for Atlas {
+    /// Returns true if both have the same imprints in the same order, with the same counts and first poses.
+    fn eq(&self, other: &Self) -> bool {
+        self.entries().eq(other.entries())
+    }
+}
+
 /// An imprint of an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

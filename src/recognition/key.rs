@@ -146,6 +146,15 @@ pub struct KeyTable {
     hasher: DefaultHashBuilder,
 }
 
+impl PartialEq for KeyTable {
+    /// Returns true if both have the same keys in the same order.
+    fn eq(&self, other: &Self) -> bool {
+        (&self.sizes, &self.bits) == (&other.sizes, &other.bits)
+    }
+}
+
+impl Eq for KeyTable {}
+
 impl KeyTable {
     /// Returns the number of keys.
     pub fn len(&self) -> usize {

@@ -75,6 +75,17 @@ pub struct Model {
     scan: OnceLock<ScanTables>,
 }
 
+impl PartialEq for Model {
+    /// Returns true if both have the same shapes, poses and keys, left equally often.
+    fn eq(&self, other: &Self) -> bool {
+        // Tables for scans follow from the keys.
+        self.head == other.head
+            && self.keys == other.keys
+            && self.starts == other.starts
+            && self.counts == other.counts
+    }
+}
+
 /// The tables that scans of a model need besides its keys.
 #[derive(Clone, Debug)]
 struct ScanTables {
@@ -84,7 +95,7 @@ struct ScanTables {
 }
 
 /// The shapes of a model and the poses in which they were touched: everything except the keys.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ModelHead {
     /// The shapes, at least one.

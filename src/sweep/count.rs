@@ -17,6 +17,14 @@ pub struct CountedImprints {
     pub partly_off: u64,
 }
 
+impl PartialEq for CountedImprints {
+    /// Returns true if both have the same imprints in the same order, left equally often.
+    fn eq(&self, other: &Self) -> bool {
+        (self.poses, self.partly_off) == (other.poses, other.partly_off)
+            && self.iter().eq(other.iter())
+    }
+}
+
 impl CountedImprints {
     /// Returns the number of distinct imprints.
     pub fn len(&self) -> usize {

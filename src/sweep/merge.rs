@@ -23,7 +23,7 @@ use crate::sweep::result::SweepResult;
 /// for number in 1..=2 {
 ///     merge.add(Sweep::new(&grid).shard(Shard::new(number, 2).unwrap()).run())?;
 /// }
-/// assert_eq!(merge.finish()?.poses, 10_000);
+/// assert_eq!(merge.finish()?, Sweep::new(&grid).run());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Default)]

@@ -39,6 +39,17 @@ pub struct SweepResult {
     pub(crate) variance_parts: VarianceParts,
 }
 
+impl PartialEq for SweepResult {
+    /// Returns true if both have the same grid, shard, atlas and statistics.
+    fn eq(&self, other: &Self) -> bool {
+        // Statistics follow from the atlas and the parts of the variance.
+        (&self.grid, self.shard, self.poses, self.partly_off)
+            == (&other.grid, other.shard, other.poses, other.partly_off)
+            && self.atlas == other.atlas
+            && self.variance_parts == other.variance_parts
+    }
+}
+
 impl SweepResult {
     /// Returns the grid.
     pub fn grid(&self) -> &PoseGrid {
