@@ -280,16 +280,8 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
     let result = Sweep::new(grid).rows(&mut take).run();
     let imprints: Vec<_> = result.atlas().entries().collect();
     let free = Sweep::new(grid).run();
-    let told = |result: &SweepResult| {
-        let SweepResult {
-            poses,
-            partly_off,
-            statistics,
-            ..
-        } = result;
-        format!("{poses} {partly_off} {statistics:?}")
-    };
-    if told(&free) != told(&result) || !free.atlas().entries().eq(imprints.iter().copied()) {
+    let told = |result: &SweepResult| format!("{:?}", result.statistics());
+    if free != result || told(&free) != told(&result) {
         return Err("without rows the result is another one".to_owned());
     }
     let mut plane = Plane::new(*grid.sensor());

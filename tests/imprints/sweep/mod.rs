@@ -94,15 +94,12 @@ fn sweeps_equal_touches_with_very_fine_steps() {
 /// Formats all values of a result as one text.
 fn told(result: &SweepResult) -> String {
     let entries: Vec<_> = result.atlas().entries().collect();
-    let SweepResult {
-        poses,
-        partly_off,
-        statistics,
-        ..
-    } = result;
     format!(
-        "{poses} {partly_off} {:?} {entries:?} {statistics:?}",
-        result.atlas().distinct_classes()
+        "{} {} {:?} {entries:?} {:?}",
+        result.poses(),
+        result.partly_off(),
+        result.atlas().distinct_classes(),
+        result.statistics()
     )
 }
 
