@@ -56,7 +56,8 @@ pub struct Evidence<'a> {
 }
 
 impl<'a> Evidence<'a> {
-    /// Creates evidence from touches of a sensor whose taxels never fail; any probability is enough for an answer.
+    /// Creates evidence from touches of a sensor whose taxels never fail; any probability is enough for an answer. Each
+    /// imprint lies on the whole matrix of its sensor ([`Model::recognise`]).
     pub fn of(touches: &'a [Imprint]) -> Self {
         Self {
             touches,
@@ -112,6 +113,10 @@ const SAME: f64 = 1e-12;
 impl Model {
     /// Names the shape that was touched. Without any touch, the answer is the prior. If taxels may flip, no answer is
     /// certain, since any shape may leave any imprint.
+    ///
+    /// Touches are imprints on the whole matrix of their sensor, which may be of another size than the model's. One
+    /// that is cropped to its taxels reaches the rim, so it may be cut off, and the answer is not certain
+    /// ([`Answer::at_rim`]). The model must hold all poses: of a shard ([`Model::shard`]), only its own poses count.
     ///
     /// ```
     /// use taxel::prelude::*;

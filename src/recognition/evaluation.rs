@@ -59,7 +59,7 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Evaluates a model.
+    /// Evaluates a model: all poses that it holds, so only those of the shard if it is one ([`Model::shard`]).
     pub fn of(model: &Model) -> Self {
         let keys = 0..model.keys().len();
         let mut evaluation = Self::new(model);

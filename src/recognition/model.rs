@@ -428,7 +428,8 @@ impl Model {
             .map_or(&[], |key| self.counts(key))
     }
 
-    /// Returns P(shape | imprint) for each shape of the set; None for an imprint that no shape leaves.
+    /// Returns P(shape | imprint) for each shape of the set; None for an imprint that no shape leaves. The place of the
+    /// imprint on its matrix does not matter. Of a shard, only its own poses count.
     pub fn posterior(&self, imprint: &Imprint) -> Option<Vec<f64>> {
         let counts = self.counts_of(imprint);
         if counts.is_empty() {
