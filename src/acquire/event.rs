@@ -27,9 +27,11 @@ pub struct AcquireOptions {
     /// The channel of a recording whose frames are played at its rate; by default the first one. Frames of other
     /// channels are given at once.
     pub channel: Option<String>,
-    /// Bits per second of a serial line.
+    /// Bits per second of a serial line; by default 115,200. The program allows 50 to 20,000,000. A line whose driver
+    /// refuses the number is not opened.
     pub baud: u32,
-    /// Whether a connection or a serial line that cannot be opened yet is tried again each second.
+    /// Whether a connection or a serial line that cannot be opened at first is tried again each second. Once it was
+    /// open, it is tried again in any case, except with [`Playback::Once`].
     pub waits: bool,
     /// The speed at which the source is read, and what happens at its end.
     pub playback: Playback,
@@ -42,11 +44,13 @@ pub enum Playback {
     /// The source is read as it comes. A recording is played at its own rate, and followed if it grows meanwhile.
     #[default]
     Live,
-    /// The source is read to its end as fast as possible.
+    /// The source is read to its end as fast as possible. The end of a connection or of a serial line is where the
+    /// other end closes it; with other values it is then waited for.
     Once,
     /// A recording is played at another speed, or repeated without end. A stream is read as it comes.
     Paced {
-        /// The speed, relative to the rate of the recording. A speed that is not above 0 counts as 1.
+        /// The speed, relative to the rate of the recording. A speed that is not above 0 counts as 1; at an infinite
+        /// one, nothing is waited for.
         speed: f64,
         /// Whether the recording begins again at its end.
         repeat: bool,

@@ -11,6 +11,11 @@ use crate::acquire::{playback, stream};
 /// if it grows meanwhile. Any other file is read while it grows, and always waited for if the format of a stream is
 /// given.
 ///
+/// A connection or a serial line that is lost, as when the other end closes it, is tried again each second until it is
+/// back ([`AcquireEvent::Lost`](crate::acquire::AcquireEvent::Lost)), whatever [`AcquireOptions::waits`] says. With
+/// [`Playback::Once`](crate::acquire::Playback::Once) it ends there. Standard input and a FIFO end when they are
+/// closed, and a recording that does not grow ends with its last frame.
+///
 /// ```
 /// use std::ops::ControlFlow;
 /// use std::sync::atomic::AtomicBool;

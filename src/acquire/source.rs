@@ -17,9 +17,11 @@ use crate::storage::FileId;
 pub enum FrameSource {
     /// Standard input, named `-`.
     Standard,
-    /// A connection to `HOST:PORT`, named `tcp://HOST:PORT`.
+    /// A connection to `HOST:PORT`, named `tcp://HOST:PORT`. It is waited for when the other end closes it, except with
+    /// [`Playback::Once`](crate::acquire::Playback::Once).
     Tcp(String),
-    /// A serial line.
+    /// A serial line. It is waited for when it is unplugged, except with
+    /// [`Playback::Once`](crate::acquire::Playback::Once).
     Serial(PathBuf),
     /// A named pipe.
     Fifo(PathBuf),
