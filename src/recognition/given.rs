@@ -1,7 +1,4 @@
 //! The value of descriptors: the limit of one touch if only some descriptors of the imprint are known.
-//!
-//! Two imprints count as the same if all given descriptors of their main regions agree. Descriptors are compared
-//! exactly ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A missing value agrees only with a missing value.
 
 use std::collections::HashMap;
 
@@ -106,30 +103,59 @@ impl std::fmt::Display for ShapeDescriptor {
     }
 }
 
-/// A descriptor that is measured in steps: values are rounded to the nearest multiple of the step.
+/// A descriptor that is measured in steps: values are rounded to the nearest multiple of the step. As text, its key and
+/// the step: `cg_cd=0.01`.
+///
+/// ```
+/// use taxel::recognition::{Rounding, ShapeDescriptor};
+///
+/// let distance: ShapeDescriptor = "cg_cd".parse()?;
+/// let rounding = Rounding::new(distance, 0.01)?;
+/// assert_eq!(rounding, "cg_cd=0.01".parse()?);
+/// assert_eq!((rounding.descriptor(), rounding.step()), (distance, 0.01));
+/// assert!(Rounding::new(distance, 0.0).is_err());
+/// # Ok::<(), taxel::recognition::GivenError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     descriptor: ShapeDescriptor,
     step: f64,
 }
 
+impl Rounding {
+    /// Creates a rounding to multiples of `step`, in the descriptor's own unit.
+    ///
+    /// # Errors
+    /// Returns [`GivenError::Rounding`] if the step is not from 1e-9 to 1e9.
+    pub fn new(descriptor: ShapeDescriptor, step: f64) -> Result<Self, GivenError> {
+        let rounding = Self { descriptor, step };
+        // Below this a step is finer than the numbers themselves.
+        if (1e-9..=1e9).contains(&step) {
+            Ok(rounding)
+        } else {
+            Err(GivenError::Rounding {
+                found: rounding.to_string(),
+            })
+        }
+    }
+
+    /// Returns the step, in the descriptor's own unit.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+}
+
 impl std::str::FromStr for Rounding {
     type Err = GivenError;
 
+    /// Reads a descriptor and a step, `cg_cd=0.01`.
     fn from_str(text: &str) -> Result<Self, GivenError> {
         let error = || GivenError::Rounding {
             found: shortened(text),
         };
         let (descriptor, step) = text.split_once('=').ok_or_else(error)?;
-        let step: f64 = step.trim().parse().map_err(|_| error())?;
-        // Below this a step is finer than the numbers themselves.
-        if !(1e-9..=1e9).contains(&step) {
-            return Err(error());
-        }
-        Ok(Self {
-            descriptor: descriptor.parse()?,
-            step,
-        })
+        let step = step.trim().parse().map_err(|_| error())?;
+        Self::new(descriptor.parse()?, step)
     }
 }
 
@@ -139,7 +165,10 @@ impl std::fmt::Display for Rounding {
     }
 }
 
-/// Descriptors that are known instead of the imprint itself.
+/// Descriptors that are known instead of the imprint itself; as text, their keys separated by commas: `na,p`.
+///
+/// Two imprints count as the same if all given descriptors of their main regions agree. Descriptors are compared
+/// exactly ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A missing value agrees only with a missing value.
 ///
 /// ```
 /// use taxel::recognition::{Evaluation, GivenDescriptors, GridSteps, Training, equal_figures};
@@ -252,8 +281,8 @@ impl GivenDescriptors {
     }
 }
 
-/// Returns the value of one descriptor in a description, in steps if it is rounded. An empty imprint has no description;
-/// its counts are 0, so in large steps they equal small ones.
+/// Returns the value of one descriptor in a description, in steps if it is rounded. An empty imprint has no
+/// description; its counts are 0, so in large steps they equal small ones.
 fn known(
     descriptor: ShapeDescriptor,
     rounding: Option<&Rounding>,
