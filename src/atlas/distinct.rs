@@ -210,7 +210,7 @@ impl Atlas {
     }
 
     /// Returns the value of a feature for every imprint, in their order; None if it does not exist. `feature` is its
-    /// index in [`features`].
+    /// index in [`features`]; with any other index, all are None.
     pub fn values(&self, feature: usize) -> Vec<Option<f64>> {
         let feature = features().get(feature);
         let value = |summary: &ImprintSummary| feature?.value(summary.description.as_ref()?);

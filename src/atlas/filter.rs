@@ -1,13 +1,4 @@
 //! Filters the imprints of an atlas by an expression that the user types: `na>=40 holes=0 f<12`.
-//!
-//! ```text
-//! na>=40 holes=0      every condition has to hold; blanks around the sign do not matter
-//!  |  |  40           a number; the signs are = != < <= > >=
-//!  |  sign
-//!  a descriptor as in JSON and CSV, or id, count (also: poses), pieces, holes
-//! ```
-//! `=` and `!=` compare as many decimals as were typed: `f=12.3`, or `f=1.23e1`, holds for 12.26 and for 12.34. If an
-//! imprint has no value for a descriptor, it fulfils no condition on that descriptor.
 
 use rayon::prelude::*;
 
@@ -16,7 +7,16 @@ use crate::atlas::feature::{ImprintSummary, features};
 use crate::parameter::number;
 use crate::quote::shortened;
 
-/// A filter: conditions that must all hold.
+/// A filter of imprints, read from an expression such as `na>=40 holes=0 f<12`: conditions that must all hold.
+///
+/// ```text
+/// na>=40 holes=0      blanks separate conditions; around the sign they do not matter
+///  |  |  40           a number, in the unit of the feature
+///  |  sign            = != < <= > >=
+///  a feature as in JSON and CSV, or id, count (also: poses), pieces, holes; upper and lower case are the same
+/// ```
+/// `=` and `!=` compare as many decimals as were typed: `f=12.3`, or `f=1.23e1`, holds for 12.26 and for 12.34. If an
+/// imprint has no value for a feature, it fulfils no condition on that feature.
 ///
 /// ```
 /// # use taxel::prelude::*;

@@ -1,17 +1,5 @@
 //! Statistics of every feature over all poses that have it, and how much of its variance comes from the position.
 //!
-//! The mean, the standard deviation (of the population) and the coefficient of variation are weighted by how often each
-//! imprint occurs. The variance of a feature is the mean of its variances at a fixed orientation (one angle, one pair
-//! of zooms), plus the variance of its means at these orientations. **`sd_position`** is the square root of the first
-//! part, **`sd_angle`** that of the second, so `sd² = sd_position² + sd_angle²`. Each orientation is weighted by its
-//! number of poses with a value, which is usually the same for all.
-//!
-//! **Directions** that go all around have a circular mean, that of the unit vectors. With `R` the length of the mean
-//! vector, the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. Logarithms
-//! of `R` take the place of the variances: `sd_position` comes from the mean of the orientations' own `R`, `sd_angle`
-//! from the difference between that mean and the overall `R`, and the squares add up as above. A direction has no
-//! smallest or largest value, and no coefficient of variation.
-//!
 //! All sums are whole multiples of 2⁻⁴⁰. So the result does not depend on threads, shards or symmetries.
 
 use rayon::prelude::*;
@@ -22,8 +10,20 @@ use crate::atlas::values::{Row, RowSums, Sum, Table, columns, row_width};
 use crate::atlas::variance::VarianceParts;
 use crate::index::lower_word;
 
-/// The statistics of a feature over all poses that have it. If no pose has it, all values that depend on poses are
-/// None.
+/// The statistics of a feature over all poses that have it, in the feature's own unit. If no pose has it, all values
+/// that depend on poses are None.
+///
+/// The mean, the standard deviation and the coefficient of variation are weighted by how often each imprint occurs. The
+/// variance of a feature is the mean of its variances at a fixed orientation (one angle, one pair of zooms), plus the
+/// variance of its means at these orientations. [`Self::sd_position`] is the square root of the first part,
+/// [`Self::sd_angle`] that of the second, so `sd² = sd_position² + sd_angle²`. Each orientation is weighted by its
+/// number of poses with a value, which is usually the same for all.
+///
+/// **Directions** that go all around have a circular mean, that of the unit vectors. With `R` the length of the mean
+/// vector, the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. Logarithms
+/// of `R` take the place of the variances: `sd_position` comes from the mean of the orientations' own `R`, `sd_angle`
+/// from the difference between that mean and the overall `R`, and the squares add up as above. A direction has no
+/// smallest or largest value, and no coefficient of variation.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Statistic {

@@ -1,12 +1,13 @@
 //! The outline of a filled region, as a closed chain of steps between the centres of its outline taxels.
-//!
-//! The length of that chain is computed from 2 × 2 windows of taxels: a window adds 1 if exactly two neighbours in it
-//! belong to the region, √2 if three taxels do, 2√2 if only two on a diagonal do, and 0 otherwise. So a part that is
-//! one taxel wide counts twice, out and back, and a single taxel has length 0.
 
 use crate::imprint::{Bounds, Imprint};
 
-/// The numbers of steps of a chain. They are whole, so the length is the same number on every machine.
+/// The numbers of steps of a closed chain between the centres of the outline taxels of a filled region. They are whole,
+/// so the length is the same number on every machine.
+///
+/// They are counted in 2 × 2 windows of taxels: a window adds a straight step if exactly two neighbours in it belong to
+/// the region, a diagonal step if three taxels do, two diagonal steps if only two on a diagonal do, and none otherwise.
+/// So a part that is one taxel wide counts twice, out and back, and a single taxel has length 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ChainSteps {

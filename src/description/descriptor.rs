@@ -81,7 +81,8 @@ impl Description {
         DVec2::from(self.whole_sides().map(f64::from))
     }
 
-    /// Returns P, the length of the outline.
+    /// Returns P, the length of the outline of the filled region in cell sides: that of the chain between the centres
+    /// of its outline taxels ([`ChainSteps`]), so 0 for a single taxel.
     pub fn p(&self) -> f64 {
         self.steps.length()
     }

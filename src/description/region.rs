@@ -1,10 +1,5 @@
 //! The regions of an imprint: its pieces and its holes.
 //!
-//! An **exterior** is an 8-connected component of the active taxels. A **hole** is a 4-connected component of the
-//! inactive taxels that does not reach the outside; an inactive taxel on the rim of the matrix belongs to the outside.
-//! Exteriors come first, then holes, each in reading order of their first taxel. Each region is described separately:
-//! `filled` is the region together with everything that its outer outline encloses.
-//!
 //! Each region is found by a flood fill. Floods work on whole rows: if a flood enters a run of taxels anywhere, the
 //! carry of an addition fills the whole run at once.
 
@@ -16,9 +11,10 @@ use crate::parameter::named;
 /// The kind of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RegionKind {
-    /// A piece of the object.
+    /// A piece of the object: an 8-connected component of the active taxels.
     Exterior,
-    /// A hole in the object.
+    /// A hole in the object: a 4-connected component of the inactive taxels that does not reach the outside. An
+    /// inactive taxel on the rim of the matrix belongs to the outside.
     Hole,
 }
 
@@ -83,7 +79,8 @@ impl<'a> Region<'a> {
         &self.taxels
     }
 
-    /// Returns the taxels of the region and everything that its outer outline encloses.
+    /// Returns the taxels of the region and everything that its outer outline encloses: for an exterior, also its holes
+    /// and the pieces in them.
     pub fn filled(&self) -> &Imprint {
         self.filled.as_deref().unwrap_or(&self.taxels)
     }
@@ -100,7 +97,8 @@ impl<'a> Region<'a> {
     }
 }
 
-/// Returns all regions of an imprint, exteriors first; empty for an empty imprint.
+/// Returns all regions of an imprint: first the exteriors, then the holes, each in reading order of their first taxel.
+/// Empty for an empty imprint.
 ///
 /// ```
 /// use taxel::prelude::*;

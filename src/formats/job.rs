@@ -13,7 +13,8 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::Plane;
 
-/// The task that a line sets.
+/// The task that a line sets: a figure, a picture or a whole matrix, perhaps with a sensor of its own; or the values of
+/// a real sensor with a threshold.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Job {
@@ -54,8 +55,22 @@ pub enum JobError {
 }
 
 impl Job {
-    /// Reads a line. Its sensor is `sensor` with the changes that the line makes; `lookup` finds pictures given by
-    /// name. A whole matrix is not touched and has no sensor.
+    /// Reads a line, which is a JSON object with one of these keys:
+    /// ```text
+    /// {"figure":"hexagon","side":3,"x0":2.1,"y0":1.35,"angle":17,"thickness":1}
+    /// {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
+    /// {"picture":"washer","x0":2,"y0":2,"angle":0,"zoom_x":1,"zoom_y":1}
+    /// {"imprint":[".##.","#..#",".##."]}
+    /// {"frame":[[0,3,8],[1,null,12]],"at_least":5}
+    /// ```
+    /// A figure or a picture touches the sensor; an imprint is a whole matrix, which is described as it is and has no
+    /// sensor. Sizes, place, angle and zooms have no defaults ([`PARAMETERS`](crate::parameter::PARAMETERS) lists keys,
+    /// units and ranges); a figure without `thickness` is solid. A picture is given by its rows, or by a name that
+    /// `lookup` finds. The sensor is `sensor` with the changes that the line makes, as in
+    /// `"sensor":{"columns":32,"rows":32,"threshold":0.5}`.
+    ///
+    /// A frame has the values of a sensor in rows, null where there is no cell, and a [`Rule`](crate::frame::Rule):
+    /// `at_least`, `percent`, or `low` and `high`. With `least`, pieces of fewer taxels are dropped.
     ///
     /// # Errors
     /// Returns an error if the line has no answer; the message is one sentence.

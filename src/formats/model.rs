@@ -1,14 +1,4 @@
 //! A model of shapes as an archive of numpy arrays, which can be read back and merged.
-//!
-//! Per key, in order of height, width and taxels: `height` and `width` of its box, and `rows` (a word per row, bit
-//! `i` for column `i`; keys × rows of the highest key, in the smallest unsigned type that holds the widest). Per key
-//! and shape that leaves it, key after key: `key` (its number), `shape` (its number in the header) and `count` (the
-//! number of poses). Before them comes `header`, JSON as bytes: format, shapes, sensor, anchor, ranges, shard, poses
-//! of each shape, and the number of poses in which it is cut off. Equal models are equal files.
-//!
-//! A file is refused if it has another format or an unknown key in the header; arrays of other types or lengths; keys
-//! that are not cut to their boxes or occur twice; counts that are not in the order of the shapes, or do not add up
-//! to the number of poses. So every model that can be read is one that training could have written.
 
 use std::io::{Read, Seek, Write};
 
@@ -69,7 +59,13 @@ struct ShapeHeader<Shape> {
     source: Shape,
 }
 
-/// Writes a model.
+/// Writes a model as an archive of numpy arrays (`numpy.load`). Equal models are equal files.
+///
+/// Per key, in order of height, width and taxels: `height` and `width` of its box, and `rows` (a word per row, bit
+/// `i` for column `i`; keys × rows of the highest key, in the smallest unsigned type that holds the widest). Per key
+/// and shape that leaves it, key after key: `key` (its number), `shape` (its number in the header) and `count` (the
+/// number of poses). Before them comes `header`, JSON as bytes: format, shapes, sensor, anchor, ranges, shard, poses
+/// of each shape, and the number of poses in which it is cut off.
 ///
 /// # Errors
 /// Returns the errors of the writer.
@@ -154,7 +150,11 @@ fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
     .map_err(|error| ArchiveError::Io(error.into()))
 }
 
-/// Reads a model.
+/// Reads a model that [`write_model`](crate::formats::write_model) has written.
+///
+/// A file is refused if it has another format or an unknown key in the header; arrays of other types or lengths; keys
+/// that are not cut to their boxes or occur twice; counts that are not in the order of the shapes, or do not add up
+/// to the number of poses. So every model that can be read is one that training could have written.
 ///
 /// # Errors
 /// Returns an error that says what is wrong; the input may be any bytes.

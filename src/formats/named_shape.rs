@@ -1,12 +1,4 @@
 //! The shapes of a set: one JSON object each, or a few words on the command line.
-//!
-//! ```text
-//! {"name":"disc","figure":"ellipse","radius_x":3.09,"radius_y":3.09}
-//! {"name":"washer","picture":"washer","weight":2}
-//! {"name":"corner","imprint":["##","#."]}
-//! disc=ellipse radius_x=3.09 radius_y=3.09
-//! washer=picture washer
-//! ```
 
 use std::borrow::Cow;
 use std::num::NonZeroU32;
@@ -98,6 +90,15 @@ pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
 /// Reads a shape of a set from a JSON object. It has neither a pose nor a sensor: the shapes of a set are touched in
 /// the poses of a grid, on one sensor.
 ///
+/// ```text
+/// {"name":"disc","figure":"ellipse","radius_x":3.09,"radius_y":3.09}
+/// {"name":"washer","picture":"washer","weight":2}
+/// {"name":"corner","picture":["##","#."]}
+/// ```
+/// The sizes of a figure have no defaults ([`PARAMETERS`] lists keys, units and ranges); without `thickness` it is
+/// solid. A picture is given by its rows, or by the name of a stored shape, which `lookup` finds. The weight, from 1,
+/// says how often the shape is expected compared with the others; by default 1.
+///
 /// # Errors
 /// Returns an error that says in one sentence what is wrong.
 ///
@@ -119,7 +120,8 @@ pub fn named_shape(line: &[u8], lookup: &ShapeLookup<'_>) -> Result<NamedShape, 
     Ok(NamedShape::new(name, source).weighted(weight))
 }
 
-/// Reads a shape of a set from words, `disc=ellipse radius_x=3 radius_y=3` or `ring=picture washer`.
+/// Reads a shape of a set from words, `disc=ellipse radius_x=3 radius_y=3` or `ring=picture washer`: a name, the kind
+/// of a figure and its sizes, or a picture, which `lookup` finds. The weight is 1.
 ///
 /// # Errors
 /// Returns an error that says in one sentence what is wrong.

@@ -1,16 +1,4 @@
 //! Estimates from a recording how often taxels flip, and which taxels are dead or stuck.
-//!
-//! If a taxel has the same state in the first and the last of three consecutive frames, it is assumed to have had that
-//! state all the time: if it differs in the middle frame, it has flipped. If every taxel flips with probability e, a
-//! share e(1−e) / (1 − 2e(1−e)) of these taxels differs; from this share follows e. A moving contact also changes
-//! taxels, but rarely for one frame only. Frames of a contact at rest or of an empty sensor give the best estimate.
-//!
-//! A taxel is stuck on if it is active whenever none of its neighbours is. It is stuck off, or dead, if it is never
-//! active when three quarters of its neighbours are. There must be at least ten such frames, and one in a hundred may
-//! be an exception. A hole of one taxel that never moves looks like a dead taxel.
-//!
-//! A taxel with fewer than three neighbours is never called dead, because the straight edge of a contact at rest may
-//! cover all of them. On a sensor of one row or one column two neighbours suffice, one on either side.
 
 use crate::imprint::Imprint;
 
@@ -27,7 +15,19 @@ struct TaxelCounts {
     amid: (u64, u64),
 }
 
-/// Counts flips in the frames of a recording.
+/// A counter of flips in the frames of a recording: how often taxels flip, and which taxels are dead or stuck.
+///
+/// If a taxel has the same state in the first and the last of three consecutive frames, it is assumed to have had that
+/// state all the time: if it differs in the middle frame, it has *flipped*. If every taxel flips with probability e, a
+/// share e(1−e) / (1 − 2e(1−e)) of these taxels differs; from this share follows e. A moving contact also changes
+/// taxels, but rarely for one frame only. Frames of a contact at rest or of an empty sensor give the best estimate.
+///
+/// A taxel is *stuck on* if it is active whenever none of its neighbours is. It is *stuck off*, or dead, if it is never
+/// active when three quarters of its neighbours are. There must be at least ten such frames, and one in a hundred may
+/// be an exception. A hole of one taxel that never moves looks like a dead taxel.
+///
+/// A taxel with fewer than three neighbours is never called dead, because the straight edge of a contact at rest may
+/// cover all of them. On a sensor of one row or one column two neighbours suffice, one on either side.
 #[derive(Clone, Debug)]
 pub struct FlipCounter {
     /// The taxels that exist.
@@ -40,7 +40,7 @@ pub struct FlipCounter {
     taxels: Vec<TaxelCounts>,
 }
 
-/// The estimates from a recording.
+/// The estimates from a recording, by the rules of [`FlipCounter`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FlipReport {

@@ -32,7 +32,8 @@ pub enum Rule {
         high: f64,
     },
     /// A taxel is active if its value exceeds the tare by this number of standard deviations of the cell's own noise,
-    /// or more.
+    /// or more, but at least by one step of the values ([`Tare::step`]). The standard deviation is estimated as 1.4826
+    /// times the median absolute deviation of the frames of the tare, as for a normal distribution.
     #[non_exhaustive]
     Noise(f64),
 }
@@ -92,7 +93,8 @@ impl Rule {
         Ok(Self::Hysteresis { low, high })
     }
 
-    /// Creates a rule with a threshold in standard deviations of the noise. The rule needs a tare.
+    /// Creates a rule with a threshold in standard deviations of the noise ([`Self::Noise`]). The rule needs a tare of
+    /// two or more frames.
     ///
     /// # Errors
     /// Returns an error if the number is not above 0 and at most 1000.

@@ -1,13 +1,4 @@
 //! A grid of poses: a figure or a picture, a sensor, and a range for each axis.
-//!
-//! **Order of poses.** x0 runs fastest, then y0, the angle, zoom x and zoom y (only pictures have zooms). A *row*
-//! consists of all x0 at one y0; an *orientation* consists of all rows at one angle and one pair of zooms. Poses, rows
-//! and orientations are numbered from 0 in this order.
-//!
-//! **Anchor.** The ranges of x0 and y0 locate either the corner of the shape, as everywhere in the program, or its
-//! centre. The centre of a figure is its centre of rotation. That of a picture is the centre of its scaled bounding
-//! rectangle, which then lies *at* the given point under every zoom. Units are cells and degrees. The anchor is a
-//! convention of this project.
 
 use crate::geometry::{Point, Real};
 use crate::parameter::number::{grouped, to_decimals};
@@ -22,7 +13,15 @@ use crate::source::Source;
 /// The largest number of poses of a grid.
 pub const MAX_POSES: u64 = 1_000_000_000_000;
 
-/// A shape, a sensor and the poses to sweep, all of them in range.
+/// A shape, a sensor and the poses to sweep, all of them in range. Units are cells and degrees.
+///
+/// **Order of poses.** x0 runs fastest, then y0, the angle, zoom x and zoom y (only pictures have zooms). A *row*
+/// consists of all x0 at one y0; an *orientation* consists of all rows at one angle and one pair of zooms. Poses, rows
+/// and orientations are numbered from 0 in this order.
+///
+/// **Anchor.** The ranges of x0 and y0 locate either the corner of the shape, as everywhere in the program, or its
+/// centre. The centre of a figure is its centre of rotation. That of a picture is the centre of its scaled bounding
+/// rectangle, which then lies *at* the given point under every zoom. The anchor is a convention of this project.
 ///
 /// ```
 /// use taxel::prelude::*;

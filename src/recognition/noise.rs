@@ -1,12 +1,5 @@
 //! Recognition with failing taxels: each flips with probability e, independently of the others.
 //!
-//! ```text
-//! P(imprint | s) = Σ over keys k and shifts of  n[s, k] · e^d (1 − e)^(cells − d)  / T[s]
-//! ```
-//! where d is the number of taxels in which the imprint and the shifted key differ, and `T[s]` the number of touches
-//! of `s`: its poses, times the shifts of the key on the matrix. So the prior is uniform over every pose in every
-//! place on the matrix. Taxels that are known to be dead are left out of d and of `cells`.
-//!
 //! The sums are of integers: for each shape, how many touches lie at each distance. So one scan serves any e, and
 //! neither threads nor the order of keys matter. Only distances up to D are kept: D follows from e, the weights and the
 //! least distance, and larger distances change no probability by more than 1e-9. If several touches contradict each
@@ -27,6 +20,15 @@ use crate::sensor::MatrixSize;
 pub(super) const NEGLIGIBLE: f64 = 1e-9;
 
 /// The probability that a taxel flips, from 0 to below ½, and the taxels that are known to be dead.
+///
+/// Each taxel flips with probability e, independently of the others, so an imprint of the shape s has the probability
+/// ```text
+/// P(imprint | s) = Σ over keys k and shifts of  n[s, k] · e^d (1 − e)^(cells − d)  / T[s]
+/// ```
+/// where `n[s, k]` is the number of poses in which s leaves k, d the number of taxels in which the imprint and the
+/// shifted key differ, and `T[s]` the number of touches of s: its poses, times the shifts of the key on the matrix. So
+/// the prior is uniform over every pose in every place on the matrix. Taxels that are known to be dead are left out of
+/// d and of `cells`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     flip: f64,
@@ -206,8 +208,8 @@ pub struct Distances {
 }
 
 impl Model {
-    /// Returns P(shape | imprint) for each shape of the set, with failing taxels; None if no key fits the matrix, or,
-    /// without noise, if no shape leaves the imprint.
+    /// Returns P(shape | imprint) for each shape of the set, with failing taxels ([`Noise`]); None if no key fits the
+    /// matrix, or, without noise, if no shape leaves the imprint. Of a shard, only its own poses count.
     ///
     /// The prior is uniform over every pose in every place on the matrix. The first call sorts the keys for scans and
     /// takes longer.

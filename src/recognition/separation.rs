@@ -1,9 +1,5 @@
 //! Shows which sensor tells a set of shapes apart: the limit of one touch as a function of the size of the shapes in
 //! cells, and of the threshold.
-//!
-//! A scale of 2 makes every length of every shape twice as long in cells, as a sensor with half the pitch does. As in
-//! a training, each shape is touched with its centre in one cell and at the given angles, on a sensor that cuts
-//! nothing off.
 
 use crate::figure::Figure;
 use crate::parameter::number::{share, to_decimals};
@@ -25,9 +21,10 @@ const FINER: u8 = 10;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SizeAxis {
-    /// Sizes are in cells; a value multiplies them.
+    /// Sizes are in cells; a value multiplies them. A scale of 2 makes every length of every shape twice as long in
+    /// cells, as a sensor with half the pitch does.
     Scale,
-    /// Sizes are in mm; a value is the pitch of a sensor in mm.
+    /// Sizes are in mm; a value is the pitch of a sensor in mm, so the scale is 1 divided by it.
     Pitch,
 }
 
@@ -64,7 +61,10 @@ impl SizeAxis {
 
 named!(SizeAxis, "axis", &SizeAxis::ALL);
 
-/// A set of shapes whose limit is computed at several sizes.
+/// A set of shapes whose limit is computed at several sizes and thresholds.
+///
+/// As in a training, each shape is touched with its centre in one cell and at the given angles, on a sensor that cuts
+/// nothing off.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -138,7 +138,7 @@ impl Separation {
     /// Creates a set with positions in hundredths of a cell and whole degrees, as models are trained.
     ///
     /// # Errors
-    /// Returns an error if a name is missing or given twice, or a weight is 0.
+    /// Returns [`TrainingError::Set`] for an invalid set.
     pub fn new(shapes: Vec<NamedShape>) -> Result<Self, TrainingError> {
         check_shapes(&shapes)?;
         Ok(Self {

@@ -1,17 +1,5 @@
 //! The description beside one of taxel's own recordings: `touch.json` says where the frames of `touch.npy` come from,
 //! their unit, and how they were viewed.
-//!
-//! ```text
-//! {"format":"taxel-touch/1","source":"/dev/ttyUSB0","unit":"kPa","pitch_mm":[2.0,2.0],"seconds_per_frame":0.01,
-//!  "rule":{"at_least":10,"from":"flag"},"tare_frames":30,"tare":[[0.5,null],…],"marks":[{"number":65,"time":6.5}],
-//!  "ended":true}
-//! ```
-//! `ended` is false while frames are recorded, and stays false if the program is killed. `ended_by` gives the reason
-//! if an error ended the recording, such as a full disk.
-//!
-//! Every key except `format` may be missing. Without `tare_frames`, a tare counts as one of a single frame, so its
-//! noise is unknown. The array holds the values as the sensor sent them, in f64: rule and
-//! tare are applied again when they are read, unless flags say otherwise.
 
 use std::io;
 
@@ -48,7 +36,20 @@ pub struct RecordedView {
     pub marks: Vec<FrameMark>,
 }
 
-/// The content of `touch.json`.
+/// The content of `touch.json`, the description beside the recording `touch.npy`: where its frames come from, their
+/// unit, and how they were viewed.
+///
+/// ```text
+/// {"format":"taxel-touch/1","source":"/dev/ttyUSB0","unit":"kPa","pitch_mm":[2.0,2.0],"seconds_per_frame":0.01,
+///  "rule":{"at_least":10,"from":"flag"},"tare_frames":30,"tare":[[0.5,null],…],"marks":[{"number":65,"time":6.5}],
+///  "ended":true}
+/// ```
+/// `ended` is false while frames are recorded, and stays false if the program is killed. `ended_by` gives the reason
+/// if an error ended the recording, such as a full disk.
+///
+/// Every key except `format` may be missing. Without `tare_frames`, a tare counts as one of a single frame, so its
+/// noise is unknown. The array holds the values as the sensor sent them, in f64: rule and
+/// tare are applied again when they are read, unless flags say otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecordingMetadata {

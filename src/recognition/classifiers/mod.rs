@@ -1,13 +1,5 @@
 //! Classifiers that use descriptors of the imprint, as the paper does, and their results compared with the limit of
 //! one touch.
-//!
-//! All of them see the same touches as the [`Evaluation`] of the model. Means, deviations and covariances are those of
-//! all poses, exact except for rounding; samples are drawn with a seed. Features are numbers of the main region that do
-//! not change under shifts, each in units of its deviation over all touches. A direction counts as its cosine and its
-//! sine, both 0 if it does not exist. Other features that do not exist for some imprint, constants, and copies of
-//! others (NA and NAE of solid shapes) are left out.
-//!
-//! Source: R. O. Duda, P. E. Hart and D. G. Stork, *Pattern Classification*, 2001, chapters 2 to 4.
 
 mod features;
 
@@ -31,6 +23,14 @@ use crate::recognition::templates::Templates;
 pub use knn::PoseSample;
 
 /// A classifier that uses descriptors or samples. The best classifier is the model itself.
+///
+/// All of them see the same touches as the [`Evaluation`] of the model. Means, deviations and covariances are those of
+/// all poses, exact except for rounding; samples are drawn with a seed. Features are numbers of the main region that do
+/// not change under shifts, each in units of its deviation over all touches. A direction counts as its cosine and its
+/// sine, both 0 if it does not exist. Other features that do not exist for some imprint, constants, and copies of
+/// others (NA and NAE of solid shapes) are left out.
+///
+/// Source: R. O. Duda, P. E. Hart and D. G. Stork, *Pattern Classification*, 2001, chapters 2 to 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Classifier {
