@@ -91,7 +91,7 @@
 //! json                formats::StoredShape, Job
 //! sweep               pose, atlas, sweep; formats::atlas, archive;     json
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile
-//! recognition         recognition; formats::model                      sweep
+//! recognition         recognition; formats::read_model, write_model    sweep
 //! frames              formats::recording, stream                       json
 //! mcap (by default)   MCAP files in formats::recording                 frames
 //! png                 formats::Drawing::png

@@ -323,7 +323,7 @@ impl Sensor {
 
     /// Returns the next value up or down, by the sign of `direction`; 0 only rounds to the nearest one. Values are in
     /// steps of the last decimal that the paper gives: hundredths below ten, tenths from ten on, whole degrees.
-    /// Angles wrap around; other parameters stop at the ends of their range.
+    /// Angles wrap around; other parameters stop at the ends of their range. The value is to be a number, not NaN.
     pub fn step(&self, parameter: Parameter, value: f64, direction: i32) -> f64 {
         // Upwards from ten the steps are tenths, downwards from ten hundredths. Below zero it is the other way round.
         let towards = match direction {

@@ -23,7 +23,11 @@ const MAX_PLACES: usize = 12;
 /// written as that decimal again.
 const MAX_UNITS: i64 = 999_999_999_999_999;
 
-/// Decimals from a start to an end in equal steps; never empty.
+/// Decimals from a start to an end in equal steps; never empty. As text, `start:end:step` with the end included, or a
+/// single number: `5:5.99:0.01` has exactly one hundred values.
+///
+/// The numbers are exact decimals, and value `i` is the `f64` nearest to `start + i·step`. If the steps do not reach
+/// the end exactly, the last value is the largest one below the end. Units are those of the parameter.
 ///
 /// ```
 /// use taxel::pose::DecimalRange;
@@ -89,7 +93,8 @@ impl DecimalRange {
         self.count
     }
 
-    /// Returns the `f64` nearest to value `index`, counted from 0; beyond the last value, as if the range went on.
+    /// Returns the `f64` nearest to value `index`, counted from 0; beyond the last value, as if the range went on, up
+    /// to the largest `i64` in units of the last decimal.
     pub fn value(&self, index: u64) -> f64 {
         let units = i64::try_from(index)
             .ok()

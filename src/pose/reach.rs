@@ -234,9 +234,10 @@ pub fn common_ranges<'a>(
     Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given, FINE))
 }
 
-/// Returns the smallest square sensor of at least `least` × `least` taxels (`least` is moved into 1 to 64) on which no shape is cut off in any pose,
-/// and the ranges of these poses: if x0 or y0 is not given, one cell around the middle that is the same for all shapes.
-/// The sensor has the default threshold and pitch. None if even 64 × 64 taxels are too few.
+/// Returns the smallest square sensor of at least `least` × `least` taxels (`least` is moved into 1 to 64) on which no
+/// shape is cut off in any pose, and the ranges of these poses: if x0 or y0 is not given, one cell around the middle
+/// that is the same for all shapes. The sensor has the default threshold and pitch. None if even 64 × 64 taxels are too
+/// few.
 ///
 /// Recognition sets `least` to 16, so that a set of small shapes is swept on the same sensor as other sets.
 ///

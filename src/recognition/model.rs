@@ -153,7 +153,7 @@ const LONGEST_NAME: usize = 64;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
-    /// No shape, or too many.
+    /// No shape, or more than 32,768.
     #[error("{found} shapes, expected 1 to {MAX_SHAPES}")]
     Shapes {
         /// The number of shapes.
@@ -179,7 +179,7 @@ pub enum ModelError {
         /// The name.
         name: String,
     },
-    /// A name that is too long.
+    /// A name that is longer than 64 characters.
     #[error(
         "name {name:?} of shape {number} has {length} characters (allowed: up to {LONGEST_NAME})"
     )]

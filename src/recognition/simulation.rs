@@ -378,8 +378,8 @@ impl Model {
     }
 
     /// Draws touches of each shape until some shape is as probable as `until` (0 to 1), `runs` times, and returns the
-    /// number of touches for each shape, in the order of the set. If `until` is above 1 or NaN, no run reaches it; if it
-    /// is 0 or less, every run reaches it with its first touch.
+    /// number of touches for each shape, in the order of the set. If `until` is above 1 or NaN, no run reaches it; if
+    /// it is 0 or less, every run reaches it with its first touch.
     ///
     /// `progress` is called with 1 after each run, from any thread, and stops the simulation by returning `false`.
     /// Returns None if it was stopped.

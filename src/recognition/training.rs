@@ -61,7 +61,8 @@ impl fmt::Debug for Training<'_> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrainingError {
-    /// An invalid set: a name is missing or given twice, or a weight is 0.
+    /// An invalid set: it has no shape or more than 32,768; a name is missing, given twice, longer than 64 characters
+    /// or has a control character; or a weight is 0.
     #[error(transparent)]
     Set(#[from] ModelError),
     /// A shape that cannot be touched in these poses.
@@ -105,7 +106,8 @@ impl<'a> Training<'a> {
     /// Creates a training over a whole grid of poses, the same for each shape.
     ///
     /// # Errors
-    /// Returns an error if a name is missing or given twice, a weight is 0, or a pose is out of range for a shape.
+    /// Returns [`TrainingError::Set`] for an invalid set, or [`TrainingError::Grid`] if a pose is out of range for a
+    /// shape.
     pub fn new(
         shapes: impl IntoIterator<Item = NamedShape>,
         sensor: Sensor,

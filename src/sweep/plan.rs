@@ -14,7 +14,7 @@ use crate::pose::{AngleClasses, Axis, PoseGrid};
 use crate::quote::shortened;
 use crate::sweep::point_symmetry::PointSymmetry;
 
-/// A shard of a grid: piece `number` of `of` nearly equal pieces, counted from 1.
+/// A shard of a grid: piece `number` of `of` nearly equal pieces, counted from 1; as text, `2/3`.
 ///
 /// ```
 /// use taxel::sweep::Shard;
