@@ -143,6 +143,8 @@ impl Sweep<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
     use super::*;
     use crate::figure::{Figure, FigureKind};
     use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
@@ -187,5 +189,24 @@ mod tests {
         let grid = PoseGrid::new(source, sensor, Anchor::Corner, Ranges::default());
         let grid = grid.expect("in range");
         assert!(Sweep::new(&grid).progress(&|_| false).count().is_none());
+    }
+    #[test]
+    fn a_sweep_can_be_stopped_within_a_row() {
+        let sensor = Sensor::default();
+        let source = Figure::default_of(FigureKind::Rectangle, &sensor).into();
+        let range = |text: &str| text.parse().expect("a range");
+        // Half of a row of cells is covered: each of a million positions is decided exactly.
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("4:4.999999:0.000001"))
+            .with(Axis::Y0, range("4.5"))
+            .with(Axis::Angle, range("0"));
+        let grid = PoseGrid::new(source, sensor, Anchor::Corner, ranges).expect("in range");
+        let done = AtomicU64::new(0);
+        let go_on = |poses| {
+            done.fetch_add(poses, Ordering::Relaxed);
+            false
+        };
+        assert!(Sweep::new(&grid).progress(&go_on).count().is_none());
+        assert_eq!(done.into_inner(), 0);
     }
 }

@@ -13,9 +13,17 @@ use crate::touch::least;
 
 /// The number of values of x0 and of y0 whose positions are kept.
 const REMEMBERED: usize = 128;
+/// The effort of decisions after which to ask whether to go on: about a millisecond.
+const ASK_EVERY: u64 = 256;
+/// The number of edges that doubles the effort. A picture may have thousands of edges.
+const EDGES: usize = 64;
+
+/// Returns the effort of a pose or a decision; 1 for a shape with few edges.
+pub(crate) fn effort(edges: usize) -> u64 {
+    (1 + edges / EDGES) as u64
+}
 
 /// The shape of one orientation, ready for exact decisions.
-#[derive(Debug)]
 pub(crate) struct Exact<'a> {
     grid: &'a PoseGrid,
     orientation: u64,
@@ -27,10 +35,16 @@ pub(crate) struct Exact<'a> {
     cell: Overlap<Double>,
     /// The least coverage that reaches the threshold.
     least: Double,
+    /// Returns whether to go on: a single row may need millions of decisions.
+    go_on: &'a dyn Fn() -> bool,
+    /// The effort since the last call of `go_on`.
+    unasked: u64,
+    /// Whether `go_on` has returned `false`.
+    stopped: bool,
 }
 
 impl<'a> Exact<'a> {
-    pub(crate) fn new(grid: &'a PoseGrid, orientation: u64) -> Self {
+    pub(crate) fn new(grid: &'a PoseGrid, orientation: u64, go_on: &'a dyn Fn() -> bool) -> Self {
         Self {
             grid,
             orientation,
@@ -38,7 +52,15 @@ impl<'a> Exact<'a> {
             positions: vec![(None, Double::ZERO); 2 * REMEMBERED].into(),
             cell: Overlap::new(1, 1),
             least: least(grid.sensor().threshold()),
+            go_on,
+            unasked: 0,
+            stopped: false,
         }
+    }
+
+    /// Returns true if the sweep is to stop. The row is then of no use, and the rest of it need not be decided.
+    pub(crate) fn stopped(&self) -> bool {
+        self.stopped
     }
 
     /// Returns true if the taxel is active when the shape lies at value `x` of x0 and value `y` of y0.
@@ -53,6 +75,11 @@ impl<'a> Exact<'a> {
         let boundary = self
             .boundary
             .get_or_insert_with(|| self.grid.boundary(self.orientation));
+        self.unasked += effort(boundary.edges.len());
+        if self.unasked >= ASK_EVERY {
+            self.unasked = 0;
+            self.stopped |= !(self.go_on)();
+        }
         self.cell.clear();
         boundary.draw(by, &mut self.cell);
         self.cell.grid().first() >= self.least

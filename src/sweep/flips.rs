@@ -139,7 +139,7 @@ impl FlipWriter<'_, '_, '_> {
                     taxel.set(taxel.next, false, &mut self.events);
                 }
                 let mut step = from;
-                while step <= to {
+                while step <= to && !self.exact.stopped() {
                     if span.sharp && sure.contains(&step) {
                         taxel.set(step, true, &mut self.events);
                         step = sure.end.min(to + 1);

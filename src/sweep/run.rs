@@ -74,8 +74,8 @@ impl<'a> Sweep<'a> {
         self
     }
 
-    /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call. The
-    /// sweep stops when it returns `false`.
+    /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call, which
+    /// is 0 within a long row. The sweep stops when it returns `false`.
     pub fn progress(mut self, progress: &'a (dyn Fn(u64) -> bool + Sync)) -> Self {
         self.progress = progress;
         self

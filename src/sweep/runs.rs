@@ -14,7 +14,7 @@ use crate::index::from_first;
 use crate::pose::{Axis, Boundary, PoseGrid};
 use crate::sweep::ellipse::Elliptic;
 use crate::sweep::events::Events;
-use crate::sweep::exact::Exact;
+use crate::sweep::exact::{Exact, effort};
 use crate::sweep::flips::{FlipWriter, Steps};
 use crate::sweep::plan::Task;
 use crate::sweep::point_symmetry::PointSymmetry;
@@ -40,13 +40,10 @@ pub(crate) struct GroupResult {
 
 /// The number of poses of an orientation between two reports of progress, for a shape with few edges.
 const REPORT_EVERY: u64 = 4_000;
-/// The number of edges that doubles the time per pose. A picture may have thousands of edges, and must report as
-/// often.
-const EDGES: usize = 64;
 
 /// Sweeps the rows of a task. `progress` receives the number of poses done since the last call, counted over all
-/// orientations of the task; if it returns `false`, the sweep stops and the result is None. Otherwise there is a result
-/// for each group of the task.
+/// orientations of the task, which is 0 within a long row; if it returns `false`, the sweep stops and the result is
+/// None. Otherwise there is a result for each group of the task.
 pub(crate) fn sweep_task(
     grid: &PoseGrid,
     layout: &Layout,
@@ -54,11 +51,14 @@ pub(crate) fn sweep_task(
     keep_runs: bool,
     progress: impl Fn(u64) -> bool,
 ) -> Option<Vec<GroupResult>> {
-    let mut sweeper = Sweeper::new(grid, layout, task, keep_runs);
+    let go_on = || progress(0);
+    let mut sweeper = Sweeper::new(grid, layout, task, keep_runs, &go_on);
     let (width, orientations) = (grid.row_length(), task.orientations());
     let mut unreported = 0;
     for y in task.rows.clone() {
-        sweeper.row(y);
+        if !sweeper.row(y) {
+            return None;
+        }
         unreported += width;
         if unreported >= sweeper.report_every
             && !progress(std::mem::take(&mut unreported) * orientations)
@@ -119,7 +119,13 @@ struct Sweeper<'a> {
 }
 
 impl<'a> Sweeper<'a> {
-    fn new(grid: &'a PoseGrid, layout: &'a Layout, task: &Task, keep_runs: bool) -> Self {
+    fn new(
+        grid: &'a PoseGrid,
+        layout: &'a Layout,
+        task: &Task,
+        keep_runs: bool,
+        go_on: &'a dyn Fn() -> bool,
+    ) -> Self {
         let orientation = task.groups[0][0];
         let boundary = grid.boundary::<f64>(orientation);
         let count = grid.row_length();
@@ -127,12 +133,13 @@ impl<'a> Sweeper<'a> {
         let (first, last) = (place(0), place(count - 1));
         let count = i32::try_from(count).unwrap_or(i32::MAX);
         let groups = task.groups.iter();
-        let groups = groups
-            .map(|orientations| Group::new(grid, layout, orientations, &task.rows, keep_runs));
+        let groups = groups.map(|orientations| {
+            Group::new(grid, layout, orientations, &task.rows, keep_runs, go_on)
+        });
         Self {
             grid,
             shape: Shape::new(&boundary),
-            report_every: REPORT_EVERY / (1 + boundary.edges.len() / EDGES) as u64,
+            report_every: REPORT_EVERY / effort(boundary.edges.len()),
             height: boundary.extent().map(|extent| [extent.top, extent.bottom]),
             steps: Steps {
                 first,
@@ -151,24 +158,25 @@ impl<'a> Sweeper<'a> {
         }
     }
 
-    /// Counts the imprints of a row.
-    fn row(&mut self, y: u64) {
+    /// Counts the imprints of a row. Returns `false` if the sweep was stopped before its end.
+    fn row(&mut self, y: u64) -> bool {
         let mut due = false;
         for group in &mut self.groups {
             due |= group.begin(y);
         }
-        if due {
-            self.sweep(y);
+        if due && !self.sweep(y) {
+            return false;
         }
         for group in &mut self.groups {
             group.end(y);
         }
+        true
     }
 
-    /// Finds the events of a row.
-    fn sweep(&mut self, y: u64) {
+    /// Finds the events of a row. Returns `false` if the sweep was stopped before its end.
+    fn sweep(&mut self, y: u64) -> bool {
         let Some([top, bottom]) = self.height else {
-            return;
+            return true;
         };
         let orientation = self.groups[0].orientation();
         let offset = self.grid.offset::<f64>(orientation, 0, y).y;
@@ -187,7 +195,11 @@ impl<'a> Sweeper<'a> {
             for (group, spans) in self.groups.iter_mut().zip(spans) {
                 group.add_flips(self.steps, row, y, spans);
             }
+            if self.groups.iter().any(|group| group.exact.stopped()) {
+                return false;
+            }
         }
+        true
     }
 
     /// Returns what was found, for each group.
@@ -232,6 +244,7 @@ impl<'a> Group<'a> {
         orientations: &Arc<[u64]>,
         rows: &Range<u64>,
         keep_runs: bool,
+        go_on: &'a dyn Fn() -> bool,
     ) -> Self {
         let orientation = orientations[0];
         let extent = grid.boundary::<f64>(orientation).extent();
@@ -253,7 +266,7 @@ impl<'a> Group<'a> {
                 .map_or(0..height, |extent| grid.rows_inside(orientation, extent)),
             events: Events::new(layout, grid.row_length()),
             due: false,
-            exact: Exact::new(grid, orientation),
+            exact: Exact::new(grid, orientation, go_on),
             images: half_turn.map(|half_turn| ReflectedRows::new(layout, half_turn)),
             keep_runs: keep_runs || half_turn.is_some(),
             found: GroupResult {
