@@ -97,6 +97,11 @@ pub trait Page {
         false
     }
 
+    /// Returns true while the page waits for work, after which keys mean something else. False by default.
+    fn awaits_work(&self) -> bool {
+        false
+    }
+
     /// Returns true if the page can do something with a message now, in the area of its slot. Hints leave out keys
     /// whose messages it has no use for; pressing one shows why it does nothing.
     fn has_use_for(&self, _message: &Message, _area: Rect) -> bool {

@@ -104,6 +104,10 @@ impl Page for Running {
         None
     }
 
+    fn awaits_work(&self) -> bool {
+        true
+    }
+
     /// The update of this page stops the work.
     fn cancels_itself(&self) -> bool {
         true

@@ -1,8 +1,8 @@
 //! Records what a user does as a script that repeats it, so that a bug report becomes a test.
 //!
 //! Each key is written in notation; a press and a release at the same position become a click, a press with drags
-//! becomes a drag. Frames of a recording that come in between are counted; frames of a stream are only noted in a
-//! comment.
+//! becomes a drag. Frames of a recording that come in between are counted. A comment notes what a script cannot
+//! repeat: frames of a stream, and inputs while work is under way.
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -14,6 +14,9 @@ use crate::tui::app::message::{Mouse, MouseKind};
 use crate::tui::script::setting::ScriptSetting;
 use crate::tui::terminal::input::Input;
 use crate::tui::terminal::{Outcome, SessionEvent};
+
+/// The comment before an input that came while work was under way.
+const AT_WORK: &str = "# work was under way; a script finishes it before this input\n";
 
 /// Turns events of a session into lines of a script, one after another.
 #[derive(Clone, Debug)]
@@ -39,11 +42,21 @@ impl Recorder {
 
     /// Returns the lines for an event; empty if a later event completes them.
     pub fn lines(&mut self, event: SessionEvent<'_>) -> String {
-        let mut lines = std::mem::take(&mut self.head);
-        let input = match event {
-            SessionEvent::Input(input) => input,
-            SessionEvent::Frames { source, count } => return lines + &frames(source, count),
+        let head = std::mem::take(&mut self.head);
+        let lines = match event {
+            SessionEvent::Frames { source, count } => frames(source, count),
+            SessionEvent::Input { input, at_work } => {
+                let lines = self.input(input);
+                let marked = at_work && !lines.is_empty();
+                [["", AT_WORK][usize::from(marked)], &lines].concat()
+            }
         };
+        head + &lines
+    }
+
+    /// Returns the lines for an input.
+    fn input(&mut self, input: &Input) -> String {
+        let mut lines = String::new();
         if !matches!(input, Input::Mouse(_)) {
             // Any other input between press and release ends a drag.
             lines += &self.let_go();
@@ -159,7 +172,12 @@ mod tests {
         let mut recorder = Recorder::new(&[ScriptSetting::Ascii(true)]);
         let script: String = inputs
             .iter()
-            .map(|input| recorder.lines(SessionEvent::Input(input)))
+            .map(|input| {
+                recorder.lines(SessionEvent::Input {
+                    input,
+                    at_work: false,
+                })
+            })
             .collect();
         let frames = |source: &str| {
             let (source, count) = (OsStr::new(source), 3);
@@ -173,5 +191,30 @@ mod tests {
                         # 3 frames of tcp://robot:7000: a script reads frames only from files\nSignal TERM\n";
         assert_eq!(script, expected);
         assert_eq!(read(&script).map(|commands| commands.len()), Ok(16));
+    }
+
+    #[test]
+    fn an_input_during_work_is_marked() {
+        let mut recorder = Recorder::new(&[]);
+        let mouse = |kind| {
+            let (column, row) = (3, 4);
+            Input::Mouse(Mouse { kind, column, row })
+        };
+        let inputs = [
+            Input::Key(Key::Esc),
+            mouse(MouseKind::Press),
+            mouse(MouseKind::Release),
+        ];
+        let script: String = inputs
+            .iter()
+            .map(|input| {
+                recorder.lines(SessionEvent::Input {
+                    input,
+                    at_work: true,
+                })
+            })
+            .collect();
+        assert_eq!(script, format!("{AT_WORK}Keys <Esc>\n{AT_WORK}Click 3,4\n"));
+        assert_eq!(read(&script).map(|commands| commands.len()), Ok(2));
     }
 }

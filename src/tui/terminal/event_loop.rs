@@ -24,7 +24,9 @@ use ratatui::layout::Size;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
+use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
+use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::app::view::view;
 use crate::tui::app::worker_event::WorkerEvent;
@@ -119,7 +121,12 @@ fn leave_on_panic() {
 #[derive(Clone, Copy, Debug)]
 pub enum SessionEvent<'a> {
     /// An input by the user.
-    Input(&'a Input),
+    Input {
+        /// The input.
+        input: &'a Input,
+        /// Whether the program was at work: a script finishes work before the next input.
+        at_work: bool,
+    },
     /// Frames that have come from a source.
     Frames {
         /// The name of the source.
@@ -352,6 +359,13 @@ impl<'a> EventLoop<'a> {
         messages.try_for_each(|message| self.update(message))
     }
 
+    /// Records an input.
+    fn record(&mut self, input: &Input) {
+        let mut pages = self.app.dialogs.iter().map(Dialog::page);
+        let at_work = pages.any(Page::awaits_work);
+        (self.watch)(SessionEvent::Input { input, at_work });
+    }
+
     /// Records how many frames have come since the last input: an input may depend on the frame that is shown.
     fn record_frames(&mut self) {
         let Some(page) = last_page(&self.app) else {
@@ -387,7 +401,7 @@ impl<'a> EventLoop<'a> {
         }
         for input in inputs {
             self.record_frames();
-            (self.watch)(SessionEvent::Input(&input));
+            self.record(&input);
             let message = match input {
                 // Each key is looked up in the state to which the one before has led.
                 Input::Key(key) => Some(self.app.meaning(key)),
@@ -487,7 +501,7 @@ impl<'a> EventLoop<'a> {
     fn tell_size(&mut self) {
         let Ok(size) = ratatui::backend::Backend::size(self.screen.backend());
         let input = Input::Size(size.width, size.height);
-        (self.watch)(SessionEvent::Input(&input));
+        self.record(&input);
         let _ = self
             .world
             .handle(&mut self.app, Message::Resized(size.width, size.height));

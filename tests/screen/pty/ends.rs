@@ -177,7 +177,13 @@ fn panics() {
     let mail = mailbox::new().expect("a mailbox");
     let outcome = terminal::run(app, None, world, &settings, mail, &mut |event| {
         assert!(
-            !matches!(event, SessionEvent::Input(Input::Key(_))),
+            !matches!(
+                event,
+                SessionEvent::Input {
+                    input: Input::Key(_),
+                    ..
+                }
+            ),
             "on purpose"
         );
     });

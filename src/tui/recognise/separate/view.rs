@@ -87,6 +87,14 @@ impl Page for Separate {
         Context::Separate
     }
 
+    fn awaits_work(&self) -> bool {
+        self.work().is_some()
+    }
+
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
+        *message != Message::Accept || self.work().is_none()
+    }
+
     fn slot(&self) -> Slot {
         Slot::Screen
     }
