@@ -93,6 +93,14 @@ impl CommandDialog {
     /// Returns false if there is none before.
     pub fn pick(&mut self, down: bool) -> bool {
         let (offers, picked) = self.offers();
+        let typed = match &self.picked {
+            Some((_, typed)) => typed.as_str(),
+            None => self.field.text(),
+        };
+        // The usage of a command whose arguments are being typed comes last, and would replace them.
+        let lines: Vec<String> = (offers.into_iter().map(|offer| offer.line))
+            .filter(|line| line.starts_with(typed) || !typed.contains(' '))
+            .collect();
         let next = match (picked, down) {
             (None, false) => return false,
             (None, true) => Some(0),
@@ -107,10 +115,10 @@ impl CommandDialog {
         match next {
             None => self.field.set(typed),
             Some(next) => {
-                let last = offers.len().saturating_sub(1);
-                if let Some(offer) = offers.get(next.min(last)) {
-                    self.field.set(offer.line.clone());
-                    self.picked = Some((next.min(last), typed));
+                let next = next.min(lines.len().saturating_sub(1));
+                if let Some(line) = lines.get(next) {
+                    self.field.set(line.clone());
+                    self.picked = Some((next, typed));
                 }
             }
         }
@@ -184,6 +192,24 @@ impl CommandDialog {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_offer_never_replaces_typed_arguments() {
+        let given = ["figure ellipse", "figure octagon --side 3"].map(str::to_owned);
+        let after = |typed: &str, keys: usize| {
+            let mut dialog = CommandDialog::new(&given);
+            dialog.field.set(typed.to_owned());
+            for _ in 0..keys {
+                dialog.pick(true);
+            }
+            dialog.field.text().to_owned()
+        };
+        assert_eq!(after("fig", 1), "figure octagon --side 3");
+        assert_eq!(after("fig", 3), "figure");
+        assert_eq!(after("figure ell", 2), "figure ellipse");
+        let typed = "figure ellipse --radius-x 3";
+        assert_eq!(after(typed, 1), typed);
+    }
 
     #[test]
     fn earlier_lines_are_recalled_one_by_one() {
