@@ -47,11 +47,7 @@ impl WriteAccess {
             return location::below_home(name)
                 .ok_or_else(|| format!("{name}: no home folder, so ~ cannot be used"));
         };
-        let path = inside(folder, name).ok_or_else(|| {
-            format!(
-                "{name}: without --allow-outside, a script writes only below its folder, and no hidden files"
-            )
-        })?;
+        let path = inside(folder, name)?;
         // If a thread panicked here, it has added a path or not: the list is whole.
         let mut written = locked(&self.written);
         if existing == Existing::Replaced && path.exists() && !written.contains(&path) {
@@ -66,19 +62,35 @@ impl WriteAccess {
     }
 }
 
-/// Returns the path of a file below a folder, links resolved; None if it is elsewhere or hidden.
-fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
-    let folder = folder.canonicalize().ok()?;
-    let path = folder.join(name);
-    let parent = path.parent()?.canonicalize().ok()?;
-    let path = parent.join(path.file_name()?);
-    let below = path.strip_prefix(&folder).ok()?;
+/// Returns the path of a file below a folder, links resolved.
+///
+/// # Errors
+/// Returns a sentence if the file is elsewhere or hidden, or if a folder on the way does not exist.
+fn inside(folder: &Path, name: &str) -> Result<PathBuf, String> {
     let visible = |component: Component<'_>| match component {
         Component::Normal(name) => !name.as_encoded_bytes().starts_with(b"."),
         _ => false,
     };
-    let names = below.components();
-    (names.clone().next().is_some() && names.clone().all(visible)).then_some(path)
+    let is_below =
+        |path: &Path| path.components().next().is_some() && path.components().all(visible);
+    let resolved = || {
+        let folder = folder.canonicalize().ok()?;
+        let path = folder.join(name);
+        let parent = path.parent()?.canonicalize().ok()?;
+        let path = parent.join(path.file_name()?);
+        is_below(path.strip_prefix(&folder).ok()?).then_some(path)
+    };
+    resolved().ok_or_else(|| {
+        // Only of a path that cannot lead outside may a script learn what exists; `~` is meant as the home folder.
+        let parent = Path::new(name).parent();
+        let parent = parent.filter(|parent| is_below(parent) && !parent.starts_with("~"));
+        match parent.filter(|parent| !folder.join(parent).exists()) {
+            Some(parent) => format!("{name}: there is no folder {}", parent.display()),
+            None => format!(
+                "{name}: without --allow-outside, a script writes only below its folder, and no hidden files"
+            ),
+        }
+    })
 }
 
 #[cfg(test)]
@@ -117,11 +129,14 @@ mod tests {
             ".a.csv",
             ".hidden/a.csv",
             "link/a.csv",
-            "nowhere/a.csv",
+            "../nowhere/a.csv",
         ] {
             let refused = access.path(name, Existing::Kept).expect_err(name);
             assert!(refused.contains("--allow-outside"), "{refused}");
         }
+        let missing = access.path("nowhere/a.csv", Existing::Kept);
+        let missing = missing.expect_err("no folder");
+        assert_eq!(missing, "nowhere/a.csv: there is no folder nowhere");
     }
 
     #[test]
