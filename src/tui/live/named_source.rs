@@ -13,6 +13,7 @@ use crate::formats::stream::StreamFormat;
 use crate::frame::{FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use crate::parameter::{UnknownName, number};
 use crate::quote::shortened;
+use crate::storage::ModelChoice;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::prompt::flags;
 
@@ -28,11 +29,12 @@ pub struct NamedSource {
     channel: Option<String>,
     speed: Option<f64>,
     rule: Option<Rule>,
+    model: Option<ModelChoice>,
 }
 
 impl NamedSource {
     /// The flags, for completion.
-    pub const FLAGS: [&'static str; 8] = [
+    pub const FLAGS: [&'static str; 9] = [
         "--rows",
         "--columns",
         "--format",
@@ -41,6 +43,7 @@ impl NamedSource {
         "--speed",
         "--at-least",
         "--percent",
+        "--model",
     ];
 
     /// Creates a source without flags.
@@ -94,6 +97,7 @@ impl NamedSource {
                 self.baud = Some(baud.ok_or_else(expected)?);
             }
             "--channel" => self.channel = Some(text.to_owned()),
+            "--model" => self.model = Some(ModelChoice::from_text(text)),
             "--speed" => {
                 let speed = number::read(text).filter(|&speed| Playback::allows(speed));
                 self.speed = Some(speed.ok_or_else(|| refused(&Playback::SPEEDS))?);
@@ -128,6 +132,7 @@ impl NamedSource {
         if let Some(speed) = self.speed {
             options.playback = Playback::paced(speed, options.playback.repeats());
         }
+        request.model = self.model.clone().or(request.model);
         if let Some(rule) = self.rule {
             let least = request.rule.as_ref().map_or(0, |set| set.least);
             let from = RuleOrigin::Flag;
@@ -156,7 +161,7 @@ mod tests {
         let settings = WatchRequest::new("");
         let request = |text: &str| NamedSource::read(text).map(|source| source.request(&settings));
         let whole = request(
-            "my run.csv --rows 4 --columns=5 --baud 9600 --at-least 10 --channel left --speed 0.5",
+            "my run.csv --rows 4 --columns=5 --baud 9600 --at-least 10 --channel left --speed 0.5 --model figures-30",
         );
         let whole = whole.expect("flags");
         assert_eq!(whole.source, "my run.csv");
@@ -175,6 +180,7 @@ mod tests {
                 }
             )
         );
+        assert_eq!(whole.model, Some(ModelChoice::EqualFigures));
         let rule = whole.rule.expect("a rule");
         assert_eq!(rule.rule, Rule::at_least(10.0).expect("in range"));
         let plain = request("a--b.csv").expect("no flags");

@@ -286,11 +286,11 @@ impl Live {
         });
     }
 
-    /// Names imprints by the next set of shapes: first the requested one, then the built-in ones, then none. `number`
-    /// is the number of this work.
-    pub fn next_model(&mut self, number: u64) {
+    /// Names imprints by the next set of shapes: first the requested one, then the built-in ones, then the user's own
+    /// models, then none. `number` is the number of this work.
+    pub fn next_model(&mut self, own: Vec<ModelChoice>, number: u64) {
         let asked = self.request.model.as_ref();
-        let next = next_choice(asked, self.naming.as_ref()).cloned();
+        let next = next_choice(asked, own, self.naming.as_ref());
         self.name_by(next, number);
     }
 

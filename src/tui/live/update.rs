@@ -8,11 +8,12 @@ use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::value::{counted, grouped};
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
-use crate::storage::Existing;
+use crate::storage::{Existing, ModelChoice};
 use crate::tui::app::change::{begin, inform, refuse};
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::DocumentOrigin;
+use crate::tui::app::library::LibraryRequest;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::notice;
 use crate::tui::app::state::App;
@@ -214,17 +215,8 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             Err(refused) => refuse(app, refused.to_string()),
         },
         LiveMessage::Mark => mark(app, page),
-        LiveMessage::NextModel => {
-            app.works += 1;
-            page.next_model(app.works);
-            let naming = page.naming_request().cloned().map(Box::new);
-            let text = match &naming {
-                Some(naming) => format!("shapes are named by {}", naming.choice),
-                None => "shapes are not named".to_owned(),
-            };
-            inform(app, text);
-            return Some(Effect::Frames(FrameWork::NameBy(page.number(), naming)));
-        }
+        // The next one may be a model of the user.
+        LiveMessage::NextModel => return Some(Effect::Library(LibraryRequest::Models)),
         LiveMessage::Source(source) => return Some(check_source(app, source)),
         LiveMessage::Open | LiveMessage::Watch(_) => {}
     }
@@ -239,6 +231,23 @@ fn next_layer(app: &mut App, page: &mut Live) {
         _ => return,
     };
     inform(app, reason);
+}
+
+/// Names imprints by the next model, now that the names of the user's own models are known.
+pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effect> {
+    app.works += 1;
+    let number = app.works;
+    let page = topmost!(&mut app.dialogs, Live)?;
+    let own = own.iter().map(|name| ModelChoice::from_text(name));
+    page.next_model(own.collect(), number);
+    let naming = page.naming_request().cloned().map(Box::new);
+    let source = page.number();
+    let text = match &naming {
+        Some(naming) => format!("shapes are named by {}", naming.choice),
+        None => "shapes are not named".to_owned(),
+    };
+    inform(app, text);
+    Some(Effect::Frames(FrameWork::NameBy(source, naming)))
 }
 
 /// Shows taxels further in a direction, if not all are visible. The first time, a notice says how to see the contact

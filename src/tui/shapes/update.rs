@@ -18,6 +18,7 @@ use crate::tui::app::state::{App, Mode};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
+use crate::tui::live;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::runtime::effect::Effect;
 use crate::tui::shapes::state::ListDialog;
@@ -50,12 +51,14 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
                 .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
             refuse(app, reason);
         }
-        LibraryEvent::Models(names) => {
-            if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+        LibraryEvent::Models(names) => match app.dialogs.last_mut() {
+            Some(Dialog::Command(command)) => {
                 let sets = ModelChoice::BUILT_IN.map(|set| set.name().to_owned());
                 command.complete_asked(&[&sets[..], &names].concat());
             }
-        }
+            Some(Dialog::Live(_)) => return live::update::name_by_next(app, &names),
+            _ => {}
+        },
         LibraryEvent::Trash(Ok(names)) => {
             if names.is_empty() {
                 inform(app, "nothing has been deleted");
