@@ -7,7 +7,7 @@ use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
 use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::change::{begin, compare_with, inform, refuse, settle};
+use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse, settle};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, StoredName};
@@ -275,8 +275,8 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
             }
         }
         (Some((name, _)), Purpose::Delete) => {
-            let request = LibraryRequest::Deletable(name);
-            return Some(Effect::Library(request));
+            let request = Effect::Library(LibraryRequest::Deletable(name));
+            return from_prompt(app, Dialog::List(list), |_| Some(request));
         }
         (Some((_, Some(Ok(loaded)))), Purpose::Load) => {
             if let Err(text) = put_on_matrix(app, &loaded) {

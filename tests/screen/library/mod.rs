@@ -137,9 +137,11 @@ fn deleting_asks_and_can_be_undone() {
     let mut session = session("<Space>sone<Enter>dn");
     shows(&session, &["Delete  filter: n", "> one"]);
     then(&mut session, "<Enter>", &["Delete \"one\"? (y/n)"]);
+    // Without a yes, the list opens again for another choice.
+    then(&mut session, "n", &["Delete  filter: n", "> one"]);
     then(
         &mut session,
-        "nd<Enter>y",
+        "<Enter>y",
         &["one deleted; u restores it now, :restore one later"],
     );
     then(&mut session, "d", &["there are no shapes of your own"]);
