@@ -11,6 +11,7 @@ use std::fs;
 use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+use std::time::SystemTime;
 
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -70,6 +71,26 @@ pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
         path,
         ArchiveError::PartOfModel { shard },
     ))
+}
+
+/// The version of a file: another one once the file was written again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileVersion {
+    /// The size of the file, in bytes.
+    bytes: u64,
+    /// The time when it was written.
+    modified: SystemTime,
+}
+
+impl FileVersion {
+    /// Returns the version of the file at a path; None if there is no file, or if the system keeps no time.
+    pub fn of(path: &Path) -> Option<Self> {
+        let found = path.metadata().ok()?;
+        Some(Self {
+            bytes: found.len(),
+            modified: found.modified().ok()?,
+        })
+    }
 }
 
 /// Writes a model to a file: all of it or nothing. Nothing is written if `stopped` becomes true on the way.

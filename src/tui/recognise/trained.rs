@@ -5,7 +5,7 @@ use rand_pcg::Pcg64;
 
 use crate::pose::{Axis, DecimalRange, PoseGrid, Ranges};
 use crate::recognition::{Evaluation, Model, below};
-use crate::storage::ModelChoice;
+use crate::storage::{FileVersion, ModelChoice};
 use crate::touch::Plane;
 use crate::tui::recognise::confused::Examples;
 
@@ -16,6 +16,8 @@ pub struct TrainedModel {
     pub choice: ModelChoice,
     /// The model of the set.
     pub model: Model,
+    /// The version of the file that it was read from; None for a model that was not read from a file.
+    pub version: Option<FileVersion>,
     /// The evaluation, which shows how well the model tells its shapes apart.
     pub evaluation: Evaluation,
     /// An imprint for each cell of its confusion matrix.
@@ -33,14 +35,15 @@ impl PartialEq for TrainedModel {
 }
 
 impl TrainedModel {
-    /// Evaluates a model.
-    pub fn new(choice: ModelChoice, model: Model) -> Self {
+    /// Evaluates a model, which was read from this version of its file, if it has one.
+    pub fn new(choice: ModelChoice, model: Model, version: Option<FileVersion>) -> Self {
         Self {
             evaluation: Evaluation::of(&model),
             examples: Examples::of(&model),
             unknown_between: unknown_between(&model),
             choice,
             model,
+            version,
         }
     }
 
@@ -79,7 +82,7 @@ impl TrainedModel {
             ranges,
         );
         let model = training.expect("a set").run().expect("not stopped");
-        Self::new(choice, model)
+        Self::new(choice, model, None)
     }
 }
 

@@ -82,25 +82,33 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
 }
 
 /// Opens the page, and has the model prepared if there is none, or if it is that of another set. A training may take
-/// long: a set whose model is ready or on its way is not prepared again. The model arrives as an event with the
-/// number given here; an event with another number is out of date.
+/// long: a set whose model is ready or on its way is not prepared again. But a file is read again if it was written
+/// since, when the page is opened or its set is asked for. The model arrives as an event with the number given here;
+/// an event with another number is out of date.
 fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     let closed = app.recognition.take();
     let opened = closed.is_some();
+    let looks_again = opened || choice.is_some();
     if let Some(page) = closed {
         app.dialogs.push(Dialog::Recognition(page));
         app.page = NarrowPage::Panel;
     }
     let page = state(app)?;
     let choice = choice.unwrap_or_else(|| page.choice().clone());
-    let missing = matches!(page.state(), ModelState::Missing);
-    if !missing && choice == *page.choice() {
+    let is_present = choice == *page.choice();
+    let is_prepared = match page.state() {
+        ModelState::Missing => false,
+        ModelState::Preparing(_) => is_present,
+        ModelState::Ready(_) => is_present && !(looks_again && choice.is_read()),
+    };
+    if is_prepared {
         return None;
     }
+    let known = page.trained().filter(|_| is_present).cloned();
     app.works += 1;
     let number = app.works;
     state(app)?.prepare(choice.clone(), number, opened);
-    Some(Effect::Work(Work::Prepare(number, choice)))
+    Some(Effect::Work(Work::Prepare(number, choice, known)))
 }
 
 /// Opens the confusion matrix of the model; without a model, it says that there is none.

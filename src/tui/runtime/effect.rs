@@ -15,6 +15,7 @@ use crate::tui::live::naming::NamingRequest;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::message::PoseSearch;
 use crate::tui::recognise::separate::request::SeparationRequest;
+use crate::tui::recognise::trained::TrainedModel;
 
 /// A request of `update` to the runtime or the terminal.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,8 +75,8 @@ pub enum Work {
     Write(u64, Arc<Findings>, String, Existing),
     /// Stop the work in progress.
     Stop,
-    /// Train a model, or read it.
-    Prepare(u64, ModelChoice),
+    /// Train a model, or read it; the model of the set so far stays if its file was not written again.
+    Prepare(u64, ModelChoice, Option<Arc<TrainedModel>>),
     /// Stop preparing a model.
     StopPreparing,
     /// Compute the limit of a set in several sizes, of which the first are known.

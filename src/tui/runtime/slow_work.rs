@@ -35,7 +35,11 @@ impl SlowWork {
 
     /// Returns the description of the work and of what it waits for, if it takes long.
     pub(super) fn status(&self, what: &str) -> Option<String> {
-        let text = || format!("{}: waiting for {what}", self.words);
-        (self.since.elapsed() >= SLOW_AFTER).then(text)
+        Some(format!("{}: waiting for {what}", self.slow_words()?))
+    }
+
+    /// Returns the description of the work, if it takes long.
+    pub(super) fn slow_words(&self) -> Option<&str> {
+        (self.since.elapsed() >= SLOW_AFTER).then_some(&*self.words)
     }
 }

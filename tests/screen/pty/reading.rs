@@ -260,7 +260,7 @@ fn waiting_for_a_model_does_not_block_keys() {
     let Some(hanging) = Tracer::hang(&mut program, OPENING, &[&model]) else {
         return;
     };
-    let waiting = "Reading model own: waiting for the disk; Esc gives up";
+    let waiting = "Reading model own; Esc gives up";
     program.types(b":recognise own\r");
     program.shows(waiting);
     // Keys keep working.

@@ -9,7 +9,7 @@
 //! folder beside the library, any other from its file. Training goes on while a sweep begins, and stops only on
 //! request.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -19,7 +19,7 @@ use crate::memory::MemoryGuard;
 use crate::quote::shortened;
 use crate::recognition::{Model, TrainingError};
 use crate::storage::{
-    Library, ModelCache, ModelFolder, cached_or_trained, load_whole_model, location,
+    FileVersion, Library, ModelCache, ModelFolder, cached_or_trained, load_whole_model, location,
 };
 use crate::storage::{ModelChoice, unknown_set};
 use crate::tui::app::worker_event::WorkerEvent;
@@ -67,12 +67,10 @@ impl ModelStore {
         begins: &dyn Fn(u64) -> bool,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<Model, String> {
-        let training = match (choice.training(), choice) {
-            (Some(training), _) => training.map_err(|error| error.to_string())?,
-            (None, ModelChoice::Stored(name)) => return self.stored(name),
-            (None, ModelChoice::File(path)) => return self.file(path),
-            (None, _) => return Err(format!("{choice} cannot be trained")),
+        let Some(training) = choice.training() else {
+            return self.read(choice);
         };
+        let training = training.map_err(|error| error.to_string())?;
         cached_or_trained(self.cache.as_ref(), training, |training| {
             if !begins(training.poses()) {
                 return Err("training was stopped".to_owned());
@@ -93,30 +91,33 @@ impl ModelStore {
         })
     }
 
-    /// Reads one of the user's models.
-    fn stored(&self, name: &Name) -> Result<Model, String> {
-        let folder = self.folder.as_ref();
-        let folder = folder.ok_or_else(|| format!("there is no model {name}"))?;
-        self.load(name.as_str(), &folder.file(name))
+    /// Returns the file of a stored model or of a model in a file, whose path may begin with `~`; None for any other.
+    fn path(&self, choice: &ModelChoice) -> Option<PathBuf> {
+        match choice {
+            ModelChoice::Stored(name) => Some(self.folder.as_ref()?.file(name)),
+            ModelChoice::File(path) => {
+                let below_home = path.to_str().and_then(location::below_home);
+                Some(below_home.unwrap_or_else(|| path.clone()))
+            }
+            _ => None,
+        }
     }
 
-    /// Reads a model from a file anywhere, whose path may begin with `~`.
-    fn file(&self, path: &Path) -> Result<Model, String> {
-        let text = path.to_string_lossy();
-        let below_home = path.to_str().and_then(location::below_home);
-        let path = below_home.unwrap_or_else(|| path.to_owned());
+    /// Reads a model from its file.
+    fn read(&self, choice: &ModelChoice) -> Result<Model, String> {
+        let name = match choice {
+            ModelChoice::File(path) => path.to_string_lossy().into_owned(),
+            choice => choice.name().to_owned(),
+        };
+        let path = self.path(choice);
+        let path = path.ok_or_else(|| format!("there is no model {name}"))?;
         // Opening a pipe waits, and opening a serial line may reset its device.
         if path.metadata().is_ok_and(|kind| !kind.is_file()) {
-            return Err(format!("{}: not a regular file", shortened(&text)));
+            return Err(format!("{}: not a regular file", shortened(&name)));
         }
-        self.load(&text, &path)
-    }
-
-    /// Reads a model, which the user called `name`.
-    fn load(&self, name: &str, path: &Path) -> Result<Model, String> {
-        load_whole_model(path).map_err(|error| {
+        load_whole_model(&path).map_err(|error| {
             if error.is_missing() {
-                unknown_set(name, &self.names())
+                unknown_set(&name, &self.names())
             } else {
                 error.to_string()
             }
@@ -171,11 +172,13 @@ pub(in crate::tui::runtime) struct ModelWorker {
 }
 
 impl ModelWorker {
-    /// Prepares a model on a thread of its own. If work is done at once, returns the event instead.
+    /// Prepares a model on a thread of its own. If work is done at once, returns the event instead. `known` is the
+    /// model of the set so far, which stays if its file was not written again.
     pub(in crate::tui::runtime) fn prepare(
         &mut self,
         number: u64,
         choice: ModelChoice,
+        known: Option<Arc<TrainedModel>>,
         execution: &Execution,
     ) -> Option<WorkerEvent> {
         let stop = self.stop.renew();
@@ -186,7 +189,7 @@ impl ModelWorker {
             Execution::AtOnce(limit) => {
                 let begins = |poses| limit.allows(poses);
                 let calls: Calls<'_> = (&begins, &|_| true);
-                let event = prepare(&store, number, choice, &reading, calls);
+                let event = prepare(&store, number, choice, known, &reading, calls);
                 return Some(WorkerEvent::Recognition(event));
             }
             Execution::OnThreads(post) => post,
@@ -204,7 +207,8 @@ impl ModelWorker {
             let progress = |poses| proceed(poses, &stop, Some(&clock));
             let event = guarded(number, || {
                 let calls: Calls<'_> = (&begins, &progress);
-                WorkerEvent::Recognition(prepare(&store, number, choice, &reading, calls))
+                let event = prepare(&store, number, choice, known, &reading, calls);
+                WorkerEvent::Recognition(event)
             });
             reading.end();
             post(event);
@@ -231,8 +235,10 @@ impl ModelWorker {
 
     /// Returns a text about the model that is being read, if that takes long.
     pub(in crate::tui::runtime) fn status(&self) -> Option<String> {
-        let status = locked(&self.reading.0).as_ref()?.status("the disk")?;
-        Some(status + "; Esc gives up")
+        // Not only the disk takes time: a model is unpacked and evaluated, too.
+        let reading = locked(&self.reading.0);
+        let words = reading.as_ref()?.slow_words()?;
+        Some(format!("{words}; Esc gives up"))
     }
 
     /// Returns when to check again on the reading; None if nothing is read.
@@ -257,17 +263,25 @@ fn prepare(
     store: &ModelStore,
     number: u64,
     choice: ModelChoice,
+    known: Option<Arc<TrainedModel>>,
     reading: &ModelReading,
     (begins, progress): Calls<'_>,
 ) -> RecognitionEvent {
     let choice = store.located(choice);
-    let model = store.model(&choice, begins, progress);
+    // Before it is read: if it is written meanwhile, it is read again the next time.
+    let version = store.path(&choice).as_deref().and_then(FileVersion::of);
+    let known = known.filter(|known| version.is_some() && known.version == version);
+    let trained = match known.filter(|known| known.choice == choice) {
+        Some(known) => Ok(known),
+        None => (store.model(&choice, begins, progress))
+            .map(|model| Arc::new(TrainedModel::new(choice, model, version))),
+    };
     reading.begin("Listing the models");
     let stored = store.names();
     reading.end();
     RecognitionEvent::Prepared(Box::new(Prepared {
         number,
         stored,
-        trained: model.map(|model| Arc::new(TrainedModel::new(choice, model))),
+        trained,
     }))
 }

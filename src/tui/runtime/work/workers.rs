@@ -118,9 +118,9 @@ impl Workers {
                     Err(refused) => Some(WorkerEvent::Failed(number, refused)),
                 }
             }
-            Work::Prepare(number, choice) => {
+            Work::Prepare(number, choice, known) => {
                 self.finding_poses.stop();
-                self.models.prepare(number, choice, &self.execution)
+                (self.models).prepare(number, choice, known, &self.execution)
             }
             Work::StopPreparing => self.models.give_up(),
             Work::Separate(number, request, known) => sizes::separate(
