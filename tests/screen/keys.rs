@@ -635,8 +635,17 @@ fn recognise_steps_through_sets_and_accepts_a_name() {
             "1 touch kept",
         ],
     );
+    // Another set answers about the same touches.
+    shows(
+        &format!(":recognise figures-30<Enter>{hexagon}ao"),
+        &["model shapes", "1 touch kept; x forgets"],
+    );
+    shows("rP", &["no pose to show: nothing is touched"]);
     shows(":seed x<Enter>", &["seed takes a whole number"]);
-    shows(":quiz<Enter>", &["Recognise: model figures"]);
+    shows(
+        ":quiz<Enter>",
+        &["the model is ready", "Which shape is this?"],
+    );
     shows("r<Enter>", &["the model is ready: nothing was stopped"]);
 }
 

@@ -29,13 +29,19 @@ const DEADLINE: Duration = Duration::from_secs(120);
 /// Makes a library with a stored model: a bar, and one shape under two names.
 fn with_model(folder: &Path) -> Library {
     let library = Library::open(folder.join("library"));
+    let shapes = [("bar", 6.0, 2.0), ("one", 4.0, 4.0), ("other", 4.0, 4.0)];
+    save_model(&library, &shapes);
+    library
+}
+
+/// Trains the stored model with rectangles, each with its name, length and width.
+fn save_model(library: &Library, shapes: &[(&str, f64, f64)]) {
     let sensor = Sensor::default();
     let bar = |length: f64, width: f64| Figure::rectangle(length, width).on(&sensor);
-    let shapes = [
-        NamedShape::new("bar", bar(6.0, 2.0).expect("in range")),
-        NamedShape::new("one", bar(4.0, 4.0).expect("in range")),
-        NamedShape::new("other", bar(4.0, 4.0).expect("in range")),
-    ];
+    let named = |&(name, length, width): &(&str, f64, f64)| {
+        NamedShape::new(name, bar(length, width).expect("in range"))
+    };
+    let shapes = shapes.iter().map(named);
     let ranges = Ranges::default().with(Axis::Angle, "0:80:10".parse().expect("a range"));
     // The poses that are found are those of the centre all the same.
     let training = Training::new(shapes, sensor, Anchor::Corner, ranges).expect("a set");
@@ -45,9 +51,51 @@ fn with_model(folder: &Path) -> Library {
     fs::create_dir_all(models.path()).expect("a folder");
     let going = AtomicBool::new(false);
     models
-        .save(&model, &name, Existing::Kept, &going)
+        .save(&model, &name, Existing::Replaced, &going)
         .expect("written");
-    library
+}
+
+#[test]
+fn a_stored_model_that_was_trained_anew_is_read_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let library = with_model(folder.path());
+    let square = ":figure rectangle --length 4 --width 4 --x0 5 --y0 5<Enter>";
+    let keys = format!("{square}:recognise my parts<Enter>");
+    let mut session = started(World::new(library.clone()), &keys);
+    shows(&session, &["tied: one, other"]);
+    save_model(&library, &[("bar", 6.0, 2.0), ("block", 4.0, 4.0)]);
+    press(&mut session, "<Esc>r");
+    shows(&session, &["model my parts", "certain: block"]);
+    save_model(&library, &[("bar", 6.0, 2.0), ("square", 4.0, 4.0)]);
+    press(&mut session, ":recognise my parts<Enter>");
+    shows(&session, &["model my parts", "certain: square"]);
+    let name = Name::new("my parts").expect("a name");
+    fs::remove_file(ModelFolder::beside(library.folder()).file(&name)).expect("deleted");
+    press(&mut session, ":recognise my parts<Enter>");
+    shows(&session, &["no model or file \"my parts\"", "not read"]);
+}
+
+#[test]
+fn a_model_that_cannot_be_read_does_not_block_the_next_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let library = with_model(folder.path());
+    let models_folder = ModelFolder::beside(library.folder());
+    fs::write(models_folder.path().join("broken.npz"), "junk").expect("written");
+    let world = World::new(library).with_model_cache(Some(models()));
+    let mut session = started(world, ":recognise shapes<Enter>o");
+    shows(&session, &["broken.npz: ", "Recognise: model shapes"]);
+    press(&mut session, "o");
+    shows(&session, &["Recognise: model my parts"]);
+}
+
+#[test]
+fn own_models_name_the_shapes_of_frames() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let world = World::new(with_model(folder.path()));
+    let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>nnnn");
+    shows(&page, &["shapes are named by model my parts"]);
+    press(&mut page, "n");
+    shows(&page, &["shapes are not named"]);
 }
 
 fn shows(session: &Session, texts: &[&str]) {
@@ -215,12 +263,16 @@ fn a_set_that_does_not_exist_changes_nothing() {
 }
 
 #[test]
-fn a_command_that_needs_a_model_says_that_the_model_comes_first() {
-    let mut session = session(":confusion<Enter>");
-    let first = "a model is prepared first; then repeat this";
-    shows(&session, &["Recognise: model figures", first]);
-    press(&mut session, ":confusion<Enter>");
-    shows(&session, &["Confusion: model figures"]);
+fn a_command_that_needs_a_model_is_carried_out_once_there_is_one() {
+    shows(&session(":confusion<Enter>"), &["Confusion: model figures"]);
+    let mut program = Beside::new(":confusion<Enter>");
+    let first = "a model is prepared first";
+    shows(&program.session, &["Recognise: model figures", first]);
+    program.until("Confusion: model figures");
+    // The user does something else by then.
+    let mut program = Beside::new(":confusion<Enter>:");
+    program.until("certain 100.0 %");
+    hides(&program.session, &["Confusion"]);
 }
 
 #[test]
@@ -303,11 +355,13 @@ fn escape_stops_a_training_and_enter_restarts_it() {
     shows(&program.session, &["Esc stops"]);
     press(&mut program.session, "<Esc>");
     program.until("training was stopped");
-    shows(&program.session, &["not trained; Enter trains it"]);
+    shows(&program.session, &["not prepared; Enter prepares it"]);
+    press(&mut program.session, "P");
+    shows(&program.session, &["! the model is not prepared yet"]);
     press(&mut program.session, "<Enter>");
     program.until("training: ");
     press(&mut program.session, "<Esc>");
-    program.until("not trained");
+    program.until("not prepared");
 }
 
 #[test]

@@ -75,15 +75,9 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         }
         Message::File(answer) => return answered(app, |app| files::on_file(app, answer)),
         Message::Worker(event @ WorkerEvent::Recognition(_)) => {
-            return answered(app, |app| {
-                on_worker(app, event);
-                None
-            });
+            return answered(app, |app| on_worker(app, event));
         }
-        Message::Worker(event) => {
-            on_worker(app, event);
-            return None;
-        }
+        Message::Worker(event) => return on_worker(app, event),
         Message::Mouse(mouse) => {
             // A count belongs to the next key, and so does the notice that shows it.
             if app.count.take().is_some() {
@@ -289,7 +283,7 @@ fn at_question(app: &mut App, question: Question, message: &Message) -> Option<E
 }
 
 /// Passes an event of a worker to its page.
-fn on_worker(app: &mut App, event: WorkerEvent) {
+fn on_worker(app: &mut App, event: WorkerEvent) -> Option<Effect> {
     match event {
         WorkerEvent::Progress(number, progress) => {
             if !explore::work::on_progress(app, number, progress) {
@@ -305,10 +299,10 @@ fn on_worker(app: &mut App, event: WorkerEvent) {
         WorkerEvent::Exists(number, name) => explore::work::on_existing(app, number, &name),
         WorkerEvent::Failed(number, reason) => {
             if !explore::work::on_failure(app, number, &reason) {
-                recognise::update::on_failure(app, number, &reason);
+                return recognise::update::on_failure(app, number, &reason);
             }
         }
-        WorkerEvent::Recognition(event) => recognise::update::on_worker(app, event),
+        WorkerEvent::Recognition(event) => return recognise::update::on_worker(app, event),
         WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
         WorkerEvent::Waiting(what) => app.waiting = what,
@@ -316,4 +310,5 @@ fn on_worker(app: &mut App, event: WorkerEvent) {
         // The runtime takes the answer itself.
         WorkerEvent::Answered => {}
     }
+    None
 }

@@ -12,7 +12,7 @@ use crate::sensor::MatrixSize;
 use crate::source::Source;
 use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
-use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, Prepared};
+use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, Prepared, RecogniseMessage};
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::around;
@@ -41,6 +41,8 @@ pub struct Preparation {
     pub stopping: bool,
     /// Whether the user has asked for something that needs the model.
     awaited: bool,
+    /// The request that opened the page, and is carried out once there is a model.
+    request: Option<RecogniseMessage>,
     /// Whether the page was opened for this model.
     opened: bool,
     /// The set to return to if this one cannot be read.
@@ -54,6 +56,8 @@ pub struct NoModel {
     pub reason: String,
     /// Whether the page closes, because it was opened for a set that cannot be read.
     pub closes: bool,
+    /// Whether the earlier set returned, whose model was being prepared and has to be prepared again.
+    pub prepares_again: bool,
 }
 
 /// The set that was chosen before the present one.
@@ -63,8 +67,8 @@ struct SetBefore {
     choice: ModelChoice,
     /// The model of the set; None if it had none.
     trained: Option<Arc<TrainedModel>>,
-    /// The touches that were kept.
-    kept: Vec<Imprint>,
+    /// Whether its model was being prepared.
+    preparing: bool,
     /// The score of the quiz with this set.
     score: Score,
 }
@@ -106,6 +110,8 @@ pub enum SearchStep {
 pub struct Recognition {
     /// The chosen set.
     choice: ModelChoice,
+    /// The set that could not be read last: the next step through the sets goes on from there.
+    unreadable: Option<ModelChoice>,
     /// The names of stored models.
     stored: Vec<Name>,
     /// The model of the set.
@@ -143,6 +149,7 @@ impl Recognition {
     pub fn new(seed: u64) -> Self {
         Self {
             choice: ModelChoice::Figures,
+            unreadable: None,
             stored: Vec::new(),
             state: ModelState::Missing,
             kept: Vec::new(),
@@ -184,37 +191,40 @@ impl Recognition {
         }
     }
 
-    /// Returns the set `by` places after the chosen one; after the last set comes the first.
+    /// Returns the set `by` places after the chosen one, or after one that could not be read since; after the last set
+    /// comes the first.
     pub fn other(&self, by: i8) -> ModelChoice {
+        let present = self.unreadable.as_ref().unwrap_or(&self.choice);
         let stored = self.stored.iter().cloned().map(ModelChoice::Stored);
         let mut all: Vec<ModelChoice> = ModelChoice::BUILT_IN.into_iter().chain(stored).collect();
         // A stored model that has been deleted comes after all others.
-        if !all.contains(&self.choice) {
-            all.push(self.choice.clone());
+        if !all.contains(present) {
+            all.push(present.clone());
         }
-        let before = all.iter().take_while(|choice| **choice != self.choice);
+        let before = all.iter().take_while(|choice| *choice != present);
         let next = around(before.count(), by, all.len());
         all.swap_remove(next)
     }
 
-    /// Chooses a set, whose model is prepared by the work with this number. With another set, touches and score begin
-    /// anew. A stored model may be missing or damaged; then the earlier set returns. `opened`: whether the page was
-    /// opened for this set. A search in progress is forgotten, because it is about the old model.
+    /// Chooses a set, whose model is prepared by the work with this number. Kept touches stay, so that sets can be
+    /// compared; with another set, the score begins anew. A stored model may be missing or damaged; then the earlier
+    /// set returns. `opened`: whether the page was opened for this set. A search in progress is forgotten, because it
+    /// is about the old model.
     pub fn prepare(&mut self, choice: ModelChoice, number: u64, opened: bool) {
         let state = std::mem::replace(&mut self.state, ModelState::Missing);
-        let (mut before, trained) = match state {
-            ModelState::Preparing(preparation) => (preparation.before, None),
-            ModelState::Ready(trained) => (None, Some(trained)),
-            ModelState::Missing => (None, None),
+        let (mut before, trained, preparing) = match state {
+            ModelState::Preparing(now) => (now.before, None, !now.stopping),
+            ModelState::Ready(trained) => (None, Some(trained), false),
+            ModelState::Missing => (None, None, false),
         };
         if choice != self.choice {
             let set = SetBefore {
                 choice: std::mem::replace(&mut self.choice, choice),
                 trained,
-                kept: std::mem::take(&mut self.kept),
+                preparing,
                 score: std::mem::take(&mut self.score),
             };
-            self.present_kept = false;
+            self.searched = None;
             before = before.or_else(|| Some(Box::new(set)));
         }
         before = before.filter(|_| self.choice.is_read());
@@ -224,10 +234,10 @@ impl Recognition {
             done: 0,
             stopping: false,
             awaited: false,
+            request: None,
             opened,
             before,
         });
-        self.searched = None;
         self.running = None;
         self.ask();
     }
@@ -276,6 +286,18 @@ impl Recognition {
         }
     }
 
+    /// Records a request that is carried out once the model that is being prepared is ready.
+    pub fn request_later(&mut self, request: RecogniseMessage) {
+        if let ModelState::Preparing(preparation) = &mut self.state {
+            preparation.request = Some(request);
+        }
+    }
+
+    /// Takes the request that waits for the model of the work with this number.
+    pub fn take_request(&mut self, number: u64) -> Option<RecogniseMessage> {
+        self.preparation(number)?.request.take()
+    }
+
     /// Returns true if the user has asked for something that needs the model, which is on its way.
     pub fn is_awaited(&self) -> bool {
         matches!(&self.state, ModelState::Preparing(preparation) if preparation.awaited)
@@ -296,6 +318,7 @@ impl Recognition {
             Ok(trained) => {
                 // What was given as the name of a stored model may be that of a file.
                 self.choice = trained.choice.clone();
+                self.unreadable = None;
                 self.state = ModelState::Ready(trained);
                 self.ask();
                 None
@@ -310,11 +333,17 @@ impl Recognition {
         let preparation = self.preparation(number)?;
         let (before, opened) = (preparation.before.take(), preparation.opened);
         self.state = ModelState::Missing;
-        let closes = opened && before.is_some();
+        let mut failed = NoModel {
+            reason,
+            closes: false,
+            prepares_again: false,
+        };
         if let Some(before) = before {
+            failed.closes = opened;
+            failed.prepares_again = before.preparing && !opened;
             self.take_back(*before);
         }
-        Some(NoModel { reason, closes })
+        Some(failed)
     }
 
     /// Returns to the earlier set.
@@ -322,12 +351,11 @@ impl Recognition {
         let SetBefore {
             choice,
             trained,
-            kept,
+            preparing: _,
             score,
         } = before;
-        self.choice = choice;
-        self.present_kept = kept.last() == Some(&self.present);
-        (self.kept, self.score) = (kept, score);
+        self.unreadable = Some(std::mem::replace(&mut self.choice, choice));
+        self.score = score;
         self.state = trained.map_or(ModelState::Missing, ModelState::Ready);
         self.ask();
     }
@@ -365,6 +393,11 @@ impl Recognition {
         let (search, found) = self.searched.as_ref()?;
         let is_present = self.search().as_ref() == Some(search);
         found.as_deref().filter(|_| is_present)
+    }
+
+    /// Returns true while poses are searched for.
+    pub fn is_searching(&self) -> bool {
+        self.running.is_some()
     }
 
     /// Returns the search that the page needs; None without a model or a touch.
@@ -556,6 +589,50 @@ mod tests {
         assert!(page.fail(1, "a thread panicked".to_owned()).is_some());
         let sets: Vec<ModelChoice> = (0..10).map(|by| page.other(by)).collect();
         assert!(sets.contains(&ModelChoice::Stored(page.stored[0].clone())));
+    }
+
+    #[test]
+    fn a_step_goes_on_from_a_model_that_cannot_be_read() {
+        let stored = ["broken", "mine"].map(|name| Name::new(name).expect("a name"));
+        let mut page = Recognition::new(0);
+        page.stored = stored.to_vec();
+        with_model(&mut page, ModelChoice::Shipped, 1);
+        page.stored = stored.to_vec();
+        let [broken, mine] = stored.map(ModelChoice::Stored);
+        assert_eq!(page.other(1), broken);
+        page.prepare(broken, 2, false);
+        assert!(page.fail(2, "damaged".to_owned()).is_some());
+        assert_eq!(page.choice(), &ModelChoice::Shipped, "the earlier set");
+        assert_eq!(
+            (page.other(1), page.other(-1)),
+            (mine, ModelChoice::Shipped)
+        );
+    }
+
+    #[test]
+    fn a_training_that_made_way_for_a_damaged_model_begins_again() {
+        let mut page = Recognition::new(0);
+        let damaged = ModelChoice::File("damaged.npz".into());
+        page.prepare(ModelChoice::Shipped, 1, false);
+        page.prepare(damaged.clone(), 2, false);
+        let failed = page.fail(2, "damaged".to_owned());
+        assert!(failed.is_some_and(|failed| failed.prepares_again));
+        // A training that was stopped does not.
+        page.prepare(ModelChoice::Shipped, 3, false);
+        assert!(page.stop());
+        page.prepare(damaged, 4, false);
+        let failed = page.fail(4, "damaged".to_owned());
+        assert!(failed.is_some_and(|failed| !failed.prepares_again));
+    }
+
+    #[test]
+    fn kept_touches_outlast_the_choice_of_another_set() {
+        let mut page = Recognition::new(0);
+        page.show(touch(), None);
+        with_model(&mut page, ModelChoice::Figures, 1);
+        assert!(page.add_touch());
+        with_model(&mut page, ModelChoice::Shipped, 2);
+        assert_eq!(page.touches(), [touch()]);
     }
 
     #[test]

@@ -26,7 +26,7 @@ use crate::tui::runtime::effect::{Effect, Work};
 
 /// Handles a request over the matrix, whether the page is open or not.
 pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
-    // A command may come while the page is closed; its result must be visible. Without a model, only that is prepared.
+    // A command may come while the page is closed; its result must be visible. Without a model, that is prepared first.
     if app.recognition.is_some() && !matches!(asked, RecogniseMessage::Seed(_)) {
         let choice = match &asked {
             RecogniseMessage::Choose(choice) => Some(choice.clone()),
@@ -35,7 +35,8 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
         let is_done = matches!(asked, RecogniseMessage::Open | RecogniseMessage::Choose(_));
         if let Some(effect) = open(app, choice) {
             if !is_done {
-                inform(app, "a model is prepared first; then repeat this");
+                inform(app, "a model is prepared first");
+                state(app)?.request_later(asked);
             }
             return Some(effect);
         }
@@ -126,7 +127,7 @@ fn open_confusion(app: &mut App) {
 /// Shows that the confusion matrix, the sizes or a quiz needs a model.
 fn not_trained(app: &mut App) {
     let is_coming = state(app).is_some_and(Recognition::await_model);
-    let text = ["the model is not trained yet", NOT_READY][usize::from(is_coming)];
+    let text = ["the model is not prepared yet", NOT_READY][usize::from(is_coming)];
     refuse(app, text);
 }
 
@@ -138,17 +139,24 @@ const NOT_READY: &str = "the model is not ready yet";
 fn show_poses(app: &mut App) {
     let Some(grid) = app.grid() else { return };
     let Some(page) = state(app) else { return };
+    if page.trained().is_none() {
+        return not_trained(app);
+    }
     let seen = Layers::shown(page.outlines(), &grid);
     page.show_outlines(!seen);
-    let none = page.found().is_none_or(|found| found.poses.is_empty());
-    inform(
-        app,
-        match (seen, none) {
-            (true, _) => "without poses",
-            (false, true) => "no pose to show: no shape of the model leaves this imprint",
-            (false, false) => "the likeliest pose; others of the 95 % faintly",
+    let text = match page.found() {
+        _ if seen => "without poses",
+        _ if page.present().is_empty() => "no pose to show: nothing is touched",
+        None if page.is_searching() => "the poses are still being searched for",
+        None => "no pose to show: the search failed",
+        Some(found) if !found.poses.is_empty() => "the likeliest pose; others of the 95 % faintly",
+        Some(found) => match &found.refused {
+            Some(reason) => reason,
+            None => "no pose to show: no shape of the model leaves this imprint",
         },
-    );
+    };
+    let text = text.to_owned();
+    inform(app, text);
 }
 
 /// Begins a quiz. Kept touches are forgotten: they were of another shape, and the answer is about one shape only.
@@ -340,9 +348,11 @@ pub(in crate::tui) fn in_confusion(
     None
 }
 
-/// Handles a report from a worker.
-pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
-    let Some(page) = state(app) else { return };
+/// Handles a report from a worker. A request that has waited for the model is carried out now, if the page still has
+/// the keys.
+pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Option<Effect> {
+    let has_keys = matches!(app.dialogs.last(), Some(Dialog::Recognition(_)));
+    let page = state(app)?;
     match event {
         RecognitionEvent::Begun(number, poses) => page.take_poses(number, poses),
         RecognitionEvent::GivenUp(number, what) => {
@@ -351,12 +361,17 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
         }
         RecognitionEvent::Prepared(prepared) => {
             let was_awaited = page.is_awaited();
+            let request = page.take_request(prepared.number);
             let failed = page.take_model(*prepared);
-            // The notice that it is not ready would be wrong now.
-            if was_awaited && page.trained().is_some() {
+            if failed.is_some() {
+                return without_model(app, failed);
+            }
+            let request = request.filter(|_| has_keys);
+            // A notice that it is not ready, or is prepared first, would be wrong now.
+            if was_awaited || request.is_some() {
                 inform(app, "the model is ready");
             }
-            without_model(app, failed);
+            return request.and_then(|request| act(app, request));
         }
         RecognitionEvent::Searched(number, found) => {
             if let Some(reason) = page.take_result(number, found) {
@@ -365,30 +380,35 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
         }
         RecognitionEvent::Sizes(found) => separate::update::on_found(app, *found),
     }
+    None
 }
 
 /// Handles a training that failed unexpectedly. The number is that of a training or of the work on sizes; a page that
 /// waits for other work ignores it.
-pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
+pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> Option<Effect> {
     separate::update::on_failure(app, number, reason);
     let failed = state(app).and_then(|page| page.fail(number, reason.to_owned()));
-    without_model(app, failed);
+    without_model(app, failed)
 }
 
-/// If there is no model, shows the reason. A page that was opened for it closes.
-fn without_model(app: &mut App, failed: Option<NoModel>) {
-    let Some(NoModel { reason, closes }) = failed else {
-        return;
-    };
-    let open = |dialog: &Dialog| matches!(dialog, Dialog::Recognition(_));
+/// If there is no model, shows the reason. A page that was opened for it closes. A preparation that made way for it
+/// begins again.
+fn without_model(app: &mut App, failed: Option<NoModel>) -> Option<Effect> {
+    let NoModel {
+        reason,
+        closes,
+        prepares_again,
+    } = failed?;
+    let is_page = |dialog: &Dialog| matches!(dialog, Dialog::Recognition(_));
     if closes
-        && let Some(at) = app.dialogs.iter().position(open)
+        && let Some(at) = app.dialogs.iter().position(is_page)
         && let Dialog::Recognition(page) = app.dialogs.remove(at)
     {
         // While a model is prepared, no search is in progress.
         let _ = close(app, page);
     }
     refuse(app, reason);
+    prepares_again.then(|| open(app, None)).flatten()
 }
 
 /// Handles the progress of a training.

@@ -78,7 +78,7 @@ impl Page for Recognition {
                 let text = if self.choice().is_read() {
                     format!("not read; {again} reads it")
                 } else {
-                    format!("not trained; {again} trains it")
+                    format!("not prepared; {again} prepares it")
                 };
                 panel.text(&text, Role::Text);
             }
@@ -116,6 +116,10 @@ impl Page for Recognition {
 
     fn leaves_matrix(&self) -> bool {
         true
+    }
+
+    fn awaits_work(&self) -> bool {
+        matches!(self.state(), ModelState::Preparing(_))
     }
 
     fn cancels_itself(&self) -> bool {
