@@ -470,3 +470,17 @@ fn a_number_of_two_digits_is_never_shown_in_part() {
     }
     shows("f<Enter>cc", &["a single digit is tens"]);
 }
+
+#[test]
+fn help_keeps_its_place_on_a_screen_of_another_width() {
+    let mut session = sized((60, 20), false, "?/zoom<Enter>n<Esc>");
+    let row = |screen: &str| {
+        let mut lines = screen.lines();
+        lines.position(|line| line.contains("Shift-arrows"))
+    };
+    for (columns, rows) in [(60, 20), (200, 60), (60, 20)] {
+        session.resize(columns, rows);
+        let screen = session.screen();
+        assert!(row(&screen).is_some_and(|row| row < 4), "{screen}");
+    }
+}

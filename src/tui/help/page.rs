@@ -18,8 +18,9 @@ use crate::tui::widget::write;
 pub struct Help {
     /// The place whose keys are listed.
     context: Context,
-    /// The index of the first visible line.
-    top: usize,
+    /// The first visible line: the index of its entry, and its own among the lines of the entry. An entry has other
+    /// lines on a screen of another width.
+    top: (usize, usize),
     /// The search.
     pub search: Search,
 }
@@ -32,7 +33,7 @@ impl Help {
     pub fn new(context: Context) -> Self {
         Self {
             context,
-            top: 0,
+            top: (0, 0),
             search: Search::default(),
         }
     }
@@ -45,16 +46,26 @@ impl Help {
         };
         let entries = (0..).zip(help(self.context, keymap));
         let lines: Lines = entries.flat_map(broken).collect();
+        let (entry, line) = self.top;
+        let first = lines.partition_point(|(own, _)| *own < entry);
+        let next = lines.partition_point(|(own, _)| *own <= entry);
+        let top = (first + line).min(next.saturating_sub(1));
         let last_top = lines.len().saturating_sub(rows.into());
-        let top = self.top.min(last_top);
-        (lines, top)
+        (lines, top.min(last_top))
     }
 
-    /// Scrolls down by `lines`, or up if negative, in an area of this many columns and rows.
-    pub fn scroll(&mut self, lines: i16, keymap: &Keymap, room: (u16, u16)) {
-        let (_, top) = self.lines(keymap, room);
-        self.top = top.saturating_add_signed(isize::from(lines));
-        (_, self.top) = self.lines(keymap, room);
+    /// Scrolls down by `by` lines, or up if negative, in an area of this many columns and rows.
+    pub fn scroll(&mut self, by: i16, keymap: &Keymap, room: (u16, u16)) {
+        let (lines, top) = self.lines(keymap, room);
+        self.set_top(&lines, top.saturating_add_signed(by.into()), room.1);
+    }
+
+    /// Makes a line the first visible one, or an earlier one if fewer than `rows` follow.
+    fn set_top(&mut self, lines: &Lines, line: usize, rows: u16) {
+        let line = line.min(lines.len().saturating_sub(rows.into()));
+        let entry = lines.get(line).map_or(0, |(entry, _)| *entry);
+        let first = lines.partition_point(|(own, _)| *own < entry);
+        self.top = (entry, line - first);
     }
 
     /// Searches for a text from the first visible line, then from the start, and goes to the first match. Returns the
@@ -94,8 +105,7 @@ impl Help {
         if let (Some(first), Some(last)) = (first, last)
             && (first < top || last >= top + rows)
         {
-            self.top = first.saturating_sub(rows / 3);
-            (_, self.top) = self.lines(keymap, room);
+            self.set_top(&lines, first.saturating_sub(rows / 3), room.1);
         }
     }
 
