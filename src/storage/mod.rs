@@ -108,8 +108,8 @@ pub use sweep_file::{
 
 #[cfg(all(feature = "recognition", feature = "library"))]
 pub use models::{
-    FileVersion, MadeFolder, ModelCache, ModelFolder, cached_or_trained, load_model, load_whole_model,
-    model_hash, save_model,
+    FileVersion, MadeFolder, ModelCache, ModelFolder, cached_or_trained, load_model,
+    load_whole_model, model_hash, save_model,
 };
 
 #[cfg(all(feature = "recognition", feature = "library"))]
