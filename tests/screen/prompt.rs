@@ -354,7 +354,7 @@ fn commands_do_what_keys_do() {
         ("undo now", "! undo takes nothing, found \"now\""),
         (
             "cursor left 5",
-            "! cursor takes a column and a row like 3 4, found \"left\"",
+            "! cursor takes a column and a row like 3 4, or a direction alone, found \"left\"",
         ),
         (
             "turn round",

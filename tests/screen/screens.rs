@@ -388,6 +388,13 @@ fn the_smallest_screen_shows_an_imprint_of_the_list() {
 }
 
 #[test]
+fn a_narrow_form_shows_the_limits_that_a_value_misses() {
+    for size in [(80, 24), (60, 20), (40, 12)] {
+        shows(&sized(size, false, "fe<Tab>-3"), &["above 0, up to 16"]);
+    }
+}
+
+#[test]
 fn the_smallest_screen_shows_a_row_of_compared_imprints() {
     let smallest = sized((20, 6), false, "lkey<Enter><Space>=");
     shows(&smallest, &["1 taxel differs", "a: A, b: B", "\n 0 ·"]);

@@ -144,7 +144,7 @@ fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
         if digits.is_empty() || !digits.bytes().all(|digit| digit.is_ascii_digit()) {
             let text = shortened(text);
             return Err(format!(
-                "cursor takes a column and a row like 3 4, found {text:?}"
+                "cursor takes a column and a row like 3 4, or a direction alone, found {text:?}"
             ));
         }
     }

@@ -125,8 +125,11 @@ impl FieldRow<'_> {
         }
         if let Some(error) = &self.error {
             let place = second.unwrap_or(first);
-            let text = format!("! {error}");
-            write::line(buffer, place, theme, [(text.as_str(), Role::Error)]);
+            let full = format!("! {error}");
+            // Cut at its end, a message would hide the limit.
+            let bare = full.replacen("expected ", "", 1);
+            let text = write::first_fitting(&[&full, &bare], place.width.into());
+            write::line(buffer, place, theme, [(text, Role::Error)]);
         }
         Position::new(area.x.saturating_add(narrow(label + cursor)), area.y)
     }
