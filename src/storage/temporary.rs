@@ -292,8 +292,8 @@ fn link(_: &File, _: &Path) -> io::Result<()> {
 }
 
 /// A folder that only its owner can look into, removed when this is dropped. Its program holds the lock on the file
-/// [`SCRATCH_MARK`] in it: a folder whose lock is free was left by a program that died, and the next program removes it.
-/// A folder without this file is something else, and stays.
+/// [`SCRATCH_MARK`] in it: a folder whose lock is free was left by a program that died, and the next program removes
+/// it. A folder without this file is something else, and stays.
 #[cfg(feature = "tui")]
 #[derive(Debug)]
 pub(crate) struct ScratchFolder {

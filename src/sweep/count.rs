@@ -190,6 +190,7 @@ mod tests {
         let grid = grid.expect("in range");
         assert!(Sweep::new(&grid).progress(&|_| false).count().is_none());
     }
+
     #[test]
     fn a_sweep_can_be_stopped_within_a_row() {
         let sensor = Sensor::default();

@@ -316,8 +316,8 @@ impl Selection {
         })
     }
 
-    /// Returns the number of the frame with a label, if there is one. A label that several frames have is refused: it is
-    /// not clear which of them is meant.
+    /// Returns the number of the frame with a label, if there is one. A label that several frames have is refused: it
+    /// is not clear which of them is meant.
     ///
     /// # Errors
     /// Returns [`CliError::Frames`] with the numbers of the first two.

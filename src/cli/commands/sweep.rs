@@ -217,8 +217,8 @@ fn summary(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Chars
     }
 }
 
-/// Returns the atlas of an earlier run of this shard, and notes that it is kept; None without `--resume`, or if there is
-/// none.
+/// Returns the atlas of an earlier run of this shard, and notes that it is kept; None without `--resume`, or if there
+/// is none.
 ///
 /// # Errors
 /// Returns an error if the file is something else, or if its format is one that cannot be read.

@@ -11,7 +11,8 @@ use crate::frame::{Frame, Processing, SetRule, Tare};
 /// The answers, a line each.
 pub(super) struct Answers {
     output: Output,
-    /// Whether frames are recorded: then the watch goes on if answers cannot be written, since frames do not come again.
+    /// Whether frames are recorded: then the watch goes on if answers cannot be written, since frames do not come
+    /// again.
     is_recorded: bool,
     /// Whether frames may be left unanswered if the reader is slow.
     may_give_up: bool,

@@ -298,8 +298,8 @@ fn numbers_in(separator: Separator, line: &[u8], count: usize, numeric: &[usize]
     numeric.iter().map(number).collect()
 }
 
-/// Returns the fields of the first line of a table without names: with an empty one at the end if the line is a row or a
-/// frame of the given size only then.
+/// Returns the fields of the first line of a table without names: with an empty one at the end if the line is a row or
+/// a frame of the given size only then.
 fn first_fields(separator: Separator, line: &[u8], size: Option<FrameSize>) -> Vec<&[u8]> {
     let counts = size.map(|size| [usize::from(size.columns()), size.cells()]);
     let whole = counts.into_iter().flatten().find_map(|count| {

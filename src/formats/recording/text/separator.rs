@@ -54,8 +54,8 @@ pub(in crate::formats) fn unquoted(field: &[u8]) -> &[u8] {
 
 /// The bytes that separate fields, the first one that a line has before the others; without any of them, blanks do.
 ///
-/// Recordings and streams are read line by line, and docs/sensors.md promises this order. The table of an imprint is short
-/// and read as a whole, so it is separated by what its last line has, where names cannot mislead: see
+/// Recordings and streams are read line by line, and docs/sensors.md promises this order. The table of an imprint is
+/// short and read as a whole, so it is separated by what its last line has, where names cannot mislead: see
 /// [`table`](crate::formats::table).
 pub(in crate::formats) const SEPARATORS: [u8; 3] = *b";,\t";
 

@@ -1,5 +1,5 @@
-//! The reasons why a source on the live page gives no frame, in sentences. No flag can be typed on the page, so they also
-//! say where to give what is missing.
+//! The reasons why a source on the live page gives no frame, in sentences. No flag can be typed on the page, so they
+//! also say where to give what is missing.
 
 use crate::acquire::{AcquireError, FrameSource};
 use crate::formats::recording::RecordingError;
