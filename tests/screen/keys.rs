@@ -91,6 +91,18 @@ fn the_matrix_does_not_show_the_beginning_of_a_wrong_number() {
 }
 
 #[test]
+fn keys_for_numbers_do_nothing_on_the_kind_and_say_so() {
+    for key in ["<PageUp>", "<C-u>", "<Home>", "<BS>"] {
+        shows(
+            &format!("f{key}"),
+            &["an arrow or a letter chooses the kind"],
+        );
+    }
+    let hints = |keys: &str| session(keys).screen();
+    assert!(!hints("f").contains("clear") && hints("f<Tab>").contains("clear"));
+}
+
+#[test]
 fn a_form_explains_the_thickness() {
     shows(
         "f",

@@ -5,7 +5,7 @@
 
 use crate::figure::FigureKind;
 use crate::quote::quoted_character;
-use crate::tui::app::change::{let_go, refuse, replace};
+use crate::tui::app::change::{inform, let_go, refuse, replace};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -51,6 +51,11 @@ pub(in crate::tui) fn update(
             }
         }
         Message::Defaults => dialog.set_defaults(),
+        Message::Step(_) | Message::Erase(_) | Message::ToEdge(_)
+            if dialog.form().focus().is_none() =>
+        {
+            inform(app, "an arrow or a letter chooses the kind");
+        }
         Message::Step(direction) => dialog.edit(|form| form.step(direction)),
         other => dialog.edit(|form| form.take(&other)),
     }

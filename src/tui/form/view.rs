@@ -56,6 +56,14 @@ impl Page for FormDialog {
         draw(theme, self, buffer, area)
     }
 
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
+        let edits = matches!(
+            message,
+            Message::Step(_) | Message::Erase(_) | Message::ToEdge(_)
+        );
+        self.form().focus().is_some() || !edits
+    }
+
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         if self.kind().is_some() && at.y == area.y + 1 {
             let is_focused = self.form().focus().is_none();
