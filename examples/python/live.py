@@ -63,5 +63,7 @@ def main(source):
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1] if len(sys.argv) > 1 else None))
+    except subprocess.CalledProcessError as error:
+        sys.exit(error.returncode)  # taxel has said why
     except BrokenPipeError:
         sys.stdout = None  # nobody reads on, as in | head

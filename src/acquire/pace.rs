@@ -166,7 +166,8 @@ impl<'a> Pace<'a> {
     /// Waits until this many seconds have been played.
     fn until(&self, seconds: f64, tick: &mut Tick<'_>) -> ControlFlow<()> {
         let longest = self.begun.elapsed().as_secs_f64() + LONGEST;
-        let seconds = (seconds / self.speed).clamp(0.0, longest);
+        // Of infinite times at an infinite speed, the quotient is NaN; `max` drops it.
+        let seconds = (seconds / self.speed).max(0.0).min(longest);
         let due = self.begun + Duration::from_secs_f64(seconds);
         loop {
             let left = due.saturating_duration_since(Instant::now());

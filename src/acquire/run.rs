@@ -12,7 +12,7 @@ use crate::acquire::{playback, stream};
 /// given.
 ///
 /// A connection or a serial line that is lost, as when the other end closes it, is tried again each second until it is
-/// back ([`AcquireEvent::Lost`](crate::acquire::AcquireEvent::Lost)), whatever [`AcquireOptions::waits`] says. With
+/// back ([`AcquireEvent::Lost`](crate::acquire::AcquireEvent::Lost)), regardless of [`AcquireOptions::waits`]. With
 /// [`Playback::Once`](crate::acquire::Playback::Once) it ends there. Standard input and a FIFO end when they are
 /// closed, and a recording that does not grow ends with its last frame.
 ///

@@ -32,8 +32,8 @@ const MOST_INTERVALS: usize = 10_000;
 const LARGEST: f64 = 1e300;
 
 impl Histogram {
-    /// Counts the poses of an atlas in at most `most` intervals (of which there are never more than 10,000), or in the
-    /// smallest possible number. `values` are those of the feature, one per imprint ([`Atlas::values`]). If all are
+    /// Counts the poses of an atlas in at most `most` intervals, never more than 10,000, or in the smallest
+    /// possible number. `values` are those of the feature, one per imprint ([`Atlas::values`]). If all are
     /// whole, the width is at least 1. A value that is missing, not finite or beyond ±1e300 counts as none.
     ///
     /// ```

@@ -31,8 +31,8 @@ pub enum Rule {
         /// The upper threshold.
         high: f64,
     },
-    /// A taxel is active if its value exceeds the tare by this number of standard deviations of the cell's own noise,
-    /// or more, but at least by one step of the values ([`Tare::step`]). The standard deviation is estimated as 1.4826
+    /// A taxel is active if its value exceeds the tare by at least this number of standard deviations of the cell's own
+    /// noise, and by at least one step of the values ([`Tare::step`]). The standard deviation is estimated as 1.4826
     /// times the median absolute deviation of the frames of the tare, as for a normal distribution.
     #[non_exhaustive]
     Noise(f64),

@@ -196,7 +196,6 @@ impl Tare {
         let check = |what, values: &[f64], fits: fn(f64) -> bool, allowed| {
             let wrong = values.iter().find(|&&value| !fits(value));
             wrong.map_or(Ok(()), |&found| {
-                let (what, allowed) = (what, allowed);
                 Err(FrameError::Rule {
                     what,
                     found,

@@ -152,8 +152,8 @@ impl<'a> Training<'a> {
         self
     }
 
-    /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call. The
-    /// training stops when it returns `false`.
+    /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call, which
+    /// is 0 within a long row. The training stops when it returns `false`.
     pub fn progress(mut self, progress: &'a (dyn Fn(u64) -> bool + Sync)) -> Self {
         self.progress = progress;
         self

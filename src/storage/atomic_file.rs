@@ -196,6 +196,14 @@ impl FinishedFile {
     }
 }
 
+/// Checks whether a file of this path may be written, as far as it shows before the attempt.
+///
+/// # Errors
+/// Returns the errors of [`UnfinishedFile::new`] about what is there.
+pub fn check_target(path: &Path, existing: Existing) -> Result<(), FileError> {
+    replaced(path, existing).map(drop)
+}
+
 /// Returns the metadata of the file that is to be replaced; None if there is none.
 ///
 /// # Errors

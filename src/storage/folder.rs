@@ -185,7 +185,7 @@ impl InnerFolder {
             return Ok(());
         }
         make(&self.0)?;
-        if let (Some(library), Ok(folder)) = (self.0.parent(), File::open(&self.0)) {
+        if let (Some(library), Ok(folder)) = (self.0.parent(), open_unlinked(&self.0)) {
             share(&folder, library);
         }
         Ok(())
@@ -196,6 +196,20 @@ impl InnerFolder {
         let names = names(&self.0)?.into_iter();
         Ok(names.map(|name| self.0.join(name)).collect())
     }
+}
+
+/// Opens a folder, but not one that a link leads to: another user may have put the link there just now.
+fn open_unlinked(path: &Path) -> std::io::Result<File> {
+    let mut options = File::options();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt;
+        let flags = OFlags::NOFOLLOW | OFlags::DIRECTORY;
+        options.custom_flags(flags.bits().cast_signed());
+    }
+    options.open(path)
 }
 
 #[cfg(test)]

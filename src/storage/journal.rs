@@ -71,13 +71,20 @@ impl Journal {
         self.open.as_ref().is_some_and(is_there)
     }
 
-    /// Returns the journal's file. Its name is chosen at the first use, and again if someone has removed its lock:
-    /// other programs would take the file for that of a dead one.
+    /// Returns the journal's file. Its name is chosen at the first use. If someone has removed its lock, it gets
+    /// another lock, or else another name: other programs would take the file for that of a dead one.
     fn file(&mut self) -> Result<PathBuf, LibraryError> {
         if let Some((path, _)) = self.open.as_ref().filter(|_| self.is_locked()) {
             return Ok(path.clone());
         }
-        self.open = None;
+        // The file itself may still be there.
+        if let Some((path, _)) = self.open.take()
+            && path.exists()
+            && let Some(lock) = Lock::if_free(&lock_of(&path))
+        {
+            self.open = Some((path.clone(), Some(lock)));
+            return Ok(path);
+        }
         let folder = InnerFolder::of(&self.library, JOURNAL)?;
         folder.make()?;
         let process = std::process::id();

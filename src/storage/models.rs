@@ -73,7 +73,7 @@ pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
     ))
 }
 
-/// The version of a file: another one once the file was written again.
+/// The version of a file: another one once the file was written again, as far as its size and its time show it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileVersion {
     /// The size of the file, in bytes.
@@ -175,7 +175,7 @@ impl ModelFolder {
     ///
     /// # Errors
     /// Returns the system's error, with the folder's name.
-    pub fn made(&self) -> Result<MadeFolder, ArchiveFileError> {
+    pub fn make(&self) -> Result<MadeFolder, ArchiveFileError> {
         let is_new = !self.0.is_dir();
         match folder::make(&self.0) {
             Ok(()) => Ok(MadeFolder(is_new.then(|| self.0.clone()))),
@@ -203,7 +203,7 @@ impl ModelFolder {
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<PathBuf, ArchiveFileError> {
-        let _folder = self.made()?;
+        let _folder = self.make()?;
         let path = self.file(name);
         save_model(model, &path, existing, stopped)?;
         Ok(path)

@@ -13,8 +13,10 @@ use crate::touch::least;
 
 /// The number of values of x0 and of y0 whose positions are kept.
 const REMEMBERED: usize = 128;
+
 /// The effort of decisions after which to ask whether to go on: about a millisecond.
 const ASK_EVERY: u64 = 256;
+
 /// The number of edges that doubles the effort. A picture may have thousands of edges.
 const EDGES: usize = 64;
 

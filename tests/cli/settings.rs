@@ -242,7 +242,8 @@ fn a_library_whose_path_is_not_utf_8_is_a_comment_in_the_settings() {
     use std::os::unix::ffi::OsStrExt;
     let folder = std::ffi::OsStr::from_bytes(b"/srv/caf\xe9");
     let run = run(taxel("config").env("TAXEL_LIBRARY", folder));
-    let line = "# library: /srv/caf\u{fffd}, which is not UTF-8";
+    let line =
+        "# library: /srv/caf\u{fffd}; this path is not UTF-8, so it cannot be in a settings file";
     assert!(run.stdout.contains(line), "{}", run.stdout);
     assert!(!run.stdout.contains("library = "), "{}", run.stdout);
 }

@@ -344,21 +344,26 @@ fn two_jobs_may_resume_one_shard_at_the_same_time() {
 
 #[test]
 fn a_sweep_goes_on_if_a_signal_is_ignored() {
-    let sweep = "sweep octagon --side 6 --columns 32 --rows 32 --angle 0:44:4 --jobs 1 --quiet";
+    let sweep = "sweep octagon --side 6 --columns 32 --rows 32 --angle 0:44:0.02 --jobs 1 --quiet";
     let taxel = env!("CARGO_BIN_EXE_taxel");
-    let script = format!("trap '' INT TERM; exec {taxel} {sweep}");
+    let script = format!("trap '' INT TERM; echo ready; exec {taxel} {sweep}");
     let mut shell = Command::new("sh");
     shell.args(["-c", &script]).env("TAXEL_CONFIG", "/dev/null");
     let mut child = shell
-        .stdout(std::process::Stdio::null())
+        .stdout(std::process::Stdio::piped())
         .spawn()
         .expect("there is a shell");
+    let mut output = std::io::BufReader::new(child.stdout.take().expect("piped"));
+    let mut line = String::new();
+    std::io::BufRead::read_line(&mut output, &mut line).expect("text");
     let id = rustix::process::Pid::from_child(&child);
     for signal in [rustix::process::Signal::INT, rustix::process::Signal::TERM] {
         std::thread::sleep(std::time::Duration::from_millis(100));
-        // It may have ended already.
-        let _ = rustix::process::kill_process(id, signal);
+        let ended = child.try_wait().expect("a child");
+        assert_eq!(ended, None, "it ended before the signal");
+        rustix::process::kill_process(id, signal).expect("it still runs");
     }
+    std::io::copy(&mut output, &mut std::io::sink()).expect("read");
     let status = child.wait().expect("it ends");
     assert_eq!(status.code(), Some(0));
 }

@@ -72,10 +72,10 @@ fn a_source_is_shown_frame_by_frame() {
 #[test]
 fn keys_for_the_shades_say_what_they_do() {
     let mut page = watched(6, "g");
-    shows(&page, &["shades over this frame's values"]);
-    then(&mut page, "g", &["shades over a fixed range"]);
+    shows(&page, &["the shades cover this frame's values"]);
+    then(&mut page, "g", &["the shades cover all values so far"]);
     then(&mut page, "v", &["no threshold, so there is no imprint"]);
-    then(&mut page, "vv", &["no tare, so these are the raw values"]);
+    then(&mut page, "vv", &["no tare: the values are the raw ones"]);
 }
 
 #[test]

@@ -400,6 +400,13 @@ fn escape_stops_the_sizes_and_keeps_the_results() {
     program.until("3 of 251 sizes; Esc stops");
 }
 
+/// A page that is closed does not follow the matrix.
+#[test]
+fn poses_are_those_of_the_present_touch_even_if_the_page_was_closed() {
+    let screen = session("r<Esc>f<Enter>:poses<Enter>").screen();
+    assert!(!screen.contains("nothing is touched"), "{screen}");
+}
+
 #[test]
 fn a_search_for_poses_is_stopped_when_its_page_or_imprint_changes() {
     let after = |app: &mut App, message| update(app, message).or_else(|| next_work(app));

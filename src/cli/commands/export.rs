@@ -15,7 +15,7 @@ use crate::formats::{Content, Drawing};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::source::Source;
-use crate::storage::{Existing, FinishedFile};
+use crate::storage::{Existing, FinishedFile, check_target};
 
 impl Export {
     /// Returns the same export with the number of a frame at the end of the file name, before the extension.
@@ -33,21 +33,17 @@ impl Export {
         Self { path, ..*self }
     }
 
-    /// Refuses a file that would replace the recording being read, or another one without `--force`. So one of several
-    /// files that cannot be written is an error before the first of them is.
+    /// Refuses a file that would replace the recording being read, or anything that is not to be replaced. So one of
+    /// several files that cannot be written is an error before the first of them is written.
     ///
     /// # Errors
-    /// Returns [`CliError::Frames`] or [`CliError::Taken`].
+    /// Returns [`CliError::Frames`], or the errors of [`check_target`].
     pub(crate) fn check(&self, recording: &RecordingFile) -> Result<(), CliError> {
         let Some(path) = &self.path else {
             return Ok(());
         };
         recording.refuse_as_target(path)?;
-        if self.existing == Existing::Kept && path.symlink_metadata().is_ok() {
-            let name = path.to_string_lossy().into_owned();
-            return Err(CliError::Taken { name });
-        }
-        Ok(())
+        Ok(check_target(path, self.existing)?)
     }
 
     /// Like [`Self::begin`], for a frame. A drawing shows its values in shades, if they are given.

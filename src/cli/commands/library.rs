@@ -249,8 +249,15 @@ pub(crate) fn delete(shelf: &Shelf, name: &str, charset: Charset) -> Result<Stri
 fn restoring(library: Option<&Library>, name: &str) -> Option<String> {
     let mut command = "taxel library restore".to_owned();
     if let Some(library) = library {
-        command += " --library ";
-        command += &as_argument(library.folder().to_str()?);
+        let folder = library.folder().to_str()?;
+        // Otherwise a folder with a dash would be taken for a flag.
+        let is_dashed = folder.starts_with('-');
+        command += if is_dashed {
+            " --library="
+        } else {
+            " --library "
+        };
+        command += &as_argument(folder);
     }
     // Otherwise a name with a dash would be taken for a flag.
     command += if name.starts_with('-') { " -- " } else { " " };

@@ -18,8 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::json;
 
-use crate::cli::arguments::flags::ShardFile;
-use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
+use crate::cli::arguments::flags::{ShardFile, TOO_LITTLE_MEMORY};
 use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
 use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::commands::training_grid::TrainingGrid;
@@ -76,10 +75,11 @@ pub(crate) fn train(
     if let Some(model) = kept()? {
         return Ok((trained(&model, &path, Some(KEPT), asked, charset)?, Ok(())));
     }
-    let _folder = match &asked.to {
-        ModelTarget::Named(_) => Some(folder(shelf)?.made()?),
-        ModelTarget::File(_) => None,
+    let make_folder = || match &asked.to {
+        ModelTarget::Named(_) => Ok(Some(folder(shelf)?.make()?)),
+        ModelTarget::File(_) => Ok::<_, CliError>(None),
     };
+    let _folder = make_folder()?;
     // A path that cannot be written is an error before the work, not after it.
     drop(UnfinishedFile::new(&path, asked.there.existing())?);
     if !asked.quiet {
@@ -96,11 +96,19 @@ pub(crate) fn train(
         },
         error => signals.training_failure(error, &memory),
     })?;
+    // Another training that was stopped may have removed the folder, which was empty. If it cannot be made again,
+    // `save_model` says so.
+    let _again = make_folder();
     let saved = save_model(&model, &path, asked.there.existing(), stopped);
     let (done, outcome) = match saved {
         Ok(()) => (Some("written"), Ok(())),
         // Another job may have written this shard meanwhile: it was queued again, or started twice.
-        Err(error) if error.exists() && kept()?.is_some() => (Some(KEPT), Ok(())),
+        Err(error) if error.exists() => match kept() {
+            Ok(Some(_)) => (Some(KEPT), Ok(())),
+            Ok(None) => (None, Err(error.into())),
+            // It is not that of another job: it is damaged, or belongs to another study.
+            Err(error) => (None, Err(error)),
+        },
         Err(error) => (None, unless_stopped(Err(signals.failure_or(error.into())))?),
     };
     Ok((trained(&model, &path, done, asked, charset)?, outcome))

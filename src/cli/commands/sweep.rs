@@ -13,8 +13,7 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use crate::cli::arguments::flags::ShardFile;
-use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
+use crate::cli::arguments::flags::{ShardFile, TOO_LITTLE_MEMORY};
 use crate::cli::arguments::sweep::Wanted;
 use crate::cli::commands::export::written;
 use crate::cli::commands::resume::{self, KEPT};
@@ -122,10 +121,8 @@ pub(crate) fn sweep(
     let pool = threads::pool(jobs)?;
     let memory = MemoryGuard::new(wanted.memory, TOO_LITTLE_MEMORY);
     memory.check(grid).map_err(CliError::Memory)?;
-    let mut poses = match &wanted.poses {
-        Some(path) => Some(PoseFile::new(path, grid, wanted.there.existing())?),
-        None => None,
-    };
+    let new = |path| PoseFile::new(path, grid, wanted.there.existing());
+    let mut poses = wanted.poses.as_ref().map(new).transpose()?;
     let rows = shard.rows(grid.rows());
     let all = (rows.end - rows.start) * grid.row_length();
     let progress = Progress::new(all, wanted.quiet, charset);
@@ -153,14 +150,17 @@ pub(crate) fn sweep(
         return Err(signals.failure());
     }
     let left = leave(&result, start, wanted, poses, charset, &signals)?;
-    // Another job may have written this shard meanwhile: it was queued again, or started twice.
-    if matches!(left, (_, Err(CliError::Taken { .. })))
-        && let Some(kept) = kept(grid, shard, wanted, charset)?
-    {
-        return Ok((summary(&kept, start, wanted, charset), Ok(())));
-    }
     wanted.note_written(&left, charset);
-    Ok(left)
+    if !matches!(left, (_, Err(CliError::Taken { .. }))) {
+        return Ok(left);
+    }
+    // Another job may have written this shard meanwhile: it was queued again, or started twice.
+    Ok(match kept(grid, shard, wanted, charset) {
+        Ok(Some(kept)) => (summary(&kept, start, wanted, charset), Ok(())),
+        Ok(None) => left,
+        // It is not that of another job: it is damaged, or belongs to another study.
+        Err(error) => (left.0, Err(error)),
+    })
 }
 
 /// Writes the atlas, gives the files their names, and returns the summary to print, with the error if there are no

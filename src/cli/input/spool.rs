@@ -63,7 +63,10 @@ impl SpooledInput {
 /// Returns the error of the copy: it names the folder, which has nothing to do with the input.
 fn not_copied(error: &io::Error) -> io::Error {
     let folder = std::env::temp_dir();
-    let text = format!("no copy in {} (TMPDIR): {error}", folder.display());
+    let text = format!(
+        "cannot keep a copy in {} (TMPDIR): {error}",
+        folder.display()
+    );
     io::Error::new(error.kind(), text)
 }
 

@@ -338,7 +338,7 @@ impl Effective {
                 let lossy = || charset.line(&whole.to_string_lossy()).into_owned();
                 // A settings file is UTF-8, so any other path cannot be in one.
                 whole.to_str().map_or_else(
-                    || format!("# library: {}, which is not UTF-8", lossy()),
+                    || format!("# library: {}; this path is not UTF-8, so it cannot be in a settings file", lossy()),
                     |whole| format!("library = {}", quoted(whole)),
                 )
             }

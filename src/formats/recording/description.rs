@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::formats::framed::{FrameRows, RuleRecord, matrix};
 use crate::formats::json;
-use crate::frame::{LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
+use crate::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
 use crate::matrix::Matrix;
 use crate::quote::shortened_message;
 
@@ -213,7 +213,17 @@ impl RecordingMetadata {
                 let spread = spread.map_err(MetadataError::of_key("tare_spread"))?;
                 let step = described.tare_step.filter(|&value| is_positive(value));
                 let tare = Tare::from_parts(baseline, spread, step, frames.unwrap_or(1));
-                Some(tare.map_err(MetadataError::of_key("tare"))?)
+                Some(tare.map_err(|error| match error {
+                    FrameError::Rule {
+                        what,
+                        found,
+                        allowed,
+                    } => MetadataError::Value {
+                        key: what,
+                        message: format!("{found} is out of range (allowed: {allowed})"),
+                    },
+                    error => MetadataError::of_key("tare")(error),
+                })?)
             }
             None => None,
         };

@@ -97,7 +97,7 @@ pub trait Page {
         false
     }
 
-    /// Returns true while the page waits for work, after which keys mean something else. False by default.
+    /// Returns true while the page waits for work whose end changes what keys do. False by default.
     fn awaits_work(&self) -> bool {
         false
     }

@@ -62,6 +62,8 @@ pub struct Live {
     marks: FrameMarks,
     /// The model that names imprints, and its last answer.
     naming: Option<Naming>,
+    /// Whether the names of the user's own models were asked for, to choose the next one.
+    pub awaits_models: bool,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
     reading: Option<LiveReading>,
     /// Why the shown frame cannot be processed, or why it has no imprint.
@@ -88,6 +90,7 @@ impl Live {
             recording: RecordingState::default(),
             marks: FrameMarks::default(),
             naming: None,
+            awaits_models: false,
             reading: None,
             error: None,
             request,
@@ -429,6 +432,11 @@ impl Live {
         self.is_viewed_anew |= self.rule != rule;
         self.rule = rule;
         SetRule::apply(rule, &mut self.processing);
+    }
+
+    /// Returns true if neither a tare nor a gain changes the values.
+    pub fn shows_raw(&self) -> bool {
+        self.tare.mark().is_none() && self.processing.gain.is_none()
     }
 
     /// Sets the rule that a key has produced, and reads the frame again. A rule out of range changes nothing.

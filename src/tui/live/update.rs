@@ -198,12 +198,12 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Numbers => page.display.numbers ^= true,
         LiveMessage::OwnRange => {
             let own = page.switch_range();
-            let over = if own {
-                "this frame's values"
+            let text = if own {
+                "the shades cover this frame's values"
             } else {
-                "a fixed range"
+                "the shades cover all values so far"
             };
-            inform(app, format!("shades over {over}"));
+            inform(app, text);
         }
         LiveMessage::Window(towards) => look_further(app, page, *towards),
         LiveMessage::FollowContact => {
@@ -216,7 +216,10 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         },
         LiveMessage::Mark => mark(app, page),
         // The next one may be a model of the user.
-        LiveMessage::NextModel => return Some(Effect::Library(LibraryRequest::Models)),
+        LiveMessage::NextModel => {
+            page.awaits_models = true;
+            return Some(Effect::Library(LibraryRequest::Models));
+        }
         LiveMessage::Source(source) => return Some(check_source(app, source)),
         LiveMessage::Open | LiveMessage::Watch(_) => {}
     }
@@ -226,18 +229,22 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
 /// Shows the next layer, and says why if it looks like the one before.
 fn next_layer(app: &mut App, page: &mut Live) {
     let reason = match page.next_layer() {
-        HeatLayer::Tared if page.tare().is_none() => "no tare, so these are the raw values",
+        HeatLayer::Tared if page.shows_raw() => "no tare: the values are the raw ones",
         HeatLayer::Imprint if page.rule().is_none() => "no threshold, so there is no imprint",
         _ => return,
     };
     inform(app, reason);
 }
 
-/// Names imprints by the next model, now that the names of the user's own models are known.
+/// Names imprints by the next model, now that the names of the user's own models are known. Does nothing if the page
+/// did not ask for them.
 pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effect> {
-    app.works += 1;
-    let number = app.works;
+    let number = app.works + 1;
     let page = topmost!(&mut app.dialogs, Live)?;
+    if !std::mem::take(&mut page.awaits_models) {
+        return None;
+    }
+    app.works = number;
     let own = own.iter().map(|name| ModelChoice::from_text(name));
     page.next_model(own.collect(), number);
     let naming = page.naming_request().cloned().map(Box::new);

@@ -93,23 +93,20 @@ impl CommandDialog {
     /// Returns false if there is none before.
     pub fn pick(&mut self, down: bool) -> bool {
         let (offers, picked) = self.offers();
-        let typed = match &self.picked {
-            Some((_, typed)) => typed.as_str(),
-            None => self.field.text(),
+        let typed = match self.picked.take() {
+            Some((_, typed)) => typed,
+            None => self.field.text().to_owned(),
         };
         // The usage of a command whose arguments are being typed comes last, and would replace them.
+        let begun = typed.trim_start();
         let lines: Vec<String> = (offers.into_iter().map(|offer| offer.line))
-            .filter(|line| line.starts_with(typed) || !typed.contains(' '))
+            .filter(|line| line.starts_with(begun) || !begun.contains(' '))
             .collect();
         let next = match (picked, down) {
             (None, false) => return false,
             (None, true) => Some(0),
             (Some(now), true) => Some(now + 1),
             (Some(now), false) => now.checked_sub(1),
-        };
-        let typed = match self.picked.take() {
-            Some((_, typed)) => typed,
-            None => self.field.text().to_owned(),
         };
         self.candidates.clear();
         match next {
@@ -207,6 +204,7 @@ mod tests {
         assert_eq!(after("fig", 1), "figure octagon --side 3");
         assert_eq!(after("fig", 3), "figure");
         assert_eq!(after("figure ell", 2), "figure ellipse");
+        assert_eq!(after(" fig", 1), after("fig", 1));
         let typed = "figure ellipse --radius-x 3";
         assert_eq!(after(typed, 1), typed);
     }

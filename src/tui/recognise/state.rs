@@ -43,6 +43,8 @@ pub struct Preparation {
     awaited: bool,
     /// The request that opened the page, and is carried out once there is a model.
     request: Option<RecogniseMessage>,
+    /// The model of the same set so far, which stays if the user gives up reading it again.
+    known: Option<Arc<TrainedModel>>,
     /// Whether the page was opened for this model.
     opened: bool,
     /// The set to return to if this one cannot be read.
@@ -202,7 +204,11 @@ impl Recognition {
             all.push(present.clone());
         }
         let before = all.iter().take_while(|choice| *choice != present);
-        let next = around(before.count(), by, all.len());
+        let mut next = around(before.count(), by, all.len());
+        // The chosen set is there already: a step from one that could not be read goes past it.
+        if all[next] == self.choice && *present != self.choice {
+            next = around(next, by, all.len());
+        }
         all.swap_remove(next)
     }
 
@@ -213,10 +219,11 @@ impl Recognition {
     pub fn prepare(&mut self, choice: ModelChoice, number: u64, opened: bool) {
         let state = std::mem::replace(&mut self.state, ModelState::Missing);
         let (mut before, trained, preparing) = match state {
-            ModelState::Preparing(now) => (now.before, None, !now.stopping),
+            ModelState::Preparing(now) => (now.before, now.known, !now.stopping),
             ModelState::Ready(trained) => (None, Some(trained), false),
             ModelState::Missing => (None, None, false),
         };
+        let known = trained.clone().filter(|_| choice == self.choice);
         if choice != self.choice {
             let set = SetBefore {
                 choice: std::mem::replace(&mut self.choice, choice),
@@ -235,6 +242,7 @@ impl Recognition {
             stopping: false,
             awaited: false,
             request: None,
+            known,
             opened,
             before,
         });
@@ -293,6 +301,13 @@ impl Recognition {
         }
     }
 
+    /// Forgets the request that waits for the model: the user does something else now.
+    pub fn withdraw(&mut self) {
+        if let ModelState::Preparing(preparation) = &mut self.state {
+            preparation.request = None;
+        }
+    }
+
     /// Takes the request that waits for the model of the work with this number.
     pub fn take_request(&mut self, number: u64) -> Option<RecogniseMessage> {
         self.preparation(number)?.request.take()
@@ -305,8 +320,10 @@ impl Recognition {
 
     /// Records that the work with this number is no longer waited for.
     pub fn leave_model(&mut self, number: u64) {
-        if self.preparation(number).is_some() {
-            self.state = ModelState::Missing;
+        if let Some(preparation) = self.preparation(number) {
+            let known = preparation.known.take();
+            self.state = known.map_or(ModelState::Missing, ModelState::Ready);
+            self.ask();
         }
     }
 
@@ -332,6 +349,7 @@ impl Recognition {
     pub fn fail(&mut self, number: u64, reason: String) -> Option<NoModel> {
         let preparation = self.preparation(number)?;
         let (before, opened) = (preparation.before.take(), preparation.opened);
+        let stopping = preparation.stopping;
         self.state = ModelState::Missing;
         let mut failed = NoModel {
             reason,
@@ -340,7 +358,7 @@ impl Recognition {
         };
         if let Some(before) = before {
             failed.closes = opened;
-            failed.prepares_again = before.preparing && !opened;
+            failed.prepares_again = before.preparing && !opened && !stopping;
             self.take_back(*before);
         }
         Some(failed)
@@ -395,9 +413,10 @@ impl Recognition {
         found.as_deref().filter(|_| is_present)
     }
 
-    /// Returns true while poses are searched for.
+    /// Returns true if poses are searched for, or will be after this message.
     pub fn is_searching(&self) -> bool {
-        self.running.is_some()
+        let searched = self.searched.as_ref().map(|(search, _)| search);
+        self.running.is_some() || searched != self.search().as_ref()
     }
 
     /// Returns the search that the page needs; None without a model or a touch.
@@ -605,7 +624,7 @@ mod tests {
         assert_eq!(page.choice(), &ModelChoice::Shipped, "the earlier set");
         assert_eq!(
             (page.other(1), page.other(-1)),
-            (mine, ModelChoice::Shipped)
+            (mine, ModelChoice::EqualFigures)
         );
     }
 

@@ -24,22 +24,33 @@ use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::state::{ModelState, NoModel, Recognition, SearchStep};
 use crate::tui::runtime::effect::{Effect, Work};
 
+/// Opens the page for a request. What needs a model waits for it.
+fn open_for(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
+    let choice = match &asked {
+        RecogniseMessage::Choose(choice) => Some(choice.clone()),
+        RecogniseMessage::NextSet(by) => app.recognition.as_ref().map(|page| page.other(*by)),
+        _ => None,
+    };
+    let effect = open(app, choice);
+    match asked {
+        RecogniseMessage::Open | RecogniseMessage::Choose(_) | RecogniseMessage::NextSet(_) => {
+            effect
+        }
+        RecogniseMessage::Keep | RecogniseMessage::Forget => act(app, asked).or(effect),
+        asked if effect.is_some() => {
+            inform(app, "a model is prepared first");
+            state(app)?.request_later(asked);
+            effect
+        }
+        asked => act(app, asked),
+    }
+}
+
 /// Handles a request over the matrix, whether the page is open or not.
 pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
-    // A command may come while the page is closed; its result must be visible. Without a model, that is prepared first.
+    // A command may come while the page is closed; its result must be visible.
     if app.recognition.is_some() && !matches!(asked, RecogniseMessage::Seed(_)) {
-        let choice = match &asked {
-            RecogniseMessage::Choose(choice) => Some(choice.clone()),
-            _ => None,
-        };
-        let is_done = matches!(asked, RecogniseMessage::Open | RecogniseMessage::Choose(_));
-        if let Some(effect) = open(app, choice) {
-            if !is_done {
-                inform(app, "a model is prepared first");
-                state(app)?.request_later(asked);
-            }
-            return Some(effect);
-        }
+        return open_for(app, asked);
     }
     match asked {
         RecogniseMessage::Open => open(app, None),
@@ -138,7 +149,10 @@ const NOT_READY: &str = "the model is not ready yet";
 /// this depends on what is visible, not on the setting.
 fn show_poses(app: &mut App) {
     let Some(grid) = app.grid() else { return };
+    // A page that was closed has not followed the matrix.
+    let (imprint, source) = (app.reading().imprint, app.shown().source.clone());
     let Some(page) = state(app) else { return };
+    page.show(imprint, source.as_ref());
     if page.trained().is_none() {
         return not_trained(app);
     }
@@ -232,6 +246,7 @@ pub(in crate::tui) fn in_recognition(
             close(app, page)
         }
         message => {
+            page.withdraw();
             app.dialogs.push(Dialog::Recognition(page));
             match message {
                 Message::Accept => prepare_again(app),

@@ -47,8 +47,11 @@ impl Recorder {
             SessionEvent::Frames { source, count } => frames(source, count),
             SessionEvent::Input { input, at_work } => {
                 let lines = self.input(input);
-                let marked = at_work && !lines.is_empty();
-                [["", AT_WORK][usize::from(marked)], &lines].concat()
+                if at_work && !lines.is_empty() {
+                    AT_WORK.to_owned() + &lines
+                } else {
+                    lines
+                }
             }
         };
         head + &lines

@@ -61,6 +61,7 @@ fn a_first_line_with_a_text_is_a_frame_if_the_next_one_has_a_text_there() {
         ("1,inf,3,4", 2, "inf"),
         ("12,13,1O,14", 3, "1O"),
         ("1,2,3,4mV", 4, "4mV"),
+        ("1,>255,3,4", 2, ">255"),
     ] {
         let found = recorded(format!("{line}\n5,6,7,8\n").as_bytes(), Some((2, 2)));
         let expected = format!("line 1, column {column}: found {word:?}, expected a number");

@@ -61,8 +61,8 @@ impl<'a> ChannelGate<'a> {
     /// left out.
     ///
     /// # Errors
-    /// Returns an error if there are several channels before that and none is chosen. It names all channels of a file;
-    /// a pipe cannot be read again.
+    /// Returns an error if a second channel appears before a frame is answered, and none is chosen. It names all
+    /// channels of a file; a pipe cannot be read again.
     pub(super) fn add(
         &mut self,
         info: &ChannelInfo,

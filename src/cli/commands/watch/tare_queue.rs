@@ -9,7 +9,7 @@ pub(super) struct TareQueue {
 }
 
 impl TareQueue {
-    /// Begins a tare of so many frames; None for a tare of 0 frames.
+    /// Begins a tare of this many frames; None for a tare of 0 frames.
     pub(super) fn new(frames: u64) -> Option<Self> {
         (frames > 0).then(|| Self {
             tare: TareFrames::new(frames),

@@ -106,24 +106,36 @@ pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) ->
     repeats || !counts
 }
 
-/// Returns the field of a misspelt number, such as `1O`, `inf` or `4mV`, among numbers; None if the line may hold names
-/// or texts. A single such field does not make a line of values a header.
-pub(super) fn misspelt_number(names: &[&str], separator: Separator) -> Option<usize> {
+/// Returns the field of a wrong value, such as `1O`, `inf`, `4mV` or `>255`, among numbers; None if the line may hold
+/// names or texts. A single such field does not make a line of values a header: names that are numbers count up, or
+/// have a word with a known role or at their beginning.
+pub(super) fn wrong_value(names: &[&str], separator: Separator) -> Option<usize> {
     let mut words =
         (0..names.len()).filter(|&field| !separator.is_numeric(names[field].as_bytes()));
     let (word, only) = (words.next()?, words.next().is_none());
-    (only && names.len() > 2 && is_like_number(names[word])).then_some(word)
+    let name = names[word];
+    let is_name = name.starts_with(char::is_alphabetic) && (word == 0 || role(name).is_some());
+    // Cells that are counted from 0 have names, and so has the field before them.
+    let is_header = word == 0 && count_from_0(&names[1..]).is_some();
+    let is_no_name = cells(names).is_none() && !is_name && !is_date(name);
+    let is_wrong = is_like_number(name) || is_no_name;
+    (only && names.len() > 2 && !is_header && is_wrong).then_some(word)
 }
 
-/// Returns true if a word begins as a number does. Dates and times of day do, too, but are not meant as numbers.
+/// Returns true if a field may be a date or a time of day.
+fn is_date(word: &str) -> bool {
+    let begins = word.starts_with(|first: char| first.is_ascii_digit());
+    begins && word.contains(['/', ':', '-']) || moment::read(word.as_bytes()).is_some()
+}
+
+/// Returns true if a word begins as a number does, or is infinite. Dates and times of day are not meant as numbers.
 fn is_like_number(word: &str) -> bool {
-    let word = word.trim_start_matches(['+', '-']);
-    let is_date = word.contains(['/', ':', '-']) || moment::read(word.as_bytes()).is_some();
+    let bare = word.trim_start_matches(['+', '-']);
     let is_infinite = ["inf", "infinity"]
         .iter()
-        .any(|name| word.eq_ignore_ascii_case(name));
-    is_infinite
-        || !is_date && word.starts_with(|first: char| first.is_ascii_digit() || first == '.')
+        .any(|name| bare.eq_ignore_ascii_case(name));
+    let digits = bare.strip_prefix('.').unwrap_or(bare);
+    is_infinite || !is_date(word) && digits.starts_with(|first: char| first.is_ascii_digit())
 }
 
 /// Returns true if at least half of the fields of a line are numbers.
@@ -175,10 +187,10 @@ mod tests {
     }
 
     #[test]
-    fn a_misspelt_number_does_not_make_a_header() {
+    fn a_wrong_value_does_not_make_a_header() {
         let found = |line: &str| {
             let names: Vec<&str> = line.split(',').collect();
-            misspelt_number(&names, Separator::Byte(b','))
+            wrong_value(&names, Separator::Byte(b','))
         };
         for line in [
             "1,inf,3,4",
@@ -186,11 +198,21 @@ mod tests {
             "1,2,3,1e301",
             "4mV,1,2",
             "-Inf,3,4",
+            "1,>255,3,4",
+            "1,-,3,4",
+            "?,2,3,4",
+            "7,2,ERR,4",
+            "9,2,3,x",
         ] {
             assert!(found(line).is_some(), "{line}");
         }
         for line in [
             "label,0,1,2",
+            "2024_run1,0,1,2",
+            "3D force,0,1,2",
+            "0,1,2,sum",
+            "time,0.5,1,1.5",
+            "10,20,30,time",
             "a,b,c",
             "1a,1b,1c",
             "01/02/2024,1,2",

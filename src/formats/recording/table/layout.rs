@@ -13,8 +13,8 @@ use crate::formats::recording::side::side;
 use crate::formats::recording::table::cell_names::{NamedCells, cells};
 use crate::formats::recording::table::clock::TimeFields;
 use crate::formats::recording::table::header::{
-    COMPARED, count_from_0, first_line, is_like_next, is_mostly_numeric, is_ramp, misspelt_number,
-    moment_of_row,
+    COMPARED, count_from_0, first_line, is_like_next, is_mostly_numeric, is_ramp, moment_of_row,
+    wrong_value,
 };
 use crate::formats::recording::table::unnamed_fields::unnamed_fields;
 use crate::formats::recording::text::lines::{TextLines, is_blank, text};
@@ -120,7 +120,7 @@ pub(super) fn layout(
         let next = lines.line().to_owned();
         return of_numbers(&mut lines, separator, (number, &[&first, &next]), options);
     }
-    if let Some(field) = misspelt_number(&names, separator) {
+    if let Some(field) = wrong_value(&names, separator) {
         return Err(row::wrong(number, field + 1, names[field].as_bytes()));
     }
     let header = TableHeader {

@@ -93,8 +93,8 @@ impl Separator {
         line.split(is_end).map(unquoted)
     }
 
-    /// Returns the fields of a line like [`Self::fields`]; but if the line has the `expected` number of them only with
-    /// the empty ones at its ends, these are fields, too.
+    /// Returns the fields of a line like [`Self::fields`]. If the line has the `expected` number of fields only when
+    /// the empty ones at its ends count, they count.
     pub(in crate::formats::recording) fn fields_of(
         self,
         line: &[u8],

@@ -226,7 +226,7 @@ impl JournalThread {
         self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
     }
 
-    /// Writes the work unless it is on the disk already, and returns true if it is there then.
+    /// Writes the work unless the disk has it already. Returns true if the disk has it.
     fn write(&mut self) -> bool {
         let Some(work) = &self.work else {
             return true;

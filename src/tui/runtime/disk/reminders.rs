@@ -16,7 +16,7 @@ use crate::tui::runtime::disk::queue::{DiskQueue, DiskRequest};
 pub(in crate::tui::runtime) struct Reminders {
     /// The file of the prompt's commands.
     commands: RememberedFile,
-    /// The number of commands in that file.
+    /// The number of the program's commands that are in that file already.
     remembered: usize,
     /// The file of the set.
     set: RememberedFile,

@@ -84,7 +84,17 @@ fn inside(folder: &Path, name: &str) -> Result<PathBuf, String> {
         // Only of a path that cannot lead outside may a script learn what exists; `~` is meant as the home folder.
         let parent = Path::new(name).parent();
         let parent = parent.filter(|parent| is_below(parent) && !parent.starts_with("~"));
-        match parent.filter(|parent| !folder.join(parent).exists()) {
+        // A link on the way may lead outside, where a script may not learn what exists.
+        let is_missing = |parent: &&Path| {
+            let is_there = |path: &&Path| folder.join(path).symlink_metadata().is_ok();
+            let (Ok(own), Some(known)) = (folder.canonicalize(), parent.ancestors().find(is_there))
+            else {
+                return false;
+            };
+            let real = folder.join(known).canonicalize();
+            known != *parent && real.is_ok_and(|real| real.starts_with(&own))
+        };
+        match parent.filter(is_missing) {
             Some(parent) => format!("{name}: there is no folder {}", parent.display()),
             None => format!(
                 "{name}: without --allow-outside, a script writes only below its folder, and no hidden files"
@@ -129,6 +139,7 @@ mod tests {
             ".a.csv",
             ".hidden/a.csv",
             "link/a.csv",
+            "link/nowhere/a.csv",
             "../nowhere/a.csv",
         ] {
             let refused = access.path(name, Existing::Kept).expect_err(name);

@@ -37,7 +37,7 @@ pub(super) struct Pending {
 }
 
 impl Pending {
-    /// Begins with nothing to take. Frames of the channel of that name are taken, or of the first channel.
+    /// Creates an empty one for the channel of that name, or for the first channel.
     pub(super) fn new(channel: Option<&str>) -> Self {
         Self {
             channels: ChannelChoice::new(channel),
