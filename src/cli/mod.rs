@@ -4,7 +4,7 @@
 //! ```text
 //! arguments -> clap (arguments/definitions) -> Request (arguments/request)
 //!   + settings: flag, environment, file, default (settings/)
-//!   -> Surroundings::run, below -> commands/*.rs, one file each; shapes and files come from input/
+//!   -> Surroundings::run, below -> commands/, a file or folder each; shapes and files come from input/
 //!   -> text or JSON (output/) -> standard output
 //! CliError (error.rs) -> message on standard error, exit status
 //! ```

@@ -94,8 +94,8 @@ impl Loaded {
     }
 }
 
-/// Returns true if there is no settings file at all. A link that leads nowhere counts as one: what it leads to may be
-/// on a disk that is not mounted.
+/// Returns true if there is no settings file. A dangling link is one, because its target may be on a disk that is not
+/// mounted.
 fn is_missing(path: &Path, error: &io::Error) -> bool {
     let leads_nowhere = |path: &Path| path.is_symlink() && !path.exists();
     matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)

@@ -161,15 +161,15 @@ impl StreamCounts {
     }
 
     /// Returns the reason why a stream has come to its end without a frame; None if there was one.
-    pub fn frameless(&self) -> Option<Frameless<'_>> {
+    pub fn no_frame_reason(&self) -> Option<NoFrameReason<'_>> {
         if self.frames > 0 {
             return None;
         }
         Some(match self.refusal() {
-            _ if self.bytes == 0 => Frameless::Empty,
-            Some(refusal) => Frameless::Refused(refusal),
-            None if self.unknown => Frameless::Refused(StreamRefusal::Unknown),
-            None => Frameless::Undecoded {
+            _ if self.bytes == 0 => NoFrameReason::Empty,
+            Some(refusal) => NoFrameReason::Refused(refusal),
+            None if self.unknown => NoFrameReason::Refused(StreamRefusal::Unknown),
+            None => NoFrameReason::Undecoded {
                 bytes: self.bytes,
                 reason: self.reason.as_deref(),
             },
@@ -229,7 +229,7 @@ impl StreamRefusal {
 /// The reason why a stream has come to its end without a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Frameless<'a> {
+pub enum NoFrameReason<'a> {
     /// There was not a single byte.
     #[error("the source is empty")]
     Empty,
@@ -274,7 +274,8 @@ mod tests {
 
     #[test]
     fn a_stream_without_a_frame_has_a_reason() {
-        let said = |counts: &StreamCounts| counts.frameless().map(|reason| reason.to_string());
+        let said =
+            |counts: &StreamCounts| counts.no_frame_reason().map(|reason| reason.to_string());
         let mut counts = StreamCounts::default();
         assert_eq!(said(&counts).as_deref(), Some("the source is empty"));
         counts.bytes = 9;

@@ -41,5 +41,6 @@ mod decoder;
 
 pub use decoder::StreamDecoder;
 pub use event::{
-    Frameless, StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal, StreamSink,
+    NoFrameReason, StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal,
+    StreamSink,
 };

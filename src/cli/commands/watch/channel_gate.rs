@@ -124,7 +124,7 @@ impl<'a> ChannelGate<'a> {
     }
 
     /// Returns the reason why no frame of the channel has come; None if one has.
-    pub(super) fn frameless(&self) -> Option<String> {
+    pub(super) fn no_frame_reason(&self) -> Option<String> {
         let is_missing = matches!(self.first, FirstFrame::Missing);
         let reason = || {
             self.choice

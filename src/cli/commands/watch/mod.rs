@@ -349,7 +349,7 @@ impl Watcher<'_> {
             let reason = self.asked.processing.tare_refused(&queue.incomplete());
             return Some(self.reports.refused(&reason));
         }
-        let reason = self.gate.frameless()?;
+        let reason = self.gate.no_frame_reason()?;
         Some(self.reports.refused(&reason))
     }
 }

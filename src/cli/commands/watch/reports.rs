@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::acquire::{AcquireError, FrameSource};
 use crate::cli::error::{CliError, stream_advice};
 use crate::formats::recording::RecordingError;
-use crate::formats::stream::{Frameless, StreamCounts, StreamRefusal};
+use crate::formats::stream::{NoFrameReason, StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 
 /// The shortest time between two reports of dropped frames.
@@ -114,13 +114,13 @@ impl<'a> SourceReports<'a> {
     pub(super) fn end(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
         self.check_shape(counts)?;
         self.report_dropped(counts);
-        match counts.frameless() {
+        match counts.no_frame_reason() {
             None => Ok(()),
-            Some(Frameless::Empty) => Err(CliError::Empty {
+            Some(NoFrameReason::Empty) => Err(CliError::Empty {
                 name: self.source.name(),
             }),
-            Some(Frameless::Refused(refusal)) => Err(self.undecoded(refusal)),
-            Some(reason @ Frameless::Undecoded { reason: None, .. }) => {
+            Some(NoFrameReason::Refused(refusal)) => Err(self.undecoded(refusal)),
+            Some(reason @ NoFrameReason::Undecoded { reason: None, .. }) => {
                 let advice = "check --rows, --columns and --format";
                 Err(self.refused(&format!("{reason}; {advice}")))
             }

@@ -230,8 +230,8 @@ impl FrameFeed {
                 pending.status().note = Some(format!("the file {how}"));
             }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
-                let frameless = no_frame::frameless(&source::named(&request.source), counts);
-                pending.end_stream(counts, frameless);
+                let reason = no_frame::reason_at_end(&source::named(&request.source), counts);
+                pending.end_stream(counts, reason);
             }),
             _ => false,
         }

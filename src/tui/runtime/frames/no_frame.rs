@@ -3,7 +3,7 @@
 
 use crate::acquire::{AcquireError, FrameSource};
 use crate::formats::recording::RecordingError;
-use crate::formats::stream::{Frameless, StreamCounts, StreamRefusal};
+use crate::formats::stream::{NoFrameReason, StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 
 /// The end of the message that says where to give the format.
@@ -40,14 +40,14 @@ pub(super) fn silence(
 }
 
 /// Returns the reason why a stream came to its end without a frame; None if there was one.
-pub(super) fn frameless(source: &FrameSource, counts: &StreamCounts) -> Option<String> {
-    let reason = counts.frameless()?;
+pub(super) fn reason_at_end(source: &FrameSource, counts: &StreamCounts) -> Option<String> {
+    let reason = counts.no_frame_reason()?;
     let hint = match (reason, source) {
-        (Frameless::Refused(StreamRefusal::Unknown), FrameSource::File(_)) => {
+        (NoFrameReason::Refused(StreamRefusal::Unknown), FrameSource::File(_)) => {
             return Some(RecordingError::Unknown.to_string());
         }
-        (Frameless::Refused(refusal), _) => hint(refusal),
-        (Frameless::Undecoded { reason: None, .. }, _) => "; rows, columns or format?",
+        (NoFrameReason::Refused(refusal), _) => hint(refusal),
+        (NoFrameReason::Undecoded { reason: None, .. }, _) => "; rows, columns or format?",
         _ => "",
     };
     Some(format!("{reason}{hint}"))

@@ -29,7 +29,7 @@ pub(super) struct Pending {
     /// Whether a frame of the watched channel has come.
     begun: bool,
     /// The reason why a stream came to its end without a frame.
-    frameless: Option<String>,
+    no_frame_reason: Option<String>,
     /// The time of the last frame.
     last_time: Option<f64>,
     /// The time for which the source has been lost since that frame; None if it was not lost.
@@ -110,9 +110,9 @@ impl Pending {
     }
 
     /// Notes the end of a stream, and the reason why there was no frame.
-    pub(super) fn end_stream(&mut self, counts: &StreamCounts, frameless: Option<String>) {
+    pub(super) fn end_stream(&mut self, counts: &StreamCounts, no_frame_reason: Option<String>) {
         self.batch.status.note_dropped(counts);
-        self.frameless = frameless;
+        self.no_frame_reason = no_frame_reason;
     }
 
     /// Notes the end of the source. One from which no frame came was not what the user expected: the state is the
@@ -121,7 +121,7 @@ impl Pending {
         self.batch.status.state = if self.begun {
             SourceState::Ended
         } else {
-            let reason = self.channels.missing().or(self.frameless.take());
+            let reason = self.channels.missing().or(self.no_frame_reason.take());
             SourceState::Failed(reason.unwrap_or_else(|| "no frames".to_owned()))
         };
     }
