@@ -81,7 +81,7 @@ fn least(number: usize) -> u32 {
 /// sizes are in the extra field.
 fn head(name: &str, packing: Packing, content: &[u8], claimed: u64) -> Vec<u8> {
     let checksum = if claimed == content.len() as u64 {
-        checksum(content)
+        crc32fast::hash(content)
     } else {
         0
     };
@@ -108,18 +108,6 @@ fn tail(name: &str, content: &[u8], claimed: u64) -> Vec<u8> {
         &(content.len() as u64).to_le_bytes(),
     ]
     .concat()
-}
-
-/// Computes the CRC-32 as used by zip.
-fn checksum(bytes: &[u8]) -> u32 {
-    let mut sum = u32::MAX;
-    for &byte in bytes {
-        sum ^= u32::from(byte);
-        for _ in 0..8 {
-            sum = (sum >> 1) ^ (0xedb8_8320 & 0_u32.wrapping_sub(sum & 1));
-        }
-    }
-    !sum
 }
 
 /// Returns deflated data: `start`, then 158 zeros for each further byte up to `length`.
