@@ -153,9 +153,10 @@ impl FrameWatcher {
             return recording;
         };
         watched.is_starting = false;
-        let before = watched.feed.begin(recording?);
+        let recording = recording?;
+        // Before frames are recorded: a frame that cannot be written leaves an error, which must stay.
         watched.feed.note_begun();
-        before
+        watched.feed.begin(recording)
     }
 
     /// Stops recording. Returns the recording, which is to be finished, and the number of the source.
