@@ -58,11 +58,6 @@ impl FigureKind {
         }
     }
 
-    /// Returns the kind with this name; None if there is none.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
-    }
-
     /// Returns a hint for a word that is not the name of a figure but means one: "circle" or "square".
     #[cfg(feature = "json")]
     pub(crate) fn of_other_name(word: &str) -> Option<&'static str> {

@@ -174,7 +174,7 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
 
 /// Returns the anchor of that name.
 pub(super) fn anchor(name: &str) -> Result<Anchor, ArchiveError> {
-    Anchor::from_name(name).ok_or_else(|| {
+    name.parse().map_err(|_| {
         ArchiveError::Header(format!(
             "anchor {:?} is unknown, expected {}",
             shortened(name),

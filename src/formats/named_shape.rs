@@ -153,7 +153,7 @@ pub fn named_shape_of_words(
     } else {
         record.figure = Some(Cow::Borrowed(kind));
     }
-    if let Some(figure) = FigureKind::from_name(kind) {
+    if let Ok(figure) = kind.parse::<FigureKind>() {
         for word in values.split_whitespace() {
             let error = || NamedShapeError::Word {
                 found: shortened(word),

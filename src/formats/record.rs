@@ -214,7 +214,7 @@ impl Record<'_> {
     ) -> Result<Source, RecordError> {
         match (&self.figure, &self.picture, &self.imprint) {
             (Some(name), None, None) => {
-                let kind = FigureKind::from_name(name).ok_or_else(|| RecordError::FigureKind {
+                let kind = name.parse().map_err(|_| RecordError::FigureKind {
                     found: shortened(name),
                 })?;
                 Ok(Source::Figure(self.values.figure(kind, sensor)?))

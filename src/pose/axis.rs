@@ -173,20 +173,16 @@ impl Anchor {
     /// The names of the anchors, in the order of [`Self::ALL`].
     pub const NAMES: [&'static str; 2] = ["corner", "centre"];
 
-    /// Returns the name in files and on the command line.
-    pub const fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-
-    /// Returns the anchor with a name; None if there is none.
+    /// Returns the name in files and on the command line; [`str::parse`] reads it.
     ///
     /// ```
     /// use taxel::pose::Anchor;
-    /// assert_eq!(Anchor::from_name("centre"), Some(Anchor::Centre));
-    /// assert_eq!(Anchor::from_name("middle"), None);
+    /// assert_eq!(Anchor::Centre.name(), "centre");
+    /// assert_eq!("centre".parse(), Ok(Anchor::Centre));
+    /// assert!("middle".parse::<Anchor>().is_err());
     /// ```
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|anchor| anchor.name() == name)
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
     }
 }
 

@@ -89,7 +89,7 @@ pub(crate) fn square(side: u8) -> Sensor {
 /// Reads a figure such as `hexagon side=3 x0=2.1 y0=1.35 angle=17 thickness=1`. The angle is 0 if it is not given.
 pub(crate) fn figure(text: &str, side: u8) -> Figure {
     let name = text.split_whitespace().next().expect("a name first");
-    let kind = FigureKind::from_name(name).expect("one of the seven names");
+    let kind = name.parse::<FigureKind>().expect("one of the seven names");
     let given =
         |parameter| value(text, parameter).or((parameter == Parameter::Angle).then_some(0.0));
     Figure::new(kind, &square(side), given).expect("values in range")

@@ -118,7 +118,7 @@ pub(super) fn anchor() -> Arg {
         "POINT",
         "What x0 and y0 set: corner (default) or centre",
     )
-    .value_parser(parameters::one_of(Anchor::NAMES, Anchor::from_name))
+    .value_parser(parameters::one_of::<Anchor, _>(Anchor::NAMES))
     .hide_possible_values(true)
     .help_heading("Grid")
 }

@@ -4,12 +4,14 @@
 //! value is a number. Its range depends on the sensor, which other flags may change, so [`Given`] collects the
 //! numbers, and they are checked when a sensor, figure or picture is made from them.
 
+use std::str::FromStr;
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgMatches};
 
 use crate::cli::error::CliError;
 use crate::figure::{Figure, FigureKind};
-use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
+use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, UnknownName, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::tui::widget::columns::broken;
@@ -96,12 +98,14 @@ fn parse(text: &str) -> Result<Number, String> {
     Ok(Number { text, value })
 }
 
-/// Makes a parser that accepts one of some names and returns what `named` gives for it.
-pub(super) fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(
+/// Makes a parser that accepts one of some names and returns the value with that name.
+pub(super) fn one_of<T, const N: usize>(
     names: [&'static str; N],
-    named: fn(&str) -> Option<T>,
-) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(names).try_map(move |name| named(&name).ok_or("not one of the names"))
+) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err = UnknownName> + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names).try_map(|name| name.parse())
 }
 
 /// Returns a text with its first letter in upper case, as in clap's own help.

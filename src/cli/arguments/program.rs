@@ -14,6 +14,7 @@ use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::cli::input::content::InputSource;
 use crate::cli::settings::file::AUTO;
+use crate::parameter::named;
 use crate::storage::Existing;
 use crate::tui::script::command;
 use crate::tui::widget::theme::{ColorDepth, Palette};
@@ -115,22 +116,16 @@ impl Shell {
             Self::Fish => "fish",
         }
     }
-
-    /// Returns the shell of this name; None for any other word.
-    pub(crate) fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|shell| shell.name() == name)
-    }
 }
+
+named!(Shell, "shell", &Shell::ALL);
 
 /// Defines `taxel completions SHELL`.
 pub(crate) fn completions() -> Command {
     let shell = Arg::new("shell")
         .value_name("SHELL")
         .required(true)
-        .value_parser(parameters::one_of(
-            Shell::ALL.map(Shell::name),
-            Shell::from_name,
-        ))
+        .value_parser(parameters::one_of::<Shell, _>(Shell::ALL.map(Shell::name)))
         .hide_possible_values(true)
         .help("bash, zsh or fish");
     Command::new("completions")

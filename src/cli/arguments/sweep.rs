@@ -73,9 +73,8 @@ pub(crate) enum Swept {
 pub(super) fn command() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
-        .value_parser(parameters::one_of(
+        .value_parser(parameters::one_of::<FigureKind, _>(
             FigureKind::ALL.map(FigureKind::name),
-            FigureKind::from_name,
         ))
         .hide_possible_values(true)
         .help("Kind of figure, as in 'taxel figure'; or --picture");

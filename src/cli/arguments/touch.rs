@@ -29,7 +29,7 @@ pub(super) fn figure() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
         .required(true)
-        .value_parser(parameters::one_of(kinds, FigureKind::from_name))
+        .value_parser(parameters::one_of::<FigureKind, _>(kinds))
         .hide_possible_values(true)
         .help(parameters::wrapped(&joined(kinds, "or"), 64));
     let own = parameters::figure_parameters();

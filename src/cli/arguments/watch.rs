@@ -53,7 +53,7 @@ pub(crate) fn command() -> Command {
         .required(true)
         .value_parser(flags::name_or_path())
         .help("Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input");
-    let names = StreamFormat::NAMES.map(|(name, _)| name);
+    let names = StreamFormat::ALL.map(StreamFormat::name);
     let format = Arg::new("format")
         .long("format")
         .value_name("FORMAT")
@@ -122,7 +122,7 @@ impl WatchArguments {
         let mut options = AcquireOptions::default();
         settings.apply(&mut options);
         if let Some(name) = format {
-            options.format = StreamFormat::from_name(name);
+            options.format = name.parse().ok();
             options.stream_format = None;
         }
         options.size = processing.size;

@@ -17,7 +17,7 @@ use crate::cli::arguments::model::shape_set::SetArguments;
 use crate::cli::error::CliError;
 use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::shapes::Shelf;
-use crate::figure::{Figure, FigureKind};
+use crate::figure::Figure;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
@@ -77,7 +77,7 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
 /// `--shape` gives one; a folder of that name is mentioned.
 fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     let kind = match &error {
-        LibraryError::Unknown { name } => FigureKind::from_name(name),
+        LibraryError::Unknown { name } => name.parse().ok(),
         _ => None,
     };
     let Some(kind) = kind else {

@@ -161,9 +161,9 @@ impl Shelf {
     /// Returns the end of a message about a name that no stored shape and no file has: that it is the name of a
     /// figure, or a shape with a similar name.
     fn near_or_figure(&self, name: &str) -> String {
-        match FigureKind::from_name(name) {
-            Some(_) => format!("; {name:?} is a figure, which taxel figure and taxel sweep take"),
-            None => self.suggestion(&LibraryError::Unknown { name: name.into() }),
+        match name.parse::<FigureKind>() {
+            Ok(_) => format!("; {name:?} is a figure, which taxel figure and taxel sweep take"),
+            Err(_) => self.suggestion(&LibraryError::Unknown { name: name.into() }),
         }
     }
 

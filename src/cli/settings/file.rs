@@ -363,7 +363,7 @@ fn sensor_value(
 ) -> Result<SettingValue, Refusal> {
     if row.kind == SettingKind::Format {
         let text = string(value)?;
-        let format = StreamFormat::from_name(text);
+        let format = text.parse::<StreamFormat>().ok();
         if format.is_none() && text != AUTO {
             return Err(unfit(row.kind.expected(), text, value));
         }

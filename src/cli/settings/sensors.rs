@@ -125,7 +125,7 @@ impl SettingKind {
     pub(crate) fn expected(self) -> String {
         match self {
             Self::Format => {
-                let names = StreamFormat::NAMES.map(|(name, _)| format!("{name:?}"));
+                let names = StreamFormat::ALL.map(|format| format!("{:?}", format.name()));
                 format!("one of \"auto\", {}", names.join(", "))
             }
             Self::Whole(least, most) => format!("a whole number from {least} to {most}"),

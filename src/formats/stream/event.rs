@@ -23,33 +23,28 @@ pub enum StreamFormat {
 }
 
 impl StreamFormat {
-    /// All formats by their names in flags and files.
-    pub const NAMES: [(&'static str, Self); 5] = [
-        ("lines", Self::Lines),
-        ("jsonl", Self::JsonLines),
-        ("ros2", Self::Ros2),
-        ("flexitac", Self::Flexitac),
-        ("matsense", Self::Matsense),
+    /// All formats.
+    pub const ALL: [Self; 5] = [
+        Self::Lines,
+        Self::JsonLines,
+        Self::Ros2,
+        Self::Flexitac,
+        Self::Matsense,
     ];
 
-    /// Returns the name of the format.
+    /// Returns the name in flags and files.
     pub fn name(self) -> &'static str {
-        let found = Self::NAMES.iter().find(|(_, own)| *own == self);
-        found.map_or("unknown", |(name, _)| name)
-    }
-
-    /// Returns the format of that name; None for an unknown name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let found = Self::NAMES.iter().find(|(own, _)| *own == name);
-        found.map(|(_, format)| *format)
+        match self {
+            Self::Lines => "lines",
+            Self::JsonLines => "jsonl",
+            Self::Ros2 => "ros2",
+            Self::Flexitac => "flexitac",
+            Self::Matsense => "matsense",
+        }
     }
 }
 
-named!(
-    StreamFormat,
-    "format",
-    &StreamFormat::NAMES.map(|(_, format)| format)
-);
+named!(StreamFormat, "format", &StreamFormat::ALL);
 
 /// Options for decoding a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -186,7 +186,7 @@ fn size_of(pairs: &[&str]) -> Option<MatrixSize> {
 
 /// Reads a figure from a line; None if the line is malformed.
 fn figure_of(kind: &str, pairs: &[&str]) -> Option<RememberedFigure> {
-    let kind = FigureKind::from_name(kind)?;
+    let kind = kind.parse::<FigureKind>().ok()?;
     let mut known = BTreeMap::new();
     for pair in pairs.chunks_exact(2) {
         let value: f64 = pair[1]
@@ -206,7 +206,7 @@ fn figure_of(kind: &str, pairs: &[&str]) -> Option<RememberedFigure> {
 
 /// Reads ranges from a line; None if the line is malformed.
 fn ranges_of(of: &str, anchor: &str, pairs: &[&str]) -> Option<RememberedRanges> {
-    let anchor = Anchor::from_name(anchor)?;
+    let anchor = anchor.parse().ok()?;
     let range = |pair: &[&str]| {
         let axis = Axis::ALL.into_iter().find(|axis| axis.name() == pair[0]);
         Some((axis?, pair[1].parse().ok()?))

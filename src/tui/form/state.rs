@@ -323,7 +323,7 @@ impl FormDialog {
         if on_kind && name.starts_with(begins_number) {
             self.move_focus(1);
         } else if on_kind {
-            let kind = FigureKind::from_name(&name);
+            let kind = name.parse().ok();
             return self.next_kind(1, |other| Some(other) == kind);
         }
         self.edit(|form| form.take(&Message::Paste(text.to_owned())));

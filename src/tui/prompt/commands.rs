@@ -237,7 +237,7 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
             FigureKind::ALL.map(|kind| kind.name().to_owned()).to_vec()
         }
         (Some(Arguments::Figure), [kind, said @ ..]) => {
-            let kind = FigureKind::from_name(kind).into_iter();
+            let kind = kind.parse::<FigureKind>().into_iter();
             flags(
                 kind.flat_map(FigureKind::parameters).copied().collect(),
                 said,

@@ -220,11 +220,11 @@ fn numbers(
 /// have is an error.
 fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
-    let kind = FigureKind::from_name(kind).ok_or_else(|| {
+    let kind: FigureKind = kind.parse().map_err(|_| {
         let bare = kind.trim_matches(['"', '\'']);
-        match FigureKind::from_name(bare) {
-            Some(_) => format!("figure takes a kind without quotes: {bare}"),
-            None => RecordError::FigureKind {
+        match bare.parse::<FigureKind>() {
+            Ok(_) => format!("figure takes a kind without quotes: {bare}"),
+            Err(_) => RecordError::FigureKind {
                 found: shortened(kind),
             }
             .to_string(),
@@ -290,7 +290,7 @@ fn explore(words: &[&str], app: &App) -> Result<Message, String> {
                 ranges[axis] = Some(range.map_err(|error: RangeError| format!("{flag}: {error}"))?);
             }
             None => {
-                anchor = Anchor::from_name(text).ok_or_else(|| {
+                anchor = text.parse().map_err(|_| {
                     let names = Anchor::NAMES.join(" or ");
                     format!("{ANCHOR} takes {names}, found {}", shortened(text))
                 })?;
