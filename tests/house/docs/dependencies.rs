@@ -27,7 +27,7 @@ pub(crate) fn block() -> String {
         "\nThe program is made of {} crates, counting itself and crates that run only at build time \
          (`cargo tree -e normal --prefix none --no-dedupe | sort -u | wc -l`).\n\
          It depends on {} of them directly:\n\n{}\n\
-         These are also there in an older version, because other crates still need it:\n\n{skipped}\n\
+         An older version of these crates is included, too, because other crates still need it:\n\n{skipped}\n\
          Tests and benchmarks also use:\n\n{}\n",
         tree.len(),
         own.len(),
@@ -41,7 +41,7 @@ fn table(rows: &[(&str, String)]) -> String {
         .iter()
         .map(|(name, reason)| format!("| `{name}` | {reason} |\n"))
         .collect();
-    format!("| crate | what for |\n|---|---|\n{rows}")
+    format!("| crate | purpose |\n|---|---|\n{rows}")
 }
 
 /// Returns the crates in a section of the manifest, each with the comment above it.
