@@ -174,7 +174,12 @@ pub(crate) fn processing() -> [Arg; 9] {
             "Columns, if the recording does not state them",
         )
         .requires("frame_rows"),
-        side("frame_rows", "rows", "Rows, likewise").requires("frame_columns"),
+        side(
+            "frame_rows",
+            "rows",
+            "Rows, if the recording does not state them",
+        )
+        .requires("frame_columns"),
         text(
             "channel",
             "NAME",

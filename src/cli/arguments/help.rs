@@ -13,7 +13,8 @@ pub(crate) const ABOUT: &str = "\
 Which shapes can a robot recognise by touching them once?
 
 Presses flat shapes onto a tactile sensor, computes their exact imprints and
-describes them. Without a command, opens the screen, where all of this is live.";
+describes them. Without a command, opens the screen, where you can do all of
+this and see the result as you type.";
 
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
@@ -35,7 +36,7 @@ Examples:
 /// `taxel figure`: the sensor to which the ranges of the flags apply.
 pub(crate) const FIGURE_EXAMPLES: &str = "\
 The ranges are for a sensor of 16 x 16; for another sensor, replace 16 by its
-larger side. Flags that are not given take their defaults.
+larger side. Without a flag, its default applies.
 
 Examples:
   taxel figure ellipse --x0 1.99 --y0 1.47 --thickness 2
@@ -46,10 +47,10 @@ Examples:
 
 /// `taxel picture`: where a picture comes from, and which sensor touches it.
 pub(crate) const PICTURE_EXAMPLES: &str = "\
-If a stored shape and a file have the same name, the shape is taken. A file is a
-stored shape or an imprint. A stored shape keeps its sensor; an imprint gets one
-of 16 x 16, or of its own size if that is larger. Without flags, the picture
-stays as it is.
+If a stored shape and a file have the same name, taxel uses the shape. A file
+holds a stored shape or an imprint. A stored shape keeps its sensor; an imprint
+gets a sensor of 16 x 16, or of its own size if that is larger. Without flags,
+the picture stays as it is.
 
 Examples:
   taxel picture washer --x0 6 --y0 4.5
@@ -62,8 +63,8 @@ An imprint is text with one line per row, '#' for an active taxel and '.' for an
 inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image with two
 shades (PGM) or a numpy array (NPY); at most 64 x 64. Masks work, too: 0 and one
 other value, such as 255. The content decides, not the extension. A stored shape
-is a JSON file. If a stored shape and a file have the same name, the shape is
-taken.
+is a JSON file. If a stored shape and a file have the same name, taxel uses the
+shape.
 
 Examples:
   taxel describe washer
@@ -94,17 +95,17 @@ pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"picture":"washer","x0":2,"y0":2,"angle":0,"zoom_x":1,"zoom_y":1}
   {"imprint":[".##.","#..#",".##."]}
   {"frame":[[0,3,8],[1,9,12]],"at_least":5}
-Sizes, place, angle and zooms have no defaults here, unlike the flags of other
-commands; a figure without "thickness" is solid. A picture is given by its rows
-or by its name in the library. A figure or picture may have its own sensor:
+Sizes, position, angle and zooms have no defaults here, unlike the flags of
+other commands; a figure without "thickness" is solid. Give a picture by its
+rows or by its name in the library. A figure or picture may have its own sensor:
   "sensor":{"columns":32,"rows":32,"threshold":0.5}
 A frame has the values of a sensor in rows, and "at_least":VALUE, "percent":P
 or "low":VALUE,"high":VALUE; "least":TAXELS drops pieces of fewer taxels.
 
 Each answer is one line, in the order of the input. If a line is wrong or longer
 than 1 MiB, its answer is {"error":"line 3: ..."}, the other lines are still
-answered, and the exit status is 1. Blank lines are skipped. Answers are written
-out whenever the input pauses.
+answered, and the exit status is 1. Blank lines are skipped. Whenever the input
+pauses, all answers so far are written.
 
 Examples:
   taxel batch poses.jsonl > answers.jsonl
@@ -123,10 +124,10 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command per line; positions are 
   ExpectStyle 3,10 reverse
   Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
 Quit checks that the program has ended. Source fails if the file cannot be
-read, Frames if too few frames come. Without --library, the script has an empty
-library of its own. It writes files only below its own folder, and replaces only
-files that it wrote itself; --allow-outside, for scripts that you trust, lets it
-write anywhere and set a library.
+read; Frames fails if there are too few frames. Without --library, the script
+starts with an empty library. It writes files only below its own folder, and
+replaces only files that it wrote itself. For scripts that you trust,
+--allow-outside lets them write anywhere and set a library.
 
 Exit status: 0 all expectations held, 1 one failed, 2 the script is wrong, 3 the
 program ended before the script.
@@ -150,7 +151,7 @@ for settings, or the file that --config or TAXEL_CONFIG names:
   "<C-n>" = "new"
 Flags override the environment, which overrides the file. If the file has
 an unknown entry, taxel names its line and column and does not start. Scripts
-ignore the settings unless --config is given, so they do the same for everybody.
+ignore the settings unless you give --config, so they run alike for everybody.
 
 Examples:
   taxel config
@@ -194,7 +195,7 @@ A range is START:END:STEP with the end included, or one number; decimals are
 exact. By default, ranges have the paper's resolution: one cell in steps of 0.01
 and every whole degree, 3.6 million poses. Figures start at x0 = y0 = 5, and
 pictures in the cell that they lie in. If the sensor would cut the shape off
-there at any angle, a cell near the middle is used. The sweep prints its ranges.
+there at any angle, taxel uses a cell near the middle. It prints the ranges.
 Figures are solid without --thickness. A picture keeps its own sensor, unless
 flags change it.
 
@@ -234,12 +235,12 @@ pub(crate) const MODEL_TRAIN_EXAMPLES: &str = "\
 A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
   {\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}
   {\"name\":\"ring\",\"picture\":\"washer\"}
-A stored shape gives only its taxels, not its pitch and threshold: a taxel is
-one cell. By default, every shape is touched at 100 x 100 positions inside one
-cell and at every whole degree. The sensor is the smallest that holds all
-shapes, at least 16 x 16; its size is printed. Poses that the sensor cuts off
-are refused, since a cut imprint depends on the rim. 'taxel merge' puts shards
-together.
+Of a stored shape, only the taxels matter, not its pitch and threshold: a taxel
+is one cell. By default, every shape is touched at 100 x 100 positions inside
+one cell and at every whole degree. The sensor is the smallest that holds all
+shapes, at least 16 x 16; taxel prints its size. It refuses poses that the
+sensor cuts off, since a cut imprint depends on the rim. 'taxel merge' puts
+shards together.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -258,8 +259,8 @@ Examples:
 
 /// `taxel model list`: where models are.
 pub(crate) const MODEL_LIST_EXAMPLES: &str = "\
-Models are files in the folder 'models' beside the library; only these are
-listed by --names and --json. The built-in ones are trained when first used.
+Models are files in the folder 'models' beside the library; --names and --json
+list only these. The built-in ones are trained when first used.
 
 Examples:
   taxel model list --json";
@@ -275,19 +276,19 @@ Examples:
 pub(crate) const MODEL_CONFUSION_EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
 numbers count the touches of all poses. 'certain' counts touches that only one
-shape can leave. The descriptors are those that do not depend on where the
-imprint lies: na, nae, ce, p, f, roundness, area, diagonals, side_ratio,
-filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of a
-fingerprint than a measurement: --round cg_cd=0.01 shows what it is worth when
-measured.
+shape can leave. The descriptors are those that do not depend on the position of
+the imprint: na, nae, ce, p, f, roundness, area, diagonals, side_ratio, filling,
+cg_cd, cg_cd_direction. CG-CD at full precision is more of a fingerprint than a
+measurement: --round cg_cd=0.01 shows what it is worth when measured to a
+hundredth of a cell.
 
 --noise tests touches in random places on the sensor. Imprints that do not fit
 on a smaller --matrix are left out, and standard error says how many.
 
 Classifiers: z measures the distance to the mean of each shape in standard
-deviations; diagonal, lda and qda fit Gaussians with diagonal, common and own
-covariance; knn takes the shape of the nearest touches, template that of the
-nearest imprints.
+deviations; diagonal, lda and qda fit Gaussians, with a diagonal covariance, a
+common one, and one for each shape; knn takes the shape of the nearest touches,
+template that of the nearest imprints.
 
 Examples:
   taxel model confusion parts
@@ -304,10 +305,10 @@ Trains the set at each scale, which multiplies all lengths, or at each pitch, if
 lengths are in mm, and prints how many touches even the best classifier names
 wrong. Sizes at which the shapes do not fit on 64 x 64 taxels are left out, and
 standard error lists them. With --pitch, a taxel of a stored shape is 1 mm; the
-shape's own pitch and threshold are ignored. --want scans from the smallest size
-upwards, then in tenths of the step before the first size that reaches the
+shape's own pitch and threshold are ignored. --want tries the sizes from the
+smallest upwards, then tenths of a step before the first size that reaches the
 error. The error is not monotonic, so --want also reports how many larger sizes
-miss it again. With --csv, standard error says what --want has found.
+miss it again. With --csv, its answer goes to standard error.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
@@ -331,17 +332,17 @@ pub(crate) const RECOGNISE_EXAMPLES: &str = "\
 Reads an imprint in any format that 'taxel describe' reads, or lines of JSON,
 each {\"imprint\":[\"..##\",...]}, {\"touches\":[[...],[...]]} for several touches
 of one shape, or {\"frame\":[[0,12],...],\"at_least\":10} for the values of a
-sensor with a threshold as for 'taxel batch'. Each line gets one line in return,
-which copies label, time and channel, and frame if it is a number; other keys
-are ignored. An imprint at the rim may be cut off and is never 'certain'. With
---noise, even an imprint that no shape leaves gets an answer: it is compared
-with every key in every place on the matrix. With --expect, the exit status is 3
-if the answer is another shape, or is tied, rejected or unknown; if some lines
-cannot be answered, it is 1.
+sensor with a threshold as for 'taxel batch'. The answer to a line is one line.
+It copies label, time and channel, and frame if that is a number; other keys are
+ignored. An imprint at the rim may be cut off and is never 'certain'. With
+--noise, even an imprint that no shape leaves gets an answer: taxel compares it
+with every imprint of the model in every place on the matrix. With --expect, the
+exit status is 3 if the answer is another shape, or is tied, rejected or
+unknown; if some lines cannot be answered, it is 1.
 
-Built-in models: 'figures', the seven figures in their default sizes;
-'figures-30', the same at about 30 cells each; 'shapes', those that come with
-taxel. 'taxel model train' makes others.
+Built-in models: 'figures', the seven figures at their default sizes;
+'figures-30', the same figures at about 30 cells each; 'shapes', the shapes that
+come with taxel. 'taxel model train' makes others.
 
 Examples:
   taxel recognise touch.txt --model figures-30 --pose
@@ -382,8 +383,8 @@ Examples:
 
 /// `taxel library save`.
 pub(crate) const SAVE_EXAMPLES: &str = "\
-A file is a stored shape or an imprint. If a stored shape and a file have the
-same name, the shape is taken, so you can copy a shape.
+A file holds a stored shape or an imprint. If a stored shape and a file have the
+same name, taxel uses the shape, so you can copy a shape.
 
 Examples:
   taxel library save ring imprint.txt
@@ -412,10 +413,10 @@ Examples:
   ls \"$(taxel library path)\"";
 
 /// `taxel library check`.
-pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape, and lists other files in the folder, shapes with another
-name inside their file, and names that differ only in case. The exit status is
-1 if a shape is broken. --json prints an array on one line, with an object for
-each finding; without findings it is empty:
+pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape and lists broken ones, shapes with another name inside
+their file, names that differ only in case, and other files in the folder. The
+exit status is 1 if a shape is broken. --json prints an array on one line, with
+an object for each finding; without findings it is empty:
   {"finding":"broken","name":"ring","reason":"..."}
   {"finding":"name","name":"Ring","reason":"..."}
   {"finding":"left over","path":"shapes/notes.txt","reason":"..."}
@@ -429,13 +430,13 @@ Examples:
 pub(crate) const FRAMES_EXAMPLES: &str = "\
 A recording comes from Tekscan, XSENSOR, emed, zebris or PoPu, or is MCAP, NPY,
 NPZ, JSON lines, the output of 'ros2 topic echo' or a table of numbers; its
-content decides which. Without a flag under Frames, its channels are listed.
+content decides which. Without a flag under Frames, taxel lists its channels.
 Frames are cropped, flipped, turned and masked, then tared, then multiplied by
 the gain; then the threshold makes the imprint. Values are in the recording's
 own unit.
 
-If a recording is damaged, the complete frames before the damage are processed,
-taxel reports where the damage is, and the exit status is 1.
+If a recording is damaged, taxel processes the complete frames before the
+damage and reports where the damage is; the exit status is 1.
 
 Examples:
   taxel frames recording.csv
@@ -451,8 +452,8 @@ Examples:
 pub(crate) const WATCH_EXAMPLES: &str = "\
 On a terminal, a page shows the frames; it stays open when the source has ended,
 even with --once. With --json, or in a pipeline, taxel prints a line for each
-frame, as 'taxel frames --all --json' does; without a threshold its imprint is
-null. A stream consists of numbers in lines, JSON lines, the output of
+frame, like 'taxel frames --all --json'; without a threshold, the imprint in it
+is null. A stream consists of numbers in lines, JSON lines, the output of
 'ros2 topic echo', or FlexiTac's or MatSense's bytes; its content decides which.
 A recording is played at its own rate. If a serial line or connection is lost,
 taxel tries again each second, unless --once is given; on a terminal, it also

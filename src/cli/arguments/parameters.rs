@@ -56,7 +56,7 @@ pub(crate) fn arg(parameter: Parameter) -> Arg {
 pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
     match parameter {
         Parameter::Angle | Parameter::ZoomX | Parameter::ZoomY | Parameter::Pitch => arg(parameter),
-        _ => arg_with(parameter, "; default its own"),
+        _ => arg_with(parameter, "; default the shape's"),
     }
 }
 
