@@ -42,13 +42,13 @@ pub struct AtlasFilter {
 #[non_exhaustive]
 pub enum FilterError {
     /// A word is not the name of a quantity.
-    #[error("{found:?} is not known here; possible are {}", names().join(", "))]
+    #[error("{found:?} is unknown here, expected one of {}", names().join(", "))]
     Unknown {
         /// The word.
         found: String,
     },
     /// A word stands between conditions, such as "and".
-    #[error("{found:?}: conditions stand side by side and must all hold, as in na>40 holes=0")]
+    #[error("{found:?}: write conditions side by side; all must hold, as in na>40 holes=0")]
     Joined {
         /// The word.
         found: String,
@@ -367,21 +367,21 @@ mod tests {
         let error = |text: &str| text.parse::<AtlasFilter>().expect_err(text).to_string();
         let unknown = error("na>3 weight<5");
         assert!(
-            unknown.starts_with("\"weight\" is not known here; possible are na, nae, ce, "),
+            unknown.starts_with("\"weight\" is unknown here, expected one of na, nae, ce, "),
             "{unknown}"
         );
         assert!(
             unknown.ends_with("id, count, pieces, holes, poses"),
             "{unknown}"
         );
-        assert!(error(">=3").starts_with("\">=3\" is not known"));
+        assert!(error(">=3").starts_with("\">=3\" is unknown"));
         assert_eq!(error("na"), "na: expected = != < <= > or >= after it");
         assert_eq!(
             error("na>3 and holes=0"),
-            "\"and\": conditions stand side by side and must all hold, as in na>40 holes=0"
+            "\"and\": write conditions side by side; all must hold, as in na>40 holes=0"
         );
         for text in ["na>3, holes=0", "na>3 , holes=0", "na>3 Or holes=0"] {
-            assert!(error(text).contains("stand side by side"), "{text}");
+            assert!(error(text).contains("conditions side by side"), "{text}");
         }
         assert_eq!(
             error("na>="),

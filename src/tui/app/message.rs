@@ -31,7 +31,7 @@ pub enum Message {
     Save,
     /// Remove a stored shape.
     Delete,
-    /// Leave, after a question where work would be lost.
+    /// Leave, after a question if work would be lost.
     Quit,
     /// Leave at once, giving up what is not saved.
     QuitNow,

@@ -50,7 +50,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('p') => PICTURE] "" "Picture: place a stored shape, or move the one here";
         [Char('s') => SAVE] "" "Save: store what is on the matrix";
         [Char('d') => DELETE] "" "Delete: move a stored shape to the trash";
-        [Char('q') => QUIT] "" "Quit: asks first where work would be lost";
+        [Char('q') => QUIT] "" "Quit: asks first if work would be lost";
         [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
             "" "move the cursor";
         [Home => FIRST_COLUMN, End => LAST_COLUMN] "" "cursor to the first, the last column";

@@ -176,7 +176,7 @@ impl Device {
 
 /// Opens the controlling terminal.
 fn controlling(access: OFlags) -> io::Result<OwnedFd> {
-    let none = "there is no terminal here; 'taxel figure' and the other commands need none, \
-                'taxel script' drives the screen without one";
+    let none = "there is no terminal here; 'taxel figure' and the other commands work without one, \
+                and 'taxel script' drives the screen without one";
     open("/dev/tty", access | OFlags::CLOEXEC, Mode::empty()).map_err(|_| io::Error::other(none))
 }
