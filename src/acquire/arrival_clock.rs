@@ -1,4 +1,4 @@
-//! Gives frames times: their own, which go on growing over a gap in their source, or those of their arrival.
+//! Gives each frame a time: its own, which keeps growing across a gap in the source, or that of its arrival.
 
 use std::time::Instant;
 
@@ -8,15 +8,15 @@ use crate::formats::seconds::to_nanoseconds;
 /// have come late.
 const LATE: f64 = 1.0;
 
-/// A clock that gives each frame a time: its own, else that of its arrival. Times go on growing if only some frames
-/// have one of their own.
+/// A clock that gives each frame a time: its own, else that of its arrival. Times keep growing even if only some frames
+/// carry one.
 #[derive(Debug, Default)]
 pub(super) struct ArrivalClock {
-    /// The time of the last frame that had one of its own, else of the first frame, and when it came.
+    /// The time of the last frame that carried one, else of the first frame, and when it arrived.
     base: Option<(f64, Instant)>,
     /// The time of the last frame.
     last: f64,
-    /// Whether the next time of a frame's own may be that of another clock, or before the last time.
+    /// Whether the next time that a frame carries may come from another clock, or lie before the last time.
     rejoined: bool,
     /// The seconds added to the frames' own times after the source's clock restarted.
     shift: Option<f64>,
@@ -28,8 +28,8 @@ impl ArrivalClock {
         self.rejoined = true;
     }
 
-    /// Returns the time of a frame that came now, given its own; None for a frame without one that arrived at some
-    /// other time.
+    /// Returns the time of a frame that has just arrived, given the time that it carries, if any; None for a frame
+    /// without one that arrived at some other time.
     pub(super) fn time(&mut self, own: Option<f64>, arrives: bool) -> Option<f64> {
         self.time_at(own, arrives, Instant::now())
     }

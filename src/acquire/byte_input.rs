@@ -28,7 +28,7 @@ const MOMENT: Timespec = Timespec {
 /// The time between two checks whether a connection is still wanted.
 const ASKED: Duration = Duration::from_millis(100);
 
-/// How often a pipe that is still open is tried again before it counts as that of another program.
+/// The number of times that a pipe that is still open is tried again before it counts as another program's.
 const RELEASES: u32 = 5;
 
 /// The time that making a connection may take.
@@ -60,13 +60,13 @@ pub(super) enum ByteInput {
     Device(File),
     /// A file that is read to its end.
     File(File),
-    /// A file that is waited for at its end: always, or as long as it may grow.
+    /// A file at whose end reading waits for more: always, or as long as the file may grow.
     Growing(GrowingFile, Option<Growth>),
 }
 
 impl ByteInput {
-    /// Opens a source. With [`Playback::Once`], a file is read only to its end; if a format is given, it is always
-    /// waited for. `waiting` is called ten times a second while opening takes long; returns None if it breaks.
+    /// Opens a source. With [`Playback::Once`], a file is read only to its end; if a format is given, reading always
+    /// waits for more. While opening takes long, `waiting` is called ten times a second; returns None if it breaks.
     ///
     /// # Errors
     /// Returns the system's error.
@@ -147,7 +147,7 @@ impl ByteInput {
     }
 }
 
-/// Opens a named pipe. A watch that was left a moment ago may still have it open.
+/// Opens a named pipe. A watch that has just ended may still have it open.
 ///
 /// # Errors
 /// Returns the errors of [`open_fifo`].
@@ -181,8 +181,8 @@ fn open_fifo(path: &Path) -> io::Result<File> {
     Ok(pipe.into())
 }
 
-/// Connects on a thread of its own. The thread is abandoned if the connection is no longer wanted, because looking up
-/// the addresses of a name and waiting for an answer cannot be interrupted.
+/// Connects on a separate thread. The thread is abandoned if the connection is no longer wanted, because looking up the
+/// addresses of a name and waiting for an answer cannot be interrupted.
 ///
 /// # Errors
 /// Returns the errors of [`connect`].
@@ -225,8 +225,8 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     Err(failure)
 }
 
-/// Lets the system probe the other end when nothing comes. Nothing is ever sent to a sensor, so without probes a loss
-/// of its power would not be noticed. Without an answer, reading fails after half a minute, and the connection is
+/// Lets the system probe the other end when nothing comes. Nothing is ever sent to a sensor, so without probes nobody
+/// would notice that it has lost power. Without an answer, reading fails after half a minute, and the connection is
 /// made again.
 ///
 /// # Errors

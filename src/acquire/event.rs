@@ -25,13 +25,13 @@ pub struct AcquireOptions {
     /// The size of frames of streams only, if `size` is not given; recordings state their own.
     pub stream_size: Option<FrameSize>,
     /// The channel of a recording whose frames are played at its rate; by default the first one. Frames of other
-    /// channels are given at once.
+    /// channels are reported at once.
     pub channel: Option<String>,
     /// Bits per second of a serial line; by default 115,200. The program allows 50 to 20,000,000. A line whose driver
     /// refuses the number is not opened.
     pub baud: u32,
-    /// Whether a connection or a serial line that cannot be opened at first is tried again each second. Once it was
-    /// open, it is tried again in any case, except with [`Playback::Once`].
+    /// Whether taxel tries again each second to open a connection or a serial line that it cannot open at first. One
+    /// that was open before is tried again in any case, except with [`Playback::Once`].
     pub waits: bool,
     /// The speed at which the source is read, and what happens at its end.
     pub playback: Playback,
@@ -44,13 +44,13 @@ pub enum Playback {
     /// The source is read as it comes. A recording is played at its own rate, and followed if it grows meanwhile.
     #[default]
     Live,
-    /// The source is read to its end as fast as possible. The end of a connection or of a serial line is where the
-    /// other end closes it; with other values it is then waited for.
+    /// The source is read to its end as fast as possible. A connection or a serial line ends when the other end closes
+    /// it; with other values, it is then opened again.
     Once,
     /// A recording is played at another speed, or repeated without end. A stream is read as it comes.
     Paced {
         /// The speed, relative to the rate of the recording. A speed that is not above 0 counts as 1; at an infinite
-        /// one, nothing is waited for.
+        /// speed, frames follow each other without waiting.
         speed: f64,
         /// Whether the recording begins again at its end.
         repeat: bool,
@@ -111,16 +111,16 @@ impl Default for AcquireOptions {
 pub enum AcquireEvent<'a> {
     /// A channel of a recording, or of a stream that names channels, before its first frame.
     Channel(&'a ChannelInfo),
-    /// A whole frame.
+    /// A complete frame.
     Frame {
         /// The frame.
         frame: &'a Frame,
-        /// The time in seconds: the frame's own, or that of its arrival since the first frame that arrived. None for
-        /// a frame without a time of its own that was in a file already. After a gap the time goes on growing, even
-        /// if the source's own clock restarted; if a recording is repeated, times begin again.
+        /// The time in seconds: the frame's own, or that of its arrival since the first frame that arrived. None for a
+        /// frame without a time of its own that was in a file already. After a gap, the time keeps growing, even if the
+        /// source's own clock restarted; if a recording is repeated, times begin again.
         time: Option<f64>,
     },
-    /// A frame that is shown but not kept, until what follows it confirms it.
+    /// A provisional frame: it is shown but not kept until later data confirms it.
     Provisional(&'a Frame),
     /// The provisional frame was invalid.
     Withdrawn,
@@ -129,26 +129,26 @@ pub enum AcquireEvent<'a> {
     /// The counts so far. Reported about ten times a second, with or without frames, unless a source is read as fast
     /// as possible.
     Tick(&'a StreamCounts),
-    /// No frame for at least two seconds, and for three times as long as the source took for the last one (but a
-    /// minute is enough). Reported once until the next frame, and again if bytes begin to come.
+    /// There was no frame for at least two seconds, and for three times as long as the source took for the last one
+    /// (but a minute is enough). Reported once until the next frame, and again if bytes begin to arrive.
     Silent {
-        /// Bytes per second that came meanwhile.
+        /// The bytes per second that arrived meanwhile.
         bytes_per_second: f64,
         /// The counts so far.
         counts: &'a StreamCounts,
     },
-    /// The source cannot be opened yet; it is tried again each second.
+    /// The source cannot be opened yet; opening it is tried again each second.
     Absent(&'a io::Error),
-    /// The source is lost; it is tried again each second.
+    /// The source is lost; opening it is tried again each second.
     Lost(&'a io::Error),
-    /// The source is there, or is back.
+    /// The source is open for the first time, or again.
     Back {
-        /// The time that it was waited for.
+        /// The time spent waiting for it.
         gap: Duration,
     },
     /// A recording begins again.
     Again,
-    /// A growing file is read from its start again.
+    /// Reading a growing file starts again at its beginning.
     Anew(ReadAnew),
     /// The end of a stream, with its counts.
     Ended(&'a StreamCounts),

@@ -23,7 +23,8 @@ pub(super) struct Growth {
     length: u64,
     has_grown: Cell<bool>,
     has_caught_up: Cell<bool>,
-    /// Whether all that was in the file when it was opened is gone, so that everything in it has arrived since.
+    /// Whether the content that the file had when it was opened is gone, so that all of its present content has arrived
+    /// since.
     is_new: Cell<bool>,
 }
 
@@ -61,7 +62,7 @@ impl Growth {
 pub(super) enum FollowEnd {
     /// No more is wanted.
     Stopped,
-    /// The file is to be read from its start.
+    /// The file must be read again from its start.
     Anew(ReadAnew),
 }
 
@@ -69,7 +70,7 @@ pub(super) enum FollowEnd {
 pub(super) struct FollowedFile<'a> {
     file: GrowingFile,
     growth: &'a Growth,
-    /// The function that is called while more is waited for; it breaks if no more is wanted.
+    /// The function that is called while waiting for more; it breaks if no more is wanted.
     waiting: &'a mut dyn FnMut() -> ControlFlow<()>,
     end: Option<FollowEnd>,
 }

@@ -7,7 +7,7 @@ use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// The time that a file is left alone at its end, until it may have grown.
+/// The pause at the end of a file before it is checked for growth again.
 const GROWTH: Duration = Duration::from_millis(50);
 
 /// The number of last bytes that are compared with the file, to find out whether it was rewritten.
@@ -79,7 +79,7 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Reads the bytes that have come; waits a moment if there are none.
+    /// Reads the bytes that have arrived; waits a moment if there are none.
     ///
     /// # Errors
     /// Returns the system's error.
@@ -126,8 +126,7 @@ impl GrowingFile {
         self.switched(Self::open(&self.path))
     }
 
-    /// Goes on with the file that has the name now. If that has vanished since it was looked at, waits for another
-    /// one.
+    /// Continues with the file that now has the name. If it has vanished since it was checked, waits for another one.
     fn switched(&mut self, opened: io::Result<Self>) -> io::Result<Option<ReadAnew>> {
         match opened {
             Ok(file) => {

@@ -1,8 +1,8 @@
 //! Acquires frames: from a serial line, a pipe, a network connection, a growing file, or a recording played back.
 //!
-//! [`acquire`] reads a source until it ends or is stopped, and reports frames and problems, one after the other, on
-//! the thread that calls it. A consumer that must see every frame, such as a [`FrameRecorder`], runs on that thread.
-//! A screen takes the frames that have come whenever it draws, and nothing waits for the screen.
+//! [`acquire`] reads a source until it ends or is stopped, and reports frames and problems, one after the other, on the
+//! thread that calls it. A consumer that must see every frame, such as a [`FrameRecorder`], runs on that thread. A
+//! screen takes the frames that have arrived whenever it draws; nothing waits for the screen.
 //!
 //! ```text
 //! serial, tcp, FIFO, standard input, file -> StreamDecoder \

@@ -17,21 +17,21 @@ pub(super) const MOMENT: Duration = Duration::from_millis(100);
 /// The longest wait for a frame, in seconds: a day.
 const LONGEST: f64 = 86_400.0;
 
-/// The longest time between two frames, in seconds, that always counts as a pause and is waited for. A longer one
-/// counts as a change of the clock if it is also longer than [`PAUSE_RATIO`] times the one before, unless the last such
-/// time was about as long: then frames or series of frames are regularly so far apart.
+/// The longest time between two frames, in seconds, that always counts as a pause, so that playback waits. A longer one
+/// counts as a change of the clock if it is also longer than [`PAUSE_RATIO`] times the pause before. An exception is a
+/// time about as long as the last change of the clock: then frames or series of frames are regularly that far apart.
 const PAUSE: f64 = 60.0;
 
 /// See [`PAUSE`].
 const PAUSE_RATIO: f64 = 10.0;
 
-/// The factor up to which two times between frames are about as long.
+/// The largest ratio of two times between frames that count as about equally long.
 const ALIKE: f64 = 2.0;
 
-/// The seconds that a change of the clock is played as.
+/// The seconds that playback waits at a change of the clock.
 const PLAYED: f64 = 2.0;
 
-/// A function that is called now and then during a wait; it breaks if no more is wanted.
+/// A function that is called now and then during a wait; it breaks to stop playback.
 pub(super) type Tick<'a> = dyn FnMut() -> ControlFlow<()> + 'a;
 
 /// The pace of a recording, from its beginning: when its next frame is due.
@@ -50,12 +50,12 @@ pub(super) struct Pace<'a> {
     before: f64,
     /// The seconds of the last change of the clock, if the clock was not set back since.
     jump: Option<f64>,
-    /// The channel that sets the pace. Frames of other channels, before, between or after its own, are not waited
-    /// for.
+    /// The channel that sets the pace. Playback does not wait for frames of other channels, whether before, between or
+    /// after those of this channel.
     channel: ChannelChoice,
     /// The number of values in a frame of the channel, if its rows and columns are unknown.
     unshaped: Option<u64>,
-    /// The growth of a file that is followed: once it has grown, no frame is waited for.
+    /// The growth of a file that is followed: once it has grown, playback waits for no frame.
     growth: Option<&'a Growth>,
 }
 
@@ -100,7 +100,7 @@ impl<'a> Pace<'a> {
         self.unshaped
     }
 
-    /// Returns true if a frame is one of the watched channel, and has no rows and columns.
+    /// Returns true if a frame belongs to the watched channel and has no rows and columns.
     pub(super) fn has_no_shape(&self, frame: &Frame) -> bool {
         self.unshaped.is_some() && self.channel.takes(frame.channel)
     }
@@ -139,7 +139,7 @@ impl<'a> Pace<'a> {
         gap <= PAUSE.max(PAUSE_RATIO * self.before) || self.jump.is_some_and(is_alike)
     }
 
-    /// Returns true if the recording is a file that has grown, so that nothing is waited for.
+    /// Returns true if the recording is a file that has grown, so that playback does not wait.
     fn has_grown(&self) -> bool {
         self.growth.is_some_and(Growth::has_grown)
     }
@@ -149,7 +149,7 @@ impl<'a> Pace<'a> {
         self.until(self.played, tick)
     }
 
-    /// Waits after the last frame as long as one frame lasts, so that a repeated recording keeps its pace.
+    /// Waits for the duration of one frame after the last frame, so that a repeated recording keeps its pace.
     pub(super) fn wait_for_end(&self, tick: &mut Tick<'_>) -> ControlFlow<()> {
         if self.frames == 0 {
             return ControlFlow::Continue(());

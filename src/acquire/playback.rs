@@ -20,7 +20,7 @@ use crate::formats::recording::{
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
 
-/// Creates the error for a followed file whose place a recording of another kind has taken.
+/// Creates the error for a followed file that was replaced by a recording of another kind.
 fn replaced_by(format: RecordingFormat) -> RecordingError {
     RecordingError::damaged(format!(
         "replaced by a recording in the format {}, whose end cannot be followed",
@@ -28,8 +28,8 @@ fn replaced_by(format: RecordingFormat) -> RecordingError {
     ))
 }
 
-/// Plays a recording. If it grows meanwhile, it is followed: its present frames are given at once, then each frame as
-/// it comes.
+/// Plays a recording. If it grows meanwhile, it is followed: its present frames are reported at once, then each frame
+/// as it arrives.
 pub(super) fn run(
     path: &Path,
     options: &AcquireOptions,
@@ -62,7 +62,7 @@ struct Player<'a, 'b> {
     stop: &'a AtomicBool,
     /// The description beside the recording.
     description: Option<RecordingMetadata>,
-    /// The consumer of what is read, and of a tick now and then while more is waited for.
+    /// The consumer of what is read, and of a tick now and then while waiting for more.
     consumer: RefCell<&'a mut Consumer<'b>>,
     /// The counts of wrong frames in a followed file.
     counts: RefCell<StreamCounts>,
@@ -84,8 +84,8 @@ struct KnownChannel {
 struct Round<'a> {
     /// The channels of all rounds, in the order in which they were reported.
     channels: Vec<KnownChannel>,
-    /// For each channel of this round, its index in `channels`: a file that takes the place of another may begin with
-    /// another channel.
+    /// For each channel of this round, its index in `channels`: a file that replaces another one may begin with another
+    /// channel.
     order: Vec<usize>,
     /// The times of the frames.
     times: ArrivalClock,
@@ -211,9 +211,9 @@ impl Player<'_, '_> {
         self.report(AcquireEvent::Tick(&self.counts.borrow()))
     }
 
-    /// Leaves out and counts a wrong frame of a followed file if there were frames before it and more may come: a
-    /// program that was interrupted writes on behind a torn line. Whether more comes may show only later. Returns
-    /// `Break` if the error ends the reading.
+    /// Drops and counts a wrong frame of a followed file if there were frames before it and more may come: a program
+    /// that was interrupted continues after a torn line. Whether more comes may be known only later. Returns `Break` if
+    /// the error ends the reading.
     fn leave_out(
         &self,
         error: &RecordingError,
@@ -302,8 +302,8 @@ impl Player<'_, '_> {
     }
 }
 
-/// Reads the description beside a recording. If something is wrong with it, that is reported as a note, and the
-/// description is left out. Returns `Break` if no more is wanted.
+/// Reads the description beside a recording. If something is wrong with it, reports that as a note and leaves out the
+/// description. Returns `Break` if no more is wanted.
 fn description_of(
     path: &Path,
     consumer: &mut Consumer<'_>,

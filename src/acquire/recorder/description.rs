@@ -24,8 +24,8 @@ pub(crate) struct DescriptionDraft {
 }
 
 impl DescriptionDraft {
-    /// Writes the description to the disk, without its name. A file under that name does not matter yet: meanwhile,
-    /// the array may get its own name, and the description before this one with it.
+    /// Writes the description to the disk, without its name. A file under that name does not matter yet: meanwhile, the
+    /// array and the previous description may get their names.
     ///
     /// # Errors
     /// Returns the system's error.
@@ -34,7 +34,7 @@ impl DescriptionDraft {
     }
 }
 
-/// A description on the disk, to be given its name at once, beside an array that has its name.
+/// A description on the disk, which must get its name at once, beside an array that already has its name.
 #[derive(Debug)]
 pub(crate) struct PreparedDescription {
     pub(super) file: FinishedFile,
@@ -48,8 +48,8 @@ impl PreparedDescription {
     /// Gives the description its name.
     ///
     /// # Errors
-    /// Returns [`RecorderError::Replaced`] if another file has the name of the array by now, which the description is
-    /// not about, or the system's error.
+    /// Returns [`RecorderError::Replaced`] if the name of the array now belongs to another file, which the description
+    /// does not describe, or the system's error.
     pub(crate) fn give_name(self) -> Result<(), RecorderError> {
         let Self { file, array, path } = self;
         if persist_beside((array, &path), file).map_err(refused)? {

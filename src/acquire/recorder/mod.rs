@@ -1,9 +1,9 @@
 //! Writes frames to a file that numpy and taxel can open at any moment, even after the program was killed.
 //!
-//! Beside `touch.npy`, an array of records, lies `touch.json`, which says where the frames are from and how they were
-//! looked at. The two get their names together, so a new file never stands beside an old version of the other one. If
-//! another program replaces the array meanwhile, the description is left to that program.
-//! `touch.json` says whether the recording was ended: it was not if the program was killed.
+//! Beside `touch.npy`, an array of records, is `touch.json`. It states where the frames are from and how they were
+//! processed. The two get their names together, so a new file is never paired with an old version of the other one. If
+//! another program replaces the array meanwhile, the description is left to that program. `touch.json` also states
+//! whether the recording was ended, which is false if the program was killed.
 //!
 //! No file appears or is replaced until the first frame arrives. A disk that is full ends a recording after its last
 //! whole record, and the description says why.
@@ -60,13 +60,13 @@ const MOST_BURSTS: usize = 4096;
 #[derive(Debug)]
 pub struct FrameRecorder {
     path: PathBuf,
-    /// The treatment of files that are there when the recording gets its names.
+    /// What to do with existing files when the recording gets its names.
     existing: Existing,
     metadata: RecordingMetadata,
     names: Names,
     array: RecordArray,
-    /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have begun again, as
-    /// where a recording is played in a loop.
+    /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have started again,
+    /// as when a recording is played in a loop.
     numbers: Option<(u64, u64)>,
     /// The number of frames of another size than the first one.
     left_out: u64,
@@ -92,7 +92,7 @@ impl FrameRecorder {
     /// with the first frame; files that they replace stay until then.
     ///
     /// # Errors
-    /// Returns an error if the name ends otherwise, if one of the two is there and is to be kept, if the file under
+    /// Returns an error if the name ends otherwise, if one of the two files exists and must be kept, if the file under
     /// the second name is not a description, or if they cannot be created.
     pub fn create(
         path: &Path,
@@ -150,7 +150,7 @@ impl FrameRecorder {
         self.draft()
     }
 
-    /// Leaves out marks of frames before the first one that was recorded.
+    /// Drops the marks of frames before the first recorded one.
     fn leave_out_marks(&mut self) {
         if let Some((first, _)) = self.numbers {
             self.metadata.marks.retain(|mark| mark.number >= first);
@@ -272,7 +272,7 @@ impl FrameRecorder {
         self.noted(written)
     }
 
-    /// Writes out all frames that wait, and waits until they are synced; for a source that pauses, perhaps for ever.
+    /// Writes out all waiting frames, and waits until they are synced; for a source that pauses, perhaps for ever.
     ///
     /// # Errors
     /// Returns the system's error.
@@ -290,12 +290,12 @@ impl FrameRecorder {
         RecorderError::Io { path, error }
     }
 
-    /// Writes out everything, syncs the file, and returns the number of frames. Without a frame nothing appears, and
-    /// the files that would be replaced are there as before.
+    /// Writes out everything, syncs the file, and returns the number of frames. Without a frame, no file appears, and
+    /// the files that would have been replaced stay as they are.
     ///
     /// # Errors
-    /// Returns the system's error. Even then the records in the file are whole, and the description says why it ends
-    /// there.
+    /// Returns the system's error. Even then, the records in the file are complete, and the description says why it
+    /// ends there.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
         if !matches!(self.names, Names::Given(_)) {
             return Ok(0);

@@ -1,10 +1,10 @@
 //! A growing array of records: a file that numpy and taxel can open at any moment, even after the program was killed.
 //!
-//! A record has a time in seconds (NaN if it is unknown), a number, and values. The header has room to spare and
-//! states the number of records in the file. Records are written first and their number after them, at least twice a
-//! second, so a killed program loses less than half a second. A thread syncs the file each second, so a power cut
-//! loses hardly more. It may leave a number larger than that of the records; then taxel reads the whole records, and
-//! numpy refuses the file. Values are f64, as every format of frames is read: nothing is rounded.
+//! A record has a time in seconds (NaN if it is unknown), a number, and values. The header has spare room and states
+//! the number of records in the file. The records are written first and their number after them, at least twice a
+//! second, so a killed program loses less than half a second. A thread syncs the file each second, so a power cut loses
+//! hardly more. A power cut may leave a number that is too large; then taxel reads the complete records, and numpy
+//! refuses the file. Values are f64, as every format of frames is read: nothing is rounded.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -169,7 +169,7 @@ impl RecordArray {
         self.file.sync_data()
     }
 
-    /// Cuts off a torn record behind `start`, and counts the whole ones.
+    /// Cuts off a torn record after `start`, and counts the complete ones.
     fn keep_whole(&mut self, start: u64, size: u64) -> io::Result<()> {
         let end = self.file.metadata()?.len();
         let whole = end.saturating_sub(start) / size;

@@ -1,4 +1,4 @@
-//! Syncs a file now and then, on a thread of its own, so that frames never wait for the disk.
+//! Syncs a file now and then, on a separate thread, so that frames never wait for the disk.
 
 use std::fs::File;
 use std::io;
@@ -56,7 +56,7 @@ impl Syncer {
         Ok(())
     }
 
-    /// Waits until no sync runs any more.
+    /// Waits until no sync is running.
     ///
     /// # Errors
     /// Returns the error of a sync that failed.
