@@ -1,8 +1,8 @@
 //! The seven figures of the paper, each solid or with one concentric hole of the same kind.
 //!
-//! A figure is given by its sizes, by the top left corner (`x0`, `y0`) of its bounding rectangle before rotation, by
-//! a clockwise angle about its centre, and by the thickness of its wall. Regular polygons stand on a horizontal side
-//! before rotation; their centre is that of the circumscribed circle. Source: Purcaru and Niculescu; the sense of
+//! A figure is given by its sizes, by the top left corner (`x0`, `y0`) of its bounding rectangle before rotation, by a
+//! clockwise angle about its centre, and by the thickness of its wall. Regular polygons stand on a horizontal side
+//! before rotation; their centre is that of the circumscribed circle. Source: Purcaru and Niculescu; the direction of
 //! rotation and the form of the hole are conventions of this project.
 
 use std::fmt;

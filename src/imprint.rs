@@ -1,8 +1,7 @@
 //! The imprint: which taxels are active, stored as one `u64` per row.
 //!
 //! Bit `i` of a row is the taxel in column `i`. Bits beyond the last column and rows beyond the last one are always
-//! zero. So active taxels are counted with `count_ones`, neighbours are shifts, and imprints with equal words are
-//! equal.
+//! zero. So `count_ones` counts active taxels, shifts yield neighbours, and imprints with equal words are equal.
 
 use std::fmt;
 use std::ops::Range;
@@ -286,8 +285,8 @@ impl Imprint {
     /// Reads an imprint from rows of `#` and `.`, at most 64 × 64, all of the same length.
     ///
     /// # Errors
-    /// Returns an error if a row differs in length from the first, contains another character, or a side is not 1 to
-    /// 64.
+    /// Returns an error if a row differs in length from the first, contains another character, or a side is not from 1
+    /// to 64.
     pub fn from_rows<'a>(rows: impl IntoIterator<Item = &'a str>) -> Result<Self, ImprintError> {
         let mut read = ImprintRows::default();
         for row in rows {

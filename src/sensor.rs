@@ -1,8 +1,8 @@
 //! The tactile matrix sensor: its columns and rows of square cells, its threshold, its pitch, and the values that it
 //! allows.
 //!
-//! The ranges of a figure's lengths and positions scale with the larger side of the sensor. So it is the sensor that
-//! checks, parses and steps values: `sensor.check(Parameter::X0, 1.99)`.
+//! The ranges of a figure's lengths and positions scale with the larger side of the sensor. So the sensor checks,
+//! parses and steps values: `sensor.check(Parameter::X0, 1.99)`.
 
 use std::fmt;
 
@@ -208,7 +208,7 @@ impl Sensor {
         Ok(self)
     }
 
-    /// Returns the same sensor with another threshold: the covered share of a cell from which on its taxel is active.
+    /// Returns the same sensor with another threshold: the share of a cell that must be covered to activate its taxel.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -263,7 +263,7 @@ impl Sensor {
         self.size.columns.max(self.size.rows)
     }
 
-    /// Returns the threshold: the covered share of a cell from which on its taxel is active.
+    /// Returns the threshold: the share of a cell that must be covered to activate its taxel.
     pub fn threshold(&self) -> f64 {
         self.threshold
     }
@@ -292,7 +292,7 @@ impl Sensor {
         }
     }
 
-    /// Returns `value` if the parameter may have it; a negative zero becomes 0.
+    /// Returns `value` if it is allowed for the parameter; a negative zero becomes 0.
     ///
     /// # Errors
     /// Returns [`ParameterError::Range`] if the value is out of range, NaN or infinite, or should be whole and is
@@ -322,8 +322,8 @@ impl Sensor {
     }
 
     /// Returns the next value up or down, by the sign of `direction`; 0 only rounds to the nearest one. Values are in
-    /// steps of the last decimal that the paper gives: hundredths below ten, tenths from ten on, whole degrees.
-    /// Angles wrap around; other parameters stop at the ends of their range. The value is to be a number, not NaN.
+    /// steps of the last decimal that the paper gives: hundredths below ten, tenths from ten on, whole degrees. Angles
+    /// wrap around; other parameters stop at the ends of their range. The value must be a number, not NaN.
     pub fn step(&self, parameter: Parameter, value: f64, direction: i32) -> f64 {
         // Upwards from ten the steps are tenths, downwards from ten hundredths. Below zero it is the other way round.
         let towards = match direction {

@@ -6,9 +6,9 @@
 //! **A coverage of exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote.
 //! Coverages are first computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]) for every shape of
 //! the program ([`Plane::coverages`] says how errors grow). If one lies within 1e-10 of the threshold, it is computed
-//! again with 32 digits ([`Double`]), and the taxel is active unless
-//! the coverage falls short of the threshold by more than 1e-20 ([`Real::TIE`]). For ellipses at a threshold of one
-//! half, hardly any coverage needs to be computed at all: the positions of the cells' centres decide.
+//! again with 32 digits ([`Double`]). The taxel is then active unless the coverage falls short of the threshold by more
+//! than 1e-20 ([`Real::TIE`]). For ellipses at a threshold of one half, hardly any coverage needs to be computed at
+//! all: the positions of the cells' centres decide.
 //!
 //! No number of digits can decide whether two algebraic expressions of the input are *equal*, so a coverage that
 //! falls short by less than 1e-20 counts as a tie. This is exact for an upright rectangle whose numbers have at most
@@ -52,7 +52,8 @@ pub struct Plane {
     sensor: Sensor,
     /// Adds up the areas of a touch. Empty between touches.
     overlap: Overlap<f64>,
-    /// The areas of the last touch, without those of `ellipses`, in pairs of rows: the first pair of `drawn` first.
+    /// The areas of the last touch, without those of `ellipses`, in pairs of rows, starting with the first pair of
+    /// `drawn`.
     areas: Vec<[f64; 2]>,
     /// The cells of the last touch that may have an area.
     drawn: Drawn,
@@ -83,7 +84,7 @@ impl Plane {
     /// Returns the imprint that a shape leaves. It never fails: the imprint is empty if the shape has no boundary, or
     /// has (as your own shapes may) a coordinate that is not finite or an ellipse with a coordinate of 1e70 or more.
     ///
-    /// An ellipse with a coordinate above 500 may leave a taxel wrong whose coverage lies nearer to the threshold than
+    /// For an ellipse with a coordinate above 500, a taxel may be wrong if its coverage is nearer to the threshold than
     /// the error of [`Self::coverages`].
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
         let mut imprint = Imprint::empty(self.sensor.size());

@@ -7,14 +7,14 @@ use crate::acquire::source::FrameSource;
 use crate::acquire::stream::Consumer;
 use crate::acquire::{playback, stream};
 
-/// Reads a source until it ends, `stop` is set, or the consumer breaks off. A recording is played back, and followed
-/// if it grows meanwhile. Any other file is read while it grows, and always waited for if the format of a stream is
-/// given.
+/// Reads a source until it ends, `stop` is set, or the consumer breaks off. A recording is played back, and followed if
+/// it grows meanwhile. Any other file is read while it grows; if the format of a stream is given, reading always waits
+/// for more.
 ///
-/// A connection or a serial line that is lost, as when the other end closes it, is tried again each second until it is
-/// back ([`AcquireEvent::Lost`](crate::acquire::AcquireEvent::Lost)), regardless of [`AcquireOptions::waits`]. With
-/// [`Playback::Once`](crate::acquire::Playback::Once) it ends there. Standard input and a FIFO end when they are
-/// closed, and a recording that does not grow ends with its last frame.
+/// If a connection or a serial line is lost, as when the other end closes it, opening it is tried again each second
+/// until it is back ([`AcquireEvent::Lost`](crate::acquire::AcquireEvent::Lost)), regardless of
+/// [`AcquireOptions::waits`]. With [`Playback::Once`](crate::acquire::Playback::Once), reading ends there. Standard
+/// input and a FIFO end when they are closed, and a recording that does not grow ends with its last frame.
 ///
 /// ```
 /// use std::ops::ControlFlow;

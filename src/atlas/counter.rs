@@ -19,7 +19,7 @@ pub(crate) struct Tally {
 pub(crate) struct ImprintCounter {
     /// The number of words in a key.
     length: usize,
-    /// All keys, one behind the other, in the order of their first addition.
+    /// All keys, one after the other, in the order of their first addition.
     keys: Vec<u64>,
     hashes: Vec<u64>,
     tallies: Vec<Tally>,

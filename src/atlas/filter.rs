@@ -203,7 +203,7 @@ impl AtlasFilter {
 /// Words and signs that other languages write between conditions; upper and lower case are the same.
 const JOINING: [&str; 5] = ["and", "or", "&", "&&", ","];
 
-/// Reads the condition with which text begins. Returns it and the text behind it.
+/// Reads the condition at the start of a text. Returns it and the text after it.
 fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     let in_name = |c: char| c.is_alphanumeric() || c == '_';
     let end = text

@@ -1,4 +1,4 @@
-//! Sums per orientation, from which follows how much of a variance comes from the position and how much from the angle.
+//! Sums per orientation, which show how much of a variance comes from the position and how much from the angle.
 //!
 //! As soon as all poses of an orientation have been added, only its contribution is stored. Incomplete orientations are
 //! stored one by one.

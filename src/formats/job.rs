@@ -1,5 +1,5 @@
-//! One line of `taxel batch`: a figure, a picture or a whole matrix, perhaps with a sensor of its own; or the values
-//! of a real sensor with a threshold.
+//! One line of `taxel batch`: a figure, a picture or a whole matrix, perhaps with its own sensor; or the values of a
+//! real sensor with a threshold.
 
 use serde::de::{Deserialize, Deserializer, MapAccess};
 
@@ -13,8 +13,8 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::Plane;
 
-/// The task that a line sets: a figure, a picture or a whole matrix, perhaps with a sensor of its own; or the values of
-/// a real sensor with a threshold.
+/// The task in a line: a figure, a picture or a whole matrix, perhaps with its own sensor; or the values of a real
+/// sensor with a threshold.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Job {
@@ -64,9 +64,9 @@ impl Job {
     /// {"frame":[[0,3,8],[1,null,12]],"at_least":5}
     /// ```
     /// A figure or a picture touches the sensor; an imprint is a whole matrix, which is described as it is and has no
-    /// sensor. Sizes, place, angle and zooms have no defaults ([`PARAMETERS`](crate::parameter::PARAMETERS) lists keys,
-    /// units and ranges); a figure without `thickness` is solid. A picture is given by its rows, or by a name that
-    /// `lookup` finds. The sensor is `sensor` with the changes that the line makes, as in
+    /// sensor. Sizes, position, angle and zooms have no defaults ([`PARAMETERS`](crate::parameter::PARAMETERS) lists
+    /// keys, units and ranges); a figure without `thickness` is solid. A picture is given by its rows, or by a name
+    /// that `lookup` finds. The sensor is `sensor` with the changes that the line makes, as in
     /// `"sensor":{"columns":32,"rows":32,"threshold":0.5}`.
     ///
     /// A frame has the values of a sensor in rows, null where there is no cell, and a [`Rule`](crate::frame::Rule):

@@ -72,9 +72,9 @@ pub(crate) fn pretty(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| failure(&error))
 }
 
-/// Returns an object with the error, for a value that cannot be written as JSON. All of ours can: their keys are
-/// texts and their numbers finite. Should one fail, the error takes its place, as in the answers of a batch, and is
-/// not mistaken for an empty answer.
+/// Returns an object with the error, for a value that cannot be written as JSON. All values of this crate can be
+/// written: their keys are texts and their numbers finite. If one ever fails, the error takes its place, as in the
+/// answers of a batch, so nobody mistakes it for an empty answer.
 fn failure(error: &serde_json::Error) -> String {
     format!("{{\"error\":{:?}}}", error.to_string())
 }
@@ -231,7 +231,7 @@ fn noun(found: &str) -> String {
     }
 }
 
-/// Returns the name of an expected value in plain words; a type has a name of its own, the others stay as they are.
+/// Returns the name of an expected value in plain words; types have plain names, and other words stay as they are.
 fn kind(expected: &str) -> &str {
     match expected {
         "f64" | "f32" => "a number",

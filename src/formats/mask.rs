@@ -10,7 +10,7 @@ pub(crate) struct Mask<T> {
 }
 
 impl<T: Copy + PartialEq> Mask<T> {
-    /// Makes a mask of which no value has been seen.
+    /// Makes a mask before its first value.
     pub(crate) fn new() -> Self {
         Self {
             other: None,

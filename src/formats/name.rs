@@ -62,7 +62,7 @@ impl fmt::Display for NameError {
 impl std::error::Error for NameError {}
 
 impl Name {
-    /// Makes a name from a text that keeps the rules.
+    /// Makes a name from a text that follows the rules.
     ///
     /// # Errors
     /// Returns the first rule that the text breaks.

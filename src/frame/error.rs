@@ -50,7 +50,7 @@ pub enum FrameError {
     },
     /// There are fewer frames than a tare needs.
     Tare {
-        /// The number of frames that there are.
+        /// The number of frames so far.
         frames: u64,
         /// The number of frames that the tare needs.
         wanted: u64,

@@ -2,7 +2,7 @@
 
 use crate::imprint::Imprint;
 
-/// The number of frames that it takes to call a taxel stuck.
+/// The number of frames needed to call a taxel stuck.
 const ENOUGH: u64 = 10;
 
 /// The counts of a taxel's states.
@@ -19,8 +19,8 @@ struct TaxelCounts {
 ///
 /// If a taxel has the same state in the first and the last of three consecutive frames, it is assumed to have had that
 /// state all the time: if it differs in the middle frame, it has *flipped*. If every taxel flips with probability e, a
-/// share e(1−e) / (1 − 2e(1−e)) of these taxels differs; from this share follows e. A moving contact also changes
-/// taxels, but rarely for one frame only. Frames of a contact at rest or of an empty sensor give the best estimate.
+/// share e(1−e) / (1 − 2e(1−e)) of these taxels differs, and this share determines e. A moving contact also changes
+/// taxels, but rarely for only one frame. Frames of a contact at rest or of an empty sensor give the best estimate.
 ///
 /// A taxel is *stuck on* if it is active whenever none of its neighbours is. It is *stuck off*, or dead, if it is never
 /// active when three quarters of its neighbours are. There must be at least ten such frames, and one in a hundred may
@@ -294,7 +294,7 @@ mod tests {
         assert_eq!(report.mask().count(), 0);
     }
 
-    /// Returns the report on these frames, each with the number of times it comes.
+    /// Returns the report on these frames, each with the number of times it occurs.
     fn shown<const N: usize>(frames: [([&str; 3], usize); N]) -> FlipReport {
         let cells = Imprint::from_rows(["###"; 3].iter().copied()).expect("rows");
         let mut counter = FlipCounter::new(cells);

@@ -1,7 +1,8 @@
 //! The stored boundary of a shape: drawn once, and used for all positions that differ by a shift.
 //!
-//! In `f64`, bands are cut from it. As [`Double`](crate::geometry::Double), it decides cases that `f64` cannot. Frame
-//! and units are those of the plane; the anchor of the shape lies at the origin.
+//! Sweeps cut bands from it in `f64`; for cases that `f64` cannot decide, it is drawn as
+//! [`Double`](crate::geometry::Double). The frame and the units are those of the plane; the anchor of the shape is at
+//! the origin.
 
 use crate::geometry::Real;
 use crate::geometry::{Ellipse, Extent, Moving, Pen, Point, Side, Solid};

@@ -19,8 +19,8 @@ pub const MAX_VALUES: u64 = 1_000_000;
 /// The largest number of decimals of a number. In units of the last of them, [`MAX_UNITS`] is just below 1000.
 const MAX_PLACES: usize = 12;
 
-/// The largest number in units of the last decimal. Every decimal of 15 digits has an `f64` of its own, which is
-/// written as that decimal again.
+/// The largest number in units of the last decimal. Every decimal of 15 digits has a distinct `f64`, which is written
+/// as the same decimal again.
 const MAX_UNITS: i64 = 999_999_999_999_999;
 
 /// Decimals from a start to an end in equal steps; never empty. As text, `start:end:step` with the end included, or a
@@ -48,7 +48,7 @@ pub struct DecimalRange {
 
 impl DecimalRange {
     /// Creates the range from `start` to `end`, which is included, in steps of `step`: as text, `start:end:step`. Each
-    /// number counts as the shortest decimal that reads back as it, so 0.1 is one tenth.
+    /// number counts as the shortest decimal that reads back as the same number, so 0.1 is one tenth.
     ///
     /// ```
     /// use taxel::pose::DecimalRange;

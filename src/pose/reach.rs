@@ -35,7 +35,7 @@ const FINE: u32 = 1;
 
 impl PoseGrid {
     /// Returns the smallest upright rectangle around the shape in every orientation of the grid, with its anchor at the
-    /// origin; in cell sides. None if the shape has no boundary, as a picture of an empty imprint.
+    /// origin; in cell sides. None if the shape has no boundary, like a picture of an empty imprint.
     ///
     /// The position of a picture that is placed by its corner is zoomed too. In such a pose, the rectangle has to be
     /// moved by `zoom_x · x0`, `zoom_y · y0`.
@@ -273,7 +273,7 @@ pub fn smallest_sensor<'a>(
     Ok(reach.smallest_sensor(&sources, given, sides, FINE))
 }
 
-/// The sides of the sensors to choose from: sides that are given, and the smallest length of the others. If no side is
+/// The sides of the sensors to choose from: the given sides, and the smallest length of the others. If no side is
 /// given, the sensors are square.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensorSides {
@@ -484,7 +484,8 @@ impl Reach {
         all.all(|(low, _, zoom)| low + zoom * positions.value(0) >= -DOUBTFUL)
     }
 
-    /// Returns true if nothing is cut off at the right (or at the bottom) of a sensor with this side, likewise.
+    /// Returns true if nothing is cut off at the right (or at the bottom) of a sensor with this side, with the anchor
+    /// at any of these positions.
     fn clears_end(&self, axis: Axis, side: u8, positions: DecimalRange) -> bool {
         let end = f64::from(side) + DOUBTFUL;
         let mut all = self.along(axis);

@@ -31,7 +31,7 @@ pub struct HalfStep {
 pub enum HalfStepWork {
     /// This number of further poses was touched.
     Poses(u64),
-    /// The nearest imprint is searched for one more imprint that the model does not hold, after all poses.
+    /// After all poses: the nearest imprint was sought for one more imprint that the model does not hold.
     Search {
         /// The number of all imprints that the model does not hold.
         of: u64,

@@ -106,7 +106,7 @@ pub struct ModelHead {
     pub anchor: Anchor,
     /// The ranges of the poses.
     pub ranges: Ranges,
-    /// The part of the poses that these are.
+    /// The part of the poses that the model holds.
     pub shard: Shard,
     /// The number of poses of each shape in that part.
     pub poses: u64,
@@ -115,7 +115,7 @@ pub struct ModelHead {
 }
 
 impl ModelHead {
-    /// Creates a head for shapes that are nowhere cut off.
+    /// Creates a head for shapes that the sensor never cuts off.
     pub fn new(
         shapes: Vec<NamedShape>,
         sensor: Sensor,
@@ -517,7 +517,7 @@ pub(super) fn add_log_counts(logarithms: &mut [f64], counts: &[ShapeCount]) {
     }
 }
 
-/// Converts a count to a number to compute with.
+/// Converts a count to an `f64` for computing.
 #[expect(
     clippy::cast_precision_loss,
     reason = "neither a mean nor a probability has more digits"
