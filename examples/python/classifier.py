@@ -1,4 +1,4 @@
-"""A scikit-learn classifier on the descriptors of four rectangles, beside the limit that no classifier passes.
+"""A scikit-learn classifier on the descriptors of four rectangles, compared with the limit that no classifier can beat.
 
     pip install numpy scikit-learn
     python3 examples/python/classifier.py    # taxel on the PATH, or: TAXEL=target/release/taxel

@@ -17,10 +17,10 @@ use crate::storage::FileId;
 pub enum FrameSource {
     /// Standard input, named `-`.
     Standard,
-    /// A connection to `HOST:PORT`, named `tcp://HOST:PORT`. It is waited for when the other end closes it, except with
-    /// [`Playback::Once`](crate::acquire::Playback::Once).
+    /// A connection to `HOST:PORT`, named `tcp://HOST:PORT`. If the other end closes it, taxel waits for it to return,
+    /// except with [`Playback::Once`](crate::acquire::Playback::Once).
     Tcp(String),
-    /// A serial line. It is waited for when it is unplugged, except with
+    /// A serial line. If it is unplugged, taxel waits for it to return, except with
     /// [`Playback::Once`](crate::acquire::Playback::Once).
     Serial(PathBuf),
     /// A named pipe.
@@ -75,8 +75,7 @@ impl FrameSource {
         }
     }
 
-    /// Refuses a source that cannot be read even if one waits: a file that cannot be opened, an address without a
-    /// port.
+    /// Refuses a source that cannot be read even later: a file that cannot be opened, or an address without a port.
     ///
     /// # Errors
     /// Returns [`AcquireError::Io`].
@@ -92,7 +91,7 @@ impl FrameSource {
     }
 
     /// Returns why bits per second have no effect on the source, in words that follow the name of the flag; None if
-    /// they have, or if the source may be a serial line that is not plugged in.
+    /// they have an effect, or if the source may be a serial line that is not plugged in.
     #[cfg(feature = "tui")]
     pub(crate) fn unused_baud(&self) -> Option<String> {
         match self {
@@ -140,7 +139,7 @@ impl FrameSource {
         Ok(())
     }
 
-    /// Returns true if the source may come back after it was lost, so that it is tried again.
+    /// Returns true if the source may come back after it was lost, so that taxel tries again.
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
     }

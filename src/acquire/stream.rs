@@ -18,7 +18,7 @@ const CHUNK: usize = 1 << 16;
 /// The time without a frame after which a stream is reported as silent, unless its frames come more rarely.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// The number of times that frames must have failed to come.
+/// The number of intervals without a frame after which a stream is silent.
 const MISSED: u32 = 3;
 
 /// The longest time between two frames that counts as usual.
@@ -38,7 +38,7 @@ struct StreamClock {
     timed: bool,
     /// When the last frame came, or the source was opened.
     last_frame: Instant,
-    /// The time between the last two frames that did not come together; None before the first frame.
+    /// The time between the last two frames that did not arrive together; None before the first frame.
     interval: Option<Duration>,
     last_tick: Instant,
     /// Whether a frame has come since the last tick.
@@ -71,7 +71,7 @@ impl StreamClock {
         }
     }
 
-    /// Notes a frame that came now.
+    /// Notes that a frame has just arrived.
     fn note_frame(&mut self, now: Instant) {
         if !std::mem::replace(&mut self.frame_came, true) {
             let since_last = now - self.last_frame;
@@ -81,12 +81,12 @@ impl StreamClock {
         self.begin_silence(now);
     }
 
-    /// Notes that the next frame is waited for from now on.
+    /// Notes that the wait for the next frame begins now.
     fn begin_silence(&mut self, now: Instant) {
         (self.last_frame, self.looked, self.reported) = (now, None, [false; 2]);
     }
 
-    /// Returns the bytes per second that came in a silence, if that is to be reported: once without bytes, and once
+    /// Returns the bytes per second that arrived in a silence, if it must be reported: once without bytes, and once
     /// with bytes. `bytes` is the number of bytes so far.
     fn silence(&mut self, bytes: u64, now: Instant) -> Option<f64> {
         let missed = |interval: Duration| (interval * MISSED).max(SILENCE);
@@ -188,7 +188,7 @@ fn finish(
 /// the argument breaks.
 type Open<'a> = dyn Fn(&mut dyn FnMut() -> ControlFlow<()>) -> io::Result<Option<ByteInput>> + 'a;
 
-/// Reports a tick while a source is opened or waited for. Returns `Break` if no more is wanted.
+/// Reports a tick while opening a source or waiting for it. Returns `Break` if no more is wanted.
 fn wait(
     stop: &AtomicBool,
     decoder: &StreamDecoder,
@@ -200,7 +200,7 @@ fn wait(
     consumer(AcquireEvent::Tick(decoder.counts()))
 }
 
-/// Opens a source; waits for it if it is not there yet and that is wanted. None if no more is wanted.
+/// Opens a source; if it does not exist yet, waits for it if the options say so. None if no more is wanted.
 fn first_input(
     source: &FrameSource,
     options: &AcquireOptions,
@@ -251,7 +251,7 @@ fn broken(
     AcquireError::reading(error)
 }
 
-/// Reports why a source is waited for, and tries to open it each second until it is there. None if no more is wanted.
+/// Reports why it waits for a source, and tries to open it each second until it exists. None if no more is wanted.
 fn again(
     open: &Open<'_>,
     event: AcquireEvent<'_>,
@@ -294,7 +294,7 @@ fn decode(
     tick(decoder, clock, consumer)
 }
 
-/// Reports an event of the decoder. A frame without a time of its own gets that of its arrival.
+/// Reports an event of the decoder. A frame without a time gets that of its arrival.
 fn report(
     event: StreamEvent<'_>,
     clock: &mut StreamClock,

@@ -726,7 +726,7 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
         &["wrong: it was ellipse, not hexagon"],
     );
     for (key, refused) in [
-        ("9", "no shape 9: they are 1 to 7"),
+        ("9", "no shape 9, expected 1 to 7"),
         ("x", "no shape begins with 'x'"),
         ("'", "no shape begins with \"'\""),
     ] {

@@ -118,7 +118,7 @@ impl Quiz {
             let row = row.filter(|&row| row < self.count());
             let last = self.count().min(9);
             self.selected =
-                row.ok_or_else(|| format!("no shape {number}: they are 1 to {last}"))?;
+                row.ok_or_else(|| format!("no shape {number}, expected 1 to {last}"))?;
             return Ok(true);
         }
         let begins = |row: &usize| {

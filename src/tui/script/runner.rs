@@ -179,7 +179,7 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
         // The shape is in the library from the start.
         ScriptCommand::Set(ScriptSetting::Shape(_)) => {}
         _ => {
-            let message = "Size and Set come before all that needs a screen";
+            let message = "Size and Set must come before any command that needs a screen";
             return Err(wrong(line, message.to_owned()));
         }
     }
