@@ -139,7 +139,7 @@ fn heat() -> Arg {
         .conflicts_with("noise-report")
 }
 
-/// Defines the flags that keep frames. With `--export`, each frame gets a file of its own. `--save` stores a single
+/// Defines the flags that keep frames. With `--export`, each frame gets its own file. `--save` stores a single
 /// shape, so it excludes `--all`, and fails for a label that several frames have.
 fn keeping() -> [Arg; 4] {
     kept::flags().map(|arg| match arg.get_id().as_str() {
@@ -174,12 +174,7 @@ pub(crate) fn processing() -> [Arg; 9] {
             "Columns, if the recording does not state them",
         )
         .requires("frame_rows"),
-        side(
-            "frame_rows",
-            "rows",
-            "Rows, if the recording does not state them",
-        )
-        .requires("frame_columns"),
+        side("frame_rows", "rows", "Rows, if it does not state them").requires("frame_columns"),
         text(
             "channel",
             "NAME",
