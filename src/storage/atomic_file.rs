@@ -1,12 +1,12 @@
 //! Writes files so that none is ever half-written: under a temporary name in the same folder, synced, renamed into
 //! place, and the folder synced.
 //!
-//! Whenever the program dies or the power fails, the old file or the new one is there as a whole; [`persist_pair`] says
-//! what is there of two files that belong together. The stages are types: content goes into an [`UnfinishedFile`]; a
-//! [`FinishedFile`] is on disk and lacks only its name. Either one removes its temporary file when it is dropped, so an
-//! error or an early return leaves nothing behind. If a program is killed, the next writer removes the file that it
-//! left: see [`crate::storage::temporary`] for files from [`UnfinishedFile::new`]; the name given to
-//! [`UnfinishedFile::with_temporary`] is taken over by the next caller.
+//! Whenever the program dies or the power fails, either the complete old file or the complete new one exists;
+//! [`persist_pair`] says which of two files that belong together exist. The stages are types: content goes into an
+//! [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one removes its temporary file
+//! when it is dropped, so an error or an early return leaves nothing behind. If a program is killed, the next writer
+//! removes the file that it left: see [`crate::storage::temporary`] for files from [`UnfinishedFile::new`]; the name
+//! given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
 use std::fs::{self, File, FileType, Metadata, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -19,7 +19,7 @@ use crate::storage::error::FileError;
 use crate::storage::file_id::FileId;
 use crate::storage::temporary::{OldFile, TemporaryFile};
 
-/// The treatment of a file that is there already.
+/// What to do with an existing file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Existing {
@@ -43,9 +43,8 @@ impl UnfinishedFile {
     /// Begins the file at `path`, under no name or a random one.
     ///
     /// # Errors
-    /// Returns [`ErrorKind::AlreadyExists`] if there is a file and it is to be kept, [`ErrorKind::Other`] if what is
-    /// there is not a regular file, [`ErrorKind::PermissionDenied`] if this user cannot replace it, or the system's
-    /// error.
+    /// Returns [`ErrorKind::AlreadyExists`] if a file exists and must be kept, [`ErrorKind::Other`] if it is not a
+    /// regular file, [`ErrorKind::PermissionDenied`] if this user cannot replace it, or the system's error.
     pub fn new(path: &Path, existing: Existing) -> Result<Self, FileError> {
         Self::begin(path, existing, || TemporaryFile::new(folder_of(path)))
     }
@@ -168,8 +167,8 @@ impl FinishedFile {
     /// Gives the file its name and syncs the folder.
     ///
     /// # Errors
-    /// Returns [`ErrorKind::AlreadyExists`] if a file that is to be kept has come meanwhile, or the system's error.
-    /// The old file is there as before, unless syncing the folder failed ([`FileError::is_in_place`]).
+    /// Returns [`ErrorKind::AlreadyExists`] if a file that must be kept has appeared meanwhile, or the system's error.
+    /// The old file is unchanged, unless syncing the folder failed ([`FileError::is_in_place`]).
     pub fn persist(self) -> Result<(), FileError> {
         let folder = folder_of(&self.path).to_owned();
         self.take_name()?;
@@ -179,7 +178,7 @@ impl FinishedFile {
     /// Returns true if it replaces a file.
     ///
     /// # Errors
-    /// Returns an error if the existing file is to be kept, or is not a regular file.
+    /// Returns an error if the existing file must be kept, or is not a regular file.
     fn is_replaced(&self) -> Result<bool, FileError> {
         Ok(replaced(&self.path, self.existing)?.is_some())
     }
@@ -199,15 +198,15 @@ impl FinishedFile {
 /// Checks whether a file of this path may be written, as far as it shows before the attempt.
 ///
 /// # Errors
-/// Returns the errors of [`UnfinishedFile::new`] about what is there.
+/// Returns the errors of [`UnfinishedFile::new`] about an existing file.
 pub fn check_target(path: &Path, existing: Existing) -> Result<(), FileError> {
     replaced(path, existing).map(drop)
 }
 
-/// Returns the metadata of the file that is to be replaced; None if there is none.
+/// Returns the metadata of the file to replace; None if there is none.
 ///
 /// # Errors
-/// Returns an error if it is to be kept, is not a regular file, or cannot be replaced by this user.
+/// Returns an error if it must be kept, is not a regular file, or cannot be replaced by this user.
 fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileError> {
     let old = path.symlink_metadata().ok();
     match (existing, &old) {
@@ -252,8 +251,8 @@ pub(super) fn kind_in_words(kind: FileType) -> &'static str {
 /// further writing.
 ///
 /// # Errors
-/// Returns the errors of [`FinishedFile::persist`]. If one of the files got no name, the old files are there again;
-/// the message says what could not be brought back.
+/// Returns the errors of [`FinishedFile::persist`]. If one of the files got no name, the old files are restored; the
+/// message says what could not be restored.
 pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
     let _lock = lock_folder(folder_of(&first.path));
     let (path, beside) = (first.path.clone(), second.path.clone());
@@ -307,7 +306,7 @@ pub(crate) fn persist_beside(
     second.persist().map(|()| true)
 }
 
-/// Moves a file that is to be replaced to a temporary name.
+/// Moves a file that will be replaced to a temporary name.
 fn move_away(path: &Path) -> Result<OldFile, FileError> {
     let refuse = |error| FileError::new("replace it", path, error);
     let moved = OldFile::moved(folder_of(path), path).map_err(refuse)?;

@@ -139,8 +139,8 @@ impl Library {
         self.waits.load(Ordering::Relaxed)
     }
 
-    /// Returns the file that is where a folder above the library's own would be, if there is one. Then only shapes
-    /// that come with the program can be loaded, and none can be saved.
+    /// Returns the file, if any, in the place of a folder above the library's folder. Then only shapes that come with
+    /// the program can be loaded, and none can be saved.
     pub fn file_above(&self) -> Option<&Path> {
         folder::file_above(&self.folder)
     }
@@ -277,7 +277,7 @@ impl Library {
         Ok(stamp(content.as_bytes()))
     }
 
-    /// Refuses to replace a file that is read-only or has another content than expected.
+    /// Refuses to replace a file that is read-only or whose content is not as expected.
     fn check_replaceable(&self, own: &str, expected: Expected) -> Result<(), LibraryError> {
         let path = self.path(own);
         let now = stamp(&folder::read(&path)?);
@@ -438,7 +438,7 @@ impl Library {
     }
 
     /// Lists everything in the folder and its journal that is neither a shape nor one of the library's own files, by
-    /// path, each with a description: files of others, half-written ones, unsaved work. None of them does harm.
+    /// path, each with a description: files of others, half-written ones, unsaved work. None of them is harmful.
     ///
     /// # Errors
     /// Returns an error if the folder exists but cannot be read.

@@ -1,12 +1,12 @@
 //! Files: the shape library (a folder with one JSON file per shape, and the shapes that come with the program),
 //! sweeps and models.
 //!
-//! **Nothing is lost.** A file is written under another name, synced, renamed into its place, and the folder is synced.
-//! So at every moment, whatever fails, either the old file or the new one is there as a whole; of the two files of a
-//! sweep, the second may be missing ([`persist_pair`]). Deleting moves into a trash inside the folder. Writers hold the
-//! folder's lock while they write, so that two programs see each other's work. A half-written file for which nobody
-//! holds a lock was left by a program that died, and is removed (one of a journal together with that journal). Reading
-//! needs neither a lock nor a folder that can be written to.
+//! **Nothing is lost.** A file is written under another name, synced and renamed into place; then the folder is synced.
+//! So at every moment, whatever fails, either the complete old file or the complete new one exists; of the two files of
+//! a sweep, the second may be missing ([`persist_pair`]). Deleting moves a file to a trash inside the folder. Writers
+//! hold the folder's lock while they write, so that two programs see each other's work. A half-written file for which
+//! nobody holds a lock was left by a program that died, and is removed (one of a journal together with that journal).
+//! Reading needs neither a lock nor write access to the folder.
 //!
 //! ```text
 //! FOLDER/washer.json                    a shape

@@ -96,7 +96,7 @@ impl FileVersion {
 /// Writes a model to a file: all of it or nothing. Nothing is written if `stopped` becomes true on the way.
 ///
 /// # Errors
-/// Returns the system's error, with the file's name; also if a file is there and is to be kept.
+/// Returns the system's error, with the file's name; also if a file exists and must be kept.
 pub fn save_model(
     model: &Model,
     path: &Path,
@@ -171,7 +171,7 @@ impl ModelFolder {
         Ok(names)
     }
 
-    /// Makes the folder if there is none, for a model that is to be written there.
+    /// Creates the folder if there is none, for a model that will be written there.
     ///
     /// # Errors
     /// Returns the system's error, with the folder's name.
@@ -266,7 +266,7 @@ impl ModelCache {
             .join(format!("{:032x}.{ENDING}", xxh3_128(text.as_bytes())))
     }
 
-    /// Returns the model of a training if its file is there and complete.
+    /// Returns the model of a training if its file exists and is complete.
     fn load(path: &Path, training: &Training<'_>) -> Option<Model> {
         let model = load_model(path).ok()?;
         let same = training.grids().iter().zip(model.shapes());

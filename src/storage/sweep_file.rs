@@ -1,7 +1,7 @@
 //! The files that a sweep writes: its atlas, in the format given by the extension of the name, and the atlas number
 //! of every pose.
 //!
-//! At any time, either the complete new file or the old one is there ([`crate::storage::atomic_file`]).
+//! At any time, either the complete new file or the complete old one exists ([`crate::storage::atomic_file`]).
 
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom, Write};
@@ -56,7 +56,7 @@ impl ArchiveFileError {
         matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::NotFound)
     }
 
-    /// Returns true if a file of that name is there already, and was to be kept.
+    /// Returns true if a file of that name exists and had to be kept.
     pub fn exists(&self) -> bool {
         matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
     }
@@ -113,7 +113,7 @@ impl AtlasFile {
     /// Checks whether a file can be begun there, so that an error comes before the work rather than after it.
     ///
     /// # Errors
-    /// Returns the system's error, with the file's name; also if a file is there and is to be kept.
+    /// Returns the system's error, with the file's name; also if a file exists and must be kept.
     pub fn check(&self, existing: Existing) -> Result<(), ArchiveFileError> {
         Ok(UnfinishedFile::new(&self.path, existing).map(drop)?)
     }

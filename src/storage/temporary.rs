@@ -91,8 +91,7 @@ impl TemporaryFile {
     /// name: a copy if the file system cannot link a file without a name.
     ///
     /// # Errors
-    /// Returns [`ErrorKind::AlreadyExists`] if there is a file of that name and it is to be kept, or the system's
-    /// error.
+    /// Returns [`ErrorKind::AlreadyExists`] if a file of that name exists and must be kept, or the system's error.
     pub(crate) fn persist(self, folder: &Path, path: &Path, replace: bool) -> io::Result<File> {
         let (file, named) = match self.path {
             Some(named) => (self.file, named),
@@ -211,7 +210,7 @@ fn plain(error: &io::Error) -> io::Error {
     }
 }
 
-/// Renames a file over `path`, or to `path` if nothing is there.
+/// Renames a file to `path`, replacing the file there, if any.
 fn rename(from: TempPath, path: &Path, replace: bool) -> io::Result<()> {
     let renamed = if replace {
         from.persist(path)

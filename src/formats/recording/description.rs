@@ -48,8 +48,8 @@ pub struct RecordedView {
 /// if an error ended the recording, such as a full disk.
 ///
 /// Every key except `format` may be missing. Without `tare_frames`, a tare counts as one of a single frame, so its
-/// noise is unknown. The array holds the values as the sensor sent them, in f64: rule and
-/// tare are applied again when they are read, unless flags say otherwise.
+/// noise is unknown. The array holds the values as the sensor sent them, in f64; the rule and the tare are applied
+/// again when the values are read, unless flags say otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecordingMetadata {

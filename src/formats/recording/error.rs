@@ -38,7 +38,7 @@ pub enum RecordingError {
         /// The number of values of a frame.
         values: u64,
     },
-    /// A table without a header, which does not say how its values are arranged: not all numbers of a line need be
+    /// A table without a header, which does not say how its values are arranged: some numbers of a line may not be
     /// values.
     #[error(
         "{} a line, but no rows and columns (a frame number and a time may be among the numbers)",

@@ -76,8 +76,8 @@ impl RecordingFormat {
         }
     }
 
-    /// Returns true if frames are appended to such a file as they are measured, as in a live stream, and can be read
-    /// from there.
+    /// Returns true if frames are appended to such a file as they are measured, as in a live stream, and can be read as
+    /// they arrive.
     #[cfg(feature = "acquire")]
     pub(crate) fn is_appended_to(self) -> bool {
         matches!(
@@ -95,7 +95,7 @@ named!(RecordingFormat, "format", &RecordingFormat::ALL);
 pub struct ReadOptions {
     /// The size of a frame, for files that do not state it.
     pub size: Option<FrameSize>,
-    /// Whether wrong frames may be left out, as in a file that is written meanwhile: [`RecordingEvent::Damage`].
+    /// Whether wrong frames may be left out, as in a file that is still being written: [`RecordingEvent::Damage`].
     pub(crate) leaves_out: bool,
 }
 
@@ -278,7 +278,7 @@ pub enum RecordingNote {
         /// The number of records according to the header.
         counted: u64,
     },
-    /// A long time between two frames, which is not waited for: perhaps a clock was set.
+    /// A long time between two frames, which playback shortens: perhaps a clock was set.
     Gap {
         /// The number of the frame after it, from 0.
         frame: u64,

@@ -4,7 +4,7 @@
 //! ```text
 //! 0 12 7 3        a frame a line, if rows and columns are known
 //!
-//! 0 12            or a row a line; an empty line ends the frame, and tells its rows and columns
+//! 0 12            or a row a line; an empty line ends the frame, and shows its rows and columns
 //! 7 3
 //!
 //! 2024-05-01 12:00:00.25,0,12,7,3     a moment at the beginning of a frame's first line is its time
