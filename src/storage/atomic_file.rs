@@ -19,7 +19,7 @@ use crate::storage::error::FileError;
 use crate::storage::file_id::FileId;
 use crate::storage::temporary::{OldFile, TemporaryFile};
 
-/// What to do with an existing file.
+/// The handling of an existing file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Existing {

@@ -60,7 +60,7 @@ const MOST_BURSTS: usize = 4096;
 #[derive(Debug)]
 pub struct FrameRecorder {
     path: PathBuf,
-    /// What to do with existing files when the recording gets its names.
+    /// The handling of existing files when the recording gets its names.
     existing: Existing,
     metadata: RecordingMetadata,
     names: Names,
