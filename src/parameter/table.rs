@@ -266,7 +266,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         key: "x0",
         label: "x0",
         short: "x0",
-        meaning: "left of the bounding rectangle, before rotation",
+        meaning: "left edge of the bounding rectangle, before rotation",
         ..POSITION
     },
     ParameterRow {
@@ -274,7 +274,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         key: "y0",
         label: "y0",
         short: "y0",
-        meaning: "top of the bounding rectangle, before rotation (y runs down)",
+        meaning: "top edge of the bounding rectangle, before rotation (y runs down)",
         ..POSITION
     },
     ParameterRow {
@@ -284,7 +284,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         short: "angle",
         unit: Unit::Degrees,
         default: 0.0,
-        meaning: "a figure turns clockwise about its centre, a picture counter-clockwise",
+        meaning: "rotation about the centre: figures clockwise, pictures counter-clockwise",
         low: Bound::At(0.0),
         high: Bound::Beyond(360.0),
         decimals: Decimals::Fixed(0),
@@ -337,7 +337,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         short: "threshold",
         unit: Unit::Ratio,
         default: 0.5,
-        meaning: "share of a cell that makes its taxel active",
+        meaning: "covered share of a cell that makes its taxel active",
         high: Bound::At(1.0),
         decimals: Decimals::Fixed(3),
         ..LENGTH

@@ -77,8 +77,11 @@ fn an_answer_has_its_keys_in_the_documented_order() {
 fn answers_for_people_show_names_bars_and_differences() {
     let place = place();
     for (noise, how) in [
-        ("0", "noise 0: only the key of the imprint is looked up"),
-        ("0.01", "noise 0.01: every key in every place is compared"),
+        ("0", "noise 0: only the imprint itself is looked up"),
+        (
+            "0.01",
+            "noise 0.01: every imprint of the model is compared in every place",
+        ),
     ] {
         let text = place.done(&format!("recognise bar.txt --model r --noise {noise}"));
         assert_eq!(text.lines().nth(1), Some(how), "{text}");

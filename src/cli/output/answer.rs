@@ -216,9 +216,9 @@ impl AnswerText<'_> {
 /// Returns in words what the imprint was compared with.
 fn compared(method: SearchMethod) -> &'static str {
     match method {
-        SearchMethod::Exact => "only the key of the imprint is looked up",
-        SearchMethod::OneFlip => "keys that differ by one taxel at most are looked up",
-        SearchMethod::Scan => "every key in every place is compared",
+        SearchMethod::Exact => "only the imprint itself is looked up",
+        SearchMethod::OneFlip => "imprints that differ by at most one taxel are looked up",
+        SearchMethod::Scan => "every imprint of the model is compared in every place",
     }
 }
 
