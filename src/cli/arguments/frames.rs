@@ -183,7 +183,7 @@ pub(crate) fn processing() -> [Arg; 9] {
         text(
             "crop",
             "C,R,COLSxROWS",
-            "Keep the part that begins in column C and row R",
+            "Keep the part that begins at column C, row R",
         )
         .value_parser(parse_crop)
         // A negative column is then refused by the parser, not taken for a flag.
