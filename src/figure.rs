@@ -58,7 +58,7 @@ impl FigureKind {
         }
     }
 
-    /// Returns a hint for a word that is not the name of a figure but means one: "circle" or "square".
+    /// Returns a hint for a word that means a figure but is not its name: "circle" or "square".
     #[cfg(feature = "json")]
     pub(crate) fn of_other_name(word: &str) -> Option<&'static str> {
         match word.to_ascii_lowercase().as_str() {
