@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
 
-use crate::cli::arguments::flags::{self, misused, of_sensor, replace, what};
+use crate::cli::arguments::flags::{self, misused, of_sensor, option, replace, what};
 use crate::cli::arguments::help::EXPORT_EXAMPLES;
 use crate::cli::arguments::{form, parameters};
 use crate::cli::error::CliError;
@@ -42,12 +42,9 @@ pub(super) fn format() -> Arg {
         "Format, if not given by the extension: {}",
         names.join(", ")
     );
-    Arg::new("format")
-        .long("format")
-        .value_name("FORMAT")
+    option("format", "FORMAT", parameters::wrapped(&help, 52))
         .value_parser(PossibleValuesParser::new(names))
         .hide_possible_values(true)
-        .help(parameters::wrapped(&help, 52))
 }
 
 /// The format of a file.

@@ -11,7 +11,7 @@ use std::ops::{Bound, RangeBounds};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, StyledStr, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 
@@ -34,8 +34,11 @@ pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
 }
 
 /// Defines a flag with a value, `--NAME VALUE`. The value is a text unless a parser is set.
-pub(super) fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
-    Arg::new(name).long(name).value_name(value).help(help)
+pub(super) fn option(name: &'static str, value: &'static str, help: impl Into<StyledStr>) -> Arg {
+    Arg::new(name)
+        .long(name)
+        .value_name(value)
+        .help(help.into())
 }
 
 /// Groups a single flag, so that other flags can require the group. clap lets a required flag be missing if a flag

@@ -21,7 +21,7 @@ use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::arguments::{kept, parameters};
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::{LEAST, SensorSettings};
-use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule};
+use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule, View};
 use crate::imprint::Imprint;
 use crate::parameter::{Parameter, number};
 use crate::recognition::Noise;
@@ -48,14 +48,8 @@ pub(crate) struct ProcessingArguments {
     pub(crate) size: Option<FrameSize>,
     /// The channel of a recording that has several.
     pub(crate) channel: Option<String>,
-    /// The part of the frame that is kept, before it is flipped and turned.
-    pub(crate) crop: Option<Crop>,
-    /// Whether columns are reversed.
-    pub(crate) flip_x: bool,
-    /// Whether rows are reversed.
-    pub(crate) flip_y: bool,
-    /// Quarter turns clockwise as seen, 0 to 3.
-    pub(crate) quarter_turns: u8,
+    /// The crop, the flips and the turn. The mask is still a file.
+    pub(crate) view: View,
     /// The file with an imprint of the cells without a value, placed as the frame is seen after the turn.
     pub(crate) mask: Option<PathBuf>,
     /// The number of frames for the tare; 0 for no tare, None for that of the recording.
@@ -164,9 +158,6 @@ pub(crate) fn processing() -> [Arg; 9] {
             .value_parser(whole::<u16>(FrameSize::SIDES))
             .help(help)
     };
-    let text = |flag: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(flag).long(flag).value_name(value).help(help)
-    };
     [
         side(
             "frame_columns",
@@ -175,12 +166,12 @@ pub(crate) fn processing() -> [Arg; 9] {
         )
         .requires("frame_rows"),
         side("frame_rows", "rows", "Rows, if it does not state them").requires("frame_columns"),
-        text(
+        option(
             "channel",
             "NAME",
             "The channel to read, if there are several",
         ),
-        text(
+        option(
             "crop",
             "C,R,COLSxROWS",
             "Keep the part that begins at column C, row R",
@@ -188,29 +179,29 @@ pub(crate) fn processing() -> [Arg; 9] {
         .value_parser(parse_crop)
         // A negative column is then refused by the parser, not taken for a flag.
         .allow_hyphen_values(true),
-        text("flip", "AXIS", "Reverse columns (x), rows (y) or both (xy)")
+        option("flip", "AXIS", "Reverse columns (x), rows (y) or both (xy)")
             .value_parser(["x", "y", "xy"])
             .hide_possible_values(true),
-        text(
+        option(
             "turn",
             "DEGREES",
             "Turn clockwise by 90, 180 or 270 degrees",
         )
         .value_parser(["90", "180", "270"])
         .hide_possible_values(true),
-        text(
+        option(
             "mask",
             "FILE",
             "Imprint of the dead cells, which have no value",
         )
         .value_parser(value_parser!(PathBuf)),
-        text(
+        option(
             "tare",
             "N",
             "Subtract the median of each cell over N frames",
         )
         .value_parser(whole::<u64>(0..)),
-        text("gain", "FILE", "Table of factors, one for each cell")
+        option("gain", "FILE", "Table of factors, one for each cell")
             .value_parser(value_parser!(PathBuf)),
     ]
     .map(|arg| arg.help_heading("Processing"))
@@ -218,17 +209,19 @@ pub(crate) fn processing() -> [Arg; 9] {
 
 /// Defines the flags that name the shape of each imprint.
 pub(crate) fn naming() -> [Arg; 2] {
-    let model = Arg::new("model")
-        .long("model")
-        .value_name("MODEL")
-        .value_parser(name_or_path())
-        .help("Name the shape that left the imprint: name or file of a\nmodel; figures, figures-30, shapes");
-    let noise = Arg::new("noise")
-        .long("noise")
-        .value_name("E")
-        .value_parser(parse_noise)
-        .requires("model")
-        .help("Each taxel flips with this probability (below 0.5)");
+    let model = option(
+        "model",
+        "MODEL",
+        "Name the shape that left the imprint: name or file of a\nmodel; figures, figures-30, shapes",
+    )
+    .value_parser(name_or_path());
+    let noise = option(
+        "noise",
+        "E",
+        "Each taxel flips with this probability (below 0.5)",
+    )
+    .value_parser(parse_noise)
+    .requires("model");
     [model, noise].map(|arg| arg.help_heading("Recognition"))
 }
 
@@ -236,24 +229,18 @@ pub(crate) fn naming() -> [Arg; 2] {
 /// `--deviations` needs a tare, whose frames show the noise of each cell.
 pub(crate) fn rules() -> [Arg; 6] {
     let value = |flag: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(flag)
-            .long(flag)
-            .value_name(value)
+        option(flag, value, help)
             .allow_hyphen_values(true)
             .value_parser(parse_number)
-            .help(help)
     };
     let others = |own: &'static str| {
         ["at-least", "percent", "low", "deviations"]
             .into_iter()
             .filter(move |other| *other != own)
     };
-    let least = Arg::new("least")
-        .long("least")
+    let least = option("least", "K", "Drop pieces of fewer than K taxels")
         .alias("min-taxels")
-        .value_name("K")
-        .value_parser(whole::<u32>(LEAST))
-        .help("Drop pieces of fewer than K taxels");
+        .value_parser(whole::<u32>(LEAST));
     [
         value(
             "at-least",
@@ -379,14 +366,17 @@ impl ProcessingArguments {
         Ok(Self {
             size: FrameSize::of_sides(side("frame_columns"), side("frame_rows")),
             channel: matches.get_one::<String>("channel").cloned(),
-            crop: matches.get_one::<Crop>("crop").copied(),
-            flip_x: flips('x'),
-            flip_y: flips('y'),
-            quarter_turns: match turn {
-                Some("90") => 1,
-                Some("180") => 2,
-                Some("270") => 3,
-                _ => 0,
+            view: View {
+                crop: matches.get_one("crop").copied(),
+                flip_x: flips('x'),
+                flip_y: flips('y'),
+                quarter_turns: match turn {
+                    Some("90") => 1,
+                    Some("180") => 2,
+                    Some("270") => 3,
+                    _ => 0,
+                },
+                mask: None,
             },
             mask: path("mask"),
             tare: tare.or(settings.tare()),

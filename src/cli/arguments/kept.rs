@@ -34,15 +34,11 @@ pub(super) fn flags() -> [Arg; 4] {
     let save = option("save", "NAME", "Store the shape in the library too")
         .value_parser(Name::new)
         .help_heading("Library");
-    let file = Arg::new("export")
-        .long("export")
-        .value_name("FILE")
+    let what =
+        "Write the imprint, or a drawing of it; '-' for standard output, in place of the table";
+    let file = option("export", "FILE", parameters::wrapped(what, 52))
         .value_parser(value_parser!(PathBuf))
-        .help_heading("Export")
-        .help(parameters::wrapped(
-            "Write the imprint, or a drawing of it; '-' for standard output, in place of the table",
-            52,
-        ));
+        .help_heading("Export");
     let force = force().help("Replace an existing shape or file");
     [
         save,

@@ -54,17 +54,12 @@ pub(crate) fn command() -> Command {
         .value_parser(flags::name_or_path())
         .help("Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input");
     let names = StreamFormat::ALL.map(StreamFormat::name);
-    let format = Arg::new("format")
-        .long("format")
-        .value_name("FORMAT")
+    let what = format!("Format of the stream: auto, {}", names.join(", "));
+    let format = option("format", "FORMAT", parameters::wrapped(&what, 52))
         .value_parser(PossibleValuesParser::new(
             std::iter::once("auto").chain(names),
         ))
-        .hide_possible_values(true)
-        .help(parameters::wrapped(
-            &format!("Format of the stream: auto, {}", names.join(", ")),
-            52,
-        ));
+        .hide_possible_values(true);
     let baud = option("baud", "BAUD", "Speed of a serial line; default 115200")
         .value_parser(whole::<u32>(AcquireOptions::BAUDS));
     let once = switch("once", "Read to the end as fast as possible, then stop")

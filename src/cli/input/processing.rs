@@ -19,11 +19,8 @@ use crate::sensor::MatrixSize;
 pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliError> {
     let mut processing = Processing::default();
     processing.view = View {
-        crop: asked.crop,
-        flip_x: asked.flip_x,
-        flip_y: asked.flip_y,
-        quarter_turns: asked.quarter_turns,
         mask: asked.mask.as_deref().map(dead_cells).transpose()?,
+        ..asked.view.clone()
     };
     if let Some(path) = &asked.gain {
         processing.gain = Some(gain(path)?);
