@@ -68,10 +68,15 @@ impl SweepMerge {
     pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
         let (shard, of) = (result.shard, result.shard.of());
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
-        if let Some(merged) = &self.0
-            && (result.grid != merged.grid || of != merged.of)
-        {
-            return Err(MergeError::Foreign { shard });
+        if let Some(merged) = &self.0 {
+            let difference = if of == merged.of {
+                difference(&result.grid, &merged.grid)
+            } else {
+                Some("the number of shards")
+            };
+            if let Some(difference) = difference {
+                return Err(MergeError::Foreign { shard, difference });
+            }
         }
         let number = self.0.as_ref().map_or(1, |merged| merged.last + 1);
         match shard.number().cmp(&number) {
@@ -140,6 +145,20 @@ impl SweepResult {
     }
 }
 
+/// Returns what differs between two grids; None if they are equal. The source lies where its ranges begin, so it is
+/// compared last.
+fn difference(one: &PoseGrid, other: &PoseGrid) -> Option<&'static str> {
+    if one == other {
+        None
+    } else if one.sensor() != other.sensor() {
+        Some("its sensor")
+    } else if (one.ranges(), one.anchor()) != (other.ranges(), other.anchor()) {
+        Some("its ranges or their anchor")
+    } else {
+        Some("its shape")
+    }
+}
+
 /// The error of a merge.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -148,10 +167,12 @@ pub enum MergeError {
     #[error("no shards to merge")]
     Nothing,
     /// A shard of another grid than the first one, or of another number of shards.
-    #[error("shard {shard} is of another grid than the first one")]
+    #[error("shard {shard} differs from the first one in {difference}")]
     Foreign {
         /// The shard.
         shard: Shard,
+        /// What differs: "its shape", for example.
+        difference: &'static str,
     },
     /// A shard that is given twice.
     #[error("shard {shard} is given twice")]

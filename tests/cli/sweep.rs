@@ -419,7 +419,7 @@ fn the_memory_of_a_merge_is_limited_and_printed() {
         "",
     );
     let foreign = format!(
-        "{}: shard 1/1 is of another grid than the first one\n",
+        "{}: shard 1/1 differs from the first one in the number of shards\n",
         path("m.npz")
     );
     assert!(run.stderr.ends_with(&foreign), "{}", run.stderr);

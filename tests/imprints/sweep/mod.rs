@@ -244,7 +244,10 @@ fn shards_are_merged_only_if_all_are_there() {
     let foreign = Shard::new(2, 2).expect("a shard");
     assert_eq!(
         merge(vec![shard(&grid, 1, 2), shard(&other, 2, 2)]),
-        Err(MergeError::Foreign { shard: foreign })
+        Err(MergeError::Foreign {
+            shard: foreign,
+            difference: "its shape"
+        })
     );
     // A shard that is refused changes nothing, even if it comes first.
     let mut refused = SweepMerge::default();
@@ -253,7 +256,10 @@ fn shards_are_merged_only_if_all_are_there() {
     assert_eq!(refused.add(shard(&grid, 1, 2)), Ok(()));
     assert_eq!(
         refused.add(shard(&other, 2, 2)),
-        Err(MergeError::Foreign { shard: foreign })
+        Err(MergeError::Foreign {
+            shard: foreign,
+            difference: "its shape"
+        })
     );
     assert_eq!(
         refused.add(shard(&grid, 1, 2)),
