@@ -66,8 +66,9 @@ pub enum Key {
     Function(u8),
 }
 
-/// The names in angle brackets. If a key has several, the first one is written.
-const NAMES: [(&str, Key); 34] = [
+/// The names in angle brackets. If a key has several, the first one is written. The names with `C-` are those of keys
+/// that a terminal cannot tell from the letter with Ctrl.
+const NAMES: [(&str, Key); 38] = [
     ("Left", Key::Arrow(Arrow::Left)),
     ("Right", Key::Arrow(Arrow::Right)),
     ("Up", Key::Arrow(Arrow::Up)),
@@ -102,6 +103,10 @@ const NAMES: [(&str, Key); 34] = [
     ("Space", Key::Char(' ')),
     ("lt", Key::Char('<')),
     ("gt", Key::Char('>')),
+    ("C-h", Key::Backspace),
+    ("C-i", Key::Tab),
+    ("C-j", Key::Enter),
+    ("C-m", Key::Enter),
 ];
 
 impl fmt::Display for Key {
@@ -249,6 +254,8 @@ mod tests {
             assert_eq!(parse(&written), Ok(vec![key]), "{written}");
             assert_eq!(written.trim(), written, "blanks at an end may be lost");
         }
+        // A terminal sends the same byte for both.
+        assert_eq!(parse("<C-i><C-m>"), Ok(vec![Key::Tab, Key::Enter]));
         assert_eq!(Key::Char('\u{3000}').to_string(), "<U+3000>");
         assert!(parse("<U+110000>").is_err() && parse("<U+>").is_err());
     }
