@@ -11,30 +11,60 @@ use std::path::Path;
 #[cfg(unix)]
 const STICKY: u32 = 0o1000;
 
-/// Gives a new file the owner, the group and the permissions of the file that it replaces, as far as the system lets
-/// this user. The new file can be read and written by nobody, apart from its writer, who could not do so with the old
-/// one; access lists, which are not kept, aside. The bits that make a file run as its owner or group are dropped: the
-/// file has other content, and perhaps another owner.
+/// Gives a new file the owner, the group, the permissions and the access list of the file that it replaces, as far as
+/// the system lets this user. The new file can be read and written by nobody, apart from its writer, who could not do
+/// so with the old one. The bits that make a file run as its owner or group are dropped: the file has other content,
+/// and perhaps another owner.
 ///
 /// # Errors
 /// Returns the system's error if the file would be open to more people than the old one.
 #[cfg(unix)]
-pub(crate) fn keep_access(new: &File, old: &Metadata) -> io::Result<()> {
+pub(crate) fn keep_access(new: &File, path: &Path, old: &Metadata) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, fchown};
     let found = new.metadata()?;
     let mut mode = old.mode() & 0o777;
-    if (found.uid(), found.gid()) != (old.uid(), old.gid()) {
-        // Only a privileged user may give files away; a member of a group may give it the file.
-        let given = fchown(new, Some(old.uid()), Some(old.gid()))
-            .or_else(|_| fchown(new, None, Some(old.gid())));
-        if given.is_err() {
-            // The members of the old group are others now, and those of the new one were others before: all get only
-            // what both had.
-            let common = mode >> 3 & mode & 0o7;
-            mode = mode & 0o700 | common << 3 | common;
-        }
+    let is_same = (found.uid(), found.gid()) == (old.uid(), old.gid());
+    // Only a privileged user may give files away; a member of a group may give it the file.
+    let is_given = is_same
+        || fchown(new, Some(old.uid()), Some(old.gid()))
+            .or_else(|_| fchown(new, None, Some(old.gid())))
+            .is_ok();
+    if !is_given {
+        // The members of the old group are others now, and those of the new one were others before: all get only
+        // what both had.
+        let common = mode >> 3 & mode & 0o7;
+        mode = mode & 0o700 | common << 3 | common;
     }
-    set_mode(new, found.mode() & 0o777, mode)
+    if !keep_list(new, path, is_given) {
+        mode &= 0o700;
+    }
+    set_mode(new, new.metadata()?.mode() & 0o777, mode)
+}
+
+/// Gives a new file the access list of the one at a path, or none if that has none: a list grants and denies what the
+/// mode does not show. Returns false if the new file cannot have the same list.
+#[cfg(target_os = "linux")]
+fn keep_list(new: &File, path: &Path, is_of_same_group: bool) -> bool {
+    use rustix::fs::{XattrFlags, fremovexattr, fsetxattr, getxattr};
+    use rustix::io::Errno;
+    const LIST: &str = "system.posix_acl_access";
+    /// The size of the largest attribute that the system has, in bytes.
+    const LARGEST: usize = 1 << 16;
+    let mut list = vec![0; LARGEST];
+    match getxattr(path, LIST, &mut list[..]) {
+        Ok(length) => {
+            is_of_same_group && fsetxattr(new, LIST, &list[..length], XattrFlags::empty()).is_ok()
+        }
+        // A new file may have inherited a list from its folder.
+        Err(Errno::NODATA) => matches!(fremovexattr(new, LIST), Ok(()) | Err(Errno::NODATA)),
+        Err(error) => error == Errno::OPNOTSUPP,
+    }
+}
+
+/// Returns true: lists are kept on Linux only.
+#[cfg(all(unix, not(target_os = "linux")))]
+fn keep_list(_: &File, _: &Path, _: bool) -> bool {
+    true
 }
 
 /// Sets the mode of a file unless it has it. Where only the owner may set it, or where files have no modes of their
@@ -52,7 +82,7 @@ fn set_mode(file: &File, now: u32, mode: u32) -> io::Result<()> {
 
 /// Gives a new file the permissions of the file that it replaces.
 #[cfg(not(unix))]
-pub(crate) fn keep_access(new: &File, old: &Metadata) -> io::Result<()> {
+pub(crate) fn keep_access(new: &File, _: &Path, old: &Metadata) -> io::Result<()> {
     new.set_permissions(old.permissions())
 }
 
@@ -187,12 +217,51 @@ mod tests {
             let given = chown(&old, Some(1001), Some(2000)).is_ok();
             let file = File::create(&new).expect("made");
             let found = old.metadata().expect("there");
-            keep_access(&file, &found).expect("kept");
+            keep_access(&file, &old, &found).expect("kept");
             assert_eq!(mode(&new), expected);
             let is_same = |new: &Metadata| (new.uid(), new.gid()) == (found.uid(), found.gid());
             assert!(is_same(&file.metadata().expect("there")), "{given}");
             fs::remove_file(&new).expect("removed");
         }
+    }
+
+    /// With the mode alone, the group would get what the list grants to a user, and a new file inherits a list.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_new_file_has_the_access_list_of_the_old_one() {
+        use std::process::Command;
+        let folder = tempfile::tempdir().expect("a folder");
+        let run = |program: &str, arguments: &[&str], path: &Path| {
+            let run = Command::new(program).args(arguments).arg(path).output();
+            run.map(|run| String::from_utf8(run.stdout).expect("text"))
+        };
+        let granted = ["-m", "user:1002:rw,group::---"];
+        let list = |path: &Path| run("getfacl", &["-cpn"], path).expect("getfacl");
+        let probe = folder.path().join("probe");
+        fs::write(&probe, "").expect("written");
+        if run("setfacl", &granted, &probe).is_err() || !list(&probe).contains("user:1002:rw") {
+            eprintln!("SKIPPED: setfacl is missing, or the file system has no access lists");
+            return;
+        }
+        run("setfacl", &["-dm", "user:1003:rw"], folder.path()).expect("set");
+        for (name, granted) in [("list", Some(granted)), ("none", None)] {
+            let (old, new) = (folder.path().join("old"), folder.path().join(name));
+            fs::write(&old, "").expect("written");
+            run("setfacl", &["-b"], &old).expect("set");
+            set(&old, 0o640);
+            if let Some(granted) = granted {
+                run("setfacl", &granted, &old).expect("set");
+            }
+            let file = File::create(&new).expect("made");
+            assert!(list(&new).contains("user:1003"), "inherited");
+            keep_access(&file, &old, &old.metadata().expect("there")).expect("kept");
+            assert_eq!(list(&new), list(&old), "{name}");
+            assert_eq!(mode(&new), mode(&old), "{name}");
+        }
+        // For another group, the list would be for other people.
+        let (old, new) = (folder.path().join("list"), folder.path().join("closed"));
+        let file = File::create(&new).expect("made");
+        assert!(!keep_list(&file, &old, false));
     }
 
     #[test]

@@ -46,7 +46,9 @@ impl UnfinishedFile {
     /// Returns [`ErrorKind::AlreadyExists`] if a file exists and must be kept, [`ErrorKind::Other`] if it is not a
     /// regular file, [`ErrorKind::PermissionDenied`] if this user cannot replace it, or the system's error.
     pub fn new(path: &Path, existing: Existing) -> Result<Self, FileError> {
-        Self::begin(path, existing, || TemporaryFile::new(folder_of(path)))
+        Self::begin(path, existing, |is_private| {
+            TemporaryFile::new(folder_of(path), is_private)
+        })
     }
 
     /// Begins a file that replaces `path`, under a temporary name that only the holder of a lock uses. A file of that
@@ -55,22 +57,25 @@ impl UnfinishedFile {
     /// # Errors
     /// Returns the errors of [`UnfinishedFile::new`].
     pub fn with_temporary(path: &Path, temporary: &Path) -> Result<Self, FileError> {
-        Self::begin(path, Existing::Replaced, || {
-            match TemporaryFile::at(temporary) {
+        Self::begin(
+            path,
+            Existing::Replaced,
+            |is_private| match TemporaryFile::at(temporary, is_private) {
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {
                     let removed = fs::remove_file(temporary);
-                    let again = removed.and_then(|()| TemporaryFile::at(temporary));
-                    again.or_else(|_| TemporaryFile::new(folder_of(path)))
+                    let again = removed.and_then(|()| TemporaryFile::at(temporary, is_private));
+                    again.or_else(|_| TemporaryFile::new(folder_of(path), is_private))
                 }
                 made => made,
-            }
-        })
+            },
+        )
     }
 
+    /// Begins a file with one that `create` makes: a private one if it is given true.
     fn begin(
         path: &Path,
         existing: Existing,
-        create: impl FnOnce() -> io::Result<TemporaryFile>,
+        create: impl FnOnce(bool) -> io::Result<TemporaryFile>,
     ) -> Result<Self, FileError> {
         let refuse = |doing| move |error| FileError::new(doing, path, error);
         // Reported before the work, not after it.
@@ -79,9 +84,10 @@ impl UnfinishedFile {
         folder_of(path)
             .metadata()
             .map_err(refuse("write into its folder"))?;
-        let file = create().map_err(refuse("write into its folder"))?;
+        // The old file may be for fewer people than the umask says.
+        let file = create(old.is_some()).map_err(refuse("write into its folder"))?;
         if let Some(old) = old {
-            keep_access(file.file(), &old).map_err(refuse("set its permissions"))?;
+            keep_access(file.file(), path, &old).map_err(refuse("set its permissions"))?;
         }
         Ok(Self {
             path: path.to_owned(),

@@ -7,7 +7,7 @@
 //! and strange, so that no file of a user has one like it.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -42,38 +42,39 @@ pub(crate) struct TemporaryFile {
 }
 
 impl TemporaryFile {
-    /// Creates a file in a folder, with the permissions that the user's files usually have.
+    /// Creates a file in a folder, with the permissions that the user's files usually have. A private one can be opened
+    /// by its owner only.
     ///
     /// # Errors
     /// Returns the system's error.
-    pub(crate) fn new(folder: &Path) -> io::Result<Self> {
+    pub(crate) fn new(folder: &Path, is_private: bool) -> io::Result<Self> {
         remove_left_over(folder);
         let made = match unnamed(folder) {
+            // Nobody else can open it as long as it has no name.
             Some(file) => Self { file, path: None },
-            None => Self::named(folder)?,
+            None => Self::named(folder, is_private)?,
         };
         // File systems without locks are accepted.
         let _ = made.file.try_lock();
         Ok(made)
     }
 
-    /// Creates a file with this path. Only for a caller that holds a lock on the folder.
+    /// Creates a file with this path, otherwise like [`Self::new`]. Only for a caller that holds a lock on the folder.
     ///
     /// # Errors
     /// Returns the system's error.
-    pub(crate) fn at(path: &Path) -> io::Result<Self> {
+    pub(crate) fn at(path: &Path, is_private: bool) -> io::Result<Self> {
         Ok(Self {
-            file: File::options().write(true).create_new(true).open(path)?,
+            file: options(is_private).open(path)?,
             path: Some(TempPath::try_from_path(path)?),
         })
     }
 
     /// Creates a file under a random name.
-    fn named(folder: &Path) -> io::Result<Self> {
-        // Not with the builder's own method: its permissions are tighter, and its error names the temporary file
+    fn named(folder: &Path, is_private: bool) -> io::Result<Self> {
+        // Not with the builder's own method: its permissions are always tight, and its error names the temporary file
         // instead of giving the system's message.
-        let mut options = File::options();
-        options.read(true).write(true).create_new(true);
+        let options = options(is_private);
         let made = builder().make_in(folder, |path| options.open(path))?;
         let (file, path) = made.into_parts();
         Ok(Self {
@@ -195,6 +196,22 @@ impl OldFile {
     }
 }
 
+/// Returns the options to create a file that its owner can read and write, and if it is not private also others, as
+/// the umask has it.
+#[cfg_attr(
+    not(unix),
+    expect(unused_variables, reason = "files have no modes there")
+)]
+fn options(is_private: bool) -> OpenOptions {
+    let mut options = File::options();
+    options.read(true).write(true).create_new(true);
+    #[cfg(unix)]
+    if is_private {
+        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    }
+    options
+}
+
 /// Returns a builder of random names for temporary files.
 fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
@@ -238,9 +255,9 @@ fn rename(from: TempPath, path: &Path, replace: bool) -> io::Result<()> {
 
 /// Copies the content to a file with a random name, for a file system that cannot link a file without a name.
 fn copied(mut file: File, folder: &Path) -> io::Result<(File, TempPath)> {
-    let mut copy = TemporaryFile::named(folder)?;
+    let mut copy = TemporaryFile::named(folder, true)?;
     file.rewind()?;
-    keep_access(&copy.file, &file.metadata()?)?;
+    keep_access(&copy.file, of_descriptor(&file).as_ref(), &file.metadata()?)?;
     io::copy(&mut Read::by_ref(&mut file), &mut copy.file)?;
     copy.file.sync_all()?;
     let path = copy.path.ok_or(ErrorKind::NotFound)?;
@@ -282,6 +299,12 @@ fn of_descriptor(file: &File) -> String {
 #[cfg(not(target_os = "linux"))]
 fn unnamed(_: &Path) -> Option<File> {
     None
+}
+
+/// Never called: there is no file without a name.
+#[cfg(not(target_os = "linux"))]
+fn of_descriptor(_: &File) -> String {
+    String::new()
 }
 
 /// Never called: there is no file without a name.
@@ -439,7 +462,7 @@ mod tests {
         let held = ".taxel-tmp-Held01Held01Held";
         let lock = aged(folder.path(), held, hour);
         lock.lock().expect("locked");
-        drop(TemporaryFile::new(folder.path()).expect("made"));
+        drop(TemporaryFile::new(folder.path(), false).expect("made"));
         let files = fs::read_dir(folder.path()).expect("read");
         let names = files.map(|entry| entry.expect("read").file_name());
         let left: BTreeSet<_> = names
@@ -450,7 +473,7 @@ mod tests {
         // The folder was searched just now.
         let later = ".taxel-tmp-Later1Later1Late";
         aged(folder.path(), later, hour);
-        drop(TemporaryFile::new(folder.path()).expect("made"));
+        drop(TemporaryFile::new(folder.path(), false).expect("made"));
         assert!(folder.path().join(later).exists());
     }
 
@@ -491,15 +514,28 @@ mod tests {
         assert!(!refused.to_string().contains(PREFIX), "{refused}");
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_private_file_is_never_open_to_others() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().expect("a folder");
+        let named = TemporaryFile::named(folder.path(), true);
+        let at = TemporaryFile::at(&folder.path().join("at"), true);
+        for made in [named, at] {
+            let found = made.expect("made").file().metadata().expect("there");
+            assert_eq!(found.permissions().mode() & 0o777, 0o600);
+        }
+    }
+
     #[test]
     fn a_file_gets_its_name_however_it_was_made() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a");
-        let ways: [fn(&Path) -> io::Result<TemporaryFile>; 2] =
+        let ways: [fn(&Path, bool) -> io::Result<TemporaryFile>; 2] =
             [TemporaryFile::new, TemporaryFile::named];
         for make in ways {
             for (replace, content) in [(false, "one"), (true, "two")] {
-                let mut file = make(folder.path()).expect("made");
+                let mut file = make(folder.path(), false).expect("made");
                 file.write_all(content.as_bytes()).expect("written");
                 let mut file = file.persist(folder.path(), &path, replace).expect("named");
                 assert_eq!(fs::read_to_string(&path).ok().as_deref(), Some(content));
@@ -507,14 +543,14 @@ mod tests {
                 let more = format!("{content}!");
                 assert_eq!(fs::read_to_string(&path).ok(), Some(more));
             }
-            let file = make(folder.path()).expect("made");
+            let file = make(folder.path(), false).expect("made");
             let kept = file
                 .persist(folder.path(), &path, false)
                 .expect_err("it is there");
             assert_eq!(kept.kind(), ErrorKind::AlreadyExists);
             fs::remove_file(&path).expect("removed");
         }
-        let mut file = TemporaryFile::new(folder.path()).expect("made");
+        let mut file = TemporaryFile::new(folder.path(), false).expect("made");
         file.write_all(b"three").expect("written");
         let (mut open, copy) = copied(file.file, folder.path()).expect("copied");
         open.write_all(b", four").expect("written");

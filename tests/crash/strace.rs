@@ -8,7 +8,7 @@ use super::state::finish;
 /// All system calls that can change files. The `?` lets strace ignore those that a machine does not have.
 const CALLS: &str = "?openat,?open,?creat,?write,?pwrite64,?writev,?fsync,?fdatasync,?rename,?renameat,?renameat2,\
     ?unlink,?unlinkat,?link,?linkat,?symlink,?symlinkat,?mkdir,?mkdirat,?rmdir,?truncate,?ftruncate,?flock,?chmod,\
-    ?fchmod,?fchmodat,?fchown";
+    ?fchmod,?fchmodat,?fchown,?fsetxattr,?fremovexattr";
 
 /// A system call: its name, and which call of that name it is, counted from 1.
 #[derive(Clone, Debug)]
