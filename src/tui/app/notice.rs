@@ -16,14 +16,16 @@ pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(Strin
     let is_question = top.is_some_and(|page| page.slot() == Slot::Question);
     if is_question && let Some((question, role)) = remark {
         let text = match &app.notice {
-            Some(Notice::Info(said) | Notice::Refusal(said)) => format!("{said}. {question}"),
+            Some(Notice::Info(said) | Notice::Refusal(said) | Notice::Failure(said)) => {
+                format!("{said}. {question}")
+            }
             None => question,
         };
         return Some((text, role));
     }
     let notice = app.notice.as_ref().map(|notice| match notice {
         Notice::Info(text) => (text.clone(), Role::Key),
-        Notice::Refusal(text) => (format!("! {text}"), Role::Error),
+        Notice::Refusal(text) | Notice::Failure(text) => (format!("! {text}"), Role::Error),
     });
     let waiting = || Some((app.waiting()?.to_owned(), Role::Key));
     let notice = notice.or_else(waiting);

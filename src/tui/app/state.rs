@@ -172,6 +172,9 @@ pub enum Notice {
     Info(String),
     /// The reason why something was not done.
     Refusal(String),
+    /// The reason why something failed that was under way, such as a save. What is said before the next key stands
+    /// after it.
+    Failure(String),
 }
 
 /// A shape that is being saved.

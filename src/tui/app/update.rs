@@ -24,6 +24,9 @@ use crate::tui::{
 /// The largest count.
 const MOST_TIMES: u16 = 999;
 
+/// The length, in bytes, from which nothing is added to a failure that nobody has read.
+const MOST_SAID: usize = 300;
+
 /// Handles a message. A notice stays until the next message that is not an answer to the last one.
 pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     let before = app.attention();
@@ -66,18 +69,9 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             }
             return None;
         }
-        Message::Library(answer) => {
-            return answered(app, |app| shapes::update::on_library(app, answer));
+        Message::Library(_) | Message::File(_) | Message::Worker(_) => {
+            return on_event(app, message);
         }
-        Message::File(FileEvent::Source(request)) => {
-            let watch = LiveMessage::Watch(request);
-            return answered(app, |app| live::update::act(app, &watch));
-        }
-        Message::File(answer) => return answered(app, |app| files::on_file(app, answer)),
-        Message::Worker(event @ WorkerEvent::Recognition(_)) => {
-            return answered(app, |app| on_worker(app, event));
-        }
-        Message::Worker(event) => return on_worker(app, event),
         Message::Mouse(mouse) => {
             // A count belongs to the next key, and so does the notice that shows it.
             if app.count.take().is_some() {
@@ -142,6 +136,38 @@ fn repeat(app: &mut App, message: &Message, times: u16) -> Option<Effect> {
     None
 }
 
+/// Handles what is not a message of the user. A failure stays until the next key: what is said after it stands beside
+/// it, so that it can be read.
+fn on_event(app: &mut App, event: Message) -> Option<Effect> {
+    let is_failure = |notice: &mut Notice| matches!(notice, Notice::Failure(_));
+    let unread = app.notice.take_if(is_failure);
+    let before = app.notice.clone();
+    let effect = match event {
+        Message::Library(answer) => answered(app, |app| shapes::update::on_library(app, answer)),
+        Message::File(FileEvent::Source(request)) => {
+            let watch = LiveMessage::Watch(request);
+            answered(app, |app| live::update::act(app, &watch))
+        }
+        Message::File(answer) => answered(app, |app| files::on_file(app, answer)),
+        Message::Worker(event @ WorkerEvent::Recognition(_)) => {
+            answered(app, |app| on_worker(app, event))
+        }
+        Message::Worker(event) => on_worker(app, event),
+        _ => None,
+    };
+    let is_new = app.notice != before;
+    app.notice = match (unread, app.notice.take()) {
+        (Some(Notice::Failure(first)), Some(Notice::Info(then) | Notice::Refusal(then)))
+            if !first.contains(&then) && first.len() < MOST_SAID =>
+        {
+            Some(Notice::Failure(format!("{first}; {then}")))
+        }
+        (None, Some(Notice::Refusal(reason))) if is_new => Some(Notice::Failure(reason)),
+        (unread, notice) => unread.or(notice),
+    };
+    effect
+}
+
 /// Handles the answer to a request. If the request was refused, the prompt that it came from opens again: so the user
 /// can correct it, and the next keys do not reach the matrix. An answer without a notice leaves the old notice as it
 /// is.
@@ -154,7 +180,7 @@ fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> O
             give_prompt(app);
         }
         Some(Notice::Info(_)) => app.prompt = None,
-        Some(Notice::Refusal(_)) => app.dialogs.extend(app.prompt.take()),
+        Some(Notice::Refusal(_) | Notice::Failure(_)) => app.dialogs.extend(app.prompt.take()),
     }
     effect
 }
@@ -311,4 +337,48 @@ fn on_worker(app: &mut App, event: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Answered => {}
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tui::app::state::Options;
+
+    #[test]
+    fn a_failure_stays_until_the_next_key() {
+        let mut app = App::new(&Options::plain(true));
+        let mut after = |message| {
+            update(&mut app, message);
+            app.notice.clone()
+        };
+        let refused = |reason: &str| Message::Worker(WorkerEvent::Refused(reason.to_owned()));
+        let written = || Message::File(FileEvent::Written("b.svg".to_owned()));
+        let failure = |text: &str| Some(Notice::Failure(text.to_owned()));
+        let full = "a.json: no space left";
+        for reason in [full, full] {
+            assert_eq!(after(refused(reason)), failure(full));
+        }
+        let both = "a.json: no space left; written: b.svg";
+        assert_eq!(after(written()), failure(both));
+        assert_eq!(
+            after(Message::Worker(WorkerEvent::Waiting(None))),
+            failure(both)
+        );
+        // It does not grow without end.
+        for number in 0..99 {
+            after(refused(&format!("{number}: no space left")));
+        }
+        let Some(Notice::Failure(text)) = after(written()) else {
+            panic!("a failure");
+        };
+        assert!(
+            text.starts_with(both) && text.len() < 2 * MOST_SAID,
+            "{text}"
+        );
+        assert_eq!(after(Message::Help), None);
+        // What the user is refused gives way to what is said next.
+        after(Message::Paste("text".to_owned()));
+        let said = Some(Notice::Info("written: b.svg".to_owned()));
+        assert_eq!(after(written()), said);
+    }
 }

@@ -128,7 +128,7 @@ impl Session {
             return Ok(());
         }
         Err(match &self.app.notice {
-            Some(Notice::Refusal(reason)) => reason.clone(),
+            Some(Notice::Refusal(reason) | Notice::Failure(reason)) => reason.clone(),
             _ => format!("{name}: no source can be watched on this page"),
         })
     }
