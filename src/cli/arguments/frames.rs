@@ -141,7 +141,12 @@ fn keeping() -> [Arg; 4] {
             .requires("choice")
             .conflicts_with_all(["all", "noise-report"]),
         "export" => arg.requires("choice").help(parameters::wrapped(
-            "Write the imprint, or a drawing of it, with the frame's number in the name; with --noise-report the mask",
+            "Write the imprint, or a drawing of it, with the frame's number in the name, such as touch-0.svg for touch.svg; \
+             with --noise-report the mask",
+            52,
+        )),
+        "force" => arg.help(parameters::wrapped(
+            "Replace an existing shape, or existing files of these names, but never the recording",
             52,
         )),
         _ => arg,
