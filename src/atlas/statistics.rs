@@ -49,6 +49,19 @@ pub struct Statistic {
     pub sd_angle: Option<f64>,
 }
 
+impl Statistic {
+    /// Returns true if no part of the deviation is larger than the whole one, apart from rounding. In sums from a file
+    /// it may be. The parts of a direction are limited when they are computed.
+    pub(crate) fn has_possible_parts(&self) -> bool {
+        let Some(sd) = self.sd.filter(|_| !self.feature.circular) else {
+            return true;
+        };
+        let most = sd * (1.0 + 1e-9) + 2.0 * ROUNDING;
+        let parts = [self.sd_position, self.sd_angle];
+        parts.into_iter().flatten().all(|part| part <= most)
+    }
+}
+
 /// A column of the statistics.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]

@@ -231,7 +231,10 @@ impl SweepResult {
         let mut table = Table::default();
         table.extend(atlas.summaries());
         let poses = (parts.poses, parts.partly_off);
-        Ok(Self::new(grid, shard, poses, atlas, &table, variance_parts))
+        let result = Self::new(grid, shard, poses, atlas, &table, variance_parts);
+        let is_possible = result.statistics.iter().all(Statistic::has_possible_parts);
+        check(is_possible, "sums that contradict the imprints")?;
+        Ok(result)
     }
 }
 
@@ -327,6 +330,11 @@ mod tests {
         let orientation = 3 + 5 * features().len();
         let unsound = |parts: &mut Parts| parts.variance_words.extend(vec![u64::MAX; orientation]);
         assert_eq!(fault(&unsound), sums);
+        // The first feature's sum over the orientations, too large and too small.
+        for word in [u64::MAX >> 1, 0] {
+            let other = fault(&|parts| parts.variance_words[..3].fill(word));
+            assert_eq!(other, Some("sums that contradict the imprints"), "{word}");
+        }
     }
 
     #[test]
