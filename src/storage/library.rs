@@ -13,13 +13,10 @@ use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
 #[cfg(feature = "tui")]
 use crate::quote::did_you_mean;
-use crate::storage::atomic_file;
-use crate::storage::atomic_file::sync_folder;
+use crate::storage::atomic_file::{self, sync_folder};
 use crate::storage::error::{FileError, LibraryError};
-use crate::storage::folder;
-use crate::storage::folder::{InnerFolder, JOURNAL, TRASH, is_journal, stamp};
-use crate::storage::lock;
-use crate::storage::lock::Lock;
+use crate::storage::folder::{self, InnerFolder, JOURNAL, TRASH, is_journal, stamp};
+use crate::storage::lock::{self, LOCK, Lock};
 use crate::storage::name_index::NameIndex;
 use crate::storage::shipped;
 use crate::storage::temporary::is_temporary;
@@ -205,29 +202,19 @@ impl Library {
     /// Returns an error if there is no such shape, or if its file is broken or cannot be read.
     pub fn load(&self, name: &str) -> Result<LoadedShape, LibraryError> {
         let name = Name::new(name)?;
-        // The usual case needs no search, and no look at the file before it is read.
-        let mut own = name.to_string();
-        let read = match folder::read(&self.path(&own)) {
-            Err(LibraryError::System(refused)) if refused.is_missing() => {
-                let found = self.names.find(&self.folder, &name, || self.own_names())?;
-                let Some(found) = found else {
-                    let unknown = || LibraryError::Unknown {
-                        name: name.to_string(),
-                    };
-                    let (shape, stamp) = shipped::load(&name).ok_or_else(unknown)??;
-                    return Ok(LoadedShape {
-                        written_name: shape.name.clone(),
-                        shape,
-                        stamp,
-                        origin: ShapeOrigin::Shipped,
-                    });
-                };
-                own = found;
-                folder::read(&self.path(&own))
-            }
-            read => read,
+        let Some((own, content)) = self.read_own(&name)? else {
+            let unknown = || LibraryError::Unknown {
+                name: name.to_string(),
+            };
+            let (shape, stamp) = shipped::load(&name).ok_or_else(unknown)??;
+            return Ok(LoadedShape {
+                written_name: shape.name.clone(),
+                shape,
+                stamp,
+                origin: ShapeOrigin::Shipped,
+            });
         };
-        let (content, path) = (read?, self.path(&own));
+        let path = self.path(&own);
         let shape =
             StoredShape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
         // A file that was renamed by hand goes by its new name.
@@ -237,6 +224,21 @@ impl Library {
             stamp: stamp(&content),
             origin: ShapeOrigin::Own,
         })
+    }
+
+    /// Returns the name of the user's shape, spelled as in its file, and the content of the file; None if the user has
+    /// none of that name.
+    fn read_own(&self, name: &Name) -> Result<Option<(String, Vec<u8>)>, LibraryError> {
+        // The usual case needs no search, and no look at the file before it is read.
+        match folder::read(&self.path(name.as_str())) {
+            Err(LibraryError::System(refused)) if refused.is_missing() => {}
+            read => return Ok(Some((name.to_string(), read?))),
+        }
+        let Some(own) = self.names.find(&self.folder, name, || self.own_names())? else {
+            return Ok(None);
+        };
+        let content = folder::read(&self.path(&own))?;
+        Ok(Some((own, content)))
     }
 
     /// Returns the name under which a shape of that name is or would be stored: the name of its file, which may
@@ -271,8 +273,7 @@ impl Library {
         let name = own.map_or_else(|| Ok(name.clone()), |own| Name::new(&own))?;
         let path = self.path(name.as_str());
         let content = shape.clone().renamed(name).write();
-        // Without locks, another program may be writing too.
-        let temporary = lock.as_ref().map(|_| self.folder.join(TEMPORARY));
+        let temporary = temporary_in(&self.folder, lock.as_ref());
         atomic_file::write(&path, temporary.as_deref(), content.as_bytes())?;
         Ok(stamp(content.as_bytes()))
     }
@@ -339,7 +340,7 @@ impl Library {
     /// Returns the system's error; then the shape is stored nowhere.
     pub fn throw_away(&self, shape: &StoredShape) -> Result<String, LibraryError> {
         folder::make(&self.folder)?;
-        let _lock = Lock::wait(&self.folder, &self.waits)?;
+        let lock = Lock::wait(&self.folder, &self.waits)?;
         let mut trash = Trash::made(&self.folder)?;
         let free = |name: &Name| {
             let thrown = trash.newest_first().any(|thrown| name.same(&thrown.name));
@@ -354,8 +355,8 @@ impl Library {
         let name = name.unwrap_or_else(|| shape.name.clone());
         let thrown = shape.clone().renamed(name.clone());
         let path = trash.next_path(name.as_str())?;
-        let temporary = trash.folder().join(TEMPORARY);
-        atomic_file::write(&path, Some(&temporary), thrown.write().as_bytes())?;
+        let temporary = temporary_in(trash.folder(), lock.as_ref());
+        atomic_file::write(&path, temporary.as_deref(), thrown.write().as_bytes())?;
         trash.forget_oldest();
         Ok(name.to_string())
     }
@@ -446,7 +447,7 @@ impl Library {
         let mut found = Vec::new();
         for name in folder::names(&self.folder)? {
             let what = match name.to_str() {
-                Some(".lock" | COMMANDS | RECOGNISED_SET | FORMS) => continue,
+                Some(LOCK | COMMANDS | RECOGNISED_SET | FORMS) => continue,
                 Some(inner @ (TRASH | JOURNAL)) => match InnerFolder::of(&self.folder, inner) {
                     Ok(_) => continue,
                     Err(_) => "a symbolic link, which is not followed",
@@ -475,6 +476,12 @@ impl Library {
         found.sort();
         Ok(found)
     }
+}
+
+/// Returns the temporary path that the holder of the library's lock uses in a folder; None on a file system without
+/// locks, where another program may be writing too.
+fn temporary_in(folder: &Path, lock: Option<&Lock>) -> Option<PathBuf> {
+    lock.map(|_| folder.join(TEMPORARY))
 }
 
 /// Returns the name of the shape in a file with this name; None if it is not `NAME.json`.

@@ -13,6 +13,9 @@ use crate::storage::error::{FileError, LibraryError};
 use crate::storage::file_id::FileId;
 use crate::storage::folder::regular;
 
+/// The name of a folder's lock.
+pub(crate) const LOCK: &str = ".lock";
+
 /// The time that a writer waits for another program. Writing takes milliseconds, unless that program is stopped.
 const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -132,7 +135,7 @@ fn is_unsupported(error: &io::Error) -> bool {
 
 /// Returns the path of a folder's lock.
 pub(crate) fn path_in(folder: &Path) -> PathBuf {
-    folder.join(".lock")
+    folder.join(LOCK)
 }
 
 /// Opens the lock's file, and makes it if it does not exist, for all who may write in its folder. A file that another
