@@ -1,8 +1,10 @@
-//! The errors of files and of a library: which file, which operation, what was expected.
+//! The errors of files, of archives and of a library: which file, which operation, what was expected.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "sweep")]
+use crate::formats::ArchiveError;
 #[cfg(feature = "library")]
 use crate::formats::name::NameError;
 #[cfg(feature = "library")]
@@ -79,6 +81,54 @@ impl FileError {
         } else {
             self.error
         }
+    }
+}
+
+/// The error for a file of a sweep or a model that cannot be written or read.
+#[cfg(feature = "sweep")]
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[error("{name}: {error}")]
+pub struct ArchiveFileError {
+    /// The file's name.
+    pub name: String,
+    /// The problem.
+    pub error: ArchiveError,
+}
+
+#[cfg(feature = "sweep")]
+impl From<FileError> for ArchiveFileError {
+    /// Converts the error of a file or folder that is written.
+    fn from(error: FileError) -> Self {
+        let path = error.path.clone();
+        Self::doing("write", &path, &error.into_io())
+    }
+}
+
+#[cfg(feature = "sweep")]
+impl ArchiveFileError {
+    /// Creates an error about a file.
+    pub(crate) fn new(path: &Path, error: impl Into<ArchiveError>) -> Self {
+        Self {
+            name: path.to_string_lossy().into_owned(),
+            error: error.into(),
+        }
+    }
+
+    /// Creates the error for an operation that the system refused, in words that follow "cannot".
+    pub(crate) fn doing(doing: &str, path: &Path, error: &io::Error) -> Self {
+        let text = format!("cannot {doing}: {error}");
+        Self::new(path, io::Error::new(error.kind(), text))
+    }
+
+    /// Returns true if there is no such file.
+    pub fn is_missing(&self) -> bool {
+        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::NotFound)
+    }
+
+    /// Returns true if a file of that name is there already, and was to be kept.
+    pub fn exists(&self) -> bool {
+        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
     }
 }
 

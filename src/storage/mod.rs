@@ -31,6 +31,9 @@ mod atomic_file;
 
 mod temporary;
 
+#[cfg(feature = "tui")]
+mod scratch_folder;
+
 #[cfg(feature = "library")]
 pub mod location;
 
@@ -84,7 +87,7 @@ pub(crate) use atomic_file::persist_beside;
 pub use error::FileError;
 
 #[cfg(feature = "tui")]
-pub(crate) use temporary::ScratchFolder;
+pub(crate) use scratch_folder::ScratchFolder;
 
 #[cfg(feature = "library")]
 pub use error::LibraryError;
@@ -102,9 +105,10 @@ pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin};
 pub use trash::TRASH_KEPT;
 
 #[cfg(feature = "sweep")]
-pub use sweep_file::{
-    ArchiveFileError, AtlasEndingError, AtlasFile, PoseFile, is_poses, load_atlas, open_archive,
-};
+pub use error::ArchiveFileError;
+
+#[cfg(feature = "sweep")]
+pub use sweep_file::{AtlasEndingError, AtlasFile, PoseFile, is_poses, load_atlas, open_archive};
 
 #[cfg(all(feature = "recognition", feature = "library"))]
 pub use models::{

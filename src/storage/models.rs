@@ -19,10 +19,10 @@ use crate::formats::byte_order_mark::without_mark;
 use crate::formats::{ArchiveError, Name, read_model, write_model};
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
-use crate::storage::error::LibraryError;
+use crate::storage::error::{ArchiveFileError, LibraryError};
 use crate::storage::first_error::FirstErrorWriter;
 use crate::storage::folder;
-use crate::storage::sweep_file::{ArchiveFileError, open_archive};
+use crate::storage::sweep_file::open_archive;
 use crate::sweep::Shard;
 
 /// The ending of a model's file.

@@ -13,54 +13,9 @@ use crate::formats::npy::Dtype;
 use crate::formats::{ArchiveError, archive, npy};
 use crate::pose::PoseGrid;
 use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
-use crate::storage::error::FileError;
+use crate::storage::error::ArchiveFileError;
 use crate::storage::first_error::FirstErrorWriter;
 use crate::sweep::SweepResult;
-
-/// The error for a file of a sweep or a model that cannot be written or read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-#[error("{name}: {error}")]
-pub struct ArchiveFileError {
-    /// The file's name.
-    pub name: String,
-    /// The problem.
-    pub error: ArchiveError,
-}
-
-impl From<FileError> for ArchiveFileError {
-    /// Converts the error of a file or folder that is written.
-    fn from(error: FileError) -> Self {
-        let path = error.path.clone();
-        Self::doing("write", &path, &error.into_io())
-    }
-}
-
-impl ArchiveFileError {
-    /// Creates an error about a file.
-    pub(crate) fn new(path: &Path, error: impl Into<ArchiveError>) -> Self {
-        Self {
-            name: path.to_string_lossy().into_owned(),
-            error: error.into(),
-        }
-    }
-
-    /// Creates the error for an operation that the system refused, in words that follow "cannot".
-    pub(crate) fn doing(doing: &str, path: &Path, error: &io::Error) -> Self {
-        let text = format!("cannot {doing}: {error}");
-        Self::new(path, io::Error::new(error.kind(), text))
-    }
-
-    /// Returns true if there is no such file.
-    pub fn is_missing(&self) -> bool {
-        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::NotFound)
-    }
-
-    /// Returns true if a file of that name exists and had to be kept.
-    pub fn exists(&self) -> bool {
-        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
-    }
-}
 
 /// The file for an atlas: its path and its format.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -16,8 +16,6 @@ use std::time::{Duration, Instant, SystemTime};
 use tempfile::{Builder, NamedTempFile, TempPath};
 
 use crate::storage::access::keep_access;
-#[cfg(feature = "tui")]
-use crate::storage::error::FileError;
 
 /// The beginning of the name of a temporary file.
 const PREFIX: &str = ".taxel-tmp-";
@@ -213,14 +211,14 @@ fn options(is_private: bool) -> OpenOptions {
 }
 
 /// Returns a builder of random names for temporary files.
-fn builder() -> Builder<'static, 'static> {
+pub(super) fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
     builder.prefix(PREFIX).rand_bytes(RANDOM);
     builder
 }
 
 /// Returns the system's own message, without the path that a library adds.
-fn plain(error: &io::Error) -> io::Error {
+pub(super) fn plain(error: &io::Error) -> io::Error {
     match error.raw_os_error() {
         Some(code) => io::Error::from_raw_os_error(code),
         None => error.kind().into(),
@@ -313,62 +311,6 @@ fn link(_: &File, _: &Path) -> io::Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
-/// A folder that only its owner can look into, removed when this is dropped. Its program holds the lock on the file
-/// [`SCRATCH_MARK`] in it: a folder whose lock is free was left by a program that died, and the next program removes
-/// it. A folder without this file is something else, and stays.
-#[cfg(feature = "tui")]
-#[derive(Debug)]
-pub(crate) struct ScratchFolder {
-    folder: tempfile::TempDir,
-    /// The file with the lock; closing it releases the lock.
-    _lock: File,
-}
-
-#[cfg(feature = "tui")]
-impl ScratchFolder {
-    /// Creates a folder where the system keeps temporary ones.
-    ///
-    /// # Errors
-    /// Returns the system's error.
-    pub(crate) fn new() -> io::Result<Self> {
-        Self::in_place(&std::env::temp_dir())
-    }
-
-    fn in_place(place: &Path) -> io::Result<Self> {
-        for path in temporaries(place) {
-            if path.is_dir() && is_left_over(&path.join(SCRATCH_MARK)).unwrap_or(false) {
-                let _ = fs::remove_dir_all(path);
-            }
-        }
-        let mut builder = builder();
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
-        // The message names the folder that the user can change, not the temporary one.
-        let refuse = |error: io::Error| {
-            let doing = "make a folder for temporary files";
-            let refused = FileError::new(doing, place, plain(&error));
-            io::Error::new(refused.error.kind(), refused.to_string())
-        };
-        place.metadata().map_err(refuse)?;
-        let folder = builder.tempdir_in(place).map_err(refuse)?;
-        let lock = File::create(folder.path().join(SCRATCH_MARK))?;
-        let _ = lock.try_lock();
-        Ok(Self {
-            folder,
-            _lock: lock,
-        })
-    }
-
-    /// Returns the path of the folder.
-    pub(crate) fn path(&self) -> &Path {
-        self.folder.path()
-    }
-}
-
-/// The name of the file in a temporary folder on which its program holds a lock. No library has such a file.
-#[cfg(feature = "tui")]
-const SCRATCH_MARK: &str = ".taxel-scratch";
-
 /// Removes the temporary files that programs have left in a folder when they died. What cannot be removed stays.
 ///
 /// A folder is searched once a minute at most, since a program may write thousands of files into it.
@@ -396,7 +338,7 @@ fn was_searched(folder: &Path) -> bool {
 }
 
 /// Iterates over the paths in a folder that are named like something temporary.
-fn temporaries(folder: &Path) -> impl Iterator<Item = PathBuf> {
+pub(super) fn temporaries(folder: &Path) -> impl Iterator<Item = PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let named = entries.filter(|entry| entry.file_name().to_str().is_some_and(is_temporary));
     named.map(|entry| entry.path())
@@ -411,7 +353,7 @@ pub(crate) fn is_temporary(name: &str) -> bool {
 }
 
 /// Returns true if the program that held the lock of a regular file has died.
-fn is_left_over(path: &Path) -> io::Result<bool> {
+pub(super) fn is_left_over(path: &Path) -> io::Result<bool> {
     let found = path.symlink_metadata()?;
     if !found.file_type().is_file() {
         return Ok(false);
@@ -475,43 +417,6 @@ mod tests {
         aged(folder.path(), later, hour);
         drop(TemporaryFile::new(folder.path(), false).expect("made"));
         assert!(folder.path().join(later).exists());
-    }
-
-    /// A library has a lock, too, and perhaps a name like that of a temporary folder.
-    #[cfg(feature = "tui")]
-    #[test]
-    fn a_library_is_not_taken_for_a_scratch_folder() {
-        let place = tempfile::tempdir().expect("a folder");
-        for name in [".taxel-shapes", ".taxel-tmp-AbC123AbC123AbC1"] {
-            let library = place.path().join(name);
-            fs::create_dir(&library).expect("made");
-            aged(&library, ".lock", Duration::from_secs(3600));
-            drop(ScratchFolder::in_place(place.path()).expect("made"));
-            assert!(library.exists(), "{name}");
-        }
-    }
-
-    #[cfg(all(unix, feature = "tui"))]
-    #[test]
-    fn only_its_owner_can_look_into_a_scratch_folder() {
-        use std::os::unix::fs::PermissionsExt;
-        let folder = ScratchFolder::new().expect("made");
-        let path = folder.path().to_owned();
-        let mode = path.metadata().expect("there").permissions().mode();
-        assert_eq!(mode & 0o777, 0o700);
-        drop(folder);
-        assert!(!path.exists());
-    }
-
-    #[cfg(feature = "tui")]
-    #[test]
-    fn a_missing_folder_for_temporary_files_is_named() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let place = folder.path().join("missing");
-        let refused = ScratchFolder::in_place(&place).expect_err("refused");
-        let expected = format!("{}: cannot make a folder", place.display());
-        assert!(refused.to_string().starts_with(&expected), "{refused}");
-        assert!(!refused.to_string().contains(PREFIX), "{refused}");
     }
 
     #[cfg(unix)]
