@@ -104,7 +104,7 @@ fn a_source_from_which_no_frame_came_says_why() {
 }
 
 #[test]
-fn an_unreadable_source_opens_no_page() {
+fn an_unreadable_source_or_a_missing_model_opens_no_page() {
     let keys = ":watch nowhere.csv<Enter>";
     shows(
         keys,
@@ -116,6 +116,15 @@ fn an_unreadable_source_opens_no_page() {
         keys,
         &["! tcp://robot: cannot open it: expected tcp://HOST"],
     );
+    let keys = ":watch tests/scripts/touch.csv --model nope<Enter>".replace(' ', "<Space>");
+    shows(
+        &keys,
+        &[
+            "! no model or file \"nope\"; there are figures",
+            ":watch tests",
+        ],
+    );
+    hides(&keys, &["no frame yet"]);
     // The open page remains.
     let mut page = watched(2, "");
     let refused = page.watch("nowhere.csv");

@@ -4,16 +4,18 @@
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::acquire::FrameSource;
 use crate::formats::recording::may_be_recording;
 use crate::formats::{Content, imprint_file, read_content};
-use crate::storage::{Existing, FinishedFile, location};
+use crate::storage::{Existing, FinishedFile, ModelChoice, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::frames::source;
+use crate::tui::runtime::work::models::ModelStore;
 
 /// The largest size of a file that is opened, in bytes. One byte more is read at most, and the file is refused then.
 const MOST: u64 = imprint_file::MAX_BYTES as u64;
@@ -22,7 +24,11 @@ const MOST: u64 = imprint_file::MAX_BYTES as u64;
 const MOST_PATHS: usize = 500;
 
 /// Performs a request.
-pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> FileEvent {
+pub(in crate::tui::runtime) fn perform(
+    request: FileRequest,
+    models: &ModelStore,
+    access: &WriteAccess,
+) -> FileEvent {
     match request {
         FileRequest::Open(name) => match open(&name) {
             Ok(file) => FileEvent::Opened(name, file),
@@ -32,19 +38,32 @@ pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> Fil
             Ok(path) => write(&path, name, content, existing),
             Err(refused) => FileEvent::Failed(refused),
         },
-        FileRequest::Source(request) => {
-            let source = source::readable(&request.source, access);
-            let checked = source.and_then(|source| {
-                refuse_baud(&source, &request)?;
-                refuse_imprint(&source, &request)
-            });
-            match checked {
-                Ok(()) => FileEvent::Source(request),
-                Err(refused) => FileEvent::Failed(refused),
-            }
-        }
+        FileRequest::Source(request) => match watchable(request, models, access) {
+            Ok(request) => FileEvent::Source(request),
+            Err(refused) => FileEvent::Failed(refused),
+        },
         FileRequest::Paths(start) => FileEvent::Paths(paths(&start)),
     }
+}
+
+/// Returns the request to watch a source, with the file of its model if the model is not a stored one.
+///
+/// # Errors
+/// Returns a sentence if the source cannot be watched like this, or if there is no such model.
+fn watchable(
+    mut request: Arc<WatchRequest>,
+    models: &ModelStore,
+    access: &WriteAccess,
+) -> Result<Arc<WatchRequest>, String> {
+    let source = source::readable(&request.source, access)?;
+    refuse_baud(&source, &request)?;
+    refuse_imprint(&source, &request)?;
+    if let Some(choice) = request.model.clone().filter(ModelChoice::is_read) {
+        let choice = models.located(choice);
+        models.file(&choice)?;
+        Arc::make_mut(&mut request).model = Some(choice);
+    }
+    Ok(request)
 }
 
 /// Refuses bits per second for a source that is no serial line.

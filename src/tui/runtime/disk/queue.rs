@@ -133,7 +133,10 @@ impl DiskRequest {
         match self {
             Self::Library(request) => answer(library, request),
             Self::ThrowAway(orphan) => throw_away(library, *orphan),
-            Self::File(request) => DiskAnswer::File(files::perform(request, access)),
+            Self::File(request) => {
+                let models = ModelStore::beside(library);
+                DiskAnswer::File(files::perform(request, &models, access))
+            }
             Self::Remember(file, lines) => {
                 file.write(&lines);
                 DiskAnswer::Nothing

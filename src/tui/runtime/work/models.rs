@@ -9,6 +9,7 @@
 //! folder beside the library, any other from its file. Training goes on while a sweep begins, and stops only on
 //! request.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -68,7 +69,7 @@ impl ModelStore {
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<Model, String> {
         let Some(training) = choice.training() else {
-            return self.read(choice);
+            return load_whole_model(&self.file(choice)?).map_err(|error| error.to_string());
         };
         let training = training.map_err(|error| error.to_string())?;
         cached_or_trained(self.cache.as_ref(), training, |training| {
@@ -103,30 +104,31 @@ impl ModelStore {
         }
     }
 
-    /// Reads a model from its file.
-    fn read(&self, choice: &ModelChoice) -> Result<Model, String> {
+    /// Returns the file that a model is read from.
+    ///
+    /// # Errors
+    /// Returns a sentence if there is no such file, or if it is not a regular one.
+    pub(in crate::tui::runtime) fn file(&self, choice: &ModelChoice) -> Result<PathBuf, String> {
         let name = match choice {
             ModelChoice::File(path) => path.to_string_lossy().into_owned(),
             choice => choice.name().to_owned(),
         };
         let path = self.path(choice);
         let path = path.ok_or_else(|| format!("there is no model {name}"))?;
-        // Opening a pipe waits, and opening a serial line may reset its device.
-        if path.metadata().is_ok_and(|kind| !kind.is_file()) {
-            return Err(format!("{}: not a regular file", shortened(&name)));
-        }
-        load_whole_model(&path).map_err(|error| {
-            if error.is_missing() {
-                unknown_set(&name, &self.names())
-            } else {
-                error.to_string()
+        match path.metadata() {
+            // Opening a pipe waits, and opening a serial line may reset its device.
+            Ok(kind) if !kind.is_file() => Err(format!("{}: not a regular file", shortened(&name))),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                Err(unknown_set(&name, &self.names()))
             }
-        })
+            // Reading it reports any other error.
+            _ => Ok(path),
+        }
     }
 
     /// Resolves a choice: as on the command line, a name that no model has may be the name of a file in the working
     /// folder.
-    fn located(&self, choice: ModelChoice) -> ModelChoice {
+    pub(in crate::tui::runtime) fn located(&self, choice: ModelChoice) -> ModelChoice {
         let ModelChoice::Stored(name) = &choice else {
             return choice;
         };
