@@ -86,6 +86,19 @@ fn a_model_that_cannot_be_read_does_not_block_the_next_one() {
     shows(&session, &["broken.npz: ", "Recognise: model shapes"]);
     press(&mut session, "o");
     shows(&session, &["Recognise: model my parts"]);
+    // On the live page, too, the model before it returns, and the next step goes past it.
+    press(
+        &mut session,
+        "<Esc>:watch tests/scripts/touch.csv<Enter>nnn",
+    );
+    session.frames(6);
+    press(&mut session, "+n");
+    shows(&session, &["! ", "broken.npz: ", "model      shapes"]);
+    press(&mut session, "n");
+    shows(
+        &session,
+        &["shapes are named by model my parts", "model      my parts"],
+    );
 }
 
 #[test]

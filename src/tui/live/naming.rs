@@ -108,54 +108,10 @@ impl Naming {
     }
 }
 
-/// Returns the next set of shapes to name imprints by: first the requested one, then the built-in ones, then the
-/// user's own models, then none.
-pub(super) fn next_choice(
-    asked: Option<&ModelChoice>,
-    own: Vec<ModelChoice>,
-    present: Option<&Naming>,
-) -> Option<ModelChoice> {
-    let others = ModelChoice::BUILT_IN.into_iter().chain(own);
-    let others = others.filter(|other| Some(other) != asked);
-    let mut all = asked.cloned().into_iter().chain(others);
-    match present {
-        None => all.next(),
-        Some(naming) => {
-            let present = &naming.request.choice;
-            all.skip_while(|own| own != present).nth(1)
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sensor::MatrixSize;
-
-    #[test]
-    fn the_next_set_may_be_a_model_of_the_user() {
-        let own = |name: &str| ModelChoice::from_text(name);
-        let asked = own("asked");
-        let all = || vec![own("asked"), own("other")];
-        let naming = |choice| {
-            Naming::new(NamingRequest {
-                number: 1,
-                choice,
-                noise: None,
-            })
-        };
-        let mut sets = Vec::new();
-        let mut next = next_choice(Some(&asked), all(), None);
-        while let Some(set) = next {
-            next = next_choice(Some(&asked), all(), Some(&naming(set.clone())));
-            sets.push(set);
-        }
-        let built_in = ModelChoice::BUILT_IN.to_vec();
-        assert_eq!(
-            sets,
-            [vec![own("asked")], built_in, vec![own("other")]].concat()
-        );
-    }
 
     #[test]
     fn one_imprint_is_asked_for_at_a_time_and_none_twice() {

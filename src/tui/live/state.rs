@@ -10,7 +10,7 @@ use crate::tui::live::cursor::{FrameCursor, ProvisionalOutcome};
 use crate::tui::live::display::LiveDisplay;
 use crate::tui::live::marks::FrameMarks;
 use crate::tui::live::message::{FeedStatus, FrameBatch, SourceGaps, SourceState};
-use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest, next_choice};
+use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
 use crate::tui::live::range::ShadeRange;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::recording_state::RecordingState;
@@ -18,6 +18,7 @@ use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::tare::{LiveTare, TareMark};
 use crate::tui::live::threshold;
+use crate::tui::widget::number::other;
 
 /// The maximum number of frames that a tare by key is made of.
 const TARED: usize = 30;
@@ -62,6 +63,10 @@ pub struct Live {
     marks: FrameMarks,
     /// The model that names imprints, and its last answer.
     naming: Option<Naming>,
+    /// The set that returns if the next one cannot be read; None if imprints were not named.
+    named_before: Option<ModelChoice>,
+    /// The set that could not be read last: the next step through the sets goes on from there.
+    unreadable: Option<ModelChoice>,
     /// Whether the names of the user's own models were asked for, to choose the next one.
     pub awaits_models: bool,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
@@ -90,6 +95,8 @@ impl Live {
             recording: RecordingState::default(),
             marks: FrameMarks::default(),
             naming: None,
+            named_before: request.model.clone(),
+            unreadable: None,
             awaits_models: false,
             reading: None,
             error: None,
@@ -291,9 +298,21 @@ impl Live {
 
     /// Names imprints by the next set of shapes: first the requested one, then the built-in ones, then the user's own
     /// models, then none. `number` is the number of this work.
-    pub fn next_model(&mut self, own: Vec<ModelChoice>, number: u64) {
-        let asked = self.request.model.as_ref();
-        let next = next_choice(asked, own, self.naming.as_ref());
+    pub fn next_model(&mut self, own: impl Iterator<Item = ModelChoice>, number: u64) {
+        let asked = self.request.model.clone();
+        let sets = ModelChoice::BUILT_IN.into_iter().chain(own);
+        let sets = sets.filter(|set| Some(set) != asked.as_ref()).map(Some);
+        let mut all: Vec<Option<ModelChoice>> = std::iter::once(None).chain(sets).collect();
+        if asked.is_some() {
+            all.insert(1, asked);
+        }
+        let chosen = self.naming_request().map(|naming| naming.choice.clone());
+        let failed = self.unreadable.take().map(Some);
+        let next = other(all, &chosen, failed.as_ref(), 1);
+        // A model in a file is sure to be readable only once it has named something.
+        if chosen.as_ref().is_none_or(|chosen| !chosen.is_read()) {
+            self.named_before = chosen;
+        }
         self.name_by(next, number);
     }
 
@@ -304,14 +323,33 @@ impl Live {
         self.naming.as_mut()?.ask(&imprint).then_some(imprint)
     }
 
-    /// Takes the answer of a model, or the reason why there is none. Answers of work of another number are dropped.
-    pub fn take_name(&mut self, number: u64, named: Result<NamedImprint, String>) {
-        let naming = self.naming.as_mut();
-        if let Some(naming) = naming.filter(|naming| naming.request.number == number) {
-            match named {
-                Ok(named) => naming.take(named),
-                Err(reason) => naming.fail(reason),
-            }
+    /// Returns true if imprints are named by the work of this number.
+    pub fn is_named_by(&self, number: u64) -> bool {
+        self.naming_request()
+            .is_some_and(|request| request.number == number)
+    }
+
+    /// Takes the answer of a model. Answers of work of another number are dropped.
+    pub fn take_name(&mut self, number: u64, named: NamedImprint) {
+        if self.is_named_by(number)
+            && let Some(naming) = &mut self.naming
+        {
+            self.named_before = Some(naming.request.choice.clone());
+            naming.take(named);
+        }
+    }
+
+    /// Takes the reason why the model cannot be used. The set before it returns, as the work of this number; if there
+    /// was no other, the reason stays visible.
+    pub fn fail_name(&mut self, reason: &str, number: u64) {
+        let Some(naming) = &mut self.naming else {
+            return;
+        };
+        if self.named_before.as_ref() == Some(&naming.request.choice) {
+            naming.fail(reason.to_owned());
+        } else {
+            self.unreadable = Some(naming.request.choice.clone());
+            self.name_by(self.named_before.clone(), number);
         }
     }
 

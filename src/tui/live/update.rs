@@ -246,15 +246,32 @@ pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effe
     }
     app.works = number;
     let own = own.iter().map(|name| ModelChoice::from_text(name));
-    page.next_model(own.collect(), number);
-    let naming = page.naming_request().cloned().map(Box::new);
-    let source = page.number();
-    let text = match &naming {
+    page.next_model(own, number);
+    let effect = name_by(page);
+    let text = match page.naming_request() {
         Some(naming) => format!("shapes are named by {}", naming.choice),
         None => "shapes are not named".to_owned(),
     };
     inform(app, text);
-    Some(Effect::Frames(FrameWork::NameBy(source, naming)))
+    Some(effect)
+}
+
+/// Names the imprints of a page as it says.
+fn name_by(page: &Live) -> Effect {
+    let naming = page.naming_request().cloned().map(Box::new);
+    Effect::Frames(FrameWork::NameBy(page.number(), naming))
+}
+
+/// Handles a model that cannot be used: shows the reason, and names imprints by the model before it, if there was one.
+fn on_no_name(app: &mut App, source: u64, by: u64, reason: &str) -> Option<Effect> {
+    let next = app.works + 1;
+    let page = page(app).filter(|page| page.number() == source && !page.stopped());
+    let page = page.filter(|page| page.is_named_by(by))?;
+    page.fail_name(reason, next);
+    let returned = (!page.is_named_by(by)).then(|| name_by(page));
+    app.works = next;
+    refuse(app, reason);
+    returned
 }
 
 /// Shows taxels further in a direction, if not all are visible. The first time, a notice says how to see the contact
@@ -362,7 +379,16 @@ fn page(app: &mut App) -> Option<&mut Live> {
 
 /// Handles a report of the source. Reports of a source that is no longer watched are dropped, by their number; except
 /// reports of a finished recording, because a recording is finished after its source is left.
-pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
+pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) -> Option<Effect> {
+    if let LiveEvent::NotNamed(by, reason) = event {
+        return on_no_name(app, number, *by, reason);
+    }
+    on_frames(app, number, event);
+    None
+}
+
+/// Handles any other report of the source.
+fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
     match event {
         LiveEvent::Recorded(name, RecordedFrames { frames: 0, .. }) => {
             return inform(
@@ -391,14 +417,16 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
     );
     let error = page.error().cloned();
     match event {
-        LiveEvent::Waiting | LiveEvent::Recorded(..) | LiveEvent::NotFinished(_) => {}
+        LiveEvent::Waiting
+        | LiveEvent::NotNamed(..)
+        | LiveEvent::Recorded(..)
+        | LiveEvent::NotFinished(_) => {}
         LiveEvent::Arrived(batch) => page.take(batch),
         LiveEvent::Recording(name) => {
             page.set_recording(Some(name.clone()));
             return inform(app, format!("recording in {name}"));
         }
-        LiveEvent::Named(by, named) => page.take_name(*by, Ok((**named).clone())),
-        LiveEvent::NotNamed(by, reason) => page.take_name(*by, Err(reason.clone())),
+        LiveEvent::Named(by, named) => page.take_name(*by, (**named).clone()),
         LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
     }
     let now = (
@@ -423,6 +451,27 @@ mod tests {
     use crate::frame::Frame;
     use crate::frame::FrameSize;
     use crate::tui::live::message::FrameBatch;
+
+    #[test]
+    fn sets_are_the_requested_one_the_built_in_ones_the_own_ones_and_none() {
+        let own = ["asked", "other"].map(ModelChoice::from_text);
+        let mut request = WatchRequest::new("none");
+        request.model = Some(own[0].clone());
+        let mut page = Live::new(Arc::new(request), 1);
+        let mut sets = Vec::new();
+        while let Some(naming) = page.naming_request().cloned() {
+            sets.push(naming.choice);
+            page.next_model(own.clone().into_iter(), naming.number + 1);
+        }
+        let [asked, other] = own;
+        let built_in = ModelChoice::BUILT_IN.to_vec();
+        assert_eq!(sets, [vec![asked.clone()], built_in, vec![other]].concat());
+        page.next_model(std::iter::once(asked.clone()), 9);
+        assert_eq!(
+            page.naming_request().map(|naming| &naming.choice),
+            Some(&asked)
+        );
+    }
 
     #[test]
     fn a_threshold_set_by_key_still_drops_small_pieces() {

@@ -15,7 +15,7 @@ use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, Prepared, RecogniseMessage};
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::widget::number::around;
+use crate::tui::widget::number::other;
 
 /// The state of the chosen set's model.
 #[derive(Clone, Debug)]
@@ -196,20 +196,9 @@ impl Recognition {
     /// Returns the set `by` places after the chosen one, or after one that could not be read since; after the last set
     /// comes the first.
     pub fn other(&self, by: i8) -> ModelChoice {
-        let present = self.unreadable.as_ref().unwrap_or(&self.choice);
         let stored = self.stored.iter().cloned().map(ModelChoice::Stored);
-        let mut all: Vec<ModelChoice> = ModelChoice::BUILT_IN.into_iter().chain(stored).collect();
-        // A stored model that has been deleted comes after all others.
-        if !all.contains(present) {
-            all.push(present.clone());
-        }
-        let before = all.iter().take_while(|choice| *choice != present);
-        let mut next = around(before.count(), by, all.len());
-        // The chosen set is there already: a step from one that could not be read goes past it.
-        if all[next] == self.choice && *present != self.choice {
-            next = around(next, by, all.len());
-        }
-        all.swap_remove(next)
+        let all = ModelChoice::BUILT_IN.into_iter().chain(stored).collect();
+        other(all, &self.choice, self.unreadable.as_ref(), by)
     }
 
     /// Chooses a set, whose model is prepared by the work with this number. Kept touches stay, so that sets can be
