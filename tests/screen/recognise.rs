@@ -378,9 +378,24 @@ fn escape_stops_a_training_and_enter_restarts_it() {
 }
 
 #[test]
+fn keys_that_need_a_model_wait_for_it() {
+    for (key, text) in [
+        ("v", "Confusion: "),
+        ("V", "Separate: "),
+        ("t", "Which shape is this?"),
+        ("P", "the poses are still being searched for"),
+    ] {
+        let mut program = Beside::new(&format!("f<Enter>r{key}"));
+        shows(&program.session, &["a model is prepared first"]);
+        program.until(text);
+        hides(&program.session, &["prepared first"]);
+    }
+}
+
+#[test]
 fn a_notice_that_the_model_is_not_ready_goes_when_it_is() {
-    let mut program = Beside::new("f<Enter>:recognise shapes<Enter>t");
-    shows(&program.session, &["! the model is not ready yet"]);
+    let mut program = Beside::new("r<Enter>");
+    shows(&program.session, &["the model is not ready yet"]);
     program.until("the model is ready");
     hides(&program.session, &["not ready"]);
 }

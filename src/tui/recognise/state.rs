@@ -39,9 +39,7 @@ pub struct Preparation {
     pub done: u64,
     /// Whether a stop was requested.
     pub stopping: bool,
-    /// Whether the user has asked for something that needs the model.
-    awaited: bool,
-    /// The request that opened the page, and is carried out once there is a model.
+    /// The request that is carried out once there is a model.
     request: Option<RecogniseMessage>,
     /// The model of the same set so far, which stays if the user gives up reading it again.
     known: Option<Arc<TrainedModel>>,
@@ -229,7 +227,6 @@ impl Recognition {
             poses: None,
             done: 0,
             stopping: false,
-            awaited: false,
             request: None,
             known,
             opened,
@@ -271,22 +268,14 @@ impl Recognition {
         }
     }
 
-    /// Records that the user has asked for something that needs the model. Returns false if the model is not on its
-    /// way.
-    pub fn await_model(&mut self) -> bool {
+    /// Records a request that is carried out once the model that is being prepared is ready. Returns false if none is.
+    pub fn request_later(&mut self, request: RecogniseMessage) -> bool {
         match &mut self.state {
             ModelState::Preparing(preparation) => {
-                preparation.awaited = true;
+                preparation.request = Some(request);
                 true
             }
             _ => false,
-        }
-    }
-
-    /// Records a request that is carried out once the model that is being prepared is ready.
-    pub fn request_later(&mut self, request: RecogniseMessage) {
-        if let ModelState::Preparing(preparation) = &mut self.state {
-            preparation.request = Some(request);
         }
     }
 
@@ -300,11 +289,6 @@ impl Recognition {
     /// Takes the request that waits for the model of the work with this number.
     pub fn take_request(&mut self, number: u64) -> Option<RecogniseMessage> {
         self.preparation(number)?.request.take()
-    }
-
-    /// Returns true if the user has asked for something that needs the model, which is on its way.
-    pub fn is_awaited(&self) -> bool {
-        matches!(&self.state, ModelState::Preparing(preparation) if preparation.awaited)
     }
 
     /// Records that the work with this number is no longer waited for.

@@ -22,6 +22,7 @@ use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
 use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::state::{ModelState, NoModel, Recognition, SearchStep};
+use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::effect::{Effect, Work};
 
 /// Opens the page for a request. What needs a model waits for it.
@@ -38,8 +39,7 @@ fn open_for(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
         }
         RecogniseMessage::Keep | RecogniseMessage::Forget => act(app, asked).or(effect),
         asked if effect.is_some() => {
-            inform(app, "a model is prepared first");
-            state(app)?.request_later(asked);
+            wait_for_model(app, asked);
             effect
         }
         asked => act(app, asked),
@@ -51,6 +51,17 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
     // A command may come while the page is closed; its result must be visible.
     if app.recognition.is_some() && !matches!(asked, RecogniseMessage::Seed(_)) {
         return open_for(app, asked);
+    }
+    let needs_model = matches!(
+        asked,
+        RecogniseMessage::Touch
+            | RecogniseMessage::Confusion
+            | RecogniseMessage::Separate(_)
+            | RecogniseMessage::Poses
+    );
+    if needs_model && state(app)?.trained().is_none() {
+        wait_for_model(app, asked);
+        return None;
     }
     match asked {
         RecogniseMessage::Open => open(app, None),
@@ -123,27 +134,26 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     Some(Effect::Work(Work::Prepare(number, choice, known)))
 }
 
-/// Opens the confusion matrix of the model; without a model, it says that there is none.
-fn open_confusion(app: &mut App) {
-    let Some(page) = state(app) else { return };
-    match page.trained() {
-        Some(trained) => {
-            let page = Confusion::new(Arc::clone(trained));
-            app.dialogs.push(Dialog::Confusion(Box::new(page)));
-        }
-        None => not_trained(app),
+/// Carries out a request once the model that is being prepared is ready; refuses it if none is.
+fn wait_for_model(app: &mut App, asked: RecogniseMessage) {
+    if state(app).is_some_and(|page| page.request_later(asked)) {
+        inform(app, "a model is prepared first");
+    } else {
+        refuse(app, "the model is not prepared yet");
     }
 }
 
-/// Shows that the confusion matrix, the sizes or a quiz needs a model.
-fn not_trained(app: &mut App) {
-    let is_coming = state(app).is_some_and(Recognition::await_model);
-    let text = ["the model is not prepared yet", NOT_READY][usize::from(is_coming)];
-    refuse(app, text);
+/// Returns the model, once it is ready.
+fn trained(app: &mut App) -> Option<Arc<TrainedModel>> {
+    state(app)?.trained().cloned()
 }
 
-/// The notice while a model is being trained or read.
-const NOT_READY: &str = "the model is not ready yet";
+/// Opens the confusion matrix of the model.
+fn open_confusion(app: &mut App) {
+    let Some(trained) = trained(app) else { return };
+    let page = Box::new(Confusion::new(trained));
+    app.dialogs.push(Dialog::Confusion(page));
+}
 
 /// Hides the outlines of poses if they are visible, otherwise shows them. At first the size of the taxels decides, so
 /// this depends on what is visible, not on the setting.
@@ -153,9 +163,6 @@ fn show_poses(app: &mut App) {
     let (imprint, source) = (app.reading().imprint, app.shown().source.clone());
     let Some(page) = state(app) else { return };
     page.show(imprint, source.as_ref());
-    if page.trained().is_none() {
-        return not_trained(app);
-    }
     let seen = Layers::shown(page.outlines(), &grid);
     page.show_outlines(!seen);
     let text = match page.found() {
@@ -175,10 +182,8 @@ fn show_poses(app: &mut App) {
 
 /// Begins a quiz. Kept touches are forgotten: they were of another shape, and the answer is about one shape only.
 fn touch(app: &mut App) {
+    let Some(trained) = trained(app) else { return };
     let Some(page) = state(app) else { return };
-    let Some(trained) = page.trained().cloned() else {
-        return not_trained(app);
-    };
     page.forget();
     let quiz = Quiz::new(trained, &mut page.random);
     touch_again(app, quiz);
@@ -198,9 +203,8 @@ fn touch_again(app: &mut App, mut quiz: Quiz) {
 
 /// Opens the page of sizes.
 fn separate(app: &mut App, flags: &SeparationFlags) {
-    match state(app).and_then(|page| page.trained().cloned()) {
-        Some(trained) => separate::update::open(app, flags.request(trained)),
-        None => not_trained(app),
+    if let Some(trained) = trained(app) {
+        separate::update::open(app, flags.request(trained));
     }
 }
 
@@ -262,8 +266,8 @@ fn prepare_again(app: &mut App) -> Option<Effect> {
     let text = match page.state() {
         ModelState::Missing => return open(app, None),
         ModelState::Preparing(_) => {
-            page.await_model();
-            NOT_READY
+            page.request_later(RecogniseMessage::Open);
+            "the model is not ready yet"
         }
         ModelState::Ready(_) => "the model is ready: nothing was stopped",
     };
@@ -375,18 +379,15 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Optio
             inform(app, format!("{what}: stopped waiting"));
         }
         RecognitionEvent::Prepared(prepared) => {
-            let was_awaited = page.is_awaited();
             let request = page.take_request(prepared.number);
             let failed = page.take_model(*prepared);
             if failed.is_some() {
                 return without_model(app, failed);
             }
-            let request = request.filter(|_| has_keys);
+            let request = request.filter(|_| has_keys)?;
             // A notice that it is not ready, or is prepared first, would be wrong now.
-            if was_awaited || request.is_some() {
-                inform(app, "the model is ready");
-            }
-            return request.and_then(|request| act(app, request));
+            inform(app, "the model is ready");
+            return act(app, request);
         }
         RecognitionEvent::Searched(number, found) => {
             if let Some(reason) = page.take_result(number, found) {
