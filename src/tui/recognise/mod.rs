@@ -1,16 +1,17 @@
 //! Recognise: names the shape on the matrix from one or several touches, and shows how far the name can be trusted.
 //!
 //! ```text
-//! trained     a model, how well it tells its shapes apart, and examples
-//! confused    pairs of shapes that are confused, with an imprint
-//! message     what keys ask for, and what the worker reports
-//! state       the set, its model, the touches, the answer
-//! view        the panel beside the matrix: shapes with bars, the nearest imprint, the pose
-//! update      what messages do; the answer follows the matrix
-//! quiz        a random touch to name, and the score
-//! confusion   which shapes are taken for which, with an imprint that two share
-//! separate    the limit of the set against the size of its shapes
-//! reach       the state wherever it is; imprints onto the matrix
+//! trained        a model, how well it tells its shapes apart, and examples
+//! confused       pairs of shapes that are confused, with an imprint
+//! message        what keys ask for, and what the worker reports
+//! pose_searches  which search for poses is needed, in progress, or done
+//! state          the set, its model, the touches, the answer
+//! view           the panel beside the matrix: shapes with bars, the nearest imprint, the pose
+//! update         what messages do; the answer follows the matrix
+//! quiz           a random touch to name, and the score
+//! confusion      which shapes are taken for which, with an imprint that two share
+//! separate       the limit of the set against the size of its shapes
+//! reach          the state wherever it is; imprints onto the matrix
 //! ```
 
 pub mod trained;
@@ -18,6 +19,8 @@ pub mod trained;
 pub mod confused;
 
 pub mod message;
+
+pub mod pose_searches;
 
 pub mod state;
 

@@ -13,6 +13,7 @@ use crate::source::Source;
 use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, Prepared, RecogniseMessage};
+use crate::tui::recognise::pose_searches::{PoseSearches, SearchStep};
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::other;
@@ -84,27 +85,6 @@ pub struct Score {
     pub best: u32,
 }
 
-/// A search in progress.
-#[derive(Clone, Debug)]
-struct RunningSearch {
-    /// The number of the piece of work.
-    number: u64,
-    /// The model and the imprint to search for.
-    search: PoseSearch,
-    /// Whether a stop was requested; then its result is dropped.
-    stopping: bool,
-}
-
-/// The next step for the search that the page needs.
-#[derive(Clone, Debug)]
-pub enum SearchStep {
-    /// Begin the search.
-    Begin(Box<PoseSearch>),
-    /// Stop the search in progress, which is for something else. The next one begins after that one has ended, so
-    /// that there are never two.
-    Stop,
-}
-
 /// The state of the page.
 #[derive(Clone, Debug)]
 pub struct Recognition {
@@ -130,10 +110,8 @@ pub struct Recognition {
     present_kept: bool,
     /// The answer about all touches; None without a model or a touch.
     answer: Option<Answer>,
-    /// The last search and its result; None if it failed.
-    searched: Option<(PoseSearch, Option<Box<PoseSearchResult>>)>,
-    /// The search in progress.
-    running: Option<RunningSearch>,
+    /// The searches for the poses that may have left the imprint on the matrix.
+    searches: PoseSearches,
     /// Whether outlines of poses are shown; None shows them if taxels are large.
     outlines: Option<bool>,
     /// The page of sizes, while it is closed.
@@ -159,8 +137,7 @@ impl Recognition {
             kept_source: None,
             present_kept: false,
             answer: None,
-            searched: None,
-            running: None,
+            searches: PoseSearches::default(),
             outlines: None,
             separate: None,
             score: Score::default(),
@@ -218,7 +195,7 @@ impl Recognition {
                 preparing,
                 score: std::mem::take(&mut self.score),
             };
-            self.searched = None;
+            self.searches.forget_result();
             before = before.or_else(|| Some(Box::new(set)));
         }
         before = before.filter(|_| self.choice.is_read());
@@ -232,7 +209,7 @@ impl Recognition {
             opened,
             before,
         });
-        self.running = None;
+        self.searches.forget_running();
         self.ask();
     }
 
@@ -381,15 +358,12 @@ impl Recognition {
     /// Returns the result of the search for the imprint on the matrix, once it is known. Keeping or forgetting
     /// touches may change the name; then a new search for its poses begins.
     pub fn found(&self) -> Option<&PoseSearchResult> {
-        let (search, found) = self.searched.as_ref()?;
-        let is_present = self.search().as_ref() == Some(search);
-        found.as_deref().filter(|_| is_present)
+        self.searches.found(self.search().as_ref())
     }
 
     /// Returns true if poses are searched for, or will be after this message.
     pub fn is_searching(&self) -> bool {
-        let searched = self.searched.as_ref().map(|(search, _)| search);
-        self.running.is_some() || searched != self.search().as_ref()
+        self.searches.is_searching(self.search().as_ref())
     }
 
     /// Returns the search that the page needs; None without a model or a touch.
@@ -474,29 +448,13 @@ impl Recognition {
     /// Returns the next step for the search that the page needs, and records it; None if there is nothing to do. A
     /// search that begins gets this number.
     pub fn step_search(&mut self, number: u64) -> Option<SearchStep> {
-        let search = self.search();
-        if let Some(running) = &self.running {
-            let is_needed = search.as_ref() == Some(&running.search);
-            return (!is_needed && self.stop_search()).then_some(SearchStep::Stop);
-        }
-        let search = search?;
-        // A search that failed is not begun again.
-        if (self.searched.as_ref()).is_some_and(|(searched, _)| *searched == search) {
-            return None;
-        }
-        self.running = Some(RunningSearch {
-            number,
-            search: search.clone(),
-            stopping: false,
-        });
-        Some(SearchStep::Begin(Box::new(search)))
+        self.searches.step(self.search(), number)
     }
 
     /// Requests that the search in progress stops; returns false if there is none, or if a stop was requested
     /// already.
     pub fn stop_search(&mut self) -> bool {
-        let running = self.running.as_mut();
-        running.is_some_and(|running| !std::mem::replace(&mut running.stopping, true))
+        self.searches.stop()
     }
 
     /// Returns whether outlines of poses are shown; None shows them if taxels are large.
@@ -516,14 +474,7 @@ impl Recognition {
         number: u64,
         found: Result<Box<PoseSearchResult>, String>,
     ) -> Option<String> {
-        let running = self.running.take_if(|running| running.number == number);
-        let running = running.filter(|running| !running.stopping)?;
-        let refused = match &found {
-            Ok(found) => found.refused.clone(),
-            Err(reason) => Some(reason.clone()),
-        };
-        self.searched = Some((running.search, found.ok()));
-        refused
+        self.searches.take_result(number, found)
     }
 }
 
@@ -625,35 +576,5 @@ mod tests {
         assert!(page.add_touch());
         with_model(&mut page, ModelChoice::Shipped, 2);
         assert_eq!(page.touches(), [touch()]);
-    }
-
-    #[test]
-    fn a_search_for_another_imprint_is_stopped_before_the_next_begins() {
-        let mut page = Recognition::new(0);
-        page.show(touch(), None);
-        with_model(&mut page, ModelChoice::Figures, 1);
-        assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
-        let mut other = touch();
-        other.set(0, 0, true);
-        page.show(other, None);
-        assert!(matches!(page.step_search(3), Some(SearchStep::Stop)));
-        assert!(page.step_search(3).is_none(), "it was stopped");
-        // The result of a stopped search is incomplete, even if the same imprint is on the matrix again.
-        page.show(touch(), None);
-        assert_eq!(page.take_result(2, Ok(found())), None);
-        assert!(page.found().is_none());
-        assert!(matches!(page.step_search(3), Some(SearchStep::Begin(_))));
-    }
-
-    #[test]
-    fn a_failed_search_gives_its_reason_and_is_not_repeated() {
-        let mut page = Recognition::new(0);
-        page.show(touch(), None);
-        with_model(&mut page, ModelChoice::Figures, 1);
-        assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
-        let failed = page.take_result(2, Err("no thread".to_owned()));
-        assert_eq!(failed.as_deref(), Some("no thread"));
-        assert!(page.found().is_none(), "nothing is known of the imprint");
-        assert!(page.step_search(3).is_none());
     }
 }

@@ -17,11 +17,12 @@ use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::message::{RecogniseMessage, RecognitionEvent};
+use crate::tui::recognise::pose_searches::SearchStep;
 use crate::tui::recognise::quiz::Quiz;
 use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
 use crate::tui::recognise::separate::request::SeparationFlags;
-use crate::tui::recognise::state::{ModelState, NoModel, Recognition, SearchStep};
+use crate::tui::recognise::state::{ModelState, NoModel, Recognition};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::effect::{Effect, Work};
 
