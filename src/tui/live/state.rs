@@ -510,11 +510,10 @@ impl Live {
         self.converted = other.ok().zip(rule);
     }
 
-    /// Freezes the shown frame, or follows the source again. Returns true if the frame is frozen.
-    pub fn freeze(&mut self) -> bool {
+    /// Freezes the shown frame, or follows the source again.
+    pub fn freeze(&mut self) {
         self.cursor.freeze();
         self.read();
-        !self.cursor.follows()
     }
 
     /// Shows the frame that is `by` frames later in the history, or earlier if `by` is negative, and stays there.
@@ -536,12 +535,10 @@ impl Live {
         self.read();
     }
 
-    /// Shows the largest value of each cell from now on, or the present values again. Returns true if the largest are
-    /// shown.
-    pub fn hold_peak(&mut self) -> bool {
+    /// Shows the largest value of each cell from now on, or the present values again.
+    pub fn switch_peak(&mut self) {
         self.cursor.switch_peak();
         self.read();
-        self.cursor.holds_peak()
     }
 
     /// Shows the next layer: raw values, tared values or imprint.

@@ -24,10 +24,7 @@ pub(super) fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece>
     }];
     pieces.extend(of_frame(live));
     pieces.extend(of_state(live));
-    let window = window.map(|[text, short]| TitlePiece {
-        short: Some(format!("  {short}")),
-        ..TitlePiece::new(3, &text, Role::Text)
-    });
+    let window = window.map(|[text, short]| TitlePiece::new(3, &text, Role::Text).or(&short));
     pieces.extend(window);
     pieces
 }
@@ -60,19 +57,14 @@ fn of_frame(live: &Live) -> Vec<TitlePiece> {
 
 /// Returns the pieces about the state: whether the frame is frozen, which layer is shown, and everything unusual.
 fn of_state(live: &Live) -> Vec<TitlePiece> {
-    let mut pieces = Vec::new();
-    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
-    match live.frozen() {
-        Some(0) => say(1, "frozen".to_owned(), Role::Focus),
-        Some(back) => {
-            let behind = counted(back, "frame");
-            pieces.push(TitlePiece {
-                short: Some("  frozen".to_owned()),
-                ..TitlePiece::new(1, &format!("frozen, {behind} behind"), Role::Focus)
-            });
+    let frozen = live.frozen().map(|back| {
+        if back == 0 {
+            return TitlePiece::new(1, "frozen", Role::Focus);
         }
-        None => {}
-    }
+        let behind = counted(back, "frame");
+        TitlePiece::new(1, &format!("frozen, {behind} behind"), Role::Focus).or("frozen")
+    });
+    let mut pieces: Vec<TitlePiece> = frozen.into_iter().collect();
     let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
     if live.recording().name().is_some() {
         say(1, "recording".to_owned(), Role::Focus);
@@ -120,6 +112,14 @@ impl TitlePiece {
             short: None,
             role,
             rank,
+        }
+    }
+
+    /// Returns the same piece with a shorter text.
+    fn or(self, short: &str) -> Self {
+        Self {
+            short: Some(format!("  {short}")),
+            ..self
         }
     }
 }

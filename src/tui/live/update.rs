@@ -188,12 +188,8 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::NoTare => refuse(app, "there is no tare"),
         LiveMessage::Threshold(direction) => page.step_threshold(*direction),
         LiveMessage::Percent => page.switch_unit(),
-        LiveMessage::Freeze => {
-            page.freeze();
-        }
-        LiveMessage::PeakHold => {
-            page.hold_peak();
-        }
+        LiveMessage::Freeze => page.freeze(),
+        LiveMessage::PeakHold => page.switch_peak(),
         LiveMessage::NextLayer => next_layer(app, page),
         LiveMessage::Numbers => page.display.numbers ^= true,
         LiveMessage::OwnRange => {
@@ -307,14 +303,11 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
 
 /// Marks the shown frame, or removes its mark.
 fn mark(app: &mut App, page: &mut Live) {
-    let (number, marked) = match page.mark() {
-        Ok(marked) => marked,
-        Err(refused) => {
-            return refuse(app, refused.to_string());
-        }
-    };
-    let text = if marked { "marked" } else { "mark removed" };
-    inform(app, format!("frame {number}: {text}"));
+    match page.mark() {
+        Ok((number, true)) => inform(app, format!("frame {number}: marked")),
+        Ok((number, false)) => inform(app, format!("frame {number}: mark removed")),
+        Err(refused) => refuse(app, refused.to_string()),
+    }
 }
 
 /// Returns the next work of the page: a new description of the recording if threshold, tare or marks have changed
@@ -411,10 +404,11 @@ fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
     let Some(page) = page(app).filter(|page| page.number() == number && !page.stopped()) else {
         return;
     };
-    let (trouble, failure) = (
-        page.trouble(),
-        page.recording().refusal().map(str::to_owned),
-    );
+    let troubles = |page: &Live| {
+        let refusal = page.recording().refusal().map(str::to_owned);
+        (page.trouble(), refusal)
+    };
+    let before = troubles(page);
     let error = page.error().cloned();
     match event {
         LiveEvent::Waiting
@@ -429,17 +423,14 @@ fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
         LiveEvent::Named(by, named) => page.take_name(*by, (**named).clone()),
         LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
     }
-    let now = (
-        page.trouble(),
-        page.recording().refusal().map(str::to_owned),
-    );
+    let (trouble, refusal) = troubles(page);
     let is_wrong = page.error().is_some() && page.error() != error.as_ref();
-    if is_open && (is_wrong || now.0.is_some() && now.0 != trouble) {
+    if is_open && (is_wrong || trouble.is_some() && trouble != before.0) {
         // The page shows the trouble; an old notice, such as that of the beginning of a recording, is no longer true.
         app.notice = None;
     } else if !is_open
-        && let (_, Some(reason)) = now
-        && failure.as_ref() != Some(&reason)
+        && let Some(reason) = refusal
+        && before.1.as_ref() != Some(&reason)
     {
         refuse(app, reason);
     }

@@ -361,7 +361,7 @@ mod tests {
         };
         after(&mut page, &feed, whole);
         after(&mut page, &feed, AcquireEvent::Provisional(&garbled));
-        assert!(page.hold_peak());
+        page.switch_peak();
         after(&mut page, &feed, AcquireEvent::Withdrawn);
         assert_eq!(
             page.reading().and_then(|reading| Some(reading.max?.0)),
