@@ -515,6 +515,10 @@ fn putting_back_overwrites_no_step_but_that_of_the_last_move() {
     shows(put_back, &["put back", "at 4.00, 4.00"]);
     shows(&format!("{put_back}u"), &["at 4.02, 4.00"]);
     shows(&format!("{put_back}uu"), &["at 4.01, 4.00", "by hand"]);
+    let drawn = "f<Enter>g<Right><Space><Esc>";
+    let dropped = "1 taxel set by hand was dropped; u restores it";
+    shows(drawn, &[dropped, "at 4.00, 4.00"]);
+    shows(&format!("{drawn}u"), &["at 4.01, 4.00", "by hand"]);
 }
 
 #[test]

@@ -101,15 +101,17 @@ pub(in crate::tui) fn put_back(app: &mut App) {
     let Some(before) = before.filter(|before| **before != *app.history.present()) else {
         return;
     };
+    inform(app, "put back");
     // If the shape was only moved, no trace is left. Other changes made meanwhile can still be undone.
     let only_moved = app.moves.take() == Some(MoveKind::Held);
     if only_moved && app.history.before() == Some(&*before) {
         app.history.amend(*before);
         settle(app);
     } else {
+        let dropped = dropped(app, &before);
         change(app, *before);
+        say_dropped(app, dropped);
     }
-    inform(app, "put back");
 }
 
 /// Returns true if a document shows something other than the document with the present name: a figure of another
