@@ -166,18 +166,24 @@ impl<'a> PanelCell<'a> {
             .filter(|_| pitch_mm != 1.0);
         let symbol = format!("{:symbols$}", descriptor.symbol);
         let width = if theme.ascii { VALUE_IN_ASCII } else { VALUE };
-        let value = format!("{:width$}", self.value);
         let name = description.map_or(descriptor.name, |described| {
             descriptor.name_of(described.kind)
         });
         // Shortened names say nothing, and names of only some descriptors would look as if the others had none.
-        let room = usize::from(row.width).saturating_sub(symbols + width);
+        let rest = usize::from(row.width).saturating_sub(symbols);
+        let room = rest.saturating_sub(width);
         let named = DESCRIPTORS.iter().all(|own| write::width(own.name) <= room);
-        let remark = match scaled.as_deref() {
-            Some(scaled) if write::width(scaled) <= room => scaled,
-            None if named && write::width(name) <= room => name,
-            _ => "",
+        let (remark, width) = match scaled.as_deref() {
+            // Where the column of remarks is too narrow, the remark ends at the edge.
+            Some(scaled) => {
+                let end = rest.saturating_sub(write::width(scaled));
+                let fits = write::width(&self.value) + 2 <= end;
+                (if fits { scaled } else { "" }, width.min(end))
+            }
+            None if named && write::width(name) <= room => (name, width),
+            None => ("", width),
         };
+        let value = format!("{:width$}", self.value);
         // If the value needs more room, the remark is shortened.
         let gap = if self.value.chars().count() < width {
             ""
