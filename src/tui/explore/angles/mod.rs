@@ -77,21 +77,21 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     Some(Message::Explore(ExploreMessage::ToAngle(nearest.index)))
 }
 
-/// Returns the title: the descriptor, and which part of the positions it is computed from.
-fn title(results: &Results) -> String {
+/// Returns the title: the descriptor, and which part of the positions it is computed from. If there is little room,
+/// the name of the descriptor is left out.
+fn title(results: &Results, room: usize) -> String {
     let feature = results.feature();
-    let mut text = format!(
-        "{}: {} against the angle",
-        feature.key, feature.descriptor.name
-    );
+    let mut end = " against the angle".to_owned();
     if let Some(curve) = results.angle_curve() {
         for (every, what) in [(curve.every_angle, "angle"), (curve.every_row, "y0")] {
             if every > 1 {
-                text += &format!(", from 1 in {every} values of {what}");
+                end += &format!(", from 1 in {every} values of {what}");
             }
         }
     }
-    text
+    let (key, name) = (&feature.key, feature.descriptor.name);
+    let titles = [format!("{key}: {name}{end}"), format!("{key}{end}")];
+    write::first_fitting(&titles.each_ref().map(String::as_str), room).to_owned()
 }
 
 /// Returns why there is no curve, in a few words.
@@ -108,7 +108,7 @@ fn without_curve(results: &Results) -> &'static str {
 
 /// Draws the page. Returns the position of the mean at the chosen angle.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
-    let text = title(results);
+    let text = title(results, page.width.into());
     let end = write::line(buffer, page, theme, [(text.as_str(), Role::Title)]);
     let legend = write::right_of(page, end);
     if write::width(LEGEND) <= usize::from(legend.width) {
