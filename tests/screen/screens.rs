@@ -491,3 +491,41 @@ fn help_keeps_its_place_on_a_screen_of_another_width() {
         assert!(row(&screen).is_some_and(|row| row < 4), "{screen}");
     }
 }
+
+#[test]
+fn a_narrow_comparison_names_both_imprints() {
+    let keys = "f<Enter>:move 1 0<Enter>=".replace(' ', "<Space>");
+    shows(
+        &sized((40, 12), false, &keys),
+        &["16 taxels differ   A: the s…   B: the m…"],
+    );
+    shows(
+        &sized((60, 20), false, &keys),
+        &["A: the state before   B: the matrix"],
+    );
+}
+
+/// Beside a large matrix the panel is narrow; the values leave room for most lengths in mm all the same.
+#[test]
+fn lengths_in_mm_are_shown_beside_a_large_matrix() {
+    let keys = ":sensor --columns 64 --rows 64 --pitch 2.5<Enter>f<Enter>".replace(' ', "<Space>");
+    let page = sized((80, 24), false, &keys);
+    shows(
+        &page,
+        &[
+            "NumX   416             1040 mm\n",
+            "Area   64              400 mm²\n",
+        ],
+    );
+}
+
+#[test]
+fn a_narrow_title_of_the_angles_leaves_out_the_name_of_the_descriptor() {
+    let keys = "f<Enter>:explore --x0 5 --y0 5 --angle 0:80:10<Enter>6".replace(' ', "<Space>");
+    shows(
+        &sized((40, 20), false, &keys),
+        &["na: active taxels against the angle\n"],
+    );
+    let narrow = sized((30, 20), false, &keys);
+    shows(&narrow, &["\nna against the angle\n"]);
+}

@@ -375,15 +375,20 @@ impl Page for Comparison {
         area: Rect,
     ) -> Option<Position> {
         write::clear(buffer, area);
-        let [first, second] = &self.names;
-        // On a narrow screen the names are cut, not the number.
+        // On a narrow screen the names are cut, not the number, and neither of them leaves no room for the other.
         let differ = differing(self.differing());
+        let labels = ["   A: ", "   B: "];
+        let fixed = write::width(&differ) + labels.concat().len();
+        let room = usize::from(area.width).saturating_sub(fixed);
+        let [first, second] = self.names.each_ref().map(|name| theme.text(name));
+        let for_second = write::width(&second).min(room / 2);
+        let first = write::fitted(&first, room - for_second, theme);
         let pieces = [
             (differ.as_str(), Role::Title),
-            ("   A: ", Role::Key),
-            (first.as_str(), Role::Text),
-            ("   B: ", Role::Key),
-            (second.as_str(), Role::Text),
+            (labels[0], Role::Key),
+            (&*first, Role::Text),
+            (labels[1], Role::Key),
+            (&*second, Role::Text),
         ];
         write::line(buffer, area, theme, pieces);
         let panes = self.panes(area);
