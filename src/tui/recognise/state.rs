@@ -245,10 +245,11 @@ impl Recognition {
         }
     }
 
-    /// Records a request that is carried out once the model that is being prepared is ready. Returns false if none is.
+    /// Records a request that is carried out once the model that is being prepared is ready. Returns false if none is,
+    /// or if a stop was requested.
     pub fn request_later(&mut self, request: RecogniseMessage) -> bool {
         match &mut self.state {
-            ModelState::Preparing(preparation) => {
+            ModelState::Preparing(preparation) if !preparation.stopping => {
                 preparation.request = Some(request);
                 true
             }
