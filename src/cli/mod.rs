@@ -322,9 +322,9 @@ fn print(text: &str) -> Result<(), CliError> {
 }
 
 /// Prints a summary, and then returns the error if its files could not be written.
-fn print_summary((text, written): Summary) -> Result<(), CliError> {
-    print(&text)?;
-    written
+fn print_summary(summary: Summary) -> Result<(), CliError> {
+    print(&summary.text)?;
+    summary.written
 }
 
 /// Writes bytes to standard output and flushes it.

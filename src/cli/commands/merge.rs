@@ -249,7 +249,7 @@ fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
         let saved = save_model(model, file.path(), existing, &signals.stopped);
         saved.map_err(|error| signals.failure_or(error.into()))
     });
-    let saved = unless_stopped(saved)?;
+    let written = unless_stopped(saved)?;
     let limit = Evaluation::of(model);
     let text = if wanted.json {
         json::ascii(&EvaluationJson {
@@ -259,5 +259,5 @@ fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
     } else {
         evaluation::summary(&limit, evaluation::NamedBy::Imprint)
     };
-    Ok((text, saved))
+    Ok(Summary { text, written })
 }

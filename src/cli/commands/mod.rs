@@ -53,9 +53,14 @@ pub(super) mod man;
 
 use crate::cli::error::CliError;
 
-/// The summary of long work, and the error if its files could not be written: it is reported after the summary is
-/// printed, so that the work is not lost.
-pub(super) type Summary = (String, Result<(), CliError>);
+/// The summary of long work.
+#[derive(Debug)]
+pub(super) struct Summary {
+    /// The text to print.
+    pub(super) text: String,
+    /// Whether the files were written. An error is reported after the text is printed, so that the work is not lost.
+    pub(super) written: Result<(), CliError>,
+}
 
 /// Returns the outcome of writing files unless a signal stopped it: then there is no summary.
 fn unless_stopped(written: Result<(), CliError>) -> Result<Result<(), CliError>, CliError> {

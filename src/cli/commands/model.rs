@@ -73,7 +73,10 @@ pub(crate) fn train(
         ShardFile::Refused | ShardFile::Replaced => Ok(None),
     };
     if let Some(model) = kept()? {
-        return Ok((trained(&model, &path, Some(KEPT), asked, charset)?, Ok(())));
+        return Ok(Summary {
+            text: trained(&model, &path, Some(KEPT), asked, charset)?,
+            written: Ok(()),
+        });
     }
     let make_folder = || match &asked.to {
         ModelTarget::Named(_) => Ok(Some(folder(shelf)?.make()?)),
@@ -100,7 +103,7 @@ pub(crate) fn train(
     // `save_model` says so.
     let _again = make_folder();
     let saved = save_model(&model, &path, asked.there.existing(), stopped);
-    let (done, outcome) = match saved {
+    let (done, written) = match saved {
         Ok(()) => (Some("written"), Ok(())),
         // Another job may have written this shard meanwhile: it was queued again, or started twice.
         Err(error) if error.exists() => match kept() {
@@ -111,7 +114,10 @@ pub(crate) fn train(
         },
         Err(error) => (None, unless_stopped(Err(signals.failure_or(error.into())))?),
     };
-    Ok((trained(&model, &path, done, asked, charset)?, outcome))
+    Ok(Summary {
+        text: trained(&model, &path, done, asked, charset)?,
+        written,
+    })
 }
 
 /// Runs a training until it is done, memory runs short or `stopped` becomes true.

@@ -35,10 +35,10 @@ use crate::sweep::{Shard, Sweep, SweepResult};
 
 impl Wanted {
     /// Notes each file in a line on standard error, if the files of a summary were written.
-    pub(super) fn note_written(&self, (_, outcome): &Summary, charset: Charset) {
+    pub(super) fn note_written(&self, summary: &Summary, charset: Charset) {
         let atlas = self.atlas.as_ref().map(AtlasFile::path);
         let files = atlas.into_iter().chain(self.poses.as_deref());
-        for path in files.filter(|_| outcome.is_ok() && !self.quiet) {
+        for path in files.filter(|_| summary.written.is_ok() && !self.quiet) {
             note(&written(path), charset);
         }
     }
@@ -112,8 +112,12 @@ pub(crate) fn sweep(
     let start = Instant::now();
     let signals = Signals::catch().map_err(CliError::System)?;
     let stopped = &signals.stopped;
+    let summary = |result: &SweepResult, written| Summary {
+        text: text(result, start, wanted, charset),
+        written,
+    };
     if let Some(kept) = kept(grid, shard, wanted, charset)? {
-        return Ok((summary(&kept, start, wanted, charset), Ok(())));
+        return Ok(summary(&kept, Ok(())));
     }
     if let Some(file) = &wanted.atlas {
         file.check(wanted.there.existing())?;
@@ -151,15 +155,18 @@ pub(crate) fn sweep(
     }
     let left = leave(&result, start, wanted, poses, charset, &signals)?;
     wanted.note_written(&left, charset);
-    if !matches!(left, (_, Err(CliError::Taken { .. }))) {
+    if !matches!(left.written, Err(CliError::Taken { .. })) {
         return Ok(left);
     }
     // Another job may have written this shard meanwhile: it was queued again, or started twice.
     Ok(match kept(grid, shard, wanted, charset) {
-        Ok(Some(kept)) => (summary(&kept, start, wanted, charset), Ok(())),
+        Ok(Some(kept)) => summary(&kept, Ok(())),
         Ok(None) => left,
         // It is not that of another job: it is damaged, or belongs to another study.
-        Err(error) => (left.0, Err(error)),
+        Err(error) => Summary {
+            written: Err(error),
+            ..left
+        },
     })
 }
 
@@ -178,8 +185,10 @@ pub(super) fn leave(
 ) -> Result<Summary, CliError> {
     let poses = poses.map_err(CliError::from);
     let written = poses.and_then(|poses| write(result, wanted, poses, signals));
-    let written = unless_stopped(written)?;
-    Ok((summary(result, start, wanted, charset), written))
+    Ok(Summary {
+        text: text(result, start, wanted, charset),
+        written: unless_stopped(written)?,
+    })
 }
 
 /// Writes the atlas and gives the files their names.
@@ -207,8 +216,8 @@ fn write(
     Ok(named.map_err(ArchiveFileError::from)?)
 }
 
-/// Returns the summary of a result to print.
-fn summary(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset) -> String {
+/// Returns the text to print about a result.
+fn text(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset) -> String {
     let summary = SweepSummary::new(result, start.elapsed());
     if wanted.json {
         summary.json()
