@@ -5,7 +5,7 @@
 //! ```
 //! use taxel::formats::imprint_file::{ImprintFormat, read};
 //! let cup = read(b"P1\n3 2\n101\n111\n")?;
-//! let format = ImprintFormat::of_ending("csv").unwrap();
+//! let format = ImprintFormat::of_path("imprint.csv").unwrap();
 //! assert_eq!(format.write(&cup), b"1,0,1\n1,1,1\n");
 //! for format in ImprintFormat::ALL {
 //!     assert_eq!(read(&format.write(&cup))?, cup);
@@ -14,9 +14,11 @@
 //! ```
 
 use std::fmt;
+use std::path::Path;
 
 use crate::formats::array::ArrayError;
 use crate::formats::byte_order_mark::without_mark;
+use crate::formats::ending::has_ending;
 use crate::formats::pbm::PbmError;
 use crate::formats::table::TableError;
 use crate::formats::text::TextError;
@@ -58,13 +60,13 @@ impl ImprintFormat {
         }
     }
 
-    /// Returns the format for this ending of a file name, in upper or lower case; None for an unknown ending.
-    pub fn of_ending(ending: &str) -> Option<Self> {
+    /// Returns the format for the extension of a file's name, in upper or lower case; None if no format has it.
+    pub fn of_path(path: impl AsRef<Path>) -> Option<Self> {
         // The plain bitmap has no ending of its own.
         let formats = Self::ALL.iter().copied();
         formats
             .filter(|format| *format != Self::PlainPbm)
-            .find(|format| format.name().eq_ignore_ascii_case(ending))
+            .find(|format| has_ending(&path, format.name()))
     }
 
     /// Returns the content of a file in this format.

@@ -12,6 +12,8 @@ pub mod value;
 
 pub(crate) mod byte_order_mark;
 
+pub(crate) mod ending;
+
 pub(crate) mod described;
 
 #[cfg(feature = "json")]

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::atlas::{write_csv, write_jsonl};
+use crate::formats::ending::has_ending;
 use crate::formats::npy::Dtype;
 use crate::formats::{ArchiveError, archive, npy};
 use crate::pose::PoseGrid;
@@ -44,14 +45,14 @@ impl AtlasFile {
     /// Returns an error if no format has this extension.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, AtlasEndingError> {
         let path = path.into();
-        let ending = path.extension().and_then(|ending| ending.to_str());
-        let ending = ending.map(str::to_ascii_lowercase);
-        let format = match ending.as_deref() {
-            Some("csv") => AtlasFormat::Csv,
-            Some("jsonl") => AtlasFormat::JsonLines,
-            Some("npz") => AtlasFormat::Archive,
-            _ => return Err(AtlasEndingError),
-        };
+        let formats = [
+            ("csv", AtlasFormat::Csv),
+            ("jsonl", AtlasFormat::JsonLines),
+            ("npz", AtlasFormat::Archive),
+        ];
+        let mut formats = formats.into_iter();
+        let found = formats.find(|(ending, _)| has_ending(&path, ending));
+        let (_, format) = found.ok_or(AtlasEndingError)?;
         Ok(Self { path, format })
     }
 
@@ -137,9 +138,7 @@ pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
 /// Returns true if a file of that name can hold the atlas number of every pose: it ends in `.npy`, in upper or lower
 /// case.
 pub fn is_poses(name: impl AsRef<Path>) -> bool {
-    name.as_ref()
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
+    has_ending(name, "npy")
 }
 
 /// A file with the atlas number of every pose: `uint32` in an array shaped angles × y0 × x0, preceded by the zooms

@@ -418,6 +418,6 @@ fn content_in_a_format_equals_the_method_for_it() {
             *format == DrawingFormat::Png
         );
     }
-    assert_eq!(DrawingFormat::of_ending("SVG"), Some(DrawingFormat::Svg));
-    assert_eq!(DrawingFormat::of_ending("csv"), None);
+    assert_eq!(DrawingFormat::of_path("a.SVG"), Some(DrawingFormat::Svg));
+    assert_eq!(DrawingFormat::of_path("a.csv"), None);
 }

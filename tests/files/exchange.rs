@@ -244,8 +244,8 @@ fn files_of_other_kinds_are_refused_by_name() {
 
 #[test]
 fn file_extensions_give_the_format() {
-    assert_eq!(ImprintFormat::of_ending("PBM"), Some(ImprintFormat::Pbm));
-    assert_eq!(ImprintFormat::of_ending("npy"), Some(ImprintFormat::Npy));
-    assert_eq!(ImprintFormat::of_ending("pbm-plain"), None);
-    assert_eq!(ImprintFormat::of_ending("svg"), None);
+    assert_eq!(ImprintFormat::of_path("a.PBM"), Some(ImprintFormat::Pbm));
+    assert_eq!(ImprintFormat::of_path("a.npy"), Some(ImprintFormat::Npy));
+    assert_eq!(ImprintFormat::of_path("a.pbm-plain"), None);
+    assert_eq!(ImprintFormat::of_path("a.svg"), None);
 }

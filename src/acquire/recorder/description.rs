@@ -5,6 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::acquire::recorder::error::{DescriptionError, RecorderError, refused};
+use crate::formats::ending::has_ending;
 use crate::formats::recording::RecordingMetadata;
 use crate::storage::{Existing, FileId, FinishedFile, persist_beside};
 
@@ -100,8 +101,7 @@ pub(super) fn overwrite(array: &Path, metadata: &RecordingMetadata) -> io::Resul
 
 /// Returns true if a path ends like the file of an array.
 pub(super) fn is_array(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
+    has_ending(path, "npy")
 }
 
 /// Reads the description beside an array: `touch.json` for `touch.npy`. Returns None if there is no such file, or if

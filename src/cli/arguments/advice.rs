@@ -6,7 +6,6 @@
 //! taxel frames.csv                tip: taxel frames frames.csv lists what is in it
 //! ```
 
-use std::ffi::OsStr;
 use std::path::Path;
 
 use clap::Command;
@@ -14,6 +13,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 
 use crate::figure::FigureKind;
+use crate::formats::ending::has_ending;
 use crate::parameter::PARAMETERS;
 use crate::quote::{as_argument, joined};
 
@@ -160,8 +160,7 @@ fn for_recording(error: &Error) -> Vec<String> {
         return Vec::new();
     };
     let path = Path::new(given);
-    let ending = path.extension().map(OsStr::to_ascii_lowercase);
-    let is_recording = ending.is_some_and(|ending| RECORDINGS.iter().any(|own| ending == *own));
+    let is_recording = RECORDINGS.iter().any(|ending| has_ending(path, ending));
     if !is_recording || !path.is_file() {
         return Vec::new();
     }

@@ -65,7 +65,7 @@ impl ExportFormat {
 
     /// Returns the format of a file's extension.
     fn of_ending(path: &Path) -> Option<Self> {
-        let format = ImprintFormat::of_ending(&ending(path)).map(Self::Imprint);
+        let format = ImprintFormat::of_path(path).map(Self::Imprint);
         format.or_else(|| DrawingFormat::of_path(path).map(Self::Drawing))
     }
 }
@@ -156,10 +156,4 @@ impl Export {
     pub(crate) fn is_drawing(&self) -> bool {
         matches!(self.format, ExportFormat::Drawing(_))
     }
-}
-
-/// Returns the extension of a file's name in lower case; empty if there is none.
-pub(crate) fn ending(path: &Path) -> String {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.map_or_else(String::new, str::to_ascii_lowercase)
 }

@@ -4,7 +4,7 @@
 //! A parser here returns only its reason; clap puts the flag and the given text before it:
 //! `error: invalid value '7' for '--positions <N>': expected 1, 2, 4, …`.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::num::{IntErrorKind, ParseIntError};
 use std::ops::{Bound, RangeBounds};
@@ -18,6 +18,7 @@ use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::formats::Name;
+use crate::formats::ending::has_ending;
 use crate::memory::MemorySize;
 use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Ranges};
@@ -333,8 +334,7 @@ fn file_of(
 ) -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(move |name| {
         let path = PathBuf::from(name);
-        let is_known = |ending: &OsStr| endings.iter().any(|own| ending.eq_ignore_ascii_case(own));
-        let known = path.extension().is_some_and(is_known);
+        let known = endings.iter().any(|ending| has_ending(&path, ending));
         known.then_some(path).ok_or(expected)
     })
 }

@@ -7,7 +7,6 @@ use std::path::Path;
 
 use serde_json::json;
 
-use crate::cli::arguments::export::ending;
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
 use crate::cli::commands::export::{put, written};
@@ -19,6 +18,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::note::note;
 use crate::cli::output::progress::Progress;
+use crate::formats::ending::has_ending;
 use crate::formats::value::percent;
 use crate::formats::{ConfusionMap, DrawingFormat, json};
 use crate::parameter::number::share;
@@ -147,7 +147,11 @@ fn all_classifiers(
     asked: &ConfusionArguments,
     charset: Charset,
 ) -> Result<String, CliError> {
-    if let Some(path) = asked.export.as_ref().filter(|path| ending(path) != "csv") {
+    if let Some(path) = asked
+        .export
+        .as_ref()
+        .filter(|path| !has_ending(path, "csv"))
+    {
         return Err(CliError::Ending {
             name: path.to_string_lossy().into_owned(),
             what: "the table of all classifiers",

@@ -8,10 +8,8 @@
 //! size, a file that exists.
 
 use std::ffi::OsStr;
-use std::path::Path;
 use std::sync::atomic::Ordering;
 
-use crate::cli::arguments::export::ending;
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::separate::SeparateArguments;
 use crate::cli::commands::export::{put, written};
@@ -25,6 +23,7 @@ use crate::cli::output::progress::Progress;
 use crate::cli::output::separation;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
+use crate::formats::ending::has_ending;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::formats::{DrawingFormat, Name};
 use crate::memory::MemoryGuard;
@@ -216,13 +215,13 @@ fn set(
 /// `.npz`.
 fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
     let Some(name) = what.to_str().and_then(|name| Name::new(name).ok()) else {
-        return ending(Path::new(what)) == "npz";
+        return has_ending(what, "npz");
     };
     let built_in = || {
         let choice = ModelChoice::from_name(name.clone());
         ModelChoice::BUILT_IN.contains(&choice) && shelf.imprint(name.as_str()).is_err()
     };
-    ending(Path::new(what)) == "npz" || model::is_kept(&name, shelf) || built_in()
+    has_ending(what, "npz") || model::is_kept(&name, shelf) || built_in()
 }
 
 /// Returns notes about what differs from the model, even at scale 1 and its threshold; none with `--quiet`.

@@ -19,6 +19,7 @@ use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::shapes::Shelf;
 use crate::figure::Figure;
 use crate::formats::byte_order_mark::without_mark;
+use crate::formats::ending::has_ending;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
 use crate::quote::shortened;
@@ -117,9 +118,7 @@ fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
 /// Returns the file, or standard input, that an argument names; None if it is the name of a shape.
 fn source_of_lines(what: &OsStr, shelf: &Shelf) -> Option<InputSource> {
     let path = Path::new(what);
-    let ending = path
-        .extension()
-        .is_some_and(|ending| ending == "jsonl" || ending == "json");
+    let ending = has_ending(path, "jsonl") || has_ending(path, "json");
     // A FIFO, too.
     let is_readable = path.metadata().is_ok_and(|found| !found.is_dir());
     let known = || {

@@ -1,8 +1,8 @@
 //! The file formats of drawings, and the methods that write every drawing.
 
-#[cfg(feature = "tui")]
 use std::path::Path;
 
+use crate::formats::ending::has_ending;
 use crate::parameter::named;
 
 /// A file format of drawings.
@@ -33,16 +33,10 @@ impl DrawingFormat {
         }
     }
 
-    /// Returns the format for this ending of a file name, in upper or lower case; None for an unknown ending.
-    pub fn of_ending(ending: &str) -> Option<Self> {
+    /// Returns the format for the extension of a file's name, in upper or lower case; None if no format has it.
+    pub fn of_path(path: impl AsRef<Path>) -> Option<Self> {
         let mut formats = Self::ALL.iter().copied();
-        formats.find(|format| format.name().eq_ignore_ascii_case(ending))
-    }
-
-    /// Returns the format for the ending of a file name; None if no format has this ending.
-    #[cfg(feature = "tui")]
-    pub(crate) fn of_path(path: impl AsRef<Path>) -> Option<Self> {
-        Self::of_ending(path.as_ref().extension()?.to_str()?)
+        formats.find(|format| has_ending(&path, format.name()))
     }
 }
 

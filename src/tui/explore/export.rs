@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use crate::formats::DrawingFormat;
+use crate::formats::ending::has_ending;
 use crate::quote::{joined, shortened};
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::line_prompt::LinePrompt;
-use crate::tui::explore::page::is_csv;
 use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -62,7 +62,7 @@ impl ExportKind {
                     || DrawingFormat::of_path(name).is_some()
                     || AtlasFile::new(name).is_ok()
             }
-            Self::Curve => is_csv(name) || DrawingFormat::of_path(name).is_some(),
+            Self::Curve => has_ending(name, "csv") || DrawingFormat::of_path(name).is_some(),
         }
     }
 }

@@ -3,12 +3,11 @@
 //! A page has no state of its own: [`Results`] holds the chosen descriptor, row and pose, so that all pages agree on
 //! them.
 
-use std::path::Path;
-
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::DrawingFormat;
+use crate::formats::ending::has_ending;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::results::Results;
@@ -47,14 +46,8 @@ impl ResultsPage {
     /// Returns true if a file of this name holds what this page shows: a drawing on any page, which may be refused,
     /// or its table.
     pub fn is_own_file(&self, name: &str) -> bool {
-        DrawingFormat::of_path(name).is_some() || (self.table.is_some() && is_csv(name))
+        DrawingFormat::of_path(name).is_some() || (self.table.is_some() && has_ending(name, "csv"))
     }
-}
-
-/// Returns true if a name is that of a CSV file.
-pub(in crate::tui) fn is_csv(name: &str) -> bool {
-    let ending = Path::new(name).extension();
-    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
 }
 
 /// Handles a message on a page whose rows are descriptors.

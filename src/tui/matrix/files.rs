@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use crate::formats::ending::has_ending;
 use crate::formats::{Drawing, DrawingFormat, ImprintFormat, Name};
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
@@ -43,33 +44,27 @@ pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
 
 /// Returns the content of a file of that name, in the format of its extension.
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
-    let ending = Path::new(name)
-        .extension()
-        .and_then(|ending| ending.to_str());
-    let ending = ending.map_or(String::new(), str::to_lowercase);
     let reading = app.reading();
-    if let Some(format) = ImprintFormat::of_ending(&ending) {
+    if let Some(format) = ImprintFormat::of_path(name) {
         return Ok(format.write(&reading.imprint));
     }
-    if let Some(format) = DrawingFormat::of_ending(&ending) {
+    if let Some(format) = DrawingFormat::of_path(name) {
         let content = drawing(app).content(format);
         return content.map_err(|error| error.to_string());
     }
-    match ending.as_str() {
-        "json" => {
-            let own = Path::new(name).file_stem().and_then(|stem| stem.to_str());
-            let own = app.stored_name().or(own).map(Name::new);
-            let name = own
-                .and_then(Result::ok)
-                .map_or_else(|| Name::new(UNNAMED), Ok);
-            let name = name.map_err(|error| error.to_string())?;
-            Ok(app.shown().to_shape(name, reading).write().into_bytes())
-        }
-        _ => Err(format!(
+    if !has_ending(name, "json") {
+        return Err(format!(
             "{:?}: expected a name that ends in one of {ENDINGS}",
             shortened(name)
-        )),
+        ));
     }
+    let own = Path::new(name).file_stem().and_then(|stem| stem.to_str());
+    let own = app.stored_name().or(own).map(Name::new);
+    let name = own
+        .and_then(Result::ok)
+        .map_or_else(|| Name::new(UNNAMED), Ok);
+    let name = name.map_err(|error| error.to_string())?;
+    Ok(app.shown().to_shape(name, reading).write().into_bytes())
 }
 
 /// Returns the drawing of the matrix, with the outline of the source.

@@ -13,6 +13,7 @@ use crate::cli::arguments::model::shape_set::{self, SetArguments};
 use crate::cli::arguments::parameters::{self, Given};
 use crate::cli::error::CliError;
 use crate::formats::Name;
+use crate::formats::ending::has_ending;
 use crate::memory::MemorySize;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, GivenRanges, SensorSides};
@@ -166,10 +167,7 @@ impl TrainArguments {
 /// # Errors
 /// Returns [`CliError::Ending`].
 pub(crate) fn model_file(path: &Path) -> Result<(), CliError> {
-    if path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("npz"))
-    {
+    if has_ending(path, "npz") {
         return Ok(());
     }
     Err(CliError::Ending {

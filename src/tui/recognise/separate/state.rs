@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::formats::DrawingFormat;
+use crate::formats::ending::has_ending;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::recognition::{SeparationPoint, SmallestSize};
 use crate::tui::app::message::Message;
-use crate::tui::explore::page::is_csv;
 use crate::tui::recognise::message::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::widget::rows::moved;
@@ -231,7 +231,7 @@ impl Separate {
             points: self.points(),
             smallest: self.smallest.clone(),
         }];
-        if is_csv(name) {
+        if has_ending(name, "csv") {
             return Ok(csv(request.axis, &curves).into_bytes());
         }
         let format = DrawingFormat::of_path(name)
