@@ -206,6 +206,11 @@ fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
     Ok(ModelFolder::beside(shelf.library()?.folder()))
 }
 
+/// Returns the folder of the models to read. Without a folder for a library, it has none.
+fn readable(shelf: &Shelf) -> ModelFolder {
+    ModelFolder::beside(shelf.readable().folder())
+}
+
 /// Returns true if there is a model of this name beside the library. The file is not opened: a damaged model counts
 /// too.
 pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
@@ -459,7 +464,7 @@ fn card_json(
 
 /// Returns the answer of `taxel model list --names`, for scripts and for shell completions. No file is read.
 pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
-    let names = folder(shelf)?.names()?.into_iter();
+    let names = readable(shelf).names()?.into_iter();
     Ok(names.map(|name| format!("{name}\n")).collect())
 }
 
@@ -470,7 +475,7 @@ pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
 /// parts: 3 shapes, 845 keys, error 1.6 %
 /// ```
 pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String, CliError> {
-    let models = folder(shelf)?;
+    let models = readable(shelf);
     let mut text = String::new();
     if !json {
         for set in ModelChoice::BUILT_IN {
@@ -533,5 +538,21 @@ pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
             })
         }
         deleted => Ok(format!("deleted: {}\n", deleted?)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_folder_the_built_in_models_are_listed() {
+        let shelf = Shelf::new(None, false);
+        let text = list(false, &shelf, Charset::Unicode).expect("listed");
+        assert_eq!(
+            text,
+            "figures: built in\nfigures-30: built in\nshapes: built in\n"
+        );
+        assert_eq!(names(&shelf).expect("listed"), "");
     }
 }
