@@ -19,6 +19,7 @@ use crate::formats::recording::table::delimited;
 use crate::formats::recording::text::lines::is_blank;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::recording::text::separator::{Separator, is_comment};
+use crate::formats::recording::time::moment;
 use crate::formats::recording::vendor::{emed, flexitac, tekscan, xsensor, zebris};
 
 /// The first bytes of an MCAP file.
@@ -75,6 +76,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         _ if is_ros(echo::without_notices(trimmed)) => RecordingFormat::Ros2,
         // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
         _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
+        _ if is_timestamp(row) => return None,
         _ if is_table(row) || options.size.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,
     })
@@ -92,6 +94,10 @@ fn refused(start: &[u8]) -> RecordingError {
         },
         None if is_column(start) => RecordingError::Shape { values: 1 },
         None => match numbers_below_text(start) {
+            Some(_) if begins_with_time(start) => RecordingError::in_line(
+                1,
+                "found one value above rows of numbers; if it is the time of a frame, begin such lines with #",
+            ),
             Some(line) => RecordingError::in_line(
                 1,
                 format!(
@@ -148,6 +154,17 @@ fn is_column(text: &[u8]) -> bool {
 /// Returns true if a line is a single number, or a word for a cell without a value.
 fn is_number(line: &[u8]) -> bool {
     Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
+}
+
+/// Returns true if the first line of a text is a timestamp or a single number, which may be one.
+fn begins_with_time(text: &[u8]) -> bool {
+    let first = without_mark(text).split(|&byte| byte == b'\n').next();
+    first.is_some_and(|first| is_number(first) || is_timestamp(first))
+}
+
+/// Returns true if a line is a timestamp alone.
+fn is_timestamp(line: &[u8]) -> bool {
+    !line.iter().any(|byte| b",;".contains(byte)) && moment::read(line).is_some()
 }
 
 /// Returns true if a text is a JSON list whose first element begins with this byte.
@@ -345,6 +362,23 @@ mod tests {
         let expected = "line 1: found text, expected a table; numbers begin in line 3: delete the lines above, or read the \
                         file with taxel watch --once";
         assert_eq!(error_of(log), expected);
+        for time in [
+            "0.1",
+            "1700000000.25",
+            "12:00:00.25",
+            "2024-05-01 12:00:00.25",
+        ] {
+            for row in ["1 2", "1,2", "1\t2"] {
+                let text = format!("{time}\r\n{row}\r\n{row}\r\n\r\n{time}\r\n{row}\r\n{row}\r\n");
+                let expected = "line 1: found one value above rows of numbers; if it is the time of a frame, begin such lines \
+                                with #";
+                assert_eq!(error_of(text.as_bytes()), expected, "{text}");
+            }
+        }
+        assert_eq!(
+            recognised(b"2024-05-01 12:00:00.25 7\n"),
+            Some(RecordingFormat::Csv)
+        );
         // A growing file may have been read up to the CR of a line.
         assert_eq!(recognised(b"1,2\r"), Some(RecordingFormat::Csv));
     }
