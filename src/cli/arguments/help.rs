@@ -461,7 +461,8 @@ waits for one that does not exist yet. Torn, short, long and garbled frames are
 dropped and counted.
 
 --write records every frame, shown or not; numpy can open the file at any time.
-A .json file of the same name describes the values.
+A .json file of the same name describes the values. The source's own labels are
+not recorded; the lines of --json have them.
 
 Examples:
   taxel watch recording.csv --once --at-least 10
