@@ -167,3 +167,16 @@ fn lines(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_that_ends_like_a_file_of_lines_is_one_in_upper_case_too() {
+        let is_source =
+            |what| source_of_lines(OsStr::new(what), &Shelf::new(None, false)).is_some();
+        assert!(is_source("missing.jsonl") && is_source("MISSING.JSONL"));
+        assert!(!is_source("missing"));
+    }
+}
