@@ -84,10 +84,7 @@ impl GrowingFile {
     /// # Errors
     /// Returns the system's error.
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let count = match self.file.read(bytes) {
-            Err(error) if error.kind() == ErrorKind::Interrupted => 0,
-            read => read?,
-        };
+        let count = read_some(&mut self.file, bytes)?;
         self.at_end = count == 0;
         if self.at_end {
             std::thread::sleep(GROWTH);
@@ -159,9 +156,44 @@ impl GrowingFile {
     }
 }
 
+/// Reads the bytes that are there. A read that a signal interrupted is repeated: without bytes, it would count as the
+/// end of the file.
+///
+/// # Errors
+/// Returns the system's error.
+fn read_some(file: &mut impl Read, bytes: &mut [u8]) -> io::Result<usize> {
+    loop {
+        match file.read(bytes) {
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            read => return read,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A file whose first read is interrupted.
+    struct Interrupted(bool);
+
+    impl Read for Interrupted {
+        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+            if std::mem::replace(&mut self.0, true) {
+                bytes.fill(1);
+                return Ok(bytes.len());
+            }
+            Err(ErrorKind::Interrupted.into())
+        }
+    }
+
+    #[test]
+    fn an_interrupted_read_is_not_the_end_of_a_file() {
+        assert!(matches!(
+            read_some(&mut Interrupted(false), &mut [0; 8]),
+            Ok(8)
+        ));
+    }
 
     #[test]
     fn a_new_file_that_vanishes_at_once_does_not_end_the_watch() {
