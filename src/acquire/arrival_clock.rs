@@ -16,7 +16,7 @@ pub(super) struct ArrivalClock {
     base: Option<(f64, Instant)>,
     /// The time of the last frame.
     last: f64,
-    /// Whether the next time that a frame carries may come from another clock, or lie before the last time.
+    /// Whether the next time that a frame carries may come from another clock.
     rejoined: bool,
     /// The seconds added to the frames' own times after the source's clock restarted.
     shift: Option<f64>,
@@ -46,8 +46,8 @@ impl ArrivalClock {
 
     /// Returns the time of arrival of a frame without a time of its own.
     fn arrival(&mut self, now: Instant) -> f64 {
-        // The next time of a frame's own may be before this one.
-        self.rejoined = true;
+        // The first time of a frame's own counts from those of the arrivals before it.
+        self.rejoined |= self.base.is_none();
         let (base, when) = *self.base.get_or_insert((0.0, now));
         to_nanoseconds(base + (now - when).as_secs_f64())
     }
@@ -99,9 +99,31 @@ mod tests {
             ([own(0.0), own(0.5), None, None], [0.0, 0.5, 1.5, 2.5]),
             ([own(0.0), None, own(1.7), None], [0.0, 1.0, 1.7, 2.7]),
             ([None, None, own(0.0), own(0.9)], [0.0, 1.0, 2.0, 2.9]),
-            ([own(0.0), None, own(0.5), own(0.6)], [0.0, 1.0, 2.0, 2.1]),
         ] {
             assert_eq!(times(&frames), expected, "{frames:?}");
         }
+    }
+
+    #[test]
+    fn a_frame_without_a_time_does_not_change_the_times_of_later_frames() {
+        let own = |time| Some(time);
+        for (frames, expected) in [
+            // The source is faster than this machine's clock, as when it is read from a file, or its frames are late.
+            ([own(3.0), None, own(7.0), own(8.0)], [3.0, 4.0, 7.0, 8.0]),
+            ([own(0.0), None, own(0.5), own(0.6)], [0.0, 1.0, 0.5, 0.6]),
+        ] {
+            assert_eq!(times(&frames), expected, "{frames:?}");
+        }
+    }
+
+    #[test]
+    fn times_go_on_after_a_gap_even_if_its_first_frame_has_none() {
+        let (mut clock, begun) = (ArrivalClock::default(), Instant::now());
+        let mut time = |own, second| clock.time_at(own, true, begun + Duration::from_secs(second));
+        assert_eq!(time(Some(50.0), 0), Some(50.0));
+        clock.rejoin();
+        let mut time = |own, second| clock.time_at(own, true, begun + Duration::from_secs(second));
+        let times = [time(None, 1), time(Some(0.0), 2), time(Some(0.5), 3)];
+        assert_eq!(times, [51.0, 52.0, 52.5].map(Some));
     }
 }
