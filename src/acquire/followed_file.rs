@@ -5,7 +5,7 @@
 
 use std::cell::Cell;
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
@@ -73,6 +73,8 @@ pub(super) struct FollowedFile<'a> {
     /// The function that is called while waiting for more; it breaks if no more is wanted.
     waiting: &'a mut dyn FnMut() -> ControlFlow<()>,
     end: Option<FollowEnd>,
+    /// Whether the last byte that was read ends a line, or none was read.
+    ended_line: bool,
 }
 
 /// Opens a file. Also returns its growth.
@@ -107,6 +109,7 @@ impl<'a> FollowedFile<'a> {
             growth,
             waiting,
             end: None,
+            ended_line: true,
         })
     }
 
@@ -117,6 +120,11 @@ impl<'a> FollowedFile<'a> {
 }
 
 impl Read for FollowedFile<'_> {
+    /// Reads the bytes that have come; waits if there are none.
+    ///
+    /// # Errors
+    /// Returns an error of the kind [`ErrorKind::UnexpectedEof`] if reading ended within a line, before the end of the
+    /// file; otherwise the system's error.
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         while self.end.is_none() {
             if let Some(how) = self.file.anew()? {
@@ -127,6 +135,7 @@ impl Read for FollowedFile<'_> {
             }
             let count = self.file.read(bytes)?;
             if count > 0 {
+                self.ended_line = bytes[count - 1] == b'\n';
                 return Ok(count);
             }
             if !self.growth.may_go_on() {
@@ -137,6 +146,10 @@ impl Read for FollowedFile<'_> {
                 self.end = Some(FollowEnd::Stopped);
             }
         }
+        // The end of the file would end its last line, but the rest of that line was never read.
+        if self.end.is_some() && !self.ended_line {
+            return Err(ErrorKind::UnexpectedEof.into());
+        }
         Ok(0)
     }
 }
@@ -145,7 +158,7 @@ impl Seek for FollowedFile<'_> {
     /// Seeks only to the start, which is all that a reader of lines or markers needs.
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         if to != SeekFrom::Start(0) {
-            return Err(io::ErrorKind::Unsupported.into());
+            return Err(ErrorKind::Unsupported.into());
         }
         // Bytes that are read again did not arrive just now.
         self.growth.has_caught_up.set(false);

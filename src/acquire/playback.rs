@@ -1,7 +1,7 @@
 //! Plays a recording back at its own rate, at another rate, or as fast as possible; or follows it while it is
 //! written.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -44,6 +44,7 @@ pub(super) fn run(
         stop,
         description,
         consumer: RefCell::new(consumer),
+        ended: Cell::new(false),
         counts: RefCell::default(),
         damage: RefCell::default(),
     };
@@ -64,6 +65,8 @@ struct Player<'a, 'b> {
     description: Option<RecordingMetadata>,
     /// The consumer of what is read, and of a tick now and then while waiting for more.
     consumer: RefCell<&'a mut Consumer<'b>>,
+    /// Whether the consumer wants no more.
+    ended: Cell<bool>,
     /// The counts of wrong frames in a followed file.
     counts: RefCell<StreamCounts>,
     /// The error of the first of them.
@@ -198,9 +201,15 @@ impl Player<'_, '_> {
         }
     }
 
-    /// Reports an event. Returns `Break` if no more is wanted.
+    /// Reports an event, unless no more is wanted. Returns `Break` if no more is wanted: a reader whose input was ended
+    /// by that may still have a frame.
     fn report(&self, event: AcquireEvent<'_>) -> ControlFlow<()> {
-        (self.consumer.borrow_mut())(event)
+        if self.ended.get() {
+            return ControlFlow::Break(());
+        }
+        let flow = (self.consumer.borrow_mut())(event);
+        self.ended.set(flow.is_break());
+        flow
     }
 
     /// Reports a tick. Returns `Break` if no more is wanted.
@@ -326,6 +335,7 @@ mod tests {
 
     use super::*;
     use crate::formats::seconds::to_nanoseconds;
+    use crate::frame::FrameSize;
 
     /// Returns the times of the five frames of a file and of the three that then take their place.
     fn times_of_a_rewritten(path: &Path, [before, after]: &[String; 2]) -> Vec<f64> {
@@ -454,6 +464,67 @@ mod tests {
             let steps = times[5..].iter().map(|time| to_nanoseconds(time - begun));
             assert_eq!(steps.collect::<Vec<_>>(), [0.0, 0.1, 0.2], "{name}");
         }
+    }
+
+    #[test]
+    fn a_torn_line_of_a_file_that_is_truncated_or_replaced_is_not_a_frame() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (path, other) = (folder.path().join("r.csv"), folder.path().join("other.csv"));
+        let header = "time_s,r0c0,r0c1\n";
+        for is_replaced in [false, true] {
+            std::fs::write(&path, header.to_owned() + "0.0,1,11\n0.1,2,22\n").expect("written");
+            let (mut values, mut ticks) = (Vec::new(), 0);
+            let (options, stop) = (AcquireOptions::default(), AtomicBool::new(false));
+            let result = run(&path, &options, &stop, &mut |event| {
+                match event {
+                    AcquireEvent::Frame { frame, .. } => values.push(frame.values()[1]),
+                    AcquireEvent::Tick(_) => ticks += 1,
+                    _ => return ControlFlow::Continue(()),
+                }
+                if values.len() == 4 || ticks == 100 {
+                    return ControlFlow::Break(());
+                }
+                if ticks == 1 {
+                    let mut file = File::options().append(true).open(&path).expect("opened");
+                    file.write_all(b"0.2,3,33\n0.3,4,4").expect("written");
+                }
+                // The line has been read up to where it is torn.
+                if ticks == 2 {
+                    let new = if is_replaced { &other } else { &path };
+                    std::fs::write(new, header.to_owned() + "0.0,7,77\n").expect("written");
+                    std::fs::rename(new, &path).expect("renamed");
+                }
+                ControlFlow::Continue(())
+            });
+            assert!(result.is_ok());
+            assert_eq!(values, [11.0, 22.0, 33.0, 77.0]);
+        }
+    }
+
+    #[test]
+    fn a_consumer_that_broke_off_while_more_was_waited_for_gets_no_more() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("r.bin");
+        // The end of the file confirms its last frame.
+        std::fs::write(&path, b"\xaa\x55\x01\x02".repeat(4)).expect("written");
+        let options = AcquireOptions {
+            size: Some(FrameSize::of(2, 1)),
+            ..AcquireOptions::default()
+        };
+        let (mut frames, mut has_ended) = (0, false);
+        let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
+            assert!(!has_ended, "{event:?}");
+            match event {
+                AcquireEvent::Frame { .. } => frames += 1,
+                AcquireEvent::Tick(_) => has_ended = frames == 3,
+                _ => {}
+            }
+            if has_ended {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(result.is_ok() && has_ended);
     }
 
     #[test]

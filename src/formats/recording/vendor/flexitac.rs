@@ -55,6 +55,8 @@ pub(in crate::formats::recording) fn read(
         // Read only the bytes that are there: a full read would wait for the end of a growing file.
         let length = match input.read(&mut bytes) {
             Ok(0) => break,
+            // A followed file was replaced, or no more is wanted: the last frame may be whole.
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => break,
             Ok(length) => length,
             Err(error) if error.kind() == ErrorKind::Interrupted => continue,
             Err(error) => return Err(error.into()),
