@@ -129,6 +129,9 @@ impl StreamDecoder {
             }
             _ => {}
         }
+        if from_start {
+            self.channels.forget_times();
+        }
         self.state = State::Looking(FormatSearch::default());
         self.options.from_start = from_start;
         if let Some(format) = format {
@@ -280,6 +283,7 @@ fn is_object(line: &[u8]) -> bool {
 mod tests {
     use super::*;
     use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
+    use crate::formats::stream::StreamEvent;
     use crate::frame::FrameSize;
 
     #[test]
@@ -292,7 +296,7 @@ mod tests {
             for joined in [0, 1, cells / 2, cells] {
                 let options = StreamOptions::default().with_size(FrameSize::of(side, side));
                 let mut decoder = StreamDecoder::new(options);
-                let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};
+                let mut sink = |_: StreamEvent<'_>| {};
                 for bytes in stream[joined..].chunks(piece) {
                     decoder.push(bytes, &mut sink);
                 }
@@ -317,7 +321,7 @@ mod tests {
                     ..StreamOptions::default()
                 };
                 let mut decoder = StreamDecoder::new(options);
-                let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};
+                let mut sink = |_: StreamEvent<'_>| {};
                 decoder.push(text.as_bytes(), &mut sink);
                 let counts = decoder.counts();
                 assert_eq!((counts.frames, counts.dropped), (frames, 0), "{text}");
@@ -340,12 +344,36 @@ mod tests {
                     options = options.with_size(FrameSize::of(2, 1));
                 }
                 let mut decoder = StreamDecoder::new(options);
-                let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};
+                let mut sink = |_: StreamEvent<'_>| {};
                 decoder.push(&[BYTE_ORDER_MARK, text.as_bytes()].concat(), &mut sink);
                 decoder.finish(&mut sink);
                 let counts = decoder.counts();
                 assert_eq!((counts.frames, counts.dropped), (frames, 0), "{text}");
             }
         }
+    }
+
+    /// Returns the times of the frames of two files, of which the second took the place of the first.
+    fn times([before, after]: [&str; 2]) -> Vec<Option<f64>> {
+        let mut decoder = StreamDecoder::new(StreamOptions::default().from_start());
+        let mut times = Vec::new();
+        let mut sink = |event: StreamEvent<'_>| {
+            if let StreamEvent::Frame(frame) = event {
+                times.push(frame.time);
+            }
+        };
+        decoder.push(before.as_bytes(), &mut sink);
+        decoder.begin_anew();
+        decoder.push(after.as_bytes(), &mut sink);
+        times
+    }
+
+    #[test]
+    fn another_file_may_give_times_under_another_key() {
+        let before = "{\"t_ms\":1000,\"frame\":[[1]]}\n{\"t_ms\":1500,\"frame\":[[2]]}\n";
+        let after =
+            "{\"stamp_us\":9000000,\"frame\":[[3]]}\n{\"stamp_us\":9500000,\"frame\":[[4]]}\n";
+        let times = times([before, after]);
+        assert_eq!(times, [0.0, 0.5, 0.0, 0.5].map(Some));
     }
 }

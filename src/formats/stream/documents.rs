@@ -36,6 +36,11 @@ struct JsonChannel {
 }
 
 impl JsonChannels {
+    /// Forgets how lines give their times: another file may do it in another way.
+    pub(super) fn forget_times(&mut self) {
+        self.clock = JsonClock::default();
+    }
+
     /// Returns the index of a line's channel, adding and reporting it if it is new; None if there are too many.
     fn of(
         &mut self,
