@@ -376,4 +376,12 @@ mod tests {
         let times = times([before, after]);
         assert_eq!(times, [0.0, 0.5, 0.0, 0.5].map(Some));
     }
+
+    #[test]
+    fn times_count_from_the_first_frame_even_if_a_block_before_it_is_not_a_frame() {
+        let torn = "00:00:01 5 6\n\n";
+        let whole = "00:00:02 1 2\n00:00:02 3 4\n\n00:00:03 1 2\n00:00:03 3 4\n\n";
+        let times = times([&format!("{torn}{whole}"), ""]);
+        assert_eq!(times, [0.0, 1.0].map(Some));
+    }
 }

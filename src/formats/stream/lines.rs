@@ -288,7 +288,10 @@ impl LinesDecoder {
     /// the third differs from the second, which may be two frames that lost the empty line between them.
     fn hold(&mut self, own: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.held.as_ref().is_some_and(Vec::is_empty) {
+            // If the block is withdrawn, another frame is the first one.
+            let clock = self.clock;
             self.fill(own, counts);
+            self.clock = clock;
             sink(StreamEvent::Provisional(&self.frame));
         }
         let held = self.held.get_or_insert_default();
