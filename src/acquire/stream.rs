@@ -309,6 +309,7 @@ fn report(
         StreamEvent::Channel(info) => consumer(AcquireEvent::Channel(info)),
         StreamEvent::Provisional(frame) => consumer(AcquireEvent::Provisional(frame)),
         StreamEvent::Withdrawn => consumer(AcquireEvent::Withdrawn),
+        StreamEvent::Note(note) => consumer(AcquireEvent::Note(note)),
     }
 }
 

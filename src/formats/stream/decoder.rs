@@ -13,13 +13,13 @@ use serde::de::IgnoredAny;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::json::WithoutNan;
 use crate::formats::recording::text::row::is_parted_by_cr;
+use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::stream::documents::{JsonChannels, JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;
 use crate::formats::stream::format_search::{FormatSearch, is_numbers};
 use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
-use crate::formats::stream::source_clock::SourceClock;
 
 /// The size limit of a line in bytes, more than 512 × 512 values take.
 const LONGEST_LINE: usize = 8 << 20;
@@ -43,7 +43,7 @@ pub struct StreamDecoder {
     /// Whether the first line may lack its beginning.
     torn: bool,
     /// The clock of the source, kept from the last decoder.
-    clock: SourceClock,
+    clock: FrameClock,
     /// The channels of the source, kept from the last decoder.
     channels: JsonChannels,
 }
@@ -78,7 +78,7 @@ impl StreamDecoder {
             skipping: false,
             first: true,
             torn: !options.from_start,
-            clock: SourceClock::default(),
+            clock: FrameClock::default(),
             channels: JsonChannels::default(),
         };
         if let Some(format) = options.format {
@@ -125,12 +125,13 @@ impl StreamDecoder {
         match &mut self.state {
             State::Lines(decoder) => self.clock = decoder.clock,
             State::Json(decoder) => {
-                (self.clock, self.channels) = (decoder.clock, take(&mut decoder.channels));
+                self.channels = take(&mut decoder.channels);
+                self.clock = self.channels.clock.clock;
             }
             _ => {}
         }
         if from_start {
-            self.channels.forget_times();
+            self.channels.clock.forget_key();
         }
         self.state = State::Looking(FormatSearch::default());
         self.options.from_start = from_start;
@@ -374,7 +375,7 @@ mod tests {
         let after =
             "{\"stamp_us\":9000000,\"frame\":[[3]]}\n{\"stamp_us\":9500000,\"frame\":[[4]]}\n";
         let times = times([before, after]);
-        assert_eq!(times, [0.0, 0.5, 0.0, 0.5].map(Some));
+        assert_eq!(times, [0.0, 0.5, 8.0, 8.5].map(Some));
     }
 
     #[test]
@@ -383,5 +384,20 @@ mod tests {
         let whole = "00:00:02 1 2\n00:00:02 3 4\n\n00:00:03 1 2\n00:00:03 3 4\n\n";
         let times = times([&format!("{torn}{whole}"), ""]);
         assert_eq!(times, [0.0, 1.0].map(Some));
+    }
+
+    #[test]
+    fn a_unit_that_is_guessed_is_noted() {
+        let line = "{\"timestamp\":1700000000000000000,\"frame\":[[1]]}\n";
+        let mut decoder = StreamDecoder::new(StreamOptions::default().from_start());
+        let mut notes = Vec::new();
+        let mut sink = |event: StreamEvent<'_>| {
+            if let StreamEvent::Note(note) = event {
+                notes.push(note.to_string());
+            }
+        };
+        decoder.push(line.repeat(3).as_bytes(), &mut sink);
+        let noted = "the times have no unit and are taken as nanoseconds since 1970";
+        assert_eq!(notes, [noted]);
     }
 }

@@ -10,8 +10,8 @@ use crate::formats::recording::json::lines::FrameLine;
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::side::arranged;
 use crate::formats::recording::stream_size::StreamSize;
+use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
-use crate::formats::stream::source_clock::SourceClock;
 use crate::frame::{Frame, FrameSize};
 
 /// The channels of a stream of JSON lines. After a gap they pass to the next decoder.
@@ -19,7 +19,7 @@ use crate::frame::{Frame, FrameSize};
 pub(super) struct JsonChannels {
     channels: Vec<JsonChannel>,
     /// The clock that reads the times of lines.
-    clock: JsonClock,
+    pub(super) clock: JsonClock,
     /// Whether the channels have been reported, which happens as soon as one has a name.
     reported: bool,
 }
@@ -36,11 +36,6 @@ struct JsonChannel {
 }
 
 impl JsonChannels {
-    /// Forgets how lines give their times: another file may do it in another way.
-    pub(super) fn forget_times(&mut self) {
-        self.clock = JsonClock::default();
-    }
-
     /// Returns the index of a line's channel, adding and reporting it if it is new; None if there are too many.
     fn of(
         &mut self,
@@ -82,8 +77,6 @@ pub(super) struct JsonDecoder {
     named: Option<FrameSize>,
     /// The channels so far.
     pub(super) channels: JsonChannels,
-    /// The clock that turns times into seconds since the first frame.
-    pub(super) clock: SourceClock,
     /// The frame made of the line.
     frame: Frame,
 }
@@ -93,8 +86,9 @@ impl JsonDecoder {
     pub(super) fn new(
         named: Option<FrameSize>,
         mut channels: JsonChannels,
-        clock: SourceClock,
+        clock: FrameClock,
     ) -> Self {
+        channels.clock.clock = clock;
         // The sensors may have been reconfigured.
         for channel in &mut channels.channels {
             channel.size = StreamSize::new(named);
@@ -103,7 +97,6 @@ impl JsonDecoder {
             line: FrameLine::new(named),
             named,
             channels,
-            clock,
             frame: Frame::default(),
         }
     }
@@ -143,7 +136,11 @@ impl JsonDecoder {
         self.frame.number = channel.frames;
         self.frame.label = self.line.label;
         let time = self.line.time;
-        self.frame.time = time.map(|time| self.clock.since_first(time));
+        let clock = &mut self.channels.clock.clock;
+        self.frame.time = time.map(|time| clock.since_first(time));
+        if let Some(note) = clock.take_note() {
+            sink(StreamEvent::Note(&note));
+        }
         channel.frames += 1;
         counts.frames += 1;
         sink(StreamEvent::Frame(&self.frame));

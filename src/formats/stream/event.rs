@@ -1,6 +1,6 @@
 //! The formats and options of streams, and the events and counts that a decoder reports.
 
-use crate::formats::recording::{ChannelInfo, RecordingError};
+use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
 use crate::formats::value::{counted, grouped};
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::named;
@@ -93,6 +93,8 @@ pub enum StreamEvent<'a> {
     Provisional(&'a Frame),
     /// The provisional frame has turned out to be invalid.
     Withdrawn,
+    /// An oddity that does not stop the decoder.
+    Note(&'a RecordingNote),
 }
 
 /// Counts of what has arrived so far.

@@ -20,10 +20,11 @@
 use crate::formats::recording::side::frame_size;
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::separator::is_comment;
+use crate::formats::recording::time::exact::Time;
+use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::recording::time::moment;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
-use crate::formats::stream::source_clock::SourceClock;
 use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 use crate::parameter::number::counted;
 
@@ -46,7 +47,7 @@ pub(super) struct LinesDecoder {
     /// The rows of the current frame so far.
     current: Block,
     /// The clock that turns timestamps into seconds since the first frame.
-    pub(super) clock: SourceClock,
+    pub(super) clock: FrameClock,
     /// Whether there was an empty line.
     parted: bool,
     /// The content of lines, as far as it is known.
@@ -65,8 +66,8 @@ struct Block {
     values: Vec<f64>,
     /// The number of rows.
     rows: u16,
-    /// The timestamp at the beginning of the first line, in seconds.
-    time: Option<f64>,
+    /// The timestamp at the beginning of the first line.
+    time: Option<Time>,
     /// Whether a row is invalid.
     broken: bool,
     /// The beginning of that row, or of the first row if none is invalid.
@@ -99,7 +100,7 @@ fn may_be_end(own: FrameSize, next: FrameSize) -> bool {
 
 impl LinesDecoder {
     /// Prepares for a stream. If it is joined in the middle, everything before the first boundary is ignored.
-    pub(super) fn new(named: Option<FrameSize>, from_start: bool, clock: SourceClock) -> Self {
+    pub(super) fn new(named: Option<FrameSize>, from_start: bool, clock: FrameClock) -> Self {
         Self {
             size: StreamSize::new(named),
             begun: from_start,
@@ -131,7 +132,7 @@ impl LinesDecoder {
             return;
         }
         let (moment, line) = match moment::leading(line) {
-            Some((moment, numbers)) => (Some(self.clock.read(moment)), numbers),
+            Some((moment, numbers)) => (Some(self.clock.moment(moment)), numbers),
             None => (None, line),
         };
         self.numbers(moment, line, counts, sink);
@@ -140,7 +141,7 @@ impl LinesDecoder {
     /// Decodes the numbers of a line that is not empty, after its timestamp.
     fn numbers(
         &mut self,
-        moment: Option<f64>,
+        moment: Option<Time>,
         line: &[u8],
         counts: &mut StreamCounts,
         sink: &mut StreamSink<'_>,
@@ -378,7 +379,7 @@ mod tests {
     /// Returns the frames in lines, as rows, columns and first value, and the number of dropped frames.
     fn decoded(text: &str, named: Option<(u16, u16)>) -> (Vec<(u16, u16, f64)>, u64) {
         let named = named.map(|(rows, columns)| FrameSize::of(columns, rows));
-        let mut decoder = LinesDecoder::new(named, true, SourceClock::default());
+        let mut decoder = LinesDecoder::new(named, true, FrameClock::default());
         let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
         let mut sink = |event: StreamEvent<'_>| {
             if let StreamEvent::Frame(frame) = event {
@@ -430,7 +431,7 @@ mod tests {
 
     #[test]
     fn the_first_block_is_shown_at_once_and_withdrawn_if_it_is_not_a_frame() {
-        let mut decoder = LinesDecoder::new(None, true, SourceClock::default());
+        let mut decoder = LinesDecoder::new(None, true, FrameClock::default());
         let (mut events, mut counts) = (String::new(), StreamCounts::default());
         for line in ["3 4", "", "1 2", "3 4", "", "1 2", "3 4", ""] {
             decoder.line(line.as_bytes(), &mut counts, &mut |event| {
@@ -439,6 +440,7 @@ mod tests {
                     StreamEvent::Provisional(_) => "provisional ",
                     StreamEvent::Withdrawn => "withdrawn ",
                     StreamEvent::Channel(_) => "channel ",
+                    StreamEvent::Note(_) => "note ",
                 };
             });
         }
@@ -468,7 +470,7 @@ mod tests {
     #[test]
     fn a_moment_before_a_frame_is_its_time() {
         let times = |text: &str, shape| {
-            let mut decoder = LinesDecoder::new(shape, true, SourceClock::default());
+            let mut decoder = LinesDecoder::new(shape, true, FrameClock::default());
             let (mut times, mut counts) = (Vec::new(), StreamCounts::default());
             let mut sink = |event: StreamEvent<'_>| {
                 if let StreamEvent::Frame(frame) = event {
@@ -508,7 +510,7 @@ mod tests {
     #[test]
     fn the_reason_gives_a_wrong_line_length_if_rows_and_columns_were_given() {
         let reason = |text: &str, shape| {
-            let mut decoder = LinesDecoder::new(shape, true, SourceClock::default());
+            let mut decoder = LinesDecoder::new(shape, true, FrameClock::default());
             let mut counts = StreamCounts::default();
             for line in text.lines() {
                 decoder.line(line.as_bytes(), &mut counts, &mut |_| ());
@@ -552,7 +554,7 @@ mod tests {
 
     #[test]
     fn two_frames_of_one_size_are_reported_before_a_third_arrives() {
-        let mut decoder = LinesDecoder::new(None, true, SourceClock::default());
+        let mut decoder = LinesDecoder::new(None, true, FrameClock::default());
         let (mut given, mut counts) = (0, StreamCounts::default());
         for line in ["1 2", "3 4", "", "5 6", "7 8", ""] {
             decoder.line(line.as_bytes(), &mut counts, &mut |event| {

@@ -25,8 +25,6 @@ mod event;
 
 mod numbers;
 
-mod source_clock;
-
 mod lines;
 
 mod documents;

@@ -577,10 +577,10 @@ fn other_names_for_the_time_are_used_if_there_is_no_t() {
             ],
             Some(0.100_000_001),
         ),
-        // A clock without a date may be anything.
+        // A clock without a date passes midnight.
         (
-            ["\"timestamp\":\"12:00:00\"", "\"timestamp\":\"12:00:01\""],
-            None,
+            ["\"timestamp\":\"23:59:59.5\"", "\"timestamp\":\"00:00:00\""],
+            Some(0.5),
         ),
         (
             ["\"time_s\":[1],\"force\":1", "\"time_s\":{},\"force\":2"],

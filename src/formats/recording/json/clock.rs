@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::formats::recording::time::exact::Time;
 use crate::formats::recording::time::field_role::{FieldRole, is_named_time, rest_of_second, role};
+use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::recording::time::moment;
 use crate::formats::recording::time::unit::TimeUnit;
 use crate::frame::LARGEST_VALUE;
@@ -18,21 +19,17 @@ const MOST_KEYS: usize = 16;
 #[derive(Debug)]
 struct TimeKey {
     name: String,
-    /// The unit of the key; None until the size of a number decides it.
-    unit: Option<TimeUnit>,
     /// The key with the rest of the second, and its unit.
     rest: Option<(String, TimeUnit)>,
 }
 
-/// A clock that turns the times of lines into seconds since the first one.
+/// A clock that reads the times of lines.
 #[derive(Debug, Default)]
 pub(in crate::formats) struct JsonClock {
     /// The key of the time; None until a line has a time.
     key: Option<TimeKey>,
-    /// The first time.
-    start: Option<Time>,
-    /// The unit that was derived from the size alone, until it is reported.
-    assumed: Option<TimeUnit>,
+    /// The clock of the frames.
+    pub(in crate::formats) clock: FrameClock,
 }
 
 /// The keys of a line that may be its time, with their values.
@@ -61,26 +58,31 @@ impl JsonClock {
         }
     }
 
-    /// Returns the seconds from the first time to that of a line; None if the line has no time.
-    pub(super) fn seconds(&mut self, line: &TimeCandidates) -> Option<f64> {
+    /// Returns the time of a line; None if it has none.
+    pub(super) fn time(&mut self, line: &TimeCandidates) -> Option<Time> {
         if self.key.is_none() {
             self.key = TimeKey::of(line);
+            let name = self.key.as_ref().map(|key| &*key.name);
+            self.clock.set_unit(name.and_then(role_unit));
         }
-        let key = self.key.as_mut()?;
-        let has_unit = key.unit.is_some();
-        let mut time = read(line.value(&key.name)?, &mut key.unit)?;
-        if !has_unit {
-            self.assumed = key.unit.filter(|&unit| unit != TimeUnit::Seconds);
-        }
-        if let Some((rest, unit)) = &key.rest {
-            time = time.plus(read(line.value(rest)?, &mut Some(*unit))?);
-        }
-        Some(time.since(*self.start.get_or_insert(time)))
+        let key = self.key.as_ref()?;
+        let time = match line.value(&key.name)? {
+            Value::String(text) => self.clock.moment(moment::read(text.as_bytes())?),
+            value => {
+                let (text, number) = number(value)?;
+                self.clock.number(text.as_bytes(), number)
+            }
+        };
+        let Some((rest, unit)) = &key.rest else {
+            return Some(time);
+        };
+        let (text, number) = number(line.value(rest)?)?;
+        Some(time.plus(Time::read(text.as_bytes(), number, *unit)))
     }
 
-    /// Returns once the unit that was derived from the size of the first time, unless it is seconds.
-    pub(super) fn take_assumed(&mut self) -> Option<TimeUnit> {
-        self.assumed.take()
+    /// Forgets the key of the time: another file may have another one.
+    pub(in crate::formats) fn forget_key(&mut self) {
+        self.key = None;
     }
 }
 
@@ -88,10 +90,7 @@ impl TimeKey {
     /// Chooses the key of a first line: seconds with their rest in another key, otherwise the first key that is
     /// called a time.
     fn of(line: &TimeCandidates) -> Option<Self> {
-        let are_times = line
-            .0
-            .iter()
-            .filter(|(_, value)| read(value, &mut None).is_some());
+        let are_times = line.0.iter().filter(|(_, value)| is_time(value));
         let names: Vec<&str> = are_times.map(|(name, _)| name.as_str()).collect();
         let pair = |index| rest_of_second(&names, index).map(|rest| (index, Some(rest)));
         let alone = || names.iter().position(|name| is_named_time(name));
@@ -99,7 +98,6 @@ impl TimeKey {
         let (index, rest) = pairs.or_else(|| Some((alone()?, None)))?;
         Some(Self {
             name: names[index].to_owned(),
-            unit: role_unit(names[index]),
             rest: rest.map(|(rest, unit)| (names[rest].to_owned(), unit)),
         })
     }
@@ -113,29 +111,32 @@ fn role_unit(name: &str) -> Option<TimeUnit> {
     }
 }
 
-/// Reads a time: a number, whose size decides the unit if there is none yet, or a text with a date.
-fn read(value: &Value, unit: &mut Option<TimeUnit>) -> Option<Time> {
+/// Returns true if a value can be a time: a number, or a timestamp.
+fn is_time(value: &Value) -> bool {
     match value {
-        Value::String(text) => moment::read(text.as_bytes())
-            .filter(|moment| moment.is_dated)
-            .map(|moment| Time::Seconds(moment.seconds)),
-        Value::Number(written) => {
-            let number = written
-                .as_f64()
-                .filter(|time| time.abs() <= LARGEST_VALUE)?;
-            let unit = *unit.get_or_insert_with(|| TimeUnit::by_size(number));
-            Some(Time::read(written.to_string().as_bytes(), number, unit))
-        }
-        _ => None,
+        Value::String(text) => moment::read(text.as_bytes()).is_some(),
+        value => number(value).is_some(),
     }
+}
+
+/// Returns a number as it is written, and its value.
+fn number(value: &Value) -> Option<(String, f64)> {
+    let Value::Number(written) = value else {
+        return None;
+    };
+    let number = written
+        .as_f64()
+        .filter(|time| time.abs() <= LARGEST_VALUE)?;
+    Some((written.to_string(), number))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::recording::event::RecordingNote;
 
-    /// Returns the seconds of such lines, and the unit that was assumed.
-    fn seconds(lines: &[&str]) -> (Vec<Option<f64>>, Option<TimeUnit>) {
+    /// Returns the seconds of such lines, and the note about their unit.
+    fn seconds(lines: &[&str]) -> (Vec<Option<f64>>, Option<RecordingNote>) {
         let mut clock = JsonClock::default();
         let of_line = |line: &&str| {
             let object: Value = serde_json::from_str(line).expect("JSON");
@@ -145,10 +146,11 @@ mod tests {
                     candidates.add(name.clone(), value.clone());
                 }
             }
-            clock.seconds(&candidates)
+            let time = clock.time(&candidates)?;
+            Some(clock.clock.since_first(time))
         };
         let seconds = lines.iter().map(of_line).collect();
-        (seconds, clock.take_assumed())
+        (seconds, clock.clock.take_note())
     }
 
     #[test]
@@ -207,6 +209,20 @@ mod tests {
             r#"{"timestamp":1714564800124456790}"#,
         ];
         let times = vec![Some(0.0), Some(0.001_000_001)];
-        assert_eq!(seconds(&lines), (times, Some(TimeUnit::Nanoseconds)));
+        let unit = "nanoseconds";
+        assert_eq!(
+            seconds(&lines),
+            (times, Some(RecordingNote::TimeUnit { unit }))
+        );
+    }
+
+    #[test]
+    fn timestamps_need_no_date() {
+        let lines = [
+            r#"{"timestamp":"23:59:59.5"}"#,
+            r#"{"timestamp":null}"#,
+            r#"{"timestamp":"00:00:00.25"}"#,
+        ];
+        assert_eq!(seconds(&lines).0, [Some(0.0), None, Some(0.75)]);
     }
 }

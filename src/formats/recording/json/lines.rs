@@ -24,15 +24,14 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Vis
 use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, RecordingNote,
-    Sink,
+    ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
 };
 use crate::formats::recording::json::cells::CellsSeed;
 use crate::formats::recording::json::clock::{JsonClock, TimeCandidates};
 use crate::formats::recording::side::{changed, frame_size};
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::lines::TextLines;
-use crate::formats::seconds::since;
+use crate::formats::recording::time::exact::Time;
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::parameter::number::counted;
 
@@ -44,7 +43,7 @@ pub(in crate::formats::recording) fn read(
 ) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let mut line = FrameLine::new(options.size);
-    let (mut clock, mut start) = (JsonClock::default(), None);
+    let mut clock = JsonClock::default();
     // The name of each channel, the size of its frames, and their number so far.
     let mut channels: Vec<(Option<String>, StreamSize, u64)> = Vec::new();
     let mut frame = Frame::default();
@@ -79,12 +78,9 @@ pub(in crate::formats::recording) fn read(
         *count += 1;
         frame.reset(line.size);
         frame.values_mut().copy_from_slice(&line.values);
-        frame.time = line
-            .time
-            .map(|time| since(*start.get_or_insert(time), time));
+        frame.time = line.time.map(|time| clock.clock.since_first(time));
         frame.label = line.label;
-        if let Some(unit) = clock.take_assumed() {
-            let note = RecordingNote::TimeUnit { unit: unit.name() };
+        if let Some(note) = clock.clock.take_note() {
             sink(RecordingEvent::Note(&note))?;
         }
         sink(RecordingEvent::Frame(&frame))?;
@@ -101,8 +97,8 @@ pub(in crate::formats) struct FrameLine {
     pub(in crate::formats) size: FrameSize,
     /// The cells, row by row; NaN for null.
     pub(in crate::formats) values: Vec<f64>,
-    /// The time in seconds: as `t` or `time` gives it, or since the first time under another key.
-    pub(in crate::formats) time: Option<f64>,
+    /// The time.
+    pub(in crate::formats) time: Option<Time>,
     /// The frame's label in the recording.
     pub(in crate::formats) label: Option<i64>,
     /// The name of the sensor, if there are several.
@@ -278,7 +274,8 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
                 key @ ("t" | "time") => {
                     once(&mut time, if key == "t" { "t" } else { "time" })?;
                     let time: Option<f64> = map.next_value()?;
-                    line.time = time.filter(|time| time.abs() <= LARGEST_VALUE);
+                    let time = time.filter(|time| time.abs() <= LARGEST_VALUE);
+                    line.time = time.map(Time::Seconds);
                 }
                 "label" => {
                     once(&mut label, "label")?;
@@ -295,7 +292,7 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
             }
         }
         if time.is_none() {
-            line.time = clock.seconds(&other_times);
+            line.time = clock.time(&other_times);
         }
         if frame.is_none() {
             return Err(A::Error::custom("no key \"frame\" with rows of values"));

@@ -20,9 +20,10 @@ use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::numpy::array::{self, ArrayLayout};
+use crate::formats::recording::time::exact::Time;
 use crate::formats::recording::time::field_role::{FieldRole, role};
+use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::recording::time::unit::TimeUnit;
-use crate::formats::seconds::{since, to_nanoseconds};
 
 /// The most frames of which times are read: 128 MiB of them.
 const MOST_TIMES: u64 = 1 << 24;
@@ -108,16 +109,14 @@ pub(in crate::formats::recording) fn read(
             sink(RecordingEvent::Note(note))?;
         }
     }
-    let mut noted_unit = None;
+    let mut noted = None;
     for (channel, (array, layout)) in channels.iter().enumerate() {
-        let (times, assumed) = times(&mut archive, &arrays, layout.frames())?;
+        let (times, note) = times(&mut archive, &arrays, layout.frames())?;
         // Channels with as many frames have the same times.
-        let news = assumed.filter(|_| assumed != noted_unit);
-        noted_unit = news.or(noted_unit);
-        if let Some(unit) = news {
-            let note = RecordingNote::TimeUnit { unit: unit.name() };
-            sink(RecordingEvent::Note(&note))?;
+        if let Some(note) = note.as_ref().filter(|_| note != noted) {
+            sink(RecordingEvent::Note(note))?;
         }
+        noted = note.or(noted);
         let mut file = archive.by_index(array.index).map_err(damaged)?;
         let named = |error| in_array(&array.name, error);
         array::header(&mut file).map_err(named)?;
@@ -249,8 +248,8 @@ impl<'a> TimeArray<'a> {
         found.or_else(|| Self::new(other?, None))
     }
 
-    /// Returns the times in seconds since the first one, NaN for missing ones, and their unit if it was derived from
-    /// their size and is not seconds.
+    /// Returns the times in seconds since the first one, NaN for missing ones, and a note if their unit was derived
+    /// from their size and is not seconds.
     ///
     /// # Errors
     /// Returns an error if the array is damaged.
@@ -258,12 +257,12 @@ impl<'a> TimeArray<'a> {
         &self,
         file: &mut impl Read,
         frames: u64,
-    ) -> Result<(Vec<f64>, Option<TimeUnit>), RecordingError> {
+    ) -> Result<(Vec<f64>, Option<RecordingNote>), RecordingError> {
         array::header(file)?;
         let mut bytes = [0; 8];
         let bytes = &mut bytes[..self.number.size()];
-        let (mut times, mut unit) = (Vec::new(), self.unit);
-        let (mut first, mut first_whole) = (None, None);
+        let (mut times, mut clock) = (Vec::new(), FrameClock::default());
+        clock.set_unit(self.unit);
         for _ in 0..frames {
             if array::fill(file, bytes)? < bytes.len() {
                 let message = format!("ends before its {frames} times");
@@ -275,27 +274,20 @@ impl<'a> TimeArray<'a> {
                 times.push(f64::NAN);
                 continue;
             }
-            // Nanoseconds since 1970 have more digits than a float.
-            #[expect(
-                clippy::cast_precision_loss,
-                reason = "the nearest float of a difference"
-            )]
-            let time = match whole {
-                Some(whole) => (whole - *first_whole.get_or_insert(whole)) as f64,
-                None => since(*first.get_or_insert(value), value),
-            };
-            let unit = unit.get_or_insert_with(|| TimeUnit::by_size(value));
-            times.push(to_nanoseconds(unit.seconds(time)));
+            let unit = clock.unit(value);
+            times.push(clock.since_first(match whole {
+                Some(whole) => Time::of_whole(whole, unit),
+                None => Time::Seconds(unit.seconds(value)),
+            }));
         }
         // Wrong times are worse than none, so read up to the end of the array, where its checksum is verified.
         array::fill(file, &mut [0])?;
-        let assumed = unit.filter(|&unit| self.unit.is_none() && unit != TimeUnit::Seconds);
-        Ok((times, assumed))
+        Ok((times, clock.take_note()))
     }
 }
 
 /// Returns the times of all `frames`, in seconds since the first one, NaN for missing ones; empty if there are none.
-/// Returns their unit, too, if it was derived from their size and is not seconds.
+/// Returns a note, too, if their unit was derived from their size and is not seconds.
 ///
 /// # Errors
 /// Returns an error if the array of times is damaged.
@@ -303,7 +295,7 @@ fn times(
     archive: &mut ZipArchive<impl Read + Seek>,
     arrays: &[ArchiveArray],
     frames: u64,
-) -> Result<(Vec<f64>, Option<TimeUnit>), RecordingError> {
+) -> Result<(Vec<f64>, Option<RecordingNote>), RecordingError> {
     let found = TimeArray::of_frames(arrays, frames);
     let Some(found) = found.filter(|_| frames <= MOST_TIMES) else {
         return Ok((Vec::new(), None));

@@ -3,7 +3,8 @@
 use crate::formats::recording::text::row::Field;
 use crate::formats::recording::text::separator::Separator;
 use crate::formats::recording::time::exact::Time;
-use crate::formats::recording::time::moment::{self, Midnights};
+use crate::formats::recording::time::frame_clock::FrameClock;
+use crate::formats::recording::time::moment;
 use crate::formats::recording::time::unit::TimeUnit;
 
 /// The fields of a line that hold its time.
@@ -42,62 +43,42 @@ pub(super) struct TimeText<'a> {
 pub(super) struct TableClock {
     /// The separator between fields, which decides about the decimal sign.
     separator: Separator,
-    /// The unit; None if it is not named, until the size of the first time decides it.
-    unit: Option<TimeUnit>,
     /// The unit of the rest of a second.
     rest: Option<TimeUnit>,
-    /// The first time.
-    start: Option<Time>,
-    /// The count of midnights, for clocks without a date.
-    midnights: Midnights,
+    /// The clock of the frames.
+    pub(super) clock: FrameClock,
 }
 
 impl TableClock {
     /// Makes the clock of a table with these time fields.
     pub(super) fn new(separator: Separator, fields: Option<TimeFields>) -> Self {
+        let mut clock = FrameClock::default();
+        clock.set_unit(fields.and_then(|fields| fields.unit));
         Self {
             separator,
-            unit: fields.and_then(|fields| fields.unit),
             rest: fields.and_then(|fields| fields.rest).map(|(_, unit)| unit),
-            start: None,
-            midnights: Midnights::default(),
+            clock,
         }
-    }
-
-    /// Returns the unit of times; None if no unit is named and there was no number yet.
-    pub(super) fn unit(&self) -> Option<TimeUnit> {
-        self.unit
     }
 
     /// Returns the seconds from the first time to this one; None if there is no time, or a text that cannot be read.
     pub(super) fn seconds(&mut self, text: TimeText<'_>) -> Option<f64> {
         let field = text.time?;
-        match self.separator.value(field) {
+        let time = match self.separator.value(field) {
             Field::Value(number) => {
-                let unit = *self.unit.get_or_insert_with(|| TimeUnit::by_size(number));
-                let time = Time::read(field, number, unit);
-                let time = match (self.rest, text.rest) {
+                let time = self.clock.number(field, number);
+                match (self.rest, text.rest) {
                     (Some(unit), Some(rest)) => match self.separator.value(rest) {
                         Field::Value(number) => time.plus(Time::read(rest, number, unit)),
                         _ => return None,
                     },
                     _ => time,
-                };
-                Some(self.since_first(time))
+                }
             }
-            Field::Wrong => moment::read(field).map(|moment| self.moment(moment)),
-            Field::NoCell => None,
-        }
-    }
-
-    /// Returns the seconds from the first time to a timestamp.
-    pub(super) fn moment(&mut self, moment: moment::Moment) -> f64 {
-        let seconds = self.midnights.seconds(moment);
-        self.since_first(Time::Seconds(seconds))
-    }
-
-    fn since_first(&mut self, time: Time) -> f64 {
-        time.since(*self.start.get_or_insert(time))
+            Field::Wrong => self.clock.moment(moment::read(field)?),
+            Field::NoCell => return None,
+        };
+        Some(self.clock.since_first(time))
     }
 }
 

@@ -26,9 +26,7 @@
 use std::io::{BufRead, Seek};
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
-};
+use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, Sink};
 #[cfg(feature = "cli")]
 use crate::formats::recording::event::{RecordingSink, until_enough};
 #[cfg(feature = "cli")]
@@ -39,8 +37,8 @@ use crate::formats::recording::text::lines::{TextLines, is_blank};
 use crate::formats::recording::text::number::whole;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::{Separator, is_comment};
+use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::recording::time::moment;
-use crate::formats::recording::time::unit::TimeUnit;
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
 
@@ -143,12 +141,8 @@ fn frames(
                 continue;
             }
         };
-        let had_unit = clock.unit().is_some();
         frame.time = clock.seconds(time);
-        if let Some(unit) = clock.unit().filter(|_| !had_unit)
-            && unit != TimeUnit::Seconds
-        {
-            let note = RecordingNote::TimeUnit { unit: unit.name() };
+        if let Some(note) = clock.clock.take_note() {
             sink(RecordingEvent::Note(&note))?;
         }
         sink(RecordingEvent::Frame(&frame))?;
@@ -224,7 +218,7 @@ struct RowBlock {
     /// Whether the rest of a wrong frame is being left out.
     skipping: bool,
     /// The clock that reads the timestamp at the beginning of the first row.
-    clock: TableClock,
+    clock: FrameClock,
 }
 
 impl RowBlock {
@@ -236,7 +230,7 @@ impl RowBlock {
             found: 0,
             parted,
             skipping: false,
-            clock: TableClock::new(separator, None),
+            clock: FrameClock::default(),
         }
     }
 
@@ -314,7 +308,8 @@ impl RowBlock {
             None => (None, line),
         };
         if self.found == 0 {
-            self.frame.time = moment.map(|moment| self.clock.moment(moment));
+            let time = moment.map(|moment| self.clock.moment(moment));
+            self.frame.time = time.map(|time| self.clock.since_first(time));
         }
         let start = usize::from(self.found) * columns;
         let slots = &mut self.frame.values_mut()[start..start + columns];

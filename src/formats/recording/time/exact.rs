@@ -8,7 +8,7 @@ use crate::formats::seconds::{since, to_nanoseconds};
 
 /// A time, exactly as it is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::formats::recording) enum Time {
+pub(in crate::formats) enum Time {
     Picoseconds(i128),
     Seconds(f64),
 }
@@ -20,6 +20,11 @@ impl Time {
             Some(exact) => Self::Picoseconds(exact),
             None => Self::Seconds(unit.seconds(number)),
         }
+    }
+
+    /// Returns the time of a whole number.
+    pub(in crate::formats::recording) fn of_whole(whole: i128, unit: TimeUnit) -> Self {
+        Self::Picoseconds(whole * i128::from(unit.picoseconds()))
     }
 
     #[expect(clippy::cast_precision_loss, reason = "the nearest float")]

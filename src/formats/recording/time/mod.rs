@@ -5,6 +5,7 @@
 //! field_role   names such as `timestamp` or `t_ms`, in a header, an object or an archive
 //! moment       timestamps such as 2024-05-01T12:00:00.125Z
 //! exact        numbers, subtracted with all their digits
+//! frame_clock  seconds since the first frame, from numbers and timestamps
 //! ```
 
 pub(super) mod unit;
@@ -13,4 +14,6 @@ pub(super) mod field_role;
 
 pub(in crate::formats) mod moment;
 
-pub(super) mod exact;
+pub(in crate::formats) mod exact;
+
+pub(in crate::formats) mod frame_clock;
