@@ -40,7 +40,7 @@ pub use event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 pub(crate) use frame_rate::FrameRate;
 pub use growing_file::ReadAnew;
 #[cfg(feature = "tui")]
-pub(crate) use recorder::PreparedDescription;
-pub use recorder::{DescriptionError, FrameRecorder, RecorderError, description_beside};
+pub(crate) use recorder::PreparedMetadata;
+pub use recorder::{FrameRecorder, MetadataFileError, RecorderError, metadata_beside};
 pub use run::acquire;
 pub use source::FrameSource;

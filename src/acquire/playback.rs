@@ -11,7 +11,7 @@ use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::pace::{MOMENT, Pace};
-use crate::acquire::recorder::description_beside;
+use crate::acquire::recorder::metadata_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
     ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingInput,
@@ -36,13 +36,13 @@ pub(super) fn run(
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
-    let ControlFlow::Continue(description) = description_of(path, consumer) else {
+    let ControlFlow::Continue(metadata) = metadata_of(path, consumer) else {
         return Ok(());
     };
     let player = Player {
         options,
         stop,
-        description,
+        metadata,
         consumer: RefCell::new(consumer),
         ended: Cell::new(false),
         counts: RefCell::default(),
@@ -61,8 +61,8 @@ pub(super) fn run(
 struct Player<'a, 'b> {
     options: &'a AcquireOptions,
     stop: &'a AtomicBool,
-    /// The description beside the recording.
-    description: Option<RecordingMetadata>,
+    /// The metadata beside the recording.
+    metadata: Option<RecordingMetadata>,
     /// The consumer of what is read, and of a tick now and then while waiting for more.
     consumer: RefCell<&'a mut Consumer<'b>>,
     /// Whether the consumer wants no more.
@@ -272,7 +272,7 @@ impl Player<'_, '_> {
             }
             flow = match event {
                 RecordingEvent::Channel(info) => {
-                    let info = info.completed(self.description.as_ref());
+                    let info = info.completed(self.metadata.as_ref());
                     pace.add(&info);
                     if round.add(&info) {
                         self.report(AcquireEvent::Channel(&info))
@@ -311,17 +311,17 @@ impl Player<'_, '_> {
     }
 }
 
-/// Reads the description beside a recording. If something is wrong with it, reports that as a note and leaves out the
-/// description. Returns `Break` if no more is wanted.
-fn description_of(
+/// Reads the metadata beside a recording. If something is wrong with it, reports that as a note and leaves out the
+/// metadata. Returns `Break` if no more is wanted.
+fn metadata_of(
     path: &Path,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<(), Option<RecordingMetadata>> {
-    match description_beside(path).transpose() {
-        Ok(description) => ControlFlow::Continue(description),
+    match metadata_beside(path).transpose() {
+        Ok(metadata) => ControlFlow::Continue(metadata),
         Err(error) => {
             let complaint = error.to_string();
-            let note = RecordingNote::Description { complaint };
+            let note = RecordingNote::Metadata { complaint };
             consumer(AcquireEvent::Note(&note))?;
             ControlFlow::Continue(None)
         }

@@ -24,7 +24,7 @@ pub enum RecorderError {
         /// The file.
         path: PathBuf,
     },
-    /// The file beside the array is not the description of a recording, so it is not replaced.
+    /// The file beside the array is not the metadata of a recording, so it is not replaced.
     #[error("{} is not the description of a recording: record to another name", path.display())]
     Foreign {
         /// The file.
@@ -45,7 +45,7 @@ pub enum RecorderError {
         /// The path that the file had.
         path: PathBuf,
     },
-    /// The file, or the description beside it, is the source.
+    /// The file, or the metadata beside it, is the source.
     #[error("{} is the source being watched: record to another file", path.display())]
     IsSource {
         /// The file.
@@ -53,10 +53,10 @@ pub enum RecorderError {
     },
 }
 
-/// The error for a description beside an array that cannot be read.
+/// The error for metadata beside an array that cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum DescriptionError {
+pub enum MetadataFileError {
     /// The system cannot read the file.
     #[error("{}: cannot read: {error}", path.display())]
     Io {
@@ -65,12 +65,12 @@ pub enum DescriptionError {
         /// The error that the system reports.
         error: io::Error,
     },
-    /// The description is damaged, or was changed.
+    /// The metadata is damaged, or was changed.
     #[error("{}: {error}", path.display())]
     Broken {
         /// The file.
         path: PathBuf,
-        /// The error in the description.
+        /// The error in the metadata.
         error: MetadataError,
     },
 }

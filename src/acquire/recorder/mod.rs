@@ -2,11 +2,11 @@
 //!
 //! Beside `touch.npy`, an array of records, is `touch.json`. It states where the frames are from and how they were
 //! processed. The two get their names together, so a new file is never paired with an old version of the other one. If
-//! another program replaces the array meanwhile, the description is left to that program. `touch.json` also states
+//! another program replaces the array meanwhile, the metadata is left to that program. `touch.json` also states
 //! whether the recording was ended, which is false if the program was killed.
 //!
 //! No file appears or is replaced until the first frame arrives. A disk that is full ends a recording after its last
-//! whole record, and the description says why.
+//! whole record, and the metadata says why.
 
 mod error;
 
@@ -14,18 +14,18 @@ mod syncer;
 
 mod record_array;
 
-mod description;
+mod metadata;
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-use description::{DescriptionDraft, is_array, overwrite, prepared};
 use error::refused;
+use metadata::{MetadataDraft, is_array, overwrite, prepared};
 use record_array::{RecordArray, empty};
 
-pub(crate) use description::PreparedDescription;
-pub use description::description_beside;
-pub use error::{DescriptionError, RecorderError};
+pub use error::{MetadataFileError, RecorderError};
+pub(crate) use metadata::PreparedMetadata;
+pub use metadata::metadata_beside;
 
 use crate::acquire::frame_rate::FrameRate;
 #[cfg(feature = "tui")]
@@ -39,11 +39,11 @@ const MOST_BURSTS: usize = 4096;
 
 /// A recorder that writes frames to a file, until [`Self::finish`] ends the recording and reports errors.
 ///
-/// If it is dropped before that, it writes out the waiting frames, as far as the system allows, and the description
+/// If it is dropped before that, it writes out the waiting frames, as far as the system allows, and the metadata
 /// does not say that the recording was ended.
 ///
 /// ```
-/// use taxel::acquire::{FrameRecorder, description_beside};
+/// use taxel::acquire::{FrameRecorder, metadata_beside};
 /// use taxel::formats::recording::RecordingMetadata;
 /// use taxel::frame::{Frame, FrameSize};
 /// use taxel::storage::Existing;
@@ -54,7 +54,7 @@ const MOST_BURSTS: usize = 4096;
 /// let mut recorder = FrameRecorder::create(&path, Existing::Kept, &metadata)?;
 /// recorder.add(&Frame::new(FrameSize::new(16, 16)?), Some(0.0))?;
 /// assert_eq!(recorder.finish()?, 1);
-/// assert_eq!(description_beside(&path).unwrap()?.ended, Some(true));
+/// assert_eq!(metadata_beside(&path).unwrap()?.ended, Some(true));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
@@ -76,10 +76,10 @@ pub struct FrameRecorder {
     rate: FrameRate,
 }
 
-/// The state of the names of array and description.
+/// The state of the names of array and metadata.
 #[derive(Debug)]
 enum Names {
-    /// The files get their names with the first frame.
+    /// The files get their names with the first frame: the array, and the metadata beside it.
     Waiting(FinishedFile, FinishedFile),
     /// The files have their names; the identity of the array.
     Given(FileId),
@@ -93,7 +93,7 @@ impl FrameRecorder {
     ///
     /// # Errors
     /// Returns an error if the name ends otherwise, if one of the two files exists and must be kept, if the file under
-    /// the second name is not a description, or if they cannot be created.
+    /// the second name is not metadata, or if they cannot be created.
     pub fn create(
         path: &Path,
         existing: Existing,
@@ -105,7 +105,7 @@ impl FrameRecorder {
         }
         let beside = path.with_extension("json");
         let is_there = existing == Existing::Replaced && beside.symlink_metadata().is_ok();
-        if is_there && description_beside(path).is_none() {
+        if is_there && metadata_beside(path).is_none() {
             return Err(RecorderError::Foreign { path: beside });
         }
         let mut metadata = metadata.clone();
@@ -116,12 +116,12 @@ impl FrameRecorder {
             Ok((array.handle()?, array.finish()?))
         };
         let (file, array) = array().map_err(refused)?;
-        let description = prepared(path, existing, &metadata)?;
+        let beside = prepared(path, existing, &metadata)?;
         Ok(Self {
             path: path.to_owned(),
             existing,
             metadata,
-            names: Names::Waiting(array, description),
+            names: Names::Waiting(array, beside),
             numbers: None,
             left_out: 0,
             reason: None,
@@ -130,20 +130,20 @@ impl FrameRecorder {
         })
     }
 
-    /// Writes the description beside the file anew.
+    /// Writes the metadata beside the file anew.
     ///
     /// # Errors
     /// Returns the system's error.
     pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
         self.metadata.clone_from(metadata);
         self.metadata.ended = Some(false);
-        let written = self.write_description();
+        let written = self.write_metadata();
         self.noted(written)
     }
 
-    /// Replaces threshold, tare and marks, and returns the description with them, for the caller to write.
+    /// Replaces threshold, tare and marks, and returns the metadata with them, for the caller to write.
     #[cfg(feature = "tui")]
-    pub(crate) fn set_view(&mut self, view: RecordedView) -> DescriptionDraft {
+    pub(crate) fn set_view(&mut self, view: RecordedView) -> MetadataDraft {
         let RecordedView { rule, tare, marks } = view;
         (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);
         self.leave_out_marks();
@@ -157,7 +157,7 @@ impl FrameRecorder {
         }
     }
 
-    /// Keeps the message of the first failure for the description. Returns the result.
+    /// Keeps the message of the first failure for the metadata. Returns the result.
     fn noted<T>(&mut self, result: Result<T, RecorderError>) -> Result<T, RecorderError> {
         if let Err(error) = &result {
             self.note_failure(error);
@@ -165,7 +165,7 @@ impl FrameRecorder {
         result
     }
 
-    /// Keeps the message of a failure for the description, if it is the first.
+    /// Keeps the message of a failure for the metadata, if it is the first.
     pub(crate) fn note_failure(&mut self, error: &RecorderError) {
         match error {
             RecorderError::Io { error, .. } => self.note_reason(&error.to_string()),
@@ -173,36 +173,36 @@ impl FrameRecorder {
         }
     }
 
-    /// Keeps the reason why the recording ends early for the description, if it is the first.
+    /// Keeps the reason why the recording ends early for the metadata, if it is the first.
     pub(crate) fn note_reason(&mut self, reason: &str) {
         self.reason.get_or_insert_with(|| reason.to_owned());
     }
 
-    fn draft(&self) -> DescriptionDraft {
-        DescriptionDraft {
+    fn draft(&self) -> MetadataDraft {
+        MetadataDraft {
             path: self.path.clone(),
             metadata: self.metadata.clone(),
         }
     }
 
-    /// Takes a description that is on the disk, to give it its name together with the array. If the array has its
-    /// name already, returns the description, which is to be given its name at once.
-    pub(crate) fn take_description(&mut self, file: FinishedFile) -> Option<PreparedDescription> {
+    /// Takes metadata that is on the disk, to give it its name together with the array. If the array has its
+    /// name already, returns the metadata, which is to be given its name at once.
+    pub(crate) fn take_metadata(&mut self, file: FinishedFile) -> Option<PreparedMetadata> {
         match &mut self.names {
-            Names::Waiting(_, description) => *description = file.with_existing(self.existing),
+            Names::Waiting(_, beside) => *beside = file.with_existing(self.existing),
             Names::Given(array) => {
                 let (array, path) = (*array, self.path.clone());
-                return Some(PreparedDescription { file, array, path });
+                return Some(PreparedMetadata { file, array, path });
             }
             Names::Refused => {}
         }
         None
     }
 
-    fn write_description(&mut self) -> Result<(), RecorderError> {
+    fn write_metadata(&mut self) -> Result<(), RecorderError> {
         let file = self.draft().prepare()?;
-        let file = self.take_description(file);
-        file.map_or(Ok(()), PreparedDescription::give_name)
+        let file = self.take_metadata(file);
+        file.map_or(Ok(()), PreparedMetadata::give_name)
     }
 
     /// Returns the number of frames that were recorded.
@@ -237,8 +237,8 @@ impl FrameRecorder {
             begun.map_err(|error| self.refused(error))?;
         }
         self.names = match std::mem::replace(&mut self.names, Names::Refused) {
-            Names::Waiting(array, description) => {
-                let file = persist_pair(array, description).map_err(refused)?;
+            Names::Waiting(array, beside) => {
+                let file = persist_pair(array, beside).map_err(refused)?;
                 let id = FileId::of(&file).map_err(|error| self.refused(error))?;
                 self.array.move_to(file);
                 Names::Given(id)
@@ -294,7 +294,7 @@ impl FrameRecorder {
     /// the files that would have been replaced stay as they are.
     ///
     /// # Errors
-    /// Returns the system's error. Even then, the records in the file are complete, and the description says why it
+    /// Returns the system's error. Even then, the records in the file are complete, and the metadata says why it
     /// ends there.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
         if !matches!(self.names, Names::Given(_)) {
@@ -310,7 +310,7 @@ impl FrameRecorder {
         self.metadata.seconds_per_frame = stated.or_else(|| self.rate.seconds_per_frame());
         self.metadata.ended = Some(true);
         self.metadata.ended_by = self.reason.take();
-        let described = self.write_description().or_else(|error| match error {
+        let described = self.write_metadata().or_else(|error| match error {
             RecorderError::Replaced { .. } => Err(error),
             error => overwrite(&self.path, &self.metadata).map_err(|_| error),
         });
@@ -340,9 +340,9 @@ mod tests {
         FrameRecorder::create(path, Existing::Kept, &metadata).expect("begun")
     }
 
-    /// The recording gets its names with the first frame, at any time while a description of it is being written.
+    /// The recording gets its names with the first frame, at any time while its metadata is being written.
     #[test]
-    fn a_description_is_written_while_the_first_frame_comes() {
+    fn metadata_is_written_while_the_first_frame_comes() {
         for comes_first in [true, false] {
             let folder = tempfile::tempdir().expect("a folder");
             let path = folder.path().join("a.npy");
@@ -367,17 +367,17 @@ mod tests {
                 add(&mut recorder);
                 file
             };
-            let file = recorder.take_description(file).expect("to be named");
+            let file = recorder.take_metadata(file).expect("to be named");
             file.give_name().expect("named");
-            let beside = description_beside(&path).expect("there").expect("read");
+            let beside = metadata_beside(&path).expect("there").expect("read");
             assert_eq!(beside.marks, marks);
         }
     }
 
-    /// Another program has replaced the recording, with its description.
+    /// Another program has replaced the recording, with its metadata.
     #[cfg(unix)]
     #[test]
-    fn a_recording_that_was_replaced_leaves_the_new_description_alone() {
+    fn a_recording_that_was_replaced_leaves_the_new_metadata_alone() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
         let mut old = begun(&path);
@@ -427,7 +427,7 @@ mod tests {
         }
         recorder.set_view(view(&[4, 5, 6]));
         recorder.finish().expect("finished");
-        let beside = description_beside(&path).expect("there").expect("read");
+        let beside = metadata_beside(&path).expect("there").expect("read");
         assert_eq!(beside.marks, [mark(5), mark(6)]);
     }
 
@@ -450,7 +450,7 @@ mod tests {
             ..RecordedView::default()
         });
         recorder.finish().expect("finished");
-        let beside = description_beside(&path).expect("there").expect("read");
+        let beside = metadata_beside(&path).expect("there").expect("read");
         assert_eq!(beside.marks, marks);
     }
 
@@ -470,7 +470,7 @@ mod tests {
                 added.expect("recorded");
             }
             recorder.finish().expect("finished");
-            let beside = description_beside(&path).expect("there").expect("read");
+            let beside = metadata_beside(&path).expect("there").expect("read");
             assert_eq!(beside.seconds_per_frame, Some(expected));
         }
     }
@@ -490,7 +490,7 @@ mod tests {
             [header(Some(FrameSize::SMALLEST), 3), bytes[256..].to_vec()].concat()
         );
         assert_eq!(bytes.len(), 256 + 3 * 24);
-        let beside = description_beside(&path).expect("there").expect("read");
+        let beside = metadata_beside(&path).expect("there").expect("read");
         assert_eq!(beside.ended, Some(false));
         // Before its first frame, none of its files is there.
         let path = folder.path().join("b.npy");
@@ -499,14 +499,14 @@ mod tests {
     }
 
     #[test]
-    fn a_later_description_does_not_replace_the_file_of_another_program() {
+    fn later_metadata_does_not_replace_the_file_of_another_program() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
         let mut recorder = begun(&path);
         let beside = path.with_extension("json");
         std::fs::write(&beside, "mine").expect("written");
         let file = recorder.set_view(RecordedView::default()).prepare();
-        let named = recorder.take_description(file.expect("on the disk"));
+        let named = recorder.take_metadata(file.expect("on the disk"));
         assert!(named.is_none(), "it waits for the first frame");
         let added = recorder.add(&Frame::default(), None);
         assert!(matches!(added, Err(RecorderError::Exists { .. })));
@@ -514,7 +514,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_description_is_replaced_beside_an_array() {
+    fn only_metadata_is_replaced_beside_an_array() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
         let beside = path.with_extension("json");

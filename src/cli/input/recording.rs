@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::os::fd::AsFd;
 use std::path::Path;
 
-use crate::acquire::description_beside;
+use crate::acquire::metadata_beside;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
@@ -35,9 +35,9 @@ pub(crate) struct RecordingFile {
     id: FileId,
     /// Rows and columns, for formats that do not state them.
     options: ReadOptions,
-    /// The description in the file beside it, if taxel made the recording.
-    description: Option<RecordingMetadata>,
-    /// The problem with the description or the recording's end, if there is one.
+    /// The metadata in the file beside it, if taxel made the recording.
+    metadata: Option<RecordingMetadata>,
+    /// The problem with the metadata or the recording's end, if there is one.
     complaint: Option<String>,
     /// Whether the recording is known to be damaged, so that the damage is not reported again.
     is_damaged: bool,
@@ -76,10 +76,10 @@ impl RecordingFile {
                 Ok((id, spooled(file)?))
             }
         };
-        let (description, complaint) = match description_beside(path) {
-            Some(Ok(description)) => {
-                let complaint = unended(path, &description);
-                (Some(description), complaint)
+        let (metadata, complaint) = match metadata_beside(path) {
+            Some(Ok(metadata)) => {
+                let complaint = unended(path, &metadata);
+                (Some(metadata), complaint)
             }
             Some(Err(error)) => (None, Some(error.to_string())),
             None => (None, None),
@@ -90,7 +90,7 @@ impl RecordingFile {
                 file,
                 id,
                 options,
-                description,
+                metadata,
                 complaint,
                 is_damaged: false,
             }),
@@ -125,7 +125,7 @@ impl RecordingFile {
         self.name.insert_str(0, flag);
     }
 
-    /// Returns the problem with the description beside it, if there is one.
+    /// Returns the problem with the metadata beside it, if there is one.
     pub(crate) fn complaint(&self) -> Option<&str> {
         self.complaint.as_deref()
     }
@@ -138,10 +138,10 @@ impl RecordingFile {
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()>,
     ) -> Result<RecordingFormat, RecordingError> {
-        let description = self.description.as_ref();
+        let metadata = self.metadata.as_ref();
         read(&mut self.file, self.options, &mut |event| match event {
             RecordingEvent::Channel(info) => {
-                sink(RecordingEvent::Channel(&info.completed(description)))
+                sink(RecordingEvent::Channel(&info.completed(metadata)))
             }
             event => sink(event),
         })
@@ -250,15 +250,15 @@ pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
 }
 
 /// Returns the message that a recording has no end, or that it was ended by something other than its user.
-fn unended(path: &Path, description: &RecordingMetadata) -> Option<String> {
+fn unended(path: &Path, metadata: &RecordingMetadata) -> Option<String> {
     let beside = path.with_extension("json");
     let beside = beside.display();
-    if description.ended == Some(false) {
+    if metadata.ended == Some(false) {
         return Some(format!(
             "{beside}: has no end: still being recorded, or the program was killed; the last half second may be missing"
         ));
     }
-    let reason = description.ended_by.as_ref()?;
+    let reason = metadata.ended_by.as_ref()?;
     Some(format!("{beside}: the recording ended early: {reason}"))
 }
 

@@ -68,7 +68,7 @@ impl Serialize for FrameAnswer<'_> {
     }
 }
 
-/// There is no `Deserialize`: a rule is read as a part of the description beside a recording, or of a line of a batch.
+/// There is no `Deserialize`: a rule is read as a part of the metadata beside a recording, or of a line of a batch.
 impl Serialize for SetRule {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;

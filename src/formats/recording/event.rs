@@ -3,8 +3,8 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use crate::formats::recording::description::{FrameMark, RecordingMetadata};
 use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::metadata::{FrameMark, RecordingMetadata};
 use crate::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
 use crate::parameter::named;
 #[cfg(feature = "tui")]
@@ -173,20 +173,20 @@ impl ChannelInfo {
         self.name.as_deref().unwrap_or(UNNAMED)
     }
 
-    /// Returns the channel, with missing fields taken from the description beside the recording, if there is one.
+    /// Returns the channel, with missing fields taken from the metadata beside the recording, if there is one.
     #[must_use]
-    pub fn completed(&self, description: Option<&RecordingMetadata>) -> Self {
+    pub fn completed(&self, metadata: Option<&RecordingMetadata>) -> Self {
         let mut info = self.clone();
-        if let Some(description) = description {
-            info.unit = info.unit.or_else(|| description.unit.clone());
-            info.pitch_mm = info.pitch_mm.or(description.pitch_mm);
-            info.seconds_per_frame = info.seconds_per_frame.or(description.seconds_per_frame);
-            info.rule = info.rule.or(description.rule);
+        if let Some(metadata) = metadata {
+            info.unit = info.unit.or_else(|| metadata.unit.clone());
+            info.pitch_mm = info.pitch_mm.or(metadata.pitch_mm);
+            info.seconds_per_frame = info.seconds_per_frame.or(metadata.seconds_per_frame);
+            info.rule = info.rule.or(metadata.rule);
             if let Some(Rule::AtLeast(threshold)) = info.rule.map(|set| set.rule) {
                 info.threshold.get_or_insert(threshold);
             }
-            info.tare = info.tare.or_else(|| description.tare.clone());
-            info.marks.clone_from(&description.marks);
+            info.tare = info.tare.or_else(|| metadata.tare.clone());
+            info.marks.clone_from(&metadata.marks);
         }
         info
     }
@@ -216,8 +216,8 @@ impl ChannelInfo {
         self.tare.as_ref().filter(fits)
     }
 
-    /// Returns the rule of the recording itself: that of its description, otherwise its threshold. Pieces of fewer
-    /// taxels than `least` are dropped; 0 keeps the description's limit.
+    /// Returns the rule of the recording itself: that of its metadata, otherwise its threshold. Pieces of fewer
+    /// taxels than `least` are dropped; 0 keeps the metadata's limit.
     pub fn own_rule(&self, least: u32) -> Option<SetRule> {
         let threshold = || {
             let rule = self.threshold.and_then(|own| Rule::at_least(own).ok());
@@ -289,9 +289,9 @@ pub enum RecordingNote {
     },
     /// A picture that is left out because it is the maximum of the others (zebris).
     Maximum,
-    /// A description beside the recording that is ignored, because it is broken or cannot be read.
-    Description {
-        /// The path of the description, and the error in it.
+    /// Metadata beside the recording that is ignored, because it is broken or cannot be read.
+    Metadata {
+        /// The path of the metadata, and the error in it.
         complaint: String,
     },
 }
@@ -347,7 +347,7 @@ impl fmt::Display for RecordingNote {
             Self::Maximum => f.write_str(
                 "the picture [Data] is the maximum of the numbered ones and is left out",
             ),
-            Self::Description { complaint } => f.write_str(complaint),
+            Self::Metadata { complaint } => f.write_str(complaint),
         }
     }
 }
@@ -417,7 +417,7 @@ mod tests {
     use crate::sensor::MatrixSize;
 
     #[test]
-    fn a_description_fills_only_the_missing_fields_of_a_channel() {
+    fn metadata_fills_only_the_missing_fields_of_a_channel() {
         let rule = |percent| SetRule {
             rule: Rule::Percent(percent),
             least: 0,
@@ -429,7 +429,7 @@ mod tests {
             seconds_per_frame: Some(0.1),
             ..ChannelInfo::default()
         };
-        let description = RecordingMetadata {
+        let metadata = RecordingMetadata {
             rule: Some(rule(40.0)),
             unit: Some("mmHg".to_owned()),
             seconds_per_frame: Some(0.2),
@@ -437,30 +437,30 @@ mod tests {
             ..RecordingMetadata::default()
         };
         assert_eq!(own.completed(None), own);
-        let completed = own.completed(Some(&description));
+        let completed = own.completed(Some(&metadata));
         assert_eq!((completed.unit, completed.rule), (own.unit, own.rule));
         assert_eq!(completed.seconds_per_frame, own.seconds_per_frame);
-        assert_eq!(completed.pitch_mm, description.pitch_mm);
+        assert_eq!(completed.pitch_mm, metadata.pitch_mm);
     }
 
     #[test]
-    fn a_threshold_of_the_description_is_that_of_the_recording() {
+    fn a_threshold_of_the_metadata_is_that_of_the_recording() {
         let threshold = |rule| {
             let (least, from) = (0, RuleOrigin::File);
             let rule = Some(SetRule { rule, least, from });
-            let description = RecordingMetadata {
+            let metadata = RecordingMetadata {
                 rule,
                 ..RecordingMetadata::default()
             };
             let own = ChannelInfo::default();
-            own.completed(Some(&description)).threshold
+            own.completed(Some(&metadata)).threshold
         };
         assert_eq!(threshold(Rule::AtLeast(10.0)), Some(10.0));
         assert_eq!(threshold(Rule::Percent(10.0)), None);
     }
 
     #[test]
-    fn a_given_least_size_takes_precedence_over_the_description() {
+    fn a_given_least_size_takes_precedence_over_the_metadata() {
         let described = ChannelInfo {
             rule: Some(SetRule {
                 rule: Rule::Percent(30.0),

@@ -25,7 +25,7 @@
 //! ```text
 //! error            why a recording cannot be read, and where
 //! event            what a reader reports: channels, frames, notes
-//! description      the file beside a recording of taxel's own
+//! metadata         the file beside a recording of taxel's own
 //! channel_choice   one channel of several, by its name
 //! answer           a frame as a line of JSON
 //! side             numbers of rows and columns
@@ -45,7 +45,7 @@ mod error;
 
 mod event;
 
-mod description;
+mod metadata;
 
 mod channel_choice;
 
@@ -75,7 +75,6 @@ pub use answer::FrameAnswer;
 pub use channel_choice::ChannelChoice;
 #[cfg(feature = "cli")]
 pub(crate) use channel_choice::no_channel;
-pub use description::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(feature = "tui")]
 pub(crate) use detect::may_be_recording;
 #[cfg(all(feature = "acquire", unix))]
@@ -84,5 +83,6 @@ pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 pub(super) use event::MOST_CHANNELS;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
+pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(feature = "cli")]
 pub(crate) use table::delimited::read_rows;

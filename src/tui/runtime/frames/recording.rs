@@ -13,7 +13,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use crate::acquire::{FrameRecorder, PreparedDescription, RecorderError};
+use crate::acquire::{FrameRecorder, PreparedMetadata, RecorderError};
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::Existing;
@@ -137,9 +137,8 @@ impl Recording {
             return Ok(());
         };
         let written = draft.prepare().and_then(|file| {
-            let file = self.open(|recorder| recorder.take_description(file));
-            file.flatten()
-                .map_or(Ok(()), PreparedDescription::give_name)
+            let file = self.open(|recorder| recorder.take_metadata(file));
+            file.flatten().map_or(Ok(()), PreparedMetadata::give_name)
         });
         drop(one_at_a_time);
         written.map_err(|error| {

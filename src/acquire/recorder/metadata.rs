@@ -1,32 +1,32 @@
-//! The description beside an array: `touch.json` for `touch.npy`.
+//! The metadata beside an array: `touch.json` for `touch.npy`.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use crate::acquire::recorder::error::{DescriptionError, RecorderError, refused};
+use crate::acquire::recorder::error::{MetadataFileError, RecorderError, refused};
 use crate::formats::ending::has_ending;
 use crate::formats::recording::RecordingMetadata;
 use crate::storage::{Existing, FileId, FinishedFile, persist_beside};
 
-/// The largest size of a description, in bytes.
-const LARGEST_DESCRIPTION: u64 = 1 << 22;
+/// The largest size of metadata, in bytes.
+const LARGEST_METADATA: u64 = 1 << 22;
 
-/// A description that is to be written. Writing it takes as long as the disk does, and needs no recorder: meanwhile,
+/// Metadata that is to be written. Writing it takes as long as the disk does, and needs no recorder: meanwhile,
 /// frames can be added to the recorder.
 /// ```text
-/// set_view -> DescriptionDraft -> prepare -> take_description -> PreparedDescription -> give_name
+/// set_view -> MetadataDraft -> prepare -> take_metadata -> PreparedMetadata -> give_name
 /// ```
 #[derive(Debug)]
-pub(crate) struct DescriptionDraft {
+pub(crate) struct MetadataDraft {
     /// The path of the array.
     pub(super) path: PathBuf,
     pub(super) metadata: RecordingMetadata,
 }
 
-impl DescriptionDraft {
-    /// Writes the description to the disk, without its name. A file under that name does not matter yet: meanwhile, the
-    /// array and the previous description may get their names.
+impl MetadataDraft {
+    /// Writes the metadata to the disk, without its name. A file under that name does not matter yet: meanwhile, the
+    /// array and the previous metadata may get their names.
     ///
     /// # Errors
     /// Returns the system's error.
@@ -35,21 +35,21 @@ impl DescriptionDraft {
     }
 }
 
-/// A description on the disk, which must get its name at once, beside an array that already has its name.
+/// Metadata on the disk, which must get its name at once, beside an array that already has its name.
 #[derive(Debug)]
-pub(crate) struct PreparedDescription {
+pub(crate) struct PreparedMetadata {
     pub(super) file: FinishedFile,
-    /// The array, which is open until the description has its name.
+    /// The array, which is open until the metadata has its name.
     pub(super) array: FileId,
     /// The path of the array.
     pub(super) path: PathBuf,
 }
 
-impl PreparedDescription {
-    /// Gives the description its name.
+impl PreparedMetadata {
+    /// Gives the metadata its name.
     ///
     /// # Errors
-    /// Returns [`RecorderError::Replaced`] if the name of the array now belongs to another file, which the description
+    /// Returns [`RecorderError::Replaced`] if the name of the array now belongs to another file, which the metadata
     /// does not describe, or the system's error.
     pub(crate) fn give_name(self) -> Result<(), RecorderError> {
         let Self { file, array, path } = self;
@@ -61,7 +61,7 @@ impl PreparedDescription {
     }
 }
 
-/// Writes a description to the disk, without its name.
+/// Writes metadata to the disk, without its name.
 ///
 /// # Errors
 /// Returns the system's error.
@@ -78,7 +78,7 @@ pub(super) fn prepared(
     FinishedFile::new(&path, &json, existing).map_err(refused)
 }
 
-/// Writes the description over the old one, if a full disk has no room for both.
+/// Writes the metadata over the old one, if a full disk has no room for both.
 ///
 /// # Errors
 /// Returns the system's error.
@@ -104,12 +104,12 @@ pub(super) fn is_array(path: &Path) -> bool {
     has_ending(path, "npy")
 }
 
-/// Reads the description beside an array: `touch.json` for `touch.npy`. Returns None if there is no such file, or if
-/// it is not a description.
+/// Reads the metadata beside an array: `touch.json` for `touch.npy`. Returns None if there is no such file, or if
+/// it is not metadata.
 ///
 /// # Errors
-/// Returns an error if the description is damaged or cannot be read.
-pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, DescriptionError>> {
+/// Returns an error if the metadata is damaged or cannot be read.
+pub fn metadata_beside(path: &Path) -> Option<Result<RecordingMetadata, MetadataFileError>> {
     if !is_array(path) {
         return None;
     }
@@ -119,16 +119,16 @@ pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, Descr
         // Opening a pipe would wait for its writer.
         if path.metadata()?.is_file() {
             let file = File::open(&path)?;
-            file.take(LARGEST_DESCRIPTION).read_to_end(&mut bytes)?;
+            file.take(LARGEST_METADATA).read_to_end(&mut bytes)?;
         }
         Ok::<_, io::Error>(bytes)
     };
     match content() {
         Ok(bytes) => {
             let read = RecordingMetadata::read(&bytes)?;
-            Some(read.map_err(|error| DescriptionError::Broken { path, error }))
+            Some(read.map_err(|error| MetadataFileError::Broken { path, error }))
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-        Err(error) => Some(Err(DescriptionError::Io { path, error })),
+        Err(error) => Some(Err(MetadataFileError::Io { path, error })),
     }
 }

@@ -1,4 +1,4 @@
-//! The description beside one of taxel's own recordings: `touch.json` says where the frames of `touch.npy` come from,
+//! The metadata beside one of taxel's own recordings: `touch.json` says where the frames of `touch.npy` come from,
 //! their unit, and how they were viewed.
 
 use std::io;
@@ -36,7 +36,7 @@ pub struct RecordedView {
     pub marks: Vec<FrameMark>,
 }
 
-/// The content of `touch.json`, the description beside the recording `touch.npy`: where its frames come from, their
+/// The content of `touch.json`, the metadata beside the recording `touch.npy`: where its frames come from, their
 /// unit, and how they were viewed.
 ///
 /// ```text
@@ -69,13 +69,13 @@ pub struct RecordingMetadata {
     /// The frames that were marked.
     pub marks: Vec<FrameMark>,
     /// Whether the recording was ended properly: false while frames are recorded, and after the program was killed;
-    /// None if the description does not say.
+    /// None if the metadata does not say.
     pub ended: Option<bool>,
     /// The error that ended the recording early.
     pub ended_by: Option<String>,
 }
 
-/// The description as a JSON object.
+/// The metadata as a JSON object.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Described {
@@ -122,11 +122,11 @@ fn rule_or_null<S: Serializer>(
     }
 }
 
-/// The error for a description that cannot be used.
+/// The error for metadata that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MetadataError {
-    /// The description is not JSON, or the value of a key has the wrong type.
+    /// The metadata is not JSON, or the value of a key has the wrong type.
     #[error("line {line}, column {column}: {message}")]
     Json {
         /// The line number, from 1.
@@ -136,7 +136,7 @@ pub enum MetadataError {
         /// A description of the error.
         message: String,
     },
-    /// The description has a rule or a tare that is not valid.
+    /// The metadata has a rule or a tare that is not valid.
     #[error("{key}: {message}")]
     Value {
         /// The key of the rule or the tare.
@@ -165,11 +165,11 @@ impl MetadataError {
 }
 
 impl RecordingMetadata {
-    /// Reads a description. Returns None if the bytes are something else, as any file beside an array may be. A torn
-    /// description is recognised by the name of its format.
+    /// Reads metadata. Returns None if the bytes are something else, as any file beside an array may be. If it is
+    /// torn, it is recognised by the name of its format.
     ///
     /// # Errors
-    /// Returns an error if the description is damaged; it names the line and column, or the key.
+    /// Returns an error if the metadata is damaged; it names the line and column, or the key.
     pub fn read(bytes: &[u8]) -> Option<Result<Self, MetadataError>> {
         #[derive(Deserialize)]
         struct Format {
@@ -242,7 +242,7 @@ impl RecordingMetadata {
         })
     }
 
-    /// Returns the description as the text of a file.
+    /// Returns the metadata as the text of a file.
     ///
     /// # Errors
     /// Returns the errors of the JSON writer; none are known.
@@ -293,7 +293,7 @@ mod tests {
     use crate::sensor::MatrixSize;
 
     #[test]
-    fn a_description_is_read_as_it_was_written() {
+    fn metadata_is_read_as_it_was_written() {
         let mut values = Matrix::filled(MatrixSize::of(2, 1), 0.5);
         values.set(1, 0, f64::NAN);
         let mut tare = TareFrames::new(2);
@@ -327,7 +327,7 @@ mod tests {
                 ended_by: Some("no room".to_owned()),
             };
             let text = metadata.text().expect("JSON");
-            let read = RecordingMetadata::read(&text).expect("a description");
+            let read = RecordingMetadata::read(&text).expect("metadata");
             let read = read.expect("a right one");
             // NaN is not equal to itself.
             assert_eq!(
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn a_description_with_any_numbers_can_be_read_again() {
+    fn metadata_with_any_numbers_can_be_read_again() {
         for number in [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e301] {
             let metadata = RecordingMetadata {
                 pitch_mm: Some([number, 2.0]),
@@ -359,7 +359,7 @@ mod tests {
                 ..RecordingMetadata::default()
             };
             let text = metadata.text().expect("JSON");
-            let read = RecordingMetadata::read(&text).expect("a description");
+            let read = RecordingMetadata::read(&text).expect("metadata");
             let expected = RecordingMetadata {
                 pitch_mm: None,
                 seconds_per_frame: None,
@@ -373,7 +373,7 @@ mod tests {
     fn a_tare_without_a_number_of_frames_is_of_one_frame() {
         for key in ["", "\"tare_frames\":0,"] {
             let text = format!("{{\"format\":\"{FORMAT}\",{key}\"tare\":[[0.5,2]]}}");
-            let read = RecordingMetadata::read(text.as_bytes()).expect("a description");
+            let read = RecordingMetadata::read(text.as_bytes()).expect("metadata");
             let tare = read.expect("a right one").tare.expect("a tare");
             assert_eq!(
                 (tare.frames(), tare.baseline().values()),
@@ -383,13 +383,13 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_ignored_and_wrong_descriptions_are_refused() {
+    fn other_files_are_ignored_and_wrong_metadata_is_refused() {
         for other in ["", "[1]", "{\"format\":\"taxel-shape/1\"", "{}"] {
             assert_eq!(RecordingMetadata::read(other.as_bytes()), None, "{other}");
         }
         let wrong = |rest: &str| {
             let text = format!("{{\"format\":\"{FORMAT}\",{rest}}}");
-            let read = RecordingMetadata::read(text.as_bytes()).expect("a description");
+            let read = RecordingMetadata::read(text.as_bytes()).expect("metadata");
             read.err()
                 .map_or(String::from("right"), |error| error.to_string())
         };
