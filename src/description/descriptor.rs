@@ -116,7 +116,8 @@ impl Description {
     /// Returns the directions of the two diagonals of the upright rectangle, from 0 to below 180 degrees.
     pub fn diagonals(&self) -> [f64; 2] {
         let sides = self.sides();
-        let rising = libm::atan2(sides.y, sides.x).to_degrees();
+        // Both sides are positive, so there is no quadrant to find: `atan2` would return the same number.
+        let rising = libm::atan(sides.y / sides.x).to_degrees();
         [rising, 180.0 - rising]
     }
 
@@ -603,6 +604,24 @@ pub const DESCRIPTORS: &[Descriptor] = &[
 mod tests {
     use super::*;
     use crate::description::regions;
+
+    #[test]
+    fn the_rising_diagonal_is_the_direction_of_the_corner() {
+        let imprint: Imprint = "#".parse().expect("an imprint");
+        let own = Description::of(&regions(&imprint)[0]);
+        for (right, bottom) in
+            (1..=64).flat_map(|right| (1..=64).map(move |bottom| (right, bottom)))
+        {
+            let rect = Bounds {
+                right,
+                bottom,
+                ..own.rect
+            };
+            let [rising, _] = Description { rect, ..own }.diagonals();
+            let corner = libm::atan2(bottom.into(), right.into()).to_degrees();
+            assert_eq!(rising, corner, "{right} × {bottom}");
+        }
+    }
 
     #[test]
     fn fields_that_no_region_has_do_not_panic() {
