@@ -154,7 +154,7 @@ fn touch(criterion: &mut Criterion) {
         assert_alike(name, &mut plane, &figure, &mut peer, peer_touch);
         let mut group = criterion.benchmark_group(name);
         group.bench_function("taxel", |bencher| {
-            bencher.iter(|| each_region(&plane.touch(black_box(&figure)), describe));
+            bencher.iter(|| each_region(plane.touched(black_box(&figure)), describe));
         });
         group.bench_function("peer", |bencher| {
             bencher.iter(|| {
@@ -173,7 +173,9 @@ fn stages(criterion: &mut Criterion) {
         let found = regions(&imprint);
         let mut group = criterion.benchmark_group(format!("{name}/stages"));
         group.bench_function("touch", |bencher| {
-            bencher.iter(|| plane.touch(black_box(&figure)));
+            bencher.iter(|| {
+                black_box(plane.touched(black_box(&figure)));
+            });
         });
         group.bench_function("regions", |bencher| {
             bencher.iter(|| {
