@@ -171,7 +171,7 @@ pub enum MergeError {
     Foreign {
         /// The shard.
         shard: Shard,
-        /// What differs: "its shape", for example.
+        /// The difference: "its shape", for example.
         difference: &'static str,
     },
     /// A shard that is given twice.

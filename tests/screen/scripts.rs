@@ -192,7 +192,10 @@ fn malformed_commands_are_reported_with_their_line() {
             "line 1: signal \"KILL\" is unknown, expected one of HUP",
         ),
         ("Wait now", "line 1: Wait stands alone"),
-        ("Screen\nSize 10x10", "line 2: Size and Set come before"),
+        (
+            "Screen\nSize 10x10",
+            "line 2: Size and Set must come before",
+        ),
         (
             "Set ascii maybe",
             "line 1: Set ascii takes one of on, off, found \"maybe\"",

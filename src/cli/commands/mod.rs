@@ -62,6 +62,13 @@ pub(super) struct Summary {
     pub(super) written: Result<(), CliError>,
 }
 
+impl Summary {
+    /// Creates the summary of work whose files were written, or not.
+    fn new(text: String, written: Result<(), CliError>) -> Self {
+        Self { text, written }
+    }
+}
+
 /// Returns the outcome of writing files unless a signal stopped it: then there is no summary.
 fn unless_stopped(written: Result<(), CliError>) -> Result<Result<(), CliError>, CliError> {
     match written {

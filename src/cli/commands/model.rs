@@ -73,10 +73,8 @@ pub(crate) fn train(
         ShardFile::Refused | ShardFile::Replaced => Ok(None),
     };
     if let Some(model) = kept()? {
-        return Ok(Summary {
-            text: trained(&model, &path, Some(KEPT), asked, charset)?,
-            written: Ok(()),
-        });
+        let text = trained(&model, &path, Some(KEPT), asked, charset)?;
+        return Ok(Summary::new(text, Ok(())));
     }
     let make_folder = || match &asked.to {
         ModelTarget::Named(_) => Ok(Some(folder(shelf)?.make()?)),
@@ -92,11 +90,9 @@ pub(crate) fn train(
     let progress = Progress::new(training.poses(), asked.quiet, charset);
     let pool = threads::pool(asked.jobs)?;
     let model = pool.install(|| run(training, &memory, &progress, stopped));
+    let remedy = grid.remedy;
     let model = model.map_err(|error| match error {
-        error @ TrainingError::Cut { .. } => CliError::Cut {
-            error,
-            remedy: grid.remedy,
-        },
+        error @ TrainingError::Cut { .. } => CliError::Cut { error, remedy },
         error => signals.training_failure(error, &memory),
     })?;
     // Another training that was stopped may have removed the folder, which was empty. If it cannot be made again,
@@ -114,10 +110,8 @@ pub(crate) fn train(
         },
         Err(error) => (None, unless_stopped(Err(signals.failure_or(error.into())))?),
     };
-    Ok(Summary {
-        text: trained(&model, &path, done, asked, charset)?,
-        written,
-    })
+    let text = trained(&model, &path, done, asked, charset)?;
+    Ok(Summary::new(text, written))
 }
 
 /// Runs a training until it is done, memory runs short or `stopped` becomes true.

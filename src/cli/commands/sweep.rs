@@ -112,12 +112,9 @@ pub(crate) fn sweep(
     let start = Instant::now();
     let signals = Signals::catch().map_err(CliError::System)?;
     let stopped = &signals.stopped;
-    let summary = |result: &SweepResult, written| Summary {
-        text: text(result, start, wanted, charset),
-        written,
-    };
+    let summary = |kept| Summary::new(text(kept, start, wanted, charset), Ok(()));
     if let Some(kept) = kept(grid, shard, wanted, charset)? {
-        return Ok(summary(&kept, Ok(())));
+        return Ok(summary(&kept));
     }
     if let Some(file) = &wanted.atlas {
         file.check(wanted.there.existing())?;
@@ -134,13 +131,10 @@ pub(crate) fn sweep(
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
     };
-    let mut take = |row: u64, ids: &[u32]| {
-        if let Some(file) = &mut poses {
-            file.take(row, ids, stopped);
-        }
-    };
     let mut sweep = Sweep::new(grid).shard(shard).progress(&report);
-    if wanted.poses.is_some() {
+    let mut take;
+    if let Some(file) = &mut poses {
+        take = |row: u64, ids: &[u32]| file.take(row, ids, stopped);
         sweep = sweep.rows(&mut take);
     }
     let result = pool.install(|| sweep.run());
@@ -160,13 +154,10 @@ pub(crate) fn sweep(
     }
     // Another job may have written this shard meanwhile: it was queued again, or started twice.
     Ok(match kept(grid, shard, wanted, charset) {
-        Ok(Some(kept)) => summary(&kept, Ok(())),
+        Ok(Some(kept)) => summary(&kept),
         Ok(None) => left,
         // It is not that of another job: it is damaged, or belongs to another study.
-        Err(error) => Summary {
-            written: Err(error),
-            ..left
-        },
+        Err(error) => Summary::new(left.text, Err(error)),
     })
 }
 
