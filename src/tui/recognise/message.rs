@@ -66,6 +66,19 @@ pub struct PoseSearchResult {
     pub refused: Option<String>,
 }
 
+#[cfg(test)]
+impl PoseSearchResult {
+    /// Returns the result of a search that found nothing.
+    pub(super) fn of_nothing() -> Box<Self> {
+        Box::new(Self {
+            nearest: None,
+            pose: None,
+            poses: Vec::new(),
+            refused: None,
+        })
+    }
+}
+
 /// A model, or the reason why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {

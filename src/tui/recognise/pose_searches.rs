@@ -119,15 +119,6 @@ mod tests {
         }
     }
 
-    fn found() -> Box<PoseSearchResult> {
-        Box::new(PoseSearchResult {
-            nearest: None,
-            pose: None,
-            poses: Vec::new(),
-            refused: None,
-        })
-    }
-
     #[test]
     fn a_search_for_another_imprint_is_stopped_before_the_next_begins() {
         let (one, other) = (Some(search("##")), Some(search("#.")));
@@ -142,7 +133,10 @@ mod tests {
         ));
         assert!(searches.step(other, 3).is_none(), "it was stopped");
         // The result of a stopped search is incomplete, even if the same imprint is on the matrix again.
-        assert_eq!(searches.take_result(2, Ok(found())), None);
+        assert_eq!(
+            searches.take_result(2, Ok(PoseSearchResult::of_nothing())),
+            None
+        );
         assert!(searches.found(one.as_ref()).is_none());
         assert!(matches!(searches.step(one, 3), Some(SearchStep::Begin(_))));
     }

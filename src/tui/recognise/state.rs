@@ -500,15 +500,6 @@ mod tests {
             .expect("an imprint")
     }
 
-    fn found() -> Box<PoseSearchResult> {
-        Box::new(PoseSearchResult {
-            nearest: None,
-            pose: None,
-            poses: Vec::new(),
-            refused: None,
-        })
-    }
-
     #[test]
     fn a_late_result_of_a_search_in_another_model_is_dropped() {
         let mut page = Recognition::new(0);
@@ -518,10 +509,16 @@ mod tests {
         assert!(page.step_search(3).is_none(), "it is in progress");
         with_model(&mut page, ModelChoice::Shipped, 4);
         assert!(matches!(page.step_search(5), Some(SearchStep::Begin(_))));
-        assert_eq!(page.take_result(2, Ok(found())), None);
+        assert_eq!(
+            page.take_result(2, Ok(PoseSearchResult::of_nothing())),
+            None
+        );
         assert!(page.found().is_none(), "that was another model");
         assert!(page.step_search(6).is_none(), "the new one is in progress");
-        assert_eq!(page.take_result(5, Ok(found())), None);
+        assert_eq!(
+            page.take_result(5, Ok(PoseSearchResult::of_nothing())),
+            None
+        );
         assert!(page.found().is_some());
     }
 
