@@ -183,11 +183,12 @@ fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
 fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
     let diagonal = kind == RegionKind::Exterior;
     let none = || Imprint::empty(matrix.size());
-    if hangs_together(bounds.words(matrix), diagonal) {
-        if bounds.words(matrix).iter().all(|&word| is_run(word)) {
-            visit(&Region::borrowed(kind, matrix, None, bounds));
-        } else {
+    let [apart, gaps] = breaks(bounds.words(matrix), diagonal);
+    if !apart {
+        if gaps {
             show_filled(kind, matrix, bounds, &mut none(), visit);
+        } else {
+            visit(&Region::borrowed(kind, matrix, None, bounds));
         }
         return;
     }
@@ -206,7 +207,7 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
             for (open, &taxels) in open.iter_mut().zip(&*seeds).take(end) {
                 *open &= !taxels;
                 across |= taxels;
-                runs &= is_run(taxels);
+                runs &= behind_gap(taxels) == 0;
             }
             if let Some(bounds) = Bounds::around(across, top, end) {
                 if runs {
@@ -239,18 +240,18 @@ fn show_filled(
     ));
 }
 
-/// Returns true if the first row is one run, and every run of another row meets the row above: then all taxels are one
-/// component. This holds for nearly every imprint of one figure, and for most holes.
-fn hangs_together(rows: &[u64], diagonal: bool) -> bool {
-    let Some(first) = rows.first() else {
-        return false;
-    };
-    let mut above = first & first.wrapping_neg();
-    rows.iter().all(|&word| {
-        let entered = near(above, diagonal) & word;
+/// Returns whether some rows may be apart, and whether a row has gaps. They hang together if the first row is one run,
+/// and every run of another row meets the row above: this holds for nearly every imprint of one figure, and for most
+/// holes. So all rows are examined in one pass without branches.
+fn breaks(rows: &[u64], diagonal: bool) -> [bool; 2] {
+    let mut above = rows.first().map_or(0, |first| first & first.wrapping_neg());
+    let (mut missed, mut gaps) = (0, 0);
+    for &word in rows {
+        missed |= missed_runs(near(above, diagonal) & word, word);
+        gaps |= behind_gap(word);
         above = word;
-        meets_all(entered, word)
-    })
+    }
+    [missed != 0, gaps != 0]
 }
 
 /// Returns the columns of the next row that are neighbours of a row's taxels.
@@ -262,18 +263,18 @@ fn near(word: u64, diagonal: bool) -> u64 {
     }
 }
 
-/// Returns true if the set bits are next to each other: adding the lowest one then carries out of all of them.
-fn is_run(word: u64) -> bool {
-    word & word.wrapping_add(word & word.wrapping_neg()) == 0
+/// Returns the set bits behind the first run of set bits: adding the lowest bit carries out of that run.
+fn behind_gap(word: u64) -> u64 {
+    word & word.wrapping_add(word & word.wrapping_neg())
 }
 
-/// Returns true if each run of `open` contains a bit of `seeds`; all seeds are in `open`.
-fn meets_all(seeds: u64, open: u64) -> bool {
+/// Returns the last bit of each run of `open` that contains no bit of `seeds`; all seeds are in `open`.
+fn missed_runs(seeds: u64, open: u64) -> u64 {
     // Adding a seed to its run carries up to the run's end and flips the bits on the way, including the last one unless
     // it is another seed.
     let last = open & !(open >> 1);
     let reached = open ^ open.wrapping_add(seeds) | seeds;
-    reached & last == last
+    last & !reached
 }
 
 /// Returns all runs of `open` that contain a bit of `seeds`; all seeds are in `open`.
@@ -345,7 +346,7 @@ impl Wave {
     fn enter(&mut self, seeds: &mut u64, open: u64) {
         let entered = (*seeds | near(self.seeds, self.diagonal)) & open;
         if entered != *seeds {
-            *seeds = if meets_all(entered, open) {
+            *seeds = if missed_runs(entered, open) == 0 {
                 open
             } else {
                 spread(entered, open)
