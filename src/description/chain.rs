@@ -66,8 +66,9 @@ impl OutlineCounts {
             let add = |word: u64, &row: &u64| word.unbounded_shl(BITS) | row >> bounds.left;
             rows.iter().rev().fold(0, add)
         };
-        // The windows of the last row reach below it, so the last word is needed even if it is empty.
-        let mut words = full.iter().map(|rows| join(rows)).chain([join(rest)]);
+        // The windows below the last row add nothing: they contain at most two taxels, and those are neighbours.
+        let rest = (!rest.is_empty()).then(|| join(rest));
+        let mut words = full.iter().map(|rows| join(rows)).chain(rest);
         let (mut counts, mut diagonals) = ([0; 4], 0);
         // Counts the taxels, those with four neighbours, the windows with many, and those with three: side by side, so
         // that a processor can count two at once.
