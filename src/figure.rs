@@ -371,8 +371,7 @@ impl Figure {
         let centre = Point::new(T::decimal(self.x0), T::decimal(self.y0)).moved(half);
         let turn = Turn::clockwise(T::decimal(self.angle));
         let mut draw = |half: Point<T>, material: Side| {
-            let across = turn.of(Point::new(half.x, T::ZERO));
-            let along = turn.of(Point::new(T::ZERO, half.y));
+            let [across, along] = turn.of_axes(half);
             if self.kind == FigureKind::Ellipse {
                 return pen.ellipse(
                     &Ellipse {

@@ -1,35 +1,45 @@
 //! Sines, cosines and angles in `f64`, in radians. They use only arithmetic, so they are the same on every machine.
 //!
-//! The functions use Taylor series, after reducing the angle so that few terms are enough. Errors stay below 5e-16.
+//! The functions use tables, and Taylor series for the small rest. Errors stay below 5e-16.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Returns the sine and the cosine of an angle from −π/4 to π/4.
-pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
-    // 1/n! for odd and for even n.
-    const ODD: [f64; 8] = inverse_factorials(1.0);
-    const EVEN: [f64; 10] = inverse_factorials(0.0);
-    let square = -angle * angle;
-    let fourth = square * square;
-    // Terms are added in pairs, so that a processor can work on several at once.
-    let sum = |terms: &[f64]| {
-        let pairs = terms.as_chunks().0.iter().rev();
-        pairs.fold(0.0, |sum, [one, other]| {
-            sum * fourth + (one + square * other)
-        })
-    };
-    (angle * sum(&ODD), sum(&EVEN))
+/// Returns the sine and the cosine of an angle: whole degrees from 0 to 360, plus a rest of at most half a degree, in
+/// radians. They are exactly 0 and ±1 at multiples of 90°.
+///
+/// A table has those of whole degrees; the rest is so small that short series are enough.
+pub(crate) fn sin_cos(degrees: i32, rest: f64) -> (f64, f64) {
+    #[expect(clippy::cast_sign_loss, reason = "0 to 360")]
+    let (sin, cos) = WHOLE_DEGREES[degrees as usize % WHOLE_DEGREES.len()];
+    // Since |rest| < 0.009, the next terms are below 1e-18.
+    let square = rest * rest;
+    let rest_sin = rest + rest * square * (square * (1.0 / 120.0) - 1.0 / 6.0);
+    let rest_cos_less_1 = square * (square * (1.0 / 24.0 - square * (1.0 / 720.0)) - 0.5);
+    (
+        sin + (cos * rest_sin + sin * rest_cos_less_1),
+        cos + (cos * rest_cos_less_1 - sin * rest_sin),
+    )
 }
 
-/// Returns 1/n! for n = `first`, which is 0 or 1, and for every second n after it.
-const fn inverse_factorials<const TERMS: usize>(first: f64) -> [f64; TERMS] {
-    let mut terms = [1.0; TERMS];
-    let (mut term, mut number) = (1, first);
-    while term < TERMS {
-        terms[term] = terms[term - 1] / ((number + 1.0) * (number + 2.0));
-        (term, number) = (term + 1, number + 2.0);
+/// The sines and cosines of whole degrees, from 0 to 360. The rest of the table lets nine bits index it.
+static WHOLE_DEGREES: [(f64, f64); 512] = whole_degrees();
+
+const fn whole_degrees() -> [(f64, f64); 512] {
+    let mut table = [(0.0, 1.0); 512];
+    let mut degrees = 0_u16;
+    while degrees <= 360 {
+        let quarter = (degrees + 45) / 90;
+        let rest = degrees as f64 - 90.0 * quarter as f64;
+        let Node { sin, cos, .. } = Node::at(rest.to_radians());
+        table[degrees as usize] = match quarter {
+            0 | 4 => (sin, cos),
+            1 => (cos, 0.0 - sin),
+            2 => (0.0 - sin, 0.0 - cos),
+            _ => (0.0 - cos, sin),
+        };
+        degrees += 1;
     }
-    terms
+    table
 }
 
 /// Returns the angle with this sine and this cosine, from −π/2 to π/2: the cosine is not negative.

@@ -57,6 +57,14 @@ impl<T: Real> Turn<T> {
             vector.x * self.sin + vector.y * self.cos,
         )
     }
+
+    /// Returns two rotated vectors: (`x`, 0) and (0, `y`).
+    pub(crate) fn of_axes(&self, Point { x, y }: Point<T>) -> [Point<T>; 2] {
+        [
+            Point::new(x * self.cos, x * self.sin),
+            Point::new(-(y * self.sin), y * self.cos),
+        ]
+    }
 }
 
 /// An ellipse as the affine image of the unit disc: `centre + across·u + along·v` for `u² + v² ≤ 1`.

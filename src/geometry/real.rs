@@ -138,34 +138,18 @@ impl Real for f64 {
         f64::abs(self)
     }
     fn sin_cos_degrees(self) -> (Self, Self) {
-        let (quarter, angle) = quarters(self);
-        let (sin, cos) = circle::sin_cos(angle.to_radians());
-        turn_by_quarters(quarter, sin, cos)
+        // A full turn more or less makes no difference, and the remainder is exact. But it is a function call.
+        let size = if self.abs() < 360.0 {
+            self.abs()
+        } else {
+            self.abs() % 360.0
+        };
+        let whole = nearest(size);
+        let (sin, cos) = circle::sin_cos(whole, (size - Self::from(whole)).to_radians());
+        (sin * 1_f64.copysign(self), cos)
     }
     fn angle(sin: Self, cos: Self) -> Self {
         circle::angle(sin, cos)
-    }
-}
-
-/// Returns the nearest number of right angles, and the degrees left over, from −45 to 45. Both are exact.
-fn quarters(degrees: f64) -> (i32, f64) {
-    // Not `round` and `rem_euclid`, which are function calls. A full turn more or less makes no difference.
-    let degrees = if degrees.abs() < 1e9 {
-        degrees
-    } else {
-        degrees % 360.0
-    };
-    let quarter = nearest(degrees * (1.0 / 90.0));
-    (quarter, degrees - f64::from(quarter) * 90.0)
-}
-
-/// Returns sine and cosine of an angle from those of the angle reduced by `quarter` right angles.
-fn turn_by_quarters<T: Real>(quarter: i32, sin: T, cos: T) -> (T, T) {
-    match quarter & 3 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
     }
 }
 
@@ -350,10 +334,18 @@ impl Real for Double {
         step(step(Self::from(self.high.sqrt())))
     }
     fn sin_cos_degrees(self) -> (Self, Self) {
-        let (quarter, angle) = quarters(self.high);
-        let angle = (Self::from(angle) + Self::from(self.low)) * PI / Self::whole(180);
-        let (sin, cos) = angle.sin_cos();
-        turn_by_quarters(quarter, sin, cos)
+        // A full turn more or less makes no difference. The remainder is exact, and so are the degrees left over after
+        // the nearest number of right angles.
+        let degrees = self.high % 360.0;
+        let quarter = nearest(degrees / 90.0);
+        let rest = Self::from(degrees - 90.0 * f64::from(quarter)) + Self::from(self.low);
+        let (sin, cos) = (rest * PI / Self::whole(180)).sin_cos();
+        match quarter & 3 {
+            0 => (sin, cos),
+            1 => (cos, -sin),
+            2 => (-sin, -cos),
+            _ => (-cos, sin),
+        }
     }
     fn angle(sin: Self, cos: Self) -> Self {
         // The error of the f64 angle is so small that it equals its own sine.

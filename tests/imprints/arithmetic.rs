@@ -271,6 +271,28 @@ fn sines_and_cosines_of_whole_degrees_hold_thirty_digits() {
 }
 
 #[test]
+fn plain_sines_and_cosines_are_those_of_thirty_digits_rounded() {
+    for step in -4000..=8000 {
+        let degrees = f64::from(step) * 0.0973;
+        let (sin, cos) = Double::from(degrees).sin_cos_degrees();
+        let (plain_sin, plain_cos) = degrees.sin_cos_degrees();
+        assert_near(&format!("sin {degrees}°"), plain_sin.into(), sin, 4e-16);
+        assert_near(&format!("cos {degrees}°"), plain_cos.into(), cos, 4e-16);
+    }
+    // Small angles keep all of their digits, and many turns cost none.
+    assert_eq!(
+        (-1e-300_f64).sin_cos_degrees(),
+        ((-1e-300_f64).to_radians(), 1.0)
+    );
+    assert_eq!(360e9_f64.sin_cos_degrees(), (0.0, 1.0));
+    assert_eq!((-36_090_f64).sin_cos_degrees(), (-1.0, 0.0));
+    for degrees in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let (sin, cos) = degrees.sin_cos_degrees();
+        assert!(sin.is_nan() && cos.is_nan(), "{degrees}");
+    }
+}
+
+#[test]
 fn angles_are_recovered_from_sine_and_cosine() {
     for tenths in -900..=900 {
         let degrees = Double::whole(tenths) / Double::whole(10);

@@ -378,14 +378,21 @@ fn a_figure_that_ends_at_the_rim_does_not_reach_beyond_it() {
     let sensor = sensor(SIDE, SIDE, 0.5);
     let mut beyond_but_for_rounding = 0;
     for hundredths in 100..400 {
-        // A rotation that maps the hexagon onto itself, so it ends where the upright one does.
-        for angle in [60, 120, 180, 240, 300] {
-            let side = f64::from(hundredths) / 100.0;
-            let text = format!("hexagon side={side} x0=0 y0=0 angle={angle}");
-            let figure = figure(&text, SIDE);
-            let extent = Extent::of(&figure).expect("it has edges");
-            beyond_but_for_rounding += u32::from(extent.left.min(extent.top) < 0.0);
-            assert!(!reaches_beyond(&figure, &sensor), "{text}: {extent:?}");
+        // A rotation that maps the figure onto itself, so it ends where the upright one does.
+        for (kind, step) in [
+            ("triangle", 120),
+            ("pentagon", 72),
+            ("hexagon", 60),
+            ("octagon", 45),
+        ] {
+            for angle in (step..360).step_by(step) {
+                let side = f64::from(hundredths) / 100.0;
+                let text = format!("{kind} side={side} x0=0 y0=0 angle={angle}");
+                let figure = figure(&text, SIDE);
+                let extent = Extent::of(&figure).expect("it has edges");
+                beyond_but_for_rounding += u32::from(extent.left.min(extent.top) < 0.0);
+                assert!(!reaches_beyond(&figure, &sensor), "{text}: {extent:?}");
+            }
         }
     }
     assert!(beyond_but_for_rounding > 0);
