@@ -7,7 +7,9 @@
 
 use std::fmt;
 
-use crate::geometry::{Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
+use crate::geometry::{
+    Double, Ellipse, Extent, MOST_CORNERS, Pen, Point, Real, RegularPolygon, Side, Solid, Turn,
+};
 use crate::parameter::{Parameter, ParameterError, named};
 use crate::sensor::Sensor;
 
@@ -407,30 +409,28 @@ impl Figure {
 
     /// Draws a regular polygon; a hole is the same polygon about the same centre, its inradius smaller by the wall.
     fn draw_regular<T: Real>(&self, corners: u8, pen: &mut impl Pen<T>) {
-        let (sin, cos) = (T::whole(180) / T::whole(corners.into())).sin_cos_degrees();
+        let polygon = RegularPolygon::with_corners(corners);
         let half_side = T::decimal(self.sizes[0]) * T::HALF;
-        let inradius = half_side * cos / sin;
-        // The corners about the centre, clockwise from the left end of the bottom side.
-        let mut ring = [Point::new(T::ZERO, T::ZERO); 8];
-        let ring = &mut ring[..usize::from(corners)];
-        let (step_sin, step_cos) = (T::whole(2) * sin * cos, T::ONE - T::whole(2) * sin * sin);
-        let mut corner = Point::new(-half_side, inradius);
-        let (mut left, mut top) = (corner.x, corner.y);
-        for slot in ring.iter_mut() {
-            *slot = corner;
-            (left, top) = (left.min(corner.x), top.min(corner.y));
-            corner = Point::new(
-                corner.x * step_cos - corner.y * step_sin,
-                corner.x * step_sin + corner.y * step_cos,
-            );
-        }
-        let centre = Point::new(T::decimal(self.x0) - left, T::decimal(self.y0) - top);
+        let scaled = |of: Point<Double>| {
+            Point::new(
+                T::from_double(of.x) * half_side,
+                T::from_double(of.y) * half_side,
+            )
+        };
+        let top_left = scaled(polygon.top_left);
+        let centre = Point::new(
+            T::decimal(self.x0) - top_left.x,
+            T::decimal(self.y0) - top_left.y,
+        );
+        let inradius = T::from_double(polygon.inradius) * half_side;
         let turn = Turn::clockwise(T::decimal(self.angle));
-        for slot in ring.iter_mut() {
-            *slot = turn.of(*slot);
+        let mut ring = [Point::new(T::ZERO, T::ZERO); MOST_CORNERS];
+        let ring = &mut ring[..usize::from(corners)];
+        for (slot, &corner) in ring.iter_mut().zip(&polygon.corners) {
+            *slot = turn.of(scaled(corner));
         }
         let mut draw = |scale: T, material: Side| {
-            let mut placed = [centre; 8];
+            let mut placed = [centre; MOST_CORNERS];
             for (to, from) in placed.iter_mut().zip(ring.iter()) {
                 *to = centre.moved(Point::new(from.x * scale, from.y * scale));
             }

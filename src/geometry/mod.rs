@@ -20,6 +20,8 @@ mod arcs;
 
 mod overlap;
 
+mod regular;
+
 mod centre_sampling;
 
 pub(crate) use cell_grid::Drawn;
@@ -33,3 +35,4 @@ pub(crate) use overlap::row_areas;
 #[cfg(feature = "sweep")]
 pub(crate) use real::nearest;
 pub use real::{Double, Real};
+pub(crate) use regular::{MOST_CORNERS, RegularPolygon};

@@ -55,6 +55,8 @@ pub trait Real:
     /// Returns the shortest decimal that reads back as `value`; `value` itself if the type has no more digits than
     /// `f64`.
     fn decimal(value: f64) -> Self;
+    /// Returns the number of this type that is nearest to one of 32 digits.
+    fn from_double(value: Double) -> Self;
     /// Returns the nearest `f64`.
     fn to_f64(self) -> f64;
     /// Converts a whole number.
@@ -111,6 +113,9 @@ impl Real for f64 {
 
     fn decimal(value: f64) -> Self {
         value
+    }
+    fn from_double(value: Double) -> Self {
+        value.high
     }
     fn to_f64(self) -> f64 {
         self
@@ -309,6 +314,9 @@ impl Real for Double {
         } else {
             number * power
         }
+    }
+    fn from_double(value: Double) -> Self {
+        value
     }
     fn to_f64(self) -> f64 {
         self.high + self.low
