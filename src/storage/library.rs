@@ -457,9 +457,9 @@ impl Library {
                 }
                 Some(name) if name_of(name).is_some() => continue,
                 Some(name) if name.strip_suffix(".json").is_some() => {
-                    "no shape: shapes cannot have this name"
+                    "not a shape: shapes cannot have this name"
                 }
-                _ => "no shape: its name is not NAME.json",
+                _ => "not a shape: its name is not NAME.json",
             };
             found.push((self.folder.join(name), what));
         }
@@ -469,7 +469,7 @@ impl Library {
             let what = match ending.filter(|_| is_journal(&path)) {
                 Some("json") => "unsaved work, of a running program or of one that died",
                 Some("lock" | "tmp") => continue,
-                _ => "no journal",
+                _ => "not a journal",
             };
             found.push((path, what));
         }

@@ -264,8 +264,8 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
         run.stdout.replace(&folder, "FOLDER"),
         "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is not known here, expected \"taxel-shape/1\"\n\
          broken: dir: FOLDER/dir.json: is a folder, expected a regular file\n\
-         left over: FOLDER/a:b.json: no shape: shapes cannot have this name\n\
-         left over: FOLDER/notes.txt: no shape: its name is not NAME.json\n"
+         left over: FOLDER/a:b.json: not a shape: shapes cannot have this name\n\
+         left over: FOLDER/notes.txt: not a shape: its name is not NAME.json\n"
     );
     assert_eq!(
         (run.status, run.stderr),
@@ -279,8 +279,8 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
         run.stdout.replace(&folder, "FOLDER"),
         "[{\"finding\":\"broken\",\"name\":\"bad\\u00e9\",\"reason\":\"FOLDER/bad\\u00e9.json: line 1, column 26: format: \\\"taxel-shape/9\\\" is not known here, expected \\\"taxel-shape/1\\\"\"},\
          {\"finding\":\"broken\",\"name\":\"dir\",\"reason\":\"FOLDER/dir.json: is a folder, expected a regular file\"},\
-         {\"finding\":\"left over\",\"path\":\"FOLDER/a:b.json\",\"reason\":\"no shape: shapes cannot have this name\"},\
-         {\"finding\":\"left over\",\"path\":\"FOLDER/notes.txt\",\"reason\":\"no shape: its name is not NAME.json\"}]\n"
+         {\"finding\":\"left over\",\"path\":\"FOLDER/a:b.json\",\"reason\":\"not a shape: shapes cannot have this name\"},\
+         {\"finding\":\"left over\",\"path\":\"FOLDER/notes.txt\",\"reason\":\"not a shape: its name is not NAME.json\"}]\n"
     );
     assert_eq!(run.status, Some(1));
     let json = shelf.does("library|list|--json", "");

@@ -214,7 +214,7 @@ fn a_named_settings_file_must_exist_and_be_text() {
     };
     told("cannot read: No such file or directory");
     fs::write(&file, b"theme = '\xff'").expect("written");
-    told("no UTF-8 text");
+    told("not UTF-8");
     fs::write(&file, vec![b'#'; (1 << 20) + 1]).expect("written");
     told("larger than 64 KiB, the limit for a file of settings");
     let run = run(taxel("config").env("TAXEL_CONFIG", "/dev/zero"));

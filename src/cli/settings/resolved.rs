@@ -81,7 +81,7 @@ impl Loaded {
         if bytes.len() > MAX_BYTES {
             return Err(failure(Wrong::Large.to_string()));
         }
-        let text = String::from_utf8(bytes).map_err(|_| failure("no UTF-8 text".to_owned()))?;
+        let text = String::from_utf8(bytes).map_err(|_| failure("not UTF-8".to_owned()))?;
         let config = Config::read(&text).map_err(|error| CliError::Settings {
             place: format!("{name}:{}:{}", error.line, error.column),
             message: error.wrong.to_string(),

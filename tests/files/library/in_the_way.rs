@@ -232,14 +232,14 @@ fn a_check_reports_links_and_files_of_others_in_inner_folders() {
         left(),
         [
             &format!(".journal/1-0.json: {unsaved}"),
-            ".journal/notes.json: no journal",
+            ".journal/notes.json: not a journal",
             link,
         ]
     );
     fs::rename(scratch.path(".journal"), scratch.path("elsewhere")).expect("moved");
     symlink("elsewhere", scratch.path(".journal")).expect("a link");
     let journal = ".journal: a symbolic link, which is not followed";
-    let folder = "elsewhere: no shape: its name is not NAME.json";
+    let folder = "elsewhere: not a shape: its name is not NAME.json";
     assert_eq!(left(), [journal, link, folder]);
 }
 
