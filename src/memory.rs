@@ -161,8 +161,8 @@ impl MemoryGuard {
         let allowed = self.allowed.unwrap_or(MemorySize(0)).min(ADDRESSABLE);
         let advice = self.advice;
         format!(
-            "stopped: what is merged needs more memory than half of the {allowed} that it may use, and writing it the \
-             other half; {advice}"
+            "stopped: what is merged needs more than half of the {allowed} of memory that it may use, and writing it needs \
+             the other half; {advice}"
         )
     }
 

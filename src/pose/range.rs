@@ -381,8 +381,8 @@ pub enum RangeError {
     },
     /// A number has more digits than are exact.
     #[error(
-        "\"{text}\" has too many digits: each number may have 15, {MAX_PLACES} of them behind the point, when all have the \
-         same number of decimals"
+        "\"{text}\" has too many digits: with the same number of decimals everywhere, each number may have 15 digits, \
+         {MAX_PLACES} of them after the point"
     )]
     Digits {
         /// The whole range, shortened.

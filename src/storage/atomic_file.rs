@@ -284,7 +284,7 @@ pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, F
             put_back(kept)
         } else {
             let _ = fs::remove_file(&path);
-            is_replaced.then(|| format!("the former {} is lost", path.display()))
+            is_replaced.then(|| format!("the old {} is lost", path.display()))
         };
         let _ = sync_folder(folder_of(&path));
         return Err(error.and(lost).and(put_back(moved)));

@@ -188,7 +188,7 @@ impl OldFile {
             temporary.disable_cleanup(true);
             let (path, temporary) = (self.path.display(), temporary.display());
             format!(
-                "the former {path} is now {temporary}; move it before anything is written there"
+                "the old {path} is now {temporary}; rename it, since taxel removes such files when it next writes there"
             )
         })
     }

@@ -34,13 +34,13 @@ fn ranges_are_exact_or_refused() {
     assert_eq!(refused("2:1:-1"), refused("1:2:-1"));
     assert_eq!(
         refused("9999999999999999"),
-        "\"9999999999999999\" has too many digits: each number may have 15, 12 of them behind the point, when all have \
-         the same number of decimals"
+        "\"9999999999999999\" has too many digits: with the same number of decimals everywhere, each number may have 15 \
+         digits, 12 of them after the point"
     );
     assert_eq!(
         refused("0:1e9:1e-9"),
-        "\"0:1e9:1e-9\" has too many digits: each number may have 15, 12 of them behind the point, when all have the same \
-         number of decimals"
+        "\"0:1e9:1e-9\" has too many digits: with the same number of decimals everywhere, each number may have 15 digits, \
+         12 of them after the point"
     );
     assert_eq!(
         refused("1:2"),
