@@ -590,7 +590,7 @@ fn the_noise_of_a_recording_is_reported() {
     );
     let run = taxel(&line, text);
     assert!(run.stdout.contains("stuck on: 4,4\n"), "{}", run.stdout);
-    let flips = ": 3 of 694 states changed for a single frame\n";
+    let flips = ": a taxel changed for a single frame in 3 of 694 cases\n";
     assert!(run.stdout.contains(flips), "{}", run.stdout);
     let written = std::fs::read_to_string(&mask).expect("it is written");
     assert_eq!(written, ".....\n.....\n.....\n.....\n....#\n");

@@ -25,7 +25,7 @@ pub enum RecorderError {
         path: PathBuf,
     },
     /// The file beside the array is not the metadata of a recording, so it is not replaced.
-    #[error("{} is not the description of a recording: record to another name", path.display())]
+    #[error("{} does not belong to a recording: record to another name", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
@@ -38,7 +38,7 @@ pub enum RecorderError {
     },
     /// The file was replaced, moved or removed while frames were recorded in it.
     #[error(
-        "{}: replaced, moved or removed while frames were recorded in it; the description beside it is left as it is",
+        "{}: replaced, moved or removed while frames were recorded in it; the .json file beside it is left as it is",
         path.display()
     )]
     Replaced {

@@ -89,7 +89,7 @@ pub(crate) fn text(found: &FlipReport) -> String {
     match (found.noise, found.standard_error) {
         (Some(noise), Some(error)) => {
             text += &format!(
-                "noise {noise:.5} ± {error:.5}: {} of {} states changed for a single frame\n",
+                "noise {noise:.5} ± {error:.5}: a taxel changed for a single frame in {} of {} cases\n",
                 grouped(found.flips),
                 grouped(found.repeated)
             );
@@ -97,7 +97,7 @@ pub(crate) fn text(found: &FlipReport) -> String {
         _ if found.repeated == 0 => text += "too few frames to tell how often taxels flip\n",
         _ => {
             text += &format!(
-                "noise 0.5 or more: {} of {} states changed for a single frame\n",
+                "noise 0.5 or more: a taxel changed for a single frame in {} of {} cases\n",
                 grouped(found.flips),
                 grouped(found.repeated)
             );
