@@ -217,7 +217,7 @@ pub(crate) fn naming() -> [Arg; 2] {
     let model = option(
         "model",
         "MODEL",
-        "Name the shape that left the imprint: name or file of a\nmodel; figures, figures-30, shapes",
+        "Name the shape that left the imprint: name or file of a\nmodel; built in are figures, figures-30 and shapes",
     )
     .value_parser(name_or_path());
     let noise = option(

@@ -51,7 +51,7 @@ pub(super) fn command() -> Command {
     let model = option(
         "model",
         "MODEL",
-        "Name or file; figures (default), figures-30, shapes",
+        "Name or file of a model; built in are figures\n(default), figures-30 and shapes",
     )
     .value_parser(flags::name_or_path())
     .default_value(DEFAULT_MODEL)
