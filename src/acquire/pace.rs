@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn a_change_of_the_clock_is_said_and_played_as_a_moment() {
         let (said, played) = notes(&[0.0, 0.5, 1e9, 1e9 + 0.5, 3.0, 3.5]);
-        let expected = "frame 2 comes 11,574 days after the one before, which is played as 2 s at normal speed";
+        let expected = "frame 2 comes 11,574 days after the one before; this pause is played as 2 s at normal speed";
         assert_eq!((said, played), (vec![expected.to_owned()], 3.5));
         for pauses in [[0.0, 0.1, 59.0, 59.1], [0.0, 50.0, 500.0, 3000.0]] {
             let (said, played) = notes(&pauses);

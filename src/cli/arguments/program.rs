@@ -228,7 +228,7 @@ pub(super) fn man_folder(
     match named.filter(|name| command.find_subcommand(name).is_some()) {
         Some(name) => {
             let message = format!(
-                "'{name}' is a command, which 'taxel help {name}' explains; as a folder, write './{name}'"
+                "'{name}' is a command; 'taxel help {name}' explains it, and './{name}' is a folder of this name"
             );
             Err(misused(command, "man", &message))
         }

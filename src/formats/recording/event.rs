@@ -341,7 +341,7 @@ impl fmt::Display for RecordingNote {
                 played,
             } => write!(
                 f,
-                "frame {frame} comes {} after the one before, which is played as {played} s at normal speed",
+                "frame {frame} comes {} after the one before; this pause is played as {played} s at normal speed",
                 time_in_words(*seconds)
             ),
             Self::Maximum => f.write_str(
