@@ -203,7 +203,7 @@ impl ChannelInfo {
     pub(crate) fn why_not_in_mm(&self) -> Option<String> {
         let [x, y] = self.pitch_mm.filter(|_| self.square_pitch_mm().is_none())?;
         Some(format!(
-            "cells of {} × {} mm are not square, so lengths are in taxels only",
+            "cells of {} × {} mm are not square, so lengths are in cells only",
             short(x),
             short(y)
         ))
