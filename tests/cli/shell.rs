@@ -396,7 +396,7 @@ fn man_pages_say_the_same_as_the_help() {
         (run.status, name),
         (
             Some(2),
-            "error: 'figure' is a command; 'taxel help figure' explains it, and './figure' is a folder of this name"
+            "error: 'figure' is a command, see 'taxel help figure'; for a folder of this name, write './figure'"
         )
     );
     let groff = has("groff");

@@ -228,7 +228,7 @@ pub(super) fn man_folder(
     match named.filter(|name| command.find_subcommand(name).is_some()) {
         Some(name) => {
             let message = format!(
-                "'{name}' is a command; 'taxel help {name}' explains it, and './{name}' is a folder of this name"
+                "'{name}' is a command, see 'taxel help {name}'; for a folder of this name, write './{name}'"
             );
             Err(misused(command, "man", &message))
         }
