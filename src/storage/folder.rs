@@ -27,7 +27,7 @@ pub(crate) fn stamp(content: &[u8]) -> u64 {
 /// Returns the metadata of a regular file. Refuses a link too: its target does not belong to the library.
 pub(crate) fn regular(path: &Path) -> Result<Metadata, LibraryError> {
     let found = path.symlink_metadata();
-    let found = found.map_err(|error| FileError::new("look at it", path, error))?;
+    let found = found.map_err(|error| FileError::new("access it", path, error))?;
     check_regular(path, &found)?;
     Ok(found)
 }
@@ -55,7 +55,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
     let file = open(path)?;
     // The metadata of the open file: another file may have taken its name since.
     let found = file.metadata();
-    let found = found.map_err(|error| FileError::new("look at it", path, error))?;
+    let found = found.map_err(|error| FileError::new("access it", path, error))?;
     check_regular(path, &found)?;
     // Asks for no more bytes than the file has, so that finding the end needs no further read. A length of 0 may mean
     // that it is unknown.

@@ -185,7 +185,7 @@ impl Library {
             Ok(_) => return Ok(Some(name.as_str().to_owned())),
             Err(error)
                 if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {}
-            Err(error) => return Err(FileError::new("look at it", &path, error).into()),
+            Err(error) => return Err(FileError::new("access it", &path, error).into()),
         }
         self.names.find(&self.folder, name, || self.own_names())
     }
