@@ -235,7 +235,7 @@ fn draw_preview(
                 .shape
                 .source
                 .as_ref()
-                .map_or("an imprint, no figure".to_owned(), ToString::to_string);
+                .map_or("an imprint, not a figure".to_owned(), ToString::to_string);
             say(&facts, Role::Text);
             // The imprint has the same height for most shapes.
             let end = say(&source, Role::Quiet).max(4);
