@@ -149,8 +149,12 @@ pub(super) fn merge_command() -> Command {
 /// Defines `--atlas`, the file that a sweep or a merge writes. Its extension decides the format, so there is no flag
 /// for this; only `.npz` can be read again.
 fn atlas() -> Arg {
-    option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz")
-        .value_parser(OsStringValueParser::new().try_map(AtlasFile::new))
+    option(
+        "atlas",
+        "FILE",
+        "Write the atlas, all imprints that were found,\nas .csv, .jsonl or .npz",
+    )
+    .value_parser(OsStringValueParser::new().try_map(AtlasFile::new))
 }
 
 impl SweepArguments {
