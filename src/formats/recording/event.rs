@@ -133,7 +133,7 @@ impl ReadOptions {
 pub(crate) const UNNAMED: &str = "unnamed";
 
 /// The most channels of a recording or a stream.
-pub(in crate::formats) const MOST_CHANNELS: usize = 256;
+pub(in crate::formats::recording) const MOST_CHANNELS: usize = 256;
 
 /// The most bytes of a channel's name.
 pub(in crate::formats::recording) const LONGEST_NAME: usize = 1024;

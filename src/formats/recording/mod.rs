@@ -81,7 +81,6 @@ pub(crate) use detect::may_be_recording;
 pub(crate) use detect::{RecordingInput, format_of, read_as};
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
-pub(super) use event::MOST_CHANNELS;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(feature = "cli")]

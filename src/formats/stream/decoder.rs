@@ -14,7 +14,7 @@ use crate::formats::byte_order_mark::without_mark;
 use crate::formats::json::WithoutNan;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::stream::documents::{JsonChannels, JsonDecoder, RosDecoder};
+use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;
 use crate::formats::stream::format_search::{FormatSearch, is_numbers};
@@ -44,8 +44,8 @@ pub struct StreamDecoder {
     torn: bool,
     /// The clock of the source, kept from the last decoder.
     clock: FrameClock,
-    /// The channels of the source, kept from the last decoder.
-    channels: JsonChannels,
+    /// The decoder of JSON lines, which knows the channels of the source.
+    json: JsonDecoder,
 }
 
 /// The decoder of the next bytes.
@@ -55,8 +55,8 @@ enum State {
     Looking(FormatSearch),
     /// A decoder of numbers in lines.
     Lines(LinesDecoder),
-    /// A decoder of JSON lines.
-    Json(JsonDecoder),
+    /// The decoder of JSON lines.
+    Json,
     /// A decoder of `ros2 topic echo` output.
     Ros(RosDecoder),
     /// A decoder of bytes after markers.
@@ -79,7 +79,7 @@ impl StreamDecoder {
             first: true,
             torn: !options.from_start,
             clock: FrameClock::default(),
-            channels: JsonChannels::default(),
+            json: JsonDecoder::new(options.size),
         };
         if let Some(format) = options.format {
             decoder.begin(format, options.from_start);
@@ -92,7 +92,7 @@ impl StreamDecoder {
         match self.state {
             State::Looking(_) | State::Unshaped => self.options.format,
             State::Lines(_) => Some(StreamFormat::Lines),
-            State::Json(_) => Some(StreamFormat::JsonLines),
+            State::Json => Some(StreamFormat::JsonLines),
             State::Ros(_) => Some(StreamFormat::Ros2),
             State::Flexitac(_) => Some(StreamFormat::Flexitac),
             State::Matsense(_) => Some(StreamFormat::Matsense),
@@ -124,14 +124,11 @@ impl StreamDecoder {
         (self.skipping, self.first, self.torn) = (false, true, !from_start);
         match &mut self.state {
             State::Lines(decoder) => self.clock = decoder.clock,
-            State::Json(decoder) => {
-                self.channels = take(&mut decoder.channels);
-                self.clock = self.channels.clock.clock;
-            }
+            State::Json => self.clock = self.json.clock(),
             _ => {}
         }
         if from_start {
-            self.channels.clock.forget_key();
+            self.json.forget_key();
         }
         self.state = State::Looking(FormatSearch::default());
         self.options.from_start = from_start;
@@ -146,7 +143,8 @@ impl StreamDecoder {
         self.state = match (format, size) {
             (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(size, from_start, clock)),
             (StreamFormat::JsonLines, _) => {
-                State::Json(JsonDecoder::new(size, take(&mut self.channels), clock))
+                self.json.begin(clock);
+                State::Json
             }
             (StreamFormat::Ros2, _) => State::Ros(RosDecoder::new(size, from_start)),
             (StreamFormat::Flexitac, Some(size)) => {
@@ -173,7 +171,7 @@ impl StreamDecoder {
             State::Flexitac(decoder) => decoder.push(bytes, &mut self.counts, sink),
             State::Matsense(decoder) => decoder.push(bytes, &mut self.counts, sink),
             State::Unshaped => {}
-            State::Lines(_) | State::Json(_) | State::Ros(_) => self.text(bytes, sink),
+            State::Lines(_) | State::Json | State::Ros(_) => self.text(bytes, sink),
         }
     }
 
@@ -190,7 +188,7 @@ impl StreamDecoder {
         let torn = self.without_mark(&torn);
         match &mut self.state {
             State::Lines(decoder) => decoder.finish(torn, &mut self.counts, sink),
-            State::Json(decoder) => decoder.line(torn, &mut self.counts, sink),
+            State::Json => self.json.line(torn, &mut self.counts, sink),
             State::Ros(decoder) => {
                 decoder.line(torn, &mut self.counts, sink);
                 decoder.finish(&mut self.counts, sink);
@@ -237,12 +235,12 @@ impl StreamDecoder {
     /// is whole: the end of a line does not open what it closes.
     fn line(&mut self, line: &[u8], sink: &mut StreamSink<'_>) {
         let line = self.without_mark(line);
-        if take(&mut self.torn) && !(matches!(self.state, State::Json(_)) && is_object(line)) {
+        if take(&mut self.torn) && !(matches!(self.state, State::Json) && is_object(line)) {
             return;
         }
         match &mut self.state {
             State::Lines(decoder) => decoder.line(line, &mut self.counts, sink),
-            State::Json(decoder) => decoder.line(line, &mut self.counts, sink),
+            State::Json => self.json.line(line, &mut self.counts, sink),
             State::Ros(decoder) => decoder.line(line, &mut self.counts, sink),
             _ => {}
         }
@@ -327,6 +325,28 @@ mod tests {
                 let counts = decoder.counts();
                 assert_eq!((counts.frames, counts.dropped), (frames, 0), "{text}");
             }
+        }
+    }
+
+    #[test]
+    fn a_json_line_that_is_dropped_has_a_reason() {
+        let other = "{\"frame\":[[1,2]]}\n{\"frame\":[[1],[2]]}\n";
+        let many = (0..257).map(|channel| format!("{{\"frame\":[[1]],\"channel\":{channel}}}\n"));
+        for (text, reason) in [
+            (other, "found 2 rows of 1, expected 1 of 2 as before"),
+            (&many.collect::<String>(), "more than 256 channels"),
+            (
+                "{\"frame\":[]}\n",
+                "\"frame\" is empty, expected rows of values",
+            ),
+        ] {
+            let mut decoder = StreamDecoder::new(StreamOptions::default().from_start());
+            decoder.push(text.as_bytes(), &mut |_| {});
+            let counts = decoder.counts();
+            assert_eq!(
+                (counts.dropped, counts.reason.as_deref()),
+                (1, Some(reason))
+            );
         }
     }
 

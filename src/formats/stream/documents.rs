@@ -3,10 +3,7 @@
 //! Unlike a recording, a stream continues after a line or a message that is wrong, or of another size than earlier
 //! ones: it is dropped and counted.
 
-use crate::formats::recording::ChannelInfo;
-use crate::formats::recording::MOST_CHANNELS;
-use crate::formats::recording::json::clock::JsonClock;
-use crate::formats::recording::json::lines::FrameLine;
+use crate::formats::recording::json::lines::{FrameLineError, JsonFrames};
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::side::arranged;
 use crate::formats::recording::stream_size::StreamSize;
@@ -14,91 +11,38 @@ use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::{Frame, FrameSize};
 
-/// The channels of a stream of JSON lines. After a gap they pass to the next decoder.
-#[derive(Debug, Default)]
-pub(super) struct JsonChannels {
-    channels: Vec<JsonChannel>,
-    /// The clock that reads the times of lines.
-    pub(super) clock: JsonClock,
-    /// Whether the channels have been reported, which happens as soon as one has a name.
-    reported: bool,
-}
-
-/// One of several sensors.
-#[derive(Debug)]
-struct JsonChannel {
-    /// The channel as its first frame described it.
-    info: ChannelInfo,
-    /// The rows and columns of its frames.
-    size: StreamSize,
-    /// The number of its frames.
-    frames: u64,
-}
-
-impl JsonChannels {
-    /// Returns the index of a line's channel, adding and reporting it if it is new; None if there are too many.
-    fn of(
-        &mut self,
-        line: &FrameLine,
-        named: Option<FrameSize>,
-        sink: &mut StreamSink<'_>,
-    ) -> Option<usize> {
-        let mut channels = self.channels.iter();
-        let known = channels.position(|channel| channel.info.name == line.channel);
-        if known.is_some() {
-            return known;
-        }
-        if self.channels.len() == MOST_CHANNELS {
-            return None;
-        }
-        self.channels.push(JsonChannel {
-            info: line.channel_info(),
-            size: StreamSize::new(named),
-            frames: 0,
-        });
-        let index = self.channels.len() - 1;
-        let first = if self.reported { index } else { 0 };
-        self.reported |= line.channel.is_some();
-        if self.reported {
-            for channel in &self.channels[first..] {
-                sink(StreamEvent::Channel(&channel.info));
-            }
-        }
-        Some(index)
-    }
-}
-
-/// A decoder of JSON lines.
+/// A decoder of JSON lines. Its channels and times continue after a gap.
 #[derive(Debug)]
 pub(super) struct JsonDecoder {
-    /// The line that was read last.
-    line: FrameLine,
-    /// The size of all frames, if it was given.
-    named: Option<FrameSize>,
-    /// The channels so far.
-    pub(super) channels: JsonChannels,
-    /// The frame made of the line.
-    frame: Frame,
+    /// The frames and their channels.
+    frames: JsonFrames,
+    /// The number of channels that have been reported, which happens as soon as one has a name.
+    reported: usize,
 }
 
 impl JsonDecoder {
     /// Prepares for a stream; `named` is the size of a frame, if it was given.
-    pub(super) fn new(
-        named: Option<FrameSize>,
-        mut channels: JsonChannels,
-        clock: FrameClock,
-    ) -> Self {
-        channels.clock.clock = clock;
-        // The sensors may have been reconfigured.
-        for channel in &mut channels.channels {
-            channel.size = StreamSize::new(named);
-        }
+    pub(super) fn new(named: Option<FrameSize>) -> Self {
         Self {
-            line: FrameLine::new(named),
-            named,
-            channels,
-            frame: Frame::default(),
+            frames: JsonFrames::new(named),
+            reported: 0,
         }
+    }
+
+    /// Prepares for the first line, or the first one after a gap. `clock` is the clock of the source.
+    pub(super) fn begin(&mut self, clock: FrameClock) {
+        self.frames.clock.clock = clock;
+        self.frames.forget_sizes();
+    }
+
+    /// Returns the clock of the source.
+    pub(super) fn clock(&self) -> FrameClock {
+        self.frames.clock.clock
+    }
+
+    /// Forgets the key of the time: another file may have another one.
+    pub(super) fn forget_key(&mut self) {
+        self.frames.clock.forget_key();
     }
 
     /// Decodes a line.
@@ -111,39 +55,33 @@ impl JsonDecoder {
         if line.trim_ascii().is_empty() {
             return;
         }
-        if let Err(error) = self.line.read(line, &mut self.channels.clock) {
-            for channel in &mut self.channels.channels {
-                channel.size.pass_torn();
+        if let Err(error) = self.frames.read(line) {
+            counts.drop_frames(1, line);
+            match error {
+                FrameLineError::Wrong { message, .. } => counts.reason = Some(message),
+                FrameLineError::Shape(values) => {
+                    counts.unshaped.get_or_insert(values);
+                }
             }
-            counts.unshaped = counts.unshaped.or(error.unshaped());
-            counts.drop_frames(1, line);
-            counts.reason = error.reason();
             return;
         }
-        let Some(index) = self.channels.of(&self.line, self.named, sink) else {
-            counts.drop_frames(1, line);
-            counts.reason = Some(format!("more than {MOST_CHANNELS} channels"));
-            return;
-        };
-        let channel = &mut self.channels.channels[index];
-        if !channel.size.admits(self.line.size) {
-            counts.drop_frames(1, line);
-            return;
-        }
-        self.frame.reset(self.line.size);
-        self.frame.values_mut().copy_from_slice(&self.line.values);
-        self.frame.channel = index;
-        self.frame.number = channel.frames;
-        self.frame.label = self.line.label;
-        let time = self.line.time;
-        let clock = &mut self.channels.clock.clock;
-        self.frame.time = time.map(|time| clock.since_first(time));
-        if let Some(note) = clock.take_note() {
+        self.report_channels(sink);
+        if let Some(note) = self.frames.clock.clock.take_note() {
             sink(StreamEvent::Note(&note));
         }
-        channel.frames += 1;
         counts.frames += 1;
-        sink(StreamEvent::Frame(&self.frame));
+        sink(StreamEvent::Frame(self.frames.frame()));
+    }
+
+    /// Reports the channels that are new, once one has a name.
+    fn report_channels(&mut self, sink: &mut StreamSink<'_>) {
+        let channels = || self.frames.channels();
+        if self.reported < channels().len() && channels().any(|info| info.name.is_some()) {
+            for info in channels().skip(self.reported) {
+                sink(StreamEvent::Channel(info));
+            }
+            self.reported = channels().len();
+        }
     }
 }
 

@@ -42,109 +42,185 @@ pub(in crate::formats::recording) fn read(
     sink: &mut Sink<'_>,
 ) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
-    let mut line = FrameLine::new(options.size);
-    let mut clock = JsonClock::default();
-    // The name of each channel, the size of its frames, and their number so far.
-    let mut channels: Vec<(Option<String>, StreamSize, u64)> = Vec::new();
-    let mut frame = Frame::default();
+    let mut frames = JsonFrames::new(options.size);
+    let mut reported = 0;
     while lines.advance_to_content()? {
-        let number = lines.number();
-        if let Err(error) = line.read(lines.line(), &mut clock) {
-            options.damage(error.in_line(number), lines.line(), sink)?;
-            let sizes = channels.iter_mut().map(|(_, size, _)| size);
-            sizes.for_each(StreamSize::pass_torn);
+        if let Err(error) = frames.read(lines.line()) {
+            options.damage(error.in_line(lines.number()), lines.line(), sink)?;
             continue;
         }
-        let known = channels.iter().position(|(name, ..)| *name == line.channel);
-        if known.is_none() {
-            if channels.len() == MOST_CHANNELS {
-                let message = format!("more than {MOST_CHANNELS} channels");
-                let error = RecordingError::in_line(number, message);
-                options.damage(error, lines.line(), sink)?;
-                continue;
-            }
-            channels.push((line.channel.clone(), StreamSize::new(options.size), 0));
-            sink(RecordingEvent::Channel(&line.channel_info()))?;
+        for info in frames.channels().skip(reported) {
+            sink(RecordingEvent::Channel(info))?;
         }
-        frame.channel = known.unwrap_or(channels.len() - 1);
-        let (_, size, count) = &mut channels[frame.channel];
-        let before = size.present().unwrap_or(line.size);
-        if !size.admits(line.size) {
-            let error = RecordingError::in_line(number, changed(line.size, before));
-            options.damage(error, lines.line(), sink)?;
-            continue;
-        }
-        frame.number = *count;
-        *count += 1;
-        frame.reset(line.size);
-        frame.values_mut().copy_from_slice(&line.values);
-        frame.time = line.time.map(|time| clock.clock.since_first(time));
-        frame.label = line.label;
-        if let Some(note) = clock.clock.take_note() {
+        reported = frames.channels().len();
+        if let Some(note) = frames.clock.clock.take_note() {
             sink(RecordingEvent::Note(&note))?;
         }
-        sink(RecordingEvent::Frame(&frame))?;
+        sink(RecordingEvent::Frame(frames.frame()))?;
     }
     Ok(())
 }
 
-/// The content of a line, in memory that is reused.
+/// The frames of JSON lines, in a recording or in a stream.
 #[derive(Debug)]
-pub(in crate::formats) struct FrameLine {
-    /// The size of a frame, for lists of cells without rows, if it is known beforehand.
-    asked: Option<FrameSize>,
-    /// The size of the frame; one cell before the first frame.
-    pub(in crate::formats) size: FrameSize,
-    /// The cells, row by row; NaN for null.
-    pub(in crate::formats) values: Vec<f64>,
-    /// The time.
-    pub(in crate::formats) time: Option<Time>,
-    /// The frame's label in the recording.
-    pub(in crate::formats) label: Option<i64>,
-    /// The name of the sensor, if there are several.
-    pub(in crate::formats) channel: Option<String>,
+pub(in crate::formats) struct JsonFrames {
+    /// The line that was read last.
+    line: FrameLine,
+    /// The channels so far.
+    channels: Vec<JsonChannel>,
+    /// The clock that reads the times of lines.
+    pub(in crate::formats) clock: JsonClock,
+    /// The frame made of the line.
+    frame: Frame,
 }
 
-/// The error for a line that is not a frame.
+/// One of several sensors.
+#[derive(Debug)]
+struct JsonChannel {
+    /// The channel as its first frame described it.
+    info: ChannelInfo,
+    /// The rows and columns of its frames.
+    size: StreamSize,
+    /// The number of its frames.
+    frames: u64,
+}
+
+impl JsonFrames {
+    /// Prepares for lines; `named` is the size of a frame, if it was given.
+    pub(in crate::formats) fn new(named: Option<FrameSize>) -> Self {
+        Self {
+            line: FrameLine::new(named),
+            channels: Vec::new(),
+            clock: JsonClock::default(),
+            frame: Frame::default(),
+        }
+    }
+
+    /// Reads a line, after which [`Self::frame`] is its frame.
+    ///
+    /// # Errors
+    /// Returns an error if the line is not a frame, has other rows and columns than those of its channel before it,
+    /// or is of one channel too many.
+    pub(in crate::formats) fn read(&mut self, line: &[u8]) -> Result<(), FrameLineError> {
+        if let Err(error) = self.line.read(line, &mut self.clock) {
+            for channel in &mut self.channels {
+                channel.size.pass_torn();
+            }
+            return Err(error);
+        }
+        let index = self.channel()?;
+        let (line, channel) = (&self.line, &mut self.channels[index]);
+        let before = channel.size.present().unwrap_or(line.size);
+        if !channel.size.admits(line.size) {
+            return Err(FrameLineError::of_line(changed(line.size, before)));
+        }
+        let frame = &mut self.frame;
+        frame.reset(line.size);
+        frame.values_mut().copy_from_slice(&line.values);
+        frame.channel = index;
+        frame.number = channel.frames;
+        frame.label = line.label;
+        frame.time = line.time.map(|time| self.clock.clock.since_first(time));
+        channel.frames += 1;
+        Ok(())
+    }
+
+    /// Returns the index of the line's channel, which is added if it is new.
+    fn channel(&mut self) -> Result<usize, FrameLineError> {
+        let name = &self.line.channel;
+        let mut names = self.channels.iter().map(|channel| &channel.info.name);
+        if let Some(known) = names.position(|known| known == name) {
+            return Ok(known);
+        }
+        if self.channels.len() == MOST_CHANNELS {
+            let message = format!("more than {MOST_CHANNELS} channels");
+            return Err(FrameLineError::of_line(message));
+        }
+        self.channels.push(JsonChannel {
+            info: ChannelInfo {
+                name: name.clone(),
+                size: Some(self.line.size),
+                ..ChannelInfo::default()
+            },
+            size: StreamSize::new(self.line.named),
+            frames: 0,
+        });
+        Ok(self.channels.len() - 1)
+    }
+
+    /// Returns the frame of the last line.
+    pub(in crate::formats) fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Iterates over the channels so far.
+    pub(in crate::formats) fn channels(&self) -> impl ExactSizeIterator<Item = &ChannelInfo> {
+        self.channels.iter().map(|channel| &channel.info)
+    }
+
+    /// Forgets the rows and columns of the channels: after a gap, the sensors may have been reconfigured.
+    pub(in crate::formats) fn forget_sizes(&mut self) {
+        for channel in &mut self.channels {
+            channel.size = StreamSize::new(self.line.named);
+        }
+    }
+}
+
+/// The content of a line, in memory that is reused.
+#[derive(Debug)]
+struct FrameLine {
+    /// The size of a frame, for lists of cells without rows, if it was given.
+    named: Option<FrameSize>,
+    /// The size of the frame; one cell before the first frame.
+    size: FrameSize,
+    /// The cells, row by row; NaN for null.
+    values: Vec<f64>,
+    /// The time.
+    time: Option<Time>,
+    /// The frame's label in the recording.
+    label: Option<i64>,
+    /// The name of the sensor, if there are several.
+    channel: Option<String>,
+}
+
+/// The error for a line that is not a frame, or not one of its recording or stream.
 #[derive(Debug)]
 pub(in crate::formats) enum FrameLineError {
-    /// The column of the error, from 1, and what is wrong.
-    Json(usize, String),
+    /// A wrong line.
+    Wrong {
+        /// The column of the error, from 1; None if it is the line as a whole.
+        column: Option<usize>,
+        /// The message, which says what was found and what was expected.
+        message: String,
+    },
     /// A list of cells without rows; the number of cells.
     Shape(u64),
 }
 
 impl FrameLineError {
+    /// Returns the error for a line as a whole.
+    fn of_line(message: String) -> Self {
+        let column = None;
+        Self::Wrong { column, message }
+    }
+
     /// Returns the error for that line of a recording.
     fn in_line(self, number: u64) -> RecordingError {
         match self {
-            Self::Json(column, message) => RecordingError::in_field(number, column, message),
+            Self::Wrong { column, message } => match column {
+                Some(column) => RecordingError::in_field(number, column, message),
+                None => RecordingError::in_line(number, message),
+            },
             Self::Shape(values) => RecordingError::Shape { values },
-        }
-    }
-
-    /// Returns the number of values in the frame, if only its rows and columns are missing.
-    pub(in crate::formats) fn unshaped(&self) -> Option<u64> {
-        match self {
-            Self::Shape(values) => Some(*values),
-            Self::Json(..) => None,
-        }
-    }
-
-    /// Returns what is wrong, unless only rows and columns are missing.
-    pub(in crate::formats) fn reason(self) -> Option<String> {
-        match self {
-            Self::Shape(_) => None,
-            Self::Json(_, message) => Some(message),
         }
     }
 }
 
 impl FrameLine {
-    /// Creates a line without a frame. `asked` is the size of a frame, if it is known beforehand.
-    pub(in crate::formats) fn new(asked: Option<FrameSize>) -> Self {
+    /// Creates a line without a frame. `named` is the size of a frame, if it was given.
+    fn new(named: Option<FrameSize>) -> Self {
         Self {
-            asked,
+            named,
             size: FrameSize::SMALLEST,
             values: Vec::new(),
             time: None,
@@ -153,21 +229,8 @@ impl FrameLine {
         }
     }
 
-    /// Returns the channel of the line, to be reported before its first frame.
-    pub(in crate::formats) fn channel_info(&self) -> ChannelInfo {
-        ChannelInfo {
-            name: self.channel.clone(),
-            size: Some(self.size),
-            ..ChannelInfo::default()
-        }
-    }
-
     /// Reads a line. `clock` reads the times of all lines.
-    pub(in crate::formats) fn read(
-        &mut self,
-        line: &[u8],
-        clock: &mut JsonClock,
-    ) -> Result<(), FrameLineError> {
+    fn read(&mut self, line: &[u8], clock: &mut JsonClock) -> Result<(), FrameLineError> {
         self.values.clear();
         (self.time, self.label, self.channel) = (None, None, None);
         let mut rows = 0;
@@ -183,21 +246,27 @@ impl FrameLine {
             .and_then(|()| content.end());
         read.map_err(|error| {
             let column = without_nan.column(error.column().max(1));
-            FrameLineError::Json(column, complaint(line, column, &error))
+            FrameLineError::Wrong {
+                column: Some(column),
+                message: complaint(line, column, &error),
+            }
         })?;
         let values = self.values.len();
-        let wrong = |message: String| Err(FrameLineError::Json(1, message));
+        let wrong = |message: String| {
+            let column = Some(1);
+            Err(FrameLineError::Wrong { column, message })
+        };
         if let Some(columns) = values.checked_div(rows) {
             let Some(size) = frame_size(columns, rows) else {
                 let rows = counted(rows as u64, "row");
                 return wrong(format!("{rows} of {columns}, expected 1 to 512 of each"));
             };
-            if let Some(asked) = self.asked.filter(|asked| *asked != size) {
+            if let Some(named) = self.named.filter(|named| *named != size) {
                 return wrong(format!(
                     "{}, and {} of {} were named",
                     size.in_words(),
-                    asked.rows(),
-                    asked.columns()
+                    named.rows(),
+                    named.columns()
                 ));
             }
             self.size = size;
@@ -206,7 +275,7 @@ impl FrameLine {
         if values == 0 {
             return wrong("\"frame\" is empty, expected rows of values".to_owned());
         }
-        let Some(size) = self.asked else {
+        let Some(size) = self.named else {
             return Err(FrameLineError::Shape(values as u64));
         };
         if values != size.cells() {
