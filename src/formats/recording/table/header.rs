@@ -1,17 +1,24 @@
-//! Decides whether the first line of a table holds names or values, and finds the lines that hold neither.
+//! Reads the header of a table: decides whether the first line holds names or values, and finds the lines that hold
+//! neither, the units and the time.
 
 use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::table::cell_names::{NamedCells, cells};
+use crate::formats::recording::table::clock::TimeFields;
 use crate::formats::recording::text::lines::{TextLines, is_blank};
-use crate::formats::recording::text::separator::{Separator, is_comment};
-use crate::formats::recording::time::field_role::role;
+use crate::formats::recording::text::separator::{Separator, is_comment, is_none};
+use crate::formats::recording::time::field_role::{
+    FieldRole, is_named_time, rest_of_second, role, time_unit,
+};
 use crate::formats::recording::time::moment;
 
 /// The number of lines that are compared with the first one, or with each other if no header names the numbers beside
 /// the cells.
 pub(super) const COMPARED: u16 = 8;
+
+/// The most fields beside the cells.
+pub(super) const MOST_BESIDE: usize = 16;
 
 /// Returns the first line that is neither blank nor a comment.
 ///
@@ -71,18 +78,89 @@ pub(super) fn is_ramp(
     Ok(matches!(heights[..], [first, second] if first == second && first > 1))
 }
 
-/// Returns the number of names if they are those of cells only, counted from 0; pandas writes an empty name before
-/// them, above its index.
-pub(super) fn count_from_0(names: &[&str]) -> Option<usize> {
-    let names = names.strip_prefix(&[""]).unwrap_or(names);
-    let all = matches!(cells(names), Some(NamedCells::Counted(0, length)) if length == names.len());
-    (names.first() == Some(&"0") && all).then_some(names.len())
+/// The header of a table: the lines above its values. It is read from the first line, which may turn out to hold
+/// values.
+#[derive(Debug)]
+pub(super) struct TableHeader<'a> {
+    /// The names of the fields.
+    pub(super) names: Vec<&'a str>,
+    /// The cells that the names describe; None if they do not describe any.
+    pub(super) cells: Option<NamedCells>,
+    /// The line number of the names.
+    pub(super) number: u64,
+    /// The line number of the units, and the unit of each field.
+    pub(super) units: Option<(u64, Vec<String>)>,
+}
+
+impl<'a> TableHeader<'a> {
+    /// Finds the cells that the names in line `number` describe.
+    pub(super) fn new(names: Vec<&'a str>, number: u64) -> Self {
+        Self {
+            cells: cells(&names),
+            names,
+            number,
+            units: None,
+        }
+    }
+
+    /// Returns the number of cells if the names are those of cells counted from 0, and no others except the first
+    /// `others`. After these, one name may be empty: pandas writes it above its index.
+    pub(super) fn count_from_0(&self, others: usize) -> Option<usize> {
+        let &NamedCells::Counted(start, length) = self.cells.as_ref()? else {
+            return None;
+        };
+        let before = self.names.get(others..start)?;
+        let all = matches!(before, [] | [""]) && start + length == self.names.len();
+        (all && self.names[start] == "0").then_some(length)
+    }
+
+    /// Returns the unit of a field; None if it has none.
+    fn unit(&self, field: usize) -> Option<&str> {
+        let unit = self.units.as_ref()?.1.get(field)?;
+        let inner = unit.trim_matches(['[', ']', '(', ')']).trim();
+        // A dash means that there is no unit, as do the words for a missing value.
+        let is_none = inner == "-" || is_none(inner.as_bytes());
+        (!is_none).then_some(inner)
+    }
+
+    /// Returns the unit of these fields; None if they do not all have the same.
+    pub(super) fn unit_of_all(&self, fields: &[usize]) -> Option<&str> {
+        let units = fields.iter().map(|&field| self.unit(field));
+        let same = units.reduce(|one, other| one.filter(|_| one == other));
+        same.flatten()
+    }
+
+    /// Returns the first of these fields that is a time, together with its other field if the time is split into two.
+    pub(super) fn time<'r>(
+        &self,
+        fields: impl Iterator<Item = (usize, &'r Option<FieldRole>)>,
+    ) -> Option<TimeFields> {
+        let times = fields.filter_map(|(field, role)| match role {
+            Some(FieldRole::Time(unit)) => {
+                let below = || self.unit(field).and_then(time_unit);
+                Some(TimeFields {
+                    field,
+                    unit: unit.or_else(below),
+                    rest: rest_of_second(&self.names, field),
+                })
+            }
+            _ => None,
+        });
+        // More fields than these are hardly times, and each is compared with all names.
+        let times: Vec<TimeFields> = times.take(MOST_BESIDE).collect();
+        // A field that has only the unit of a time may be a duration, such as `latency_ms`.
+        let is_named = |time: &&TimeFields| is_named_time(self.names[time.field]);
+        let first = times.iter().find(is_named).or(times.first())?;
+        let has_first = |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == first.field);
+        Some(*times.iter().find(has_first).unwrap_or(first))
+    }
 }
 
 /// Returns true if a line with words is a frame like the next line, with a date or a label beside its cells: words
 /// and numbers are in the same fields. Otherwise it holds the names of the fields, such as `label,0,1,2,3` above
 /// `cup,7,5,9,3`: its numbers count up, from 0 or beside a word that is a usual name.
-pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) -> bool {
+pub(super) fn is_like_next(header: &TableHeader<'_>, separator: Separator, next: &[u8]) -> bool {
+    let names = &header.names;
     let next = separator.fields_of(next, names.len());
     let next: Vec<&[u8]> = next.take(names.len() + 1).collect();
     let is_word = |field: &[u8]| !separator.is_numeric(field);
@@ -100,7 +178,7 @@ pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) ->
     let is_named = words().any(|(own, _)| is_name(own));
     let numbers = names.len() - words().count();
     let counts = matches!(
-        cells(names),
+        header.cells,
         Some(NamedCells::Counted(start, length)) if length == numbers && (names[start] == "0" || is_named)
     );
     repeats || !counts
@@ -109,15 +187,16 @@ pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) ->
 /// Returns the field of a wrong value, such as `1O`, `inf`, `4mV` or `>255`, among numbers; None if the line may hold
 /// names or texts. A single such field does not make a line of values a header: names that are numbers count up, or
 /// have a word with a known role or at their beginning.
-pub(super) fn wrong_value(names: &[&str], separator: Separator) -> Option<usize> {
+pub(super) fn wrong_value(header: &TableHeader<'_>, separator: Separator) -> Option<usize> {
+    let names = &header.names;
     let mut words =
         (0..names.len()).filter(|&field| !separator.is_numeric(names[field].as_bytes()));
     let (word, only) = (words.next()?, words.next().is_none());
     let name = names[word];
     let is_name = name.starts_with(char::is_alphabetic) && (word == 0 || role(name).is_some());
     // Cells that are counted from 0 have names, and so has the field before them.
-    let is_header = word == 0 && count_from_0(&names[1..]).is_some();
-    let is_no_name = cells(names).is_none() && !is_name && !is_date(name);
+    let is_header = word == 0 && header.count_from_0(1).is_some();
+    let is_no_name = header.cells.is_none() && !is_name && !is_date(name);
     let is_wrong = is_like_number(name) || is_no_name;
     (only && names.len() > 2 && !is_header && is_wrong).then_some(word)
 }
@@ -177,20 +256,37 @@ mod tests {
     #[test]
     fn words_above_equal_words_are_values() {
         let is_frame = |names: &[&str], next: &str| {
-            is_like_next(names, Separator::Byte(b','), next.as_bytes())
+            let header = TableHeader::new(names.to_vec(), 1);
+            is_like_next(&header, Separator::Byte(b','), next.as_bytes())
         };
         assert!(is_frame(&["cup", "7", "5", "9"], "cup,7,4,9"));
         assert!(!is_frame(&["label", "0", "1", "2"], "cup,7,5,9"));
         assert!(!is_frame(&["a", "b", "c"], "1,2,3"));
-        assert_eq!(count_from_0(&["", "0", "1", "2"]), Some(3));
-        assert_eq!(count_from_0(&["1", "2", "3"]), None);
+    }
+
+    #[test]
+    fn names_may_count_from_0() {
+        for (names, alone, after_another) in [
+            (&["0", "1", "2"][..], Some(3), None),
+            (&["", "0", "1", "2"], Some(3), Some(3)),
+            (&["label", "0", "1", "2"], None, Some(3)),
+            (&["label", "", "0", "1", "2"], None, Some(3)),
+            (&["a", "b", "0", "1", "2"], None, None),
+            (&["1", "2", "3"], None, None),
+            (&["0", "1", "2", "sum"], None, None),
+            (&["a", "b"], None, None),
+        ] {
+            let header = TableHeader::new(names.to_vec(), 1);
+            let found = [0, 1].map(|others| header.count_from_0(others));
+            assert_eq!(found, [alone, after_another], "{names:?}");
+        }
     }
 
     #[test]
     fn a_wrong_value_does_not_make_a_header() {
         let found = |line: &str| {
-            let names: Vec<&str> = line.split(',').collect();
-            wrong_value(&names, Separator::Byte(b','))
+            let header = TableHeader::new(line.split(',').collect(), 1);
+            wrong_value(&header, Separator::Byte(b','))
         };
         for line in [
             "1,inf,3,4",

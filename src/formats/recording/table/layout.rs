@@ -10,25 +10,20 @@ use std::io::{BufRead, Seek};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::side::side;
-use crate::formats::recording::table::cell_names::{NamedCells, cells};
+use crate::formats::recording::table::cell_names::NamedCells;
 use crate::formats::recording::table::clock::TimeFields;
 use crate::formats::recording::table::header::{
-    COMPARED, count_from_0, first_line, is_like_next, is_mostly_numeric, is_ramp, moment_of_row,
-    wrong_value,
+    COMPARED, MOST_BESIDE, TableHeader, first_line, is_like_next, is_mostly_numeric, is_ramp,
+    moment_of_row, wrong_value,
 };
 use crate::formats::recording::table::unnamed_fields::unnamed_fields;
 use crate::formats::recording::text::lines::{TextLines, is_blank, text};
 use crate::formats::recording::text::row::{self, Field};
-use crate::formats::recording::text::separator::{Separator, is_comment, is_none};
-use crate::formats::recording::time::field_role::{
-    FieldRole, is_named_time, rest_of_second, role, roles, time_unit,
-};
+use crate::formats::recording::text::separator::{Separator, is_comment};
+use crate::formats::recording::time::field_role::{FieldRole, role, roles};
 use crate::formats::recording::time::moment;
 use crate::frame::{FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 use crate::parameter::number::{counted, grouped};
-
-/// The most fields beside the cells. A line with more is refused before its fields take memory.
-const MOST_BESIDE: usize = 16;
 
 /// The arrangement of a table.
 #[derive(Debug)]
@@ -88,15 +83,17 @@ pub(super) fn layout(
     let separator = Separator::of(&first);
     let number = lines.number();
     check_width(separator, &first, number)?;
-    let names: Vec<String> = separator.fields(&first).map(text).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let has_words = names
+    let fields: Vec<String> = separator.fields(&first).map(text).collect();
+    let mut header = TableHeader::new(fields.iter().map(String::as_str).collect(), number);
+    let has_words = header
+        .names
         .iter()
         .any(|name| !separator.is_numeric(name.as_bytes()));
     // In ROS echo output, a line of small values can begin like this, too, after its offset.
     let cells = options.size.map(FrameSize::cells);
-    let counted =
-        count_from_0(&names).filter(|counted| cells.is_none_or(|cells| cells == *counted));
+    let counted = header
+        .count_from_0(0)
+        .filter(|counted| cells.is_none_or(|cells| cells == *counted));
     let is_header = if has_words {
         moment_of_row(separator, &first).is_none()
     } else {
@@ -111,23 +108,22 @@ pub(super) fn layout(
     if !is_header {
         return of_numbers(&mut lines, separator, (number, &[&first]), options);
     }
-    let units = units_below(&mut lines, &names, separator)?;
+    header.units = units_below(&mut lines, &header, separator)?;
     // If words stand below words, it is not a table.
     if !is_mostly_numeric(separator, lines.line()) {
         return Err(RecordingError::Unknown);
     }
-    if has_words && units.is_none() && is_like_next(&names, separator, lines.line()) {
+    if has_words && header.units.is_none() && is_like_next(&header, separator, lines.line()) {
         let next = lines.line().to_owned();
         return of_numbers(&mut lines, separator, (number, &[&first, &next]), options);
     }
-    if let Some(field) = wrong_value(&names, separator) {
-        return Err(row::wrong(number, field + 1, names[field].as_bytes()));
+    if let Some(field) = wrong_value(&header, separator) {
+        return Err(row::wrong(
+            number,
+            field + 1,
+            header.names[field].as_bytes(),
+        ));
     }
-    let header = TableHeader {
-        names: &names,
-        number,
-        units: units.as_ref(),
-    };
     with_header(header, separator, lines.line(), options)
 }
 
@@ -144,67 +140,14 @@ fn check_width(separator: Separator, line: &[u8], number: u64) -> Result<(), Rec
     Err(RecordingError::in_line(number, message))
 }
 
-/// The header of a table: the lines above its values.
-#[derive(Clone, Copy)]
-struct TableHeader<'a> {
-    /// The names of the fields.
-    names: &'a [&'a str],
-    /// The line number of the names.
-    number: u64,
-    /// The line number of the units, and the unit of each field.
-    units: Option<&'a (u64, Vec<String>)>,
-}
-
-impl TableHeader<'_> {
-    /// Returns the unit of a field; None if it has none.
-    fn unit(&self, field: usize) -> Option<&str> {
-        let unit = self.units?.1.get(field)?;
-        let inner = unit.trim_matches(['[', ']', '(', ')']).trim();
-        // A dash means that there is no unit, as do the words for a missing value.
-        let is_none = inner == "-" || is_none(inner.as_bytes());
-        (!is_none).then_some(inner)
-    }
-
-    /// Returns the unit of these fields; None if they do not all have the same.
-    fn unit_of_all(&self, fields: &[usize]) -> Option<&str> {
-        let units = fields.iter().map(|&field| self.unit(field));
-        let same = units.reduce(|one, other| one.filter(|_| one == other));
-        same.flatten()
-    }
-
-    /// Returns the first of these fields that is a time, together with its other field if the time is split into two.
-    fn time<'r>(
-        &self,
-        fields: impl Iterator<Item = (usize, &'r Option<FieldRole>)>,
-    ) -> Option<TimeFields> {
-        let times = fields.filter_map(|(field, role)| match role {
-            Some(FieldRole::Time(unit)) => {
-                let below = || self.unit(field).and_then(time_unit);
-                Some(TimeFields {
-                    field,
-                    unit: unit.or_else(below),
-                    rest: rest_of_second(self.names, field),
-                })
-            }
-            _ => None,
-        });
-        // More fields than these are hardly times, and each is compared with all names.
-        let times: Vec<TimeFields> = times.take(MOST_BESIDE).collect();
-        // A field that has only the unit of a time may be a duration, such as `latency_ms`.
-        let is_named = |time: &&TimeFields| is_named_time(self.names[time.field]);
-        let first = times.iter().find(is_named).or(times.first())?;
-        let has_first = |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == first.field);
-        Some(*times.iter().find(has_first).unwrap_or(first))
-    }
-}
-
 /// Reads up to the first line of values below the names of cells. If the line between them holds words, one field for
 /// each name, they are units: returns the line's number and its fields.
 fn units_below(
     lines: &mut TextLines<impl BufRead>,
-    names: &[&str],
+    header: &TableHeader<'_>,
     separator: Separator,
 ) -> Result<Option<(u64, Vec<String>)>, RecordingError> {
+    let names = &header.names;
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let fields = separator.fields_of(lines.line(), names.len());
     let fields: Vec<String> = fields.take(names.len() + 1).map(text).collect();
@@ -217,7 +160,7 @@ fn units_below(
         !separator.is_numeric(field.as_bytes()) && role(name) != Some(FieldRole::Label)
     };
     let are_units = fields.iter().zip(names).any(is_word) && !fields.iter().any(is_value);
-    if fields.len() != names.len() || !are_units || cells(names).is_none() {
+    if fields.len() != names.len() || !are_units || header.cells.is_none() {
         return Ok(None);
     }
     let units = (lines.number(), fields);
@@ -435,20 +378,21 @@ impl FrameFields {
 /// # Errors
 /// Returns an error if the names are those of another number of rows and columns than the given one.
 fn with_header(
-    header: TableHeader<'_>,
+    mut header: TableHeader<'_>,
     separator: Separator,
     first: &[u8],
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
-    let TableHeader { names, number, .. } = header;
-    let roles = roles(names);
-    let (size, cells, note) = named_cells(names, &roles, number, options)?;
+    let (named, number) = (header.cells.take(), header.number);
+    let roles = roles(&header.names);
+    let (size, cells, note) = named_cells(named, &roles, number, options)?;
     let expected = size.cells();
     if cells.len() != expected {
         return Err(row::count(number, cells.len(), expected));
     }
     // A line may have a quarter of a million names, so cells are looked up by index.
-    let mut is_cell = vec![false; names.len()];
+    let count = roles.len();
+    let mut is_cell = vec![false; count];
     for &cell in &cells {
         is_cell[cell] = true;
     }
@@ -458,11 +402,11 @@ fn with_header(
     };
     let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
     let time = header.time(others());
-    let fields = separator.fields_of(first, names.len());
-    let fields: Vec<&[u8]> = fields.take(names.len()).collect();
+    let fields: Vec<&[u8]> = separator.fields_of(first, count).take(count).collect();
+    let below = header.units.as_ref().map(|(number, _)| *number);
     let found = FrameFields {
-        count: names.len(),
-        header: Some(header.units.map_or(number, |(number, _)| *number)),
+        count,
+        header: below.or(Some(number)),
         label: label.map(|(field, _)| field),
         time,
         cells,
@@ -482,18 +426,18 @@ fn with_header(
 /// The size of a frame, the field of each cell, and a note if something was assumed.
 type CellFields = (FrameSize, Vec<usize>, Option<RecordingNote>);
 
-/// Returns the cells that names describe.
+/// Returns the cells of a frame, given those that the names describe and the roles of all fields.
 ///
 /// - Names with rows and columns say everything. Given rows and columns must be the same.
 /// - Names that only count are arranged in the given rows and columns, otherwise in a square, which is noted.
 /// - With other names, all fields are cells except those at the beginning and the end that have a known role.
 fn named_cells(
-    names: &[&str],
+    named: Option<NamedCells>,
     roles: &[Option<FieldRole>],
     number: u64,
     options: ReadOptions,
 ) -> Result<CellFields, RecordingError> {
-    match cells(names) {
+    match named {
         Some(NamedCells::Grid(size, fields)) => match options.size {
             Some(asked) if asked != size => {
                 let (rows, columns) = (asked.rows(), asked.columns());
@@ -522,7 +466,7 @@ fn named_cells(
         None => {
             let leading = roles.iter().take_while(|role| role.is_some()).count();
             let trailing = roles.iter().rev().take_while(|role| role.is_some()).count();
-            let end = names.len().saturating_sub(trailing).max(leading);
+            let end = roles.len().saturating_sub(trailing).max(leading);
             let values = (end - leading) as u64;
             let size = options.size.ok_or(RecordingError::Shape { values })?;
             Ok((size, (leading..end).collect(), None))

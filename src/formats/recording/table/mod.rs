@@ -4,7 +4,7 @@
 //! clock            the times of a table
 //! cell_names       a header's names of cells
 //! unnamed_fields   the fields beside the cells, without a header
-//! header           whether the first line is a header
+//! header           the header, and whether the first line is one
 //! layout           what each field is, from the lines above
 //! delimited        the frames
 //! ```
