@@ -180,6 +180,11 @@ fn the_header_of_emed_gives_the_pitch_and_the_time_of_a_picture() {
     assert_eq!(seconds, (Some([10.0, 10.0]), Some(0.5)));
     // 0 means that there is no time.
     assert_eq!(of("20.0 ms", "0.0 ms"), (Some([10.0, 10.0]), None));
+    // Only the word after a number is its unit.
+    let comments = of("20.0 ms", "2 s\tProgrammer: Simms");
+    assert_eq!(comments, (Some([10.0, 10.0]), Some(2.0)));
+    let comments = of("1.000 cm\n", "1.000 cm\tHammer, 3 mm\n");
+    assert_eq!(comments, (Some([10.0, 10.0]), Some(0.02)));
 }
 
 #[test]

@@ -33,6 +33,8 @@ use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::Separator;
+use crate::formats::recording::time::field_role::time_unit;
+use crate::formats::recording::time::unit::TimeUnit;
 use crate::formats::seconds::of_label;
 use crate::frame::{FirstCell, Frame, MAX_FRAME_SIDE};
 
@@ -302,12 +304,22 @@ fn is_forces(line: &[u8]) -> bool {
     line.trim_ascii_start().starts_with(b"Force")
 }
 
-/// Returns the number that follows a word, up to the first character that is not a digit or a point: 10 for the word
+/// Returns the number that follows a word, and the rest of the line after it: 10 and ` ms` for the word
 /// `Time/picture:` in `Time/picture:10.0 ms`.
-fn after(line: &str, word: &str) -> Option<f64> {
+fn after<'a>(line: &'a str, word: &str) -> Option<(f64, &'a str)> {
     let rest = line.split_once(word)?.1.trim_start();
     let end = rest.find(|character: char| !character.is_ascii_digit() && character != '.');
-    number::read(&rest.as_bytes()[..end.unwrap_or(rest.len())])
+    let (number, rest) = rest.split_at(end.unwrap_or(rest.len()));
+    Some((number::read(number.as_bytes())?, rest))
+}
+
+/// Returns the millimetres in the unit of length at the beginning of a text: centimetres, unless it says millimetres.
+fn millimetres(text: &str) -> f64 {
+    let mut words = text.trim_start().split(|end: char| !end.is_alphabetic());
+    match words.next() {
+        Some("mm") => 1.0,
+        _ => 10.0,
+    }
 }
 
 impl EmedState {
@@ -345,23 +357,19 @@ impl EmedState {
 
     /// Reads a line of the header, which may hold several values.
     fn line(&mut self, line: &str) {
-        if let Some(area) = after(line, "Sensor area:") {
+        if let Some((area, _)) = after(line, "Sensor area:") {
             self.area_cm2 = Some(area);
         }
-        if let Some(time) = after(line, "Time/picture:") {
-            let factor = if line.contains("ms") { 1e-3 } else { 1.0 };
-            self.seconds = Some(time * factor).filter(|&seconds| seconds > 0.0);
+        if let Some((time, unit)) = after(line, "Time/picture:") {
+            let seconds = time_unit(unit).unwrap_or(TimeUnit::Seconds).seconds(time);
+            self.seconds = Some(seconds).filter(|&seconds| seconds > 0.0);
         }
-        if let (Some(x), Some((_, rest))) = (
-            after(line, "Sensor size:"),
-            line.split_once("Sensor size:")
-                .and_then(|(_, rest)| rest.split_once('x')),
-        ) {
-            let factor = if rest.contains("mm") { 1.0 } else { 10.0 };
-            let y = after(&format!(":{rest}"), ":");
-            self.pitch_mm = y.map(|y| [x * factor, y * factor]);
+        if let Some((x, rest)) = after(line, "Sensor size:")
+            && let Some((y, unit)) = after(rest, "x")
+        {
+            self.pitch_mm = Some([x, y].map(|side| side * millimetres(unit)));
         }
-        if let Some(label) = after(line, "Pict-No.:") {
+        if let Some((label, _)) = after(line, "Pict-No.:") {
             #[expect(clippy::cast_possible_truncation, reason = "the number of a picture")]
             let label = label as i64;
             self.label = Some(label);
