@@ -267,9 +267,6 @@ impl Player<'_, '_> {
         let mut flow = ControlFlow::Continue(());
         let mut renumbered = Frame::default();
         let read = read_as(format, input, reading, &mut |event| {
-            if let RecordingEvent::Damage { error, bytes } = event {
-                return self.leave_out(error, bytes, round);
-            }
             flow = match event {
                 RecordingEvent::Channel(info) => {
                     let info = info.completed(self.metadata.as_ref());
@@ -299,7 +296,10 @@ impl Player<'_, '_> {
                     }
                 }
                 RecordingEvent::Note(note) => self.report(AcquireEvent::Note(note)),
-                RecordingEvent::Damage { .. } => flow,
+                // Not the flow: if this breaks, the error ends the reading.
+                RecordingEvent::Damage { error, bytes } => {
+                    return self.leave_out(error, bytes, round);
+                }
             };
             flow
         });

@@ -95,8 +95,9 @@ named!(RecordingFormat, "format", &RecordingFormat::ALL);
 pub struct ReadOptions {
     /// The size of a frame, for files that do not state it.
     pub size: Option<FrameSize>,
-    /// Whether wrong frames may be left out, as in a file that is still being written: [`RecordingEvent::Damage`].
-    pub(crate) leaves_out: bool,
+    /// Whether wrong frames in lines may be left out, as in a file that is still being written. Each is reported as
+    /// [`RecordingEvent::Damage`]; otherwise the first one ends the reading.
+    pub leaves_out: bool,
 }
 
 impl ReadOptions {
@@ -104,6 +105,13 @@ impl ReadOptions {
     #[must_use]
     pub fn with_size(mut self, size: FrameSize) -> Self {
         self.size = Some(size);
+        self
+    }
+
+    /// Lets wrong frames in lines be left out.
+    #[must_use]
+    pub fn leaving_out(mut self) -> Self {
+        self.leaves_out = true;
         self
     }
 
@@ -362,7 +370,7 @@ pub enum RecordingEvent<'a> {
     Frame(&'a Frame),
     /// An oddity.
     Note(&'a RecordingNote),
-    /// A wrong frame, if such frames may be left out: `Break` ends the reading with this error.
+    /// A wrong frame, if [`ReadOptions::leaves_out`] is set: `Break` ends the reading with this error.
     Damage {
         /// The error, with its place.
         error: &'a RecordingError,

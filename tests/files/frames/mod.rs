@@ -64,3 +64,41 @@ pub(crate) fn recorded(bytes: &[u8], shape: Option<(u16, u16)>) -> Recorded {
     }
     found
 }
+
+#[test]
+fn a_caller_decides_whether_a_wrong_frame_is_left_out() {
+    for text in [
+        "{\"frame\":[[1,2]]}\n{\"frame\":[[3\n{\"frame\":[[5,6]]}\n",
+        "r0c0,r0c1\n1,2\n3,x\n5,6\n",
+    ] {
+        let read_with = |options: ReadOptions, flow: ControlFlow<()>| {
+            let (mut firsts, mut damage) = (Vec::new(), Vec::new());
+            let read = read(Cursor::new(text), options, &mut |event| match event {
+                RecordingEvent::Frame(frame) => {
+                    firsts.push(frame.values()[0]);
+                    ControlFlow::Continue(())
+                }
+                RecordingEvent::Damage { error, .. } => {
+                    damage.push(error.to_string());
+                    flow
+                }
+                _ => ControlFlow::Continue(()),
+            });
+            (firsts, damage, read.err().map(|error| error.to_string()))
+        };
+        let (go_on, stop) = (ControlFlow::Continue(()), ControlFlow::Break(()));
+        let (firsts, damage, error) = read_with(ReadOptions::default(), go_on);
+        assert_eq!((&firsts[..], damage.len()), (&[1.0][..], 0), "{text}");
+        let error = error.expect("the second frame is wrong");
+        let expected = (vec![1.0, 5.0], vec![error.clone()], None);
+        assert_eq!(
+            read_with(ReadOptions::default().leaving_out(), go_on),
+            expected
+        );
+        let expected = (vec![1.0], vec![error.clone()], Some(error));
+        assert_eq!(
+            read_with(ReadOptions::default().leaving_out(), stop),
+            expected
+        );
+    }
+}

@@ -9,12 +9,12 @@ use taxel::frame::{FrameSize, Processing, Rule};
 
 use super::{is_short, refused};
 
-/// Reads a recording in any format, without and with rows and columns that may fit.
+/// Reads a recording in any format: without and with rows and columns that may fit, and with wrong frames left out.
 pub(crate) fn recording(bytes: &[u8]) -> bool {
     let size = FrameSize::new(5, 4).expect("1 to 512");
     let with_size = ReadOptions::default().with_size(size);
     let mut is_read = false;
-    for options in [ReadOptions::default(), with_size] {
+    for options in [ReadOptions::default(), with_size, with_size.leaving_out()] {
         let mut processing = Processing::default();
         processing.rule = Rule::percent(50.0).ok();
         let mut channels = 0;
@@ -41,7 +41,7 @@ pub(crate) fn recording(bytes: &[u8]) -> bool {
     is_read
 }
 
-/// Reads the description beside a recording. It must be the same when it is written and read again.
+/// Reads the metadata beside a recording. It must be the same when it is written and read again.
 pub(crate) fn description(bytes: &[u8]) -> bool {
     match RecordingMetadata::read(bytes) {
         Some(Ok(metadata)) => {
