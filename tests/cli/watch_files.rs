@@ -766,7 +766,7 @@ fn the_message_says_why_lines_of_json_are_not_frames() {
         ),
     ] {
         let said = refused(line, &input);
-        let expected = format!("bytes but no frame; the last line: {reason}");
+        let expected = format!("bytes but no frame; the last one dropped: {reason}");
         assert!(said.contains(&expected), "{said}");
         assert!(!said.contains("--rows"), "{said}");
     }
@@ -799,16 +799,22 @@ fn noise_and_greetings_before_the_first_frame_do_not_affect_the_format() {
 fn the_message_says_why_lines_of_numbers_are_not_frames() {
     let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
     let said = refused("watch - --once --rows 2 --columns 2", timed);
-    let expected = "35 bytes but no frame; the last line: 5 numbers, expected 4 for a frame of 2 rows of 2, or 2 for a row";
+    let expected = "35 bytes but no frame; the last one dropped: 5 numbers, expected 4 for a frame of 2 rows of 2, or 2 for a row";
     assert!(said.contains(expected), "{said}");
     for (line, text) in [
         ("watch - --once", "1,2\r3,4\r\r5,6\r7,8\r"),
         ("watch - --once --rows 2 --columns 2", "1,2,3,4\r5,6,7,8\r"),
     ] {
         let said = refused(line, text);
-        let expected = "bytes but no frame; the last line: ends in CR alone, expected LF or CR LF";
+        let expected =
+            "bytes but no frame; the last one dropped: ends in CR alone, expected LF or CR LF";
         assert!(said.contains(expected), "{said}");
     }
+    let timed = "0.1\n1 2\n3 4\n\n0.2\n1 2\n3 4\n\n";
+    let said = refused("watch - --once", timed);
+    let expected = "26 bytes but no frame; the last one dropped: found one value above rows of numbers; if it is the time of a \
+                    frame, begin such lines with #";
+    assert!(said.contains(expected), "{said}");
 }
 
 #[test]

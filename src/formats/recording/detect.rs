@@ -76,7 +76,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         _ if is_ros(echo::without_notices(trimmed)) => RecordingFormat::Ros2,
         // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
         _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
-        _ if is_timestamp(row) => return None,
+        _ if moment::is_alone(row) => return None,
         _ if is_table(row) || options.size.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,
     })
@@ -94,10 +94,7 @@ fn refused(start: &[u8]) -> RecordingError {
         },
         None if is_column(start) => RecordingError::Shape { values: 1 },
         None => match numbers_below_text(start) {
-            Some(_) if begins_with_time(start) => RecordingError::in_line(
-                1,
-                "found one value above rows of numbers; if it is the time of a frame, begin such lines with #",
-            ),
+            Some(_) if begins_with_time(start) => RecordingError::in_line(1, moment::ABOVE_ROWS),
             Some(line) => RecordingError::in_line(
                 1,
                 format!(
@@ -159,12 +156,7 @@ fn is_number(line: &[u8]) -> bool {
 /// Returns true if the first line of a text is a timestamp or a single number, which may be one.
 fn begins_with_time(text: &[u8]) -> bool {
     let first = without_mark(text).split(|&byte| byte == b'\n').next();
-    first.is_some_and(|first| is_number(first) || is_timestamp(first))
-}
-
-/// Returns true if a line is a timestamp alone.
-fn is_timestamp(line: &[u8]) -> bool {
-    !line.iter().any(|byte| b",;".contains(byte)) && moment::read(line).is_some()
+    first.is_some_and(|first| is_number(first) || moment::is_alone(first))
 }
 
 /// Returns true if a text is a JSON list whose first element begins with this byte.

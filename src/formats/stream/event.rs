@@ -110,7 +110,7 @@ pub struct StreamCounts {
     /// The beginning of the last dropped frame, up to 40 characters; None if none of its bytes are known.
     pub sample: Option<String>,
     /// The reason why the last dropped frame is invalid, if the format shows it: JSON lines do, and numbers if rows
-    /// and columns were given.
+    /// and columns were given, or if a single value stands above a frame.
     pub reason: Option<String>,
     /// If rows and columns are missing, the number of values that a frame seems to have; 0 if not even that is known.
     pub unshaped: Option<u64>,
@@ -237,12 +237,12 @@ pub enum NoFrameReason<'a> {
     #[error(
         "{} but no frame{}",
         counted(*bytes, "byte"),
-        reason.map_or(String::new(), |reason| format!("; the last line: {reason}"))
+        reason.map_or(String::new(), |reason| format!("; the last one dropped: {reason}"))
     )]
     Undecoded {
         /// The number of bytes.
         bytes: u64,
-        /// The reason why the last line is not a frame, if the format shows it.
+        /// The reason why the last one was dropped, if the format shows it.
         reason: Option<&'a str>,
     },
 }
@@ -278,7 +278,7 @@ mod tests {
         counts.bytes = 9;
         assert_eq!(said(&counts).as_deref(), Some("9 bytes but no frame"));
         counts.reason = Some("line 2: a row".to_owned());
-        let expected = "9 bytes but no frame; the last line: line 2: a row";
+        let expected = "9 bytes but no frame; the last one dropped: line 2: a row";
         assert_eq!(said(&counts).as_deref(), Some(expected));
         counts.unknown = true;
         assert_eq!(said(&counts), Some(StreamRefusal::Unknown.to_string()));

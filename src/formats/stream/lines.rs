@@ -74,6 +74,10 @@ struct Block {
     sample: Vec<u8>,
     /// The number of numbers in that row; None if it has anything else, or is not invalid.
     broken_count: Option<usize>,
+    /// Whether the first line is a single value, which may be the time of the frame.
+    begins_alone: bool,
+    /// Whether the line below a single value has several numbers.
+    is_below_value: bool,
 }
 
 impl Block {
@@ -83,10 +87,24 @@ impl Block {
         frame_size(columns, self.rows.into()).filter(|_| !self.broken)
     }
 
+    /// Counts the next row. `found` is the number of its numbers; None if it has anything else.
+    fn begin_row(&mut self, time: Option<Time>, line: &[u8], found: Option<usize>) {
+        match self.rows {
+            0 => {
+                let is_one = found.map_or_else(|| moment::is_alone(line), |count| count == 1);
+                self.begins_alone = time.is_none() && is_one;
+                self.time = time;
+            }
+            1 => self.is_below_value = self.begins_alone && found.is_some_and(|count| count > 1),
+            _ => {}
+        }
+        self.rows = self.rows.saturating_add(1);
+    }
+
     /// Prepares for the next block, in the same memory.
     fn clear(&mut self) {
         self.values.clear();
-        (self.rows, self.broken) = (0, false);
+        (self.rows, self.broken, self.is_below_value) = (0, false, false);
     }
 }
 
@@ -177,10 +195,7 @@ impl LinesDecoder {
             _ if self.current.rows > 0 => before / usize::from(self.current.rows),
             _ => count,
         };
-        if self.current.rows == 0 {
-            self.current.time = moment;
-        }
-        self.current.rows = self.current.rows.saturating_add(1);
+        self.current.begin_row(moment, line, found);
         if self.current.broken || found != Some(expected) || self.current.rows > MAX_FRAME_SIDE {
             self.current.values.truncate(before);
             if !self.current.broken {
@@ -225,10 +240,18 @@ impl LinesDecoder {
         self.current.broken_count = wrong;
     }
 
-    /// Counts dropped frames, with a sample; and with the reason, if rows and columns were given and a line has
-    /// another number of numbers.
+    /// Counts dropped frames, with a sample; and with the reason, if a single value stands above a frame, or if rows
+    /// and columns were given and a line has another number of numbers.
     fn lose(&self, frames: u64, sample: &[u8], counts: &mut StreamCounts) {
         counts.drop_frames(frames, sample);
+        if self.current.is_below_value {
+            let mut reason = moment::ABOVE_ROWS.to_owned();
+            if !self.parted {
+                reason += ", and end each frame with an empty line";
+            }
+            counts.reason = Some(reason);
+            return;
+        }
         let named = self.size.named().zip(self.current.broken_count);
         counts.reason = named.map(|(size, found)| {
             let found = counted(found as u64, "number");
@@ -530,6 +553,23 @@ mod tests {
             Some(expected)
         );
         assert_eq!(reason("1 2\n1\n\n", None), None);
+        for (time, shape) in [
+            ("0.1", None),
+            ("12:00:00.25", None),
+            ("2024-05-01 12:00:00.25", Some(FrameSize::of(2, 2))),
+            ("1700000000.25", Some(FrameSize::of(2, 2))),
+        ] {
+            let frame = format!("{time}\n1 2\n3 4\n");
+            let above = moment::ABOVE_ROWS;
+            let parted = reason(&format!("{frame}\n").repeat(3), shape);
+            assert_eq!(parted.as_deref(), Some(above), "{frame}");
+            let unparted = reason(&frame.repeat(3), shape);
+            let advice = shape.map(|_| format!("{above}, and end each frame with an empty line"));
+            assert_eq!(unparted, advice, "{frame}");
+            let advised = format!("# {frame}\n").repeat(3);
+            assert_eq!(decoded(&advised, None), (vec![(2, 2, 1.0); 3], 0));
+        }
+        assert_eq!(reason("12:00:00.25 1\n1 2\n3 4\n\n", None), None);
         assert_eq!(reason("1 x\n1 2\n\n", Some(FrameSize::of(2, 2))), None);
     }
 

@@ -113,6 +113,15 @@ pub(in crate::formats::recording) fn half_day(clock: &str) -> (&str, Option<Half
     (before.trim_end(), Some(half))
 }
 
+/// The message for a line with a single value above rows of numbers.
+pub(in crate::formats) const ABOVE_ROWS: &str =
+    "found one value above rows of numbers; if it is the time of a frame, begin such lines with #";
+
+/// Returns true if a line is a timestamp alone.
+pub(in crate::formats) fn is_alone(line: &[u8]) -> bool {
+    !line.iter().any(|byte| b",;".contains(byte)) && read(line).is_some()
+}
+
 /// Splits a line into the timestamp at its beginning and the numbers after it; None if either is missing. A comma may
 /// separate cells or begin the fraction of a second. If both are possible, as in `12:00:00,125 7 3`, there is no
 /// timestamp.
