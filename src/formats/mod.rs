@@ -87,11 +87,9 @@ pub(crate) mod separation;
 
 pub use described::DescribedImprint;
 #[cfg(feature = "tui")]
-pub(crate) use drawing::axis_ends;
-pub use drawing::{ConfusionMap, Drawing, DrawingFormat, LinePlot, PointPlot, PoseMap};
+pub(crate) use drawing::{axis_ends, axis_marks};
 
-#[cfg(any(test, feature = "tui"))]
-pub(crate) use drawing::axis_marks;
+pub use drawing::{ConfusionMap, Drawing, DrawingFormat, LinePlot, PointPlot, PoseMap};
 pub use imprint_file::{ImprintFormat, ImprintFormatError, read as read_imprint};
 pub use name::{Name, NameError};
 

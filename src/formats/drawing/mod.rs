@@ -57,10 +57,7 @@ use crate::matrix::Matrix;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 #[cfg(feature = "tui")]
-pub(crate) use axis::axis_ends;
-
-#[cfg(any(test, feature = "tui"))]
-pub(crate) use axis::axis_marks;
+pub(crate) use axis::{axis_ends, axis_marks};
 pub use confusion_map::ConfusionMap;
 pub use format::DrawingFormat;
 use format::written;
