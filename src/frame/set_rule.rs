@@ -21,7 +21,7 @@ pub enum RuleOrigin {
     /// An argument on the command line.
     #[default]
     Flag,
-    /// The recording, or the description beside it.
+    /// The recording, or the metadata beside it.
     File,
     /// The user's settings.
     Settings,

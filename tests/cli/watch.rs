@@ -427,7 +427,7 @@ fn a_recording_of_several_channels_needs_the_name_of_one() {
     assert_eq!(run.status, Some(0), "{}", run.stderr);
 }
 
-/// The description beside a recording applies when it is read again: threshold, unit and tare.
+/// The metadata beside a recording applies when it is read again: threshold, unit and tare.
 #[test]
 fn the_description_of_a_recording_is_read_with_it() {
     let folder = tempfile::tempdir().expect("a folder");

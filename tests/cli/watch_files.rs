@@ -628,7 +628,7 @@ fn a_recording_on_a_full_disk_ends_with_its_last_whole_record() {
     );
 }
 
-/// Returns the description beside a recording, as JSON.
+/// Returns the metadata beside a recording, as JSON.
 fn beside(file: &std::path::Path) -> Value {
     let beside = fs::read(file.with_extension("json")).expect("it is there");
     serde_json::from_slice(&beside).expect("JSON")

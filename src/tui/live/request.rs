@@ -26,7 +26,7 @@ pub struct WatchRequest {
     pub rule: Option<SetRule>,
     /// The number of first frames that a tare is made of; 0 for no tare.
     pub tare: u64,
-    /// Whether the tare in the recording's own description is used if `tare` is 0.
+    /// Whether the tare in the recording's own metadata is used if `tare` is 0.
     pub own_tare: bool,
     /// The file that all frames are recorded in from the start.
     pub write: Option<(PathBuf, Existing)>,

@@ -411,7 +411,7 @@ impl Live {
         }
     }
 
-    /// Takes threshold, tare and marks from a recording's description of its channel.
+    /// Takes threshold, tare and marks from a recording's metadata of its channel.
     fn take_channel(&mut self, channel: &ChannelInfo) {
         if self.rule.is_none() {
             self.set_rule(channel.own_rule(self.processing.least));

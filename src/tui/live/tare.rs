@@ -29,7 +29,7 @@ pub(super) struct LiveTare {
     first: Option<TareFrames>,
     /// The origin of the tare; None if nothing is subtracted.
     mark: Option<TareMark>,
-    /// Whether the tare in the recording's own description is used once that is known.
+    /// Whether the tare in the recording's own metadata is used once that is known.
     takes_own: bool,
     /// Why the tare that was requested at the start is missing.
     error: Option<FrameError>,

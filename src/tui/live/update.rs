@@ -310,21 +310,21 @@ fn mark(app: &mut App, page: &mut Live) {
     }
 }
 
-/// Returns the next work of the page: a new description of the recording if threshold, tare or marks have changed
-/// since the last one; otherwise the search for the name of the shown imprint.
+/// Returns the next work of the page: new metadata of the recording if threshold, tare or marks have changed
+/// since it was written last; otherwise the search for the name of the shown imprint.
 ///
 /// They change by keys, by frames that are withdrawn with their marks, and while the recording is being begun.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let page = page(app).filter(|page| !page.stopped())?;
     if let Some(view) = page.take_changed_view() {
-        return Some(Effect::Frames(FrameWork::Describe(Box::new(view))));
+        return Some(Effect::Frames(FrameWork::WriteMetadata(Box::new(view))));
     }
     let imprint = page.ask_name()?;
     Some(Effect::Frames(FrameWork::Name(Box::new(imprint))))
 }
 
 /// Begins a recording, or ends it. The frames are written as they come, without view, tare or threshold; the
-/// description of the recording says how they were looked at last.
+/// metadata of the recording says how they were looked at last.
 ///
 /// # Errors
 /// Returns an error after the end of the source.

@@ -111,8 +111,8 @@ pub enum FrameWork {
     Record(Box<RecordingMetadata>),
     /// Stop recording.
     StopRecording,
-    /// Write threshold, tare and marks into the description of the recording.
-    Describe(Box<RecordedView>),
+    /// Write threshold, tare and marks into the metadata of the recording.
+    WriteMetadata(Box<RecordedView>),
     /// Name the imprints of the source of that number; None to stop naming them.
     NameBy(u64, Option<Box<NamingRequest>>),
     /// Name an imprint.

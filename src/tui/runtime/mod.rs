@@ -326,9 +326,9 @@ impl World {
                 let (number, recording) = self.workers.frames.end_recording()?;
                 return self.change(DiskRequest::EndRecording(number, recording));
             }
-            FrameWork::Describe(view) => {
+            FrameWork::WriteMetadata(view) => {
                 let (number, recording) = self.workers.frames.recording()?;
-                return self.change(DiskRequest::DescribeRecording(number, recording, view));
+                return self.change(DiskRequest::WriteMetadata(number, recording, view));
             }
             FrameWork::NameBy(number, naming) => {
                 self.workers.name_by(number, naming);

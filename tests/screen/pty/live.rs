@@ -174,7 +174,7 @@ fn a_recording_of_the_command_line_that_fails_is_an_error_at_the_end() {
     watched.program.shows(&format!("error: {failed}"));
 }
 
-/// Returns true if the description beside an array says that the recording has ended.
+/// Returns true if the metadata beside an array says that the recording has ended.
 fn is_ended(path: &Path) -> bool {
     let beside = fs::read_to_string(path.with_extension("json")).expect("it is there");
     beside.contains("\"ended\":true") || beside.contains("\"ended\": true")

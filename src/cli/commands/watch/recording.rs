@@ -10,7 +10,7 @@ use crate::formats::recording::RecordingMetadata;
 use crate::formats::value::counted;
 use crate::frame::Frame;
 
-/// A recording, and its description, which is written again when something new becomes known.
+/// A recording, and its metadata, which is written again when something new becomes known.
 pub(super) struct WatchRecording<'a> {
     path: &'a Path,
     recorder: FrameRecorder,
@@ -44,7 +44,7 @@ impl<'a> WatchRecording<'a> {
         }))
     }
 
-    /// Changes the description, and writes it.
+    /// Changes the metadata, and writes it.
     pub(super) fn describe(
         &mut self,
         change: impl FnOnce(&mut RecordingMetadata),

@@ -54,8 +54,8 @@ pub(in crate::tui::runtime) enum DiskRequest {
     RememberMore(RememberedFile, Vec<String>),
     /// Create a file and record the frames of the source of that number in it.
     BeginRecording(u64, Box<RecordingMetadata>),
-    /// Write threshold, tare and marks into the description of a recording of the source of that number.
-    DescribeRecording(u64, Arc<Recording>, Box<RecordedView>),
+    /// Write threshold, tare and marks into the metadata of a recording of the source of that number.
+    WriteMetadata(u64, Arc<Recording>, Box<RecordedView>),
     /// Write out all waiting frames of a recording of the source of that number.
     FlushRecording(u64, Arc<Recording>),
     /// Finish a recording of the source of that number.
@@ -99,8 +99,8 @@ impl DiskRequest {
             Self::File(FileRequest::Paths(_)) => "Listing files".to_owned(),
             Self::Remember(..) | Self::RememberMore(..) => "Remembering it".to_owned(),
             Self::BeginRecording(..) => "Starting a recording".to_owned(),
-            Self::DescribeRecording(_, recording, _) => {
-                format!("Describing {}", recording.path().display())
+            Self::WriteMetadata(_, recording, _) => {
+                format!("Saving the metadata of {}", recording.path().display())
             }
             Self::FlushRecording(_, recording) | Self::EndRecording(_, recording) => {
                 format!("Saving {}", recording.path().display())
@@ -108,11 +108,11 @@ impl DiskRequest {
         }
     }
 
-    /// Returns true if the request makes an earlier one needless: of two descriptions of a recording only the later
-    /// one stays.
+    /// Returns true if the request makes an earlier one needless: of the metadata of a recording, only the
+    /// latest stays.
     fn replaces(&self, earlier: &Self) -> bool {
         match (self, earlier) {
-            (Self::DescribeRecording(_, own, _), Self::DescribeRecording(_, other, _)) => {
+            (Self::WriteMetadata(_, own, _), Self::WriteMetadata(_, other, _)) => {
                 Arc::ptr_eq(own, other)
             }
             _ => false,
@@ -148,7 +148,7 @@ impl DiskRequest {
             Self::BeginRecording(number, metadata) => {
                 DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
             }
-            Self::DescribeRecording(number, of, view) => written(number, of.describe(*view)),
+            Self::WriteMetadata(number, of, view) => written(number, of.write_metadata(*view)),
             Self::FlushRecording(number, recording) => written(number, recording.flush().map(drop)),
             Self::EndRecording(number, recording) => {
                 let ended = recording.finish();

@@ -340,7 +340,7 @@ mod tests {
             feed.take_in(AcquireEvent::Withdrawn, &request);
             assert_eq!(after(&mut page, &feed, event), Some(0));
             assert!(!page.is_marked() && page.marks().is_empty());
-            // The description of the recording has the mark until then.
+            // The metadata of the recording has the mark until then.
             assert!(page.take_changed_view().is_some());
         }
     }

@@ -1,12 +1,12 @@
 //! The file to which frames are recorded while they are watched.
 //!
 //! ```text
-//! begin    creates the file            the source's thread, or the disk's
-//! add      each frame                  the source's thread
-//! tick     what has waited             the source's thread
-//! flush    all that waits, synced      the source's thread at its end; the disk's before the program is stopped
-//! describe threshold, tare, marks      the disk's thread
-//! finish   the rest, synced            the disk's thread
+//! begin            creates the file         the source's thread, or the disk's
+//! add              each frame               the source's thread
+//! tick             what has waited          the source's thread
+//! flush            all that waits, synced   the source's thread at its end; the disk's before the program is stopped
+//! write_metadata   threshold, tare, marks   the disk's thread
+//! finish           the rest, synced         the disk's thread
 //! ```
 //! A disk may hang in each of these functions, so none is called on the screen's thread.
 
@@ -26,8 +26,8 @@ use crate::tui::runtime::lock::locked;
 pub(in crate::tui::runtime) struct Recording {
     /// The path of the file.
     path: PathBuf,
-    /// Locked while the disk writes a description, and before `recorder`: of two descriptions the later one stays.
-    description: Mutex<()>,
+    /// Locked while the disk writes metadata, and before `recorder`: the later metadata stays.
+    metadata: Mutex<()>,
     /// Locked while the disk writes frames.
     recorder: Mutex<RecorderState>,
 }
@@ -48,7 +48,7 @@ impl Recording {
     pub(in crate::tui::runtime) fn new(path: PathBuf) -> Arc<Self> {
         Arc::new(Self {
             path,
-            description: Mutex::default(),
+            metadata: Mutex::default(),
             recorder: Mutex::new(RecorderState::New),
         })
     }
@@ -127,12 +127,12 @@ impl Recording {
         self.write(FrameRecorder::flush)
     }
 
-    /// Writes threshold, tare and marks into the description, in place of those before. Frames are added meanwhile.
+    /// Writes threshold, tare and marks into the metadata, in place of those before. Frames are added meanwhile.
     ///
     /// # Errors
     /// Returns a sentence. The recording ends then.
-    pub(in crate::tui::runtime) fn describe(&self, view: RecordedView) -> Result<(), String> {
-        let one_at_a_time = locked(&self.description);
+    pub(in crate::tui::runtime) fn write_metadata(&self, view: RecordedView) -> Result<(), String> {
+        let one_at_a_time = locked(&self.metadata);
         let Some(draft) = self.open(|recorder| recorder.set_view(view)) else {
             return Ok(());
         };
@@ -192,7 +192,7 @@ impl Recording {
         let RecorderState::Open(recorder) = before else {
             return None;
         };
-        let _one_at_a_time = locked(&self.description);
+        let _one_at_a_time = locked(&self.metadata);
         let left_out = recorder.left_out();
         let finished = recorder.finish();
         Some(finished.map(|frames| RecordedFrames { frames, left_out }))
