@@ -102,3 +102,18 @@ fn a_caller_decides_whether_a_wrong_frame_is_left_out() {
         );
     }
 }
+
+#[test]
+fn times_count_from_the_first_frame_even_if_a_wrong_one_before_it_is_left_out() {
+    let text = "00:00:01 5 6\n\n00:00:02 1 2\n00:00:02 3 4\n\n00:00:03.5 1 2\n00:00:03.5 3 4\n";
+    let options = ReadOptions::default().with_size(frame_size(2, 2));
+    let mut times = Vec::new();
+    let read = read(Cursor::new(text), options.leaving_out(), &mut |event| {
+        if let RecordingEvent::Frame(frame) = event {
+            times.push(frame.time);
+        }
+        ControlFlow::Continue(())
+    });
+    assert!(read.is_ok(), "{read:?}");
+    assert_eq!(times, [0.0, 1.5].map(Some));
+}

@@ -37,6 +37,7 @@ use crate::formats::recording::text::lines::{TextLines, is_blank};
 use crate::formats::recording::text::number::whole;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::{Separator, is_comment};
+use crate::formats::recording::time::exact::Time;
 use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::recording::time::moment;
 use crate::frame::{Frame, FrameSize};
@@ -217,7 +218,9 @@ struct RowBlock {
     parted: bool,
     /// Whether the rest of a wrong frame is being left out.
     skipping: bool,
-    /// The clock that reads the timestamp at the beginning of the first row.
+    /// The timestamp at the beginning of the first row.
+    time: Option<Time>,
+    /// The clock that turns timestamps into seconds since the first frame.
     clock: FrameClock,
 }
 
@@ -230,6 +233,7 @@ impl RowBlock {
             found: 0,
             parted,
             skipping: false,
+            time: None,
             clock: FrameClock::default(),
         }
     }
@@ -288,6 +292,7 @@ impl RowBlock {
     /// Reports the frame if all its rows have been read.
     fn give(&mut self, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
         if self.found == self.frame.rows() {
+            self.frame.time = self.time.map(|time| self.clock.since_first(time));
             sink(RecordingEvent::Frame(&self.frame))?;
             self.frame.number += 1;
             self.found = 0;
@@ -308,8 +313,7 @@ impl RowBlock {
             None => (None, line),
         };
         if self.found == 0 {
-            let time = moment.map(|moment| self.clock.moment(moment));
-            self.frame.time = time.map(|time| self.clock.since_first(time));
+            self.time = moment.map(|moment| self.clock.moment(moment));
         }
         let start = usize::from(self.found) * columns;
         let slots = &mut self.frame.values_mut()[start..start + columns];
