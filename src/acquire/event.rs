@@ -124,7 +124,7 @@ pub enum AcquireEvent<'a> {
     Provisional(&'a Frame),
     /// The provisional frame was invalid.
     Withdrawn,
-    /// Something odd in a recording.
+    /// An oddity of a recording or a stream.
     Note(&'a RecordingNote),
     /// The counts so far. Reported about ten times a second, with or without frames, unless a source is read as fast
     /// as possible.
