@@ -47,9 +47,9 @@ impl Classes {
 
     pub(crate) fn add(&mut self, imprint: &Imprint) {
         let block = Block::of(imprint);
-        self.pack(&block, |row| block.rows[row]);
+        let hash = self.pack(&block, |row| block.rows[row]);
         let known = self.shifts.len();
-        self.shifts.add(&self.key, mixed(&self.key), 1, 0);
+        self.shifts.add(&self.key, hash, 1, 0);
         if self.shifts.len() == known {
             // The class under more symmetries is known too.
             return;
@@ -67,17 +67,22 @@ impl Classes {
             }
         }
         if let Some((block, upwards)) = best {
-            self.pack(&block, |row| block.row(row, upwards));
-            self.symmetry.add(&self.key, mixed(&self.key), 1, 0);
+            let hash = self.pack(&block, |row| block.row(row, upwards));
+            self.symmetry.add(&self.key, hash, 1, 0);
         }
     }
 
-    fn pack(&mut self, block: &Block, row: impl Fn(usize) -> u64) {
+    /// Packs a block into the key, and returns its hash.
+    fn pack(&mut self, block: &Block, row: impl Fn(usize) -> u64) -> u64 {
         self.key.fill(0);
+        let mut hash = 0;
         for index in 0..block.height {
             let (word, shift) = self.layout.slot(index);
-            self.key[word] |= row(index) << shift;
+            let taxels = row(index);
+            self.key[word] |= taxels << shift;
+            hash ^= self.layout.hash(index, taxels);
         }
+        hash
     }
 }
 
@@ -136,10 +141,50 @@ impl Block {
     }
 }
 
-/// Returns a hash of words.
-fn mixed(key: &[u64]) -> u64 {
-    key.iter().fold(0, |hash: u64, &word| {
-        let mixed = (hash.rotate_left(29) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        mixed ^ mixed >> 32
-    })
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    /// The odd factor of a hash that anybody can compute, and its inverse modulo 2^64.
+    const FACTOR: (u64, u64) = (0x9e37_79b9_7f4a_7c15, 0xf1de_83e1_9937_733d);
+
+    /// Returns an imprint with a taxel in its top left corner. Its first three words are given; the
+    /// fourth is such that all imprints have the same value of a hash without a seed.
+    fn crafted(words: [u64; 3]) -> Imprint {
+        let mix = |hash: u64, word: u64| {
+            let mixed = (hash.rotate_left(29) ^ word).wrapping_mul(FACTOR.0);
+            mixed ^ mixed >> 32
+        };
+        let before = words.into_iter().fold(0, mix);
+        let wanted = 0x1234_5678_9abc_def0_u64;
+        let last = before.rotate_left(29) ^ (wanted ^ wanted >> 32).wrapping_mul(FACTOR.1);
+        assert_eq!(mix(before, last), wanted);
+        let mut imprint = Imprint::empty(MatrixSize::of(16, 16));
+        for (row, word) in (0..).zip(words.into_iter().chain([last])) {
+            for quarter in 0..4 {
+                imprint.set_word(4 * row + quarter, word >> (16 * quarter));
+            }
+        }
+        imprint
+    }
+
+    /// Keys with equal hashes are compared one by one, so as many as here would take n² / 2 comparisons.
+    #[test]
+    fn nobody_can_make_imprints_whose_classes_have_equal_hashes() {
+        let size = MatrixSize::of(16, 16);
+        let (mut classes, layout) = (Classes::new(size), Layout::new(size));
+        for number in 0..1000 {
+            let imprint = crafted([number << 16 | 1, number, 1]);
+            classes.add(&imprint);
+            let newest = classes.shifts.len() - 1;
+            assert_eq!(classes.shifts.hash(newest), layout.key(&imprint).1);
+        }
+        let (shifts, symmetry) = classes.counts();
+        assert_eq!(shifts, 1000, "all are different");
+        for (counter, count) in [(&classes.shifts, shifts), (&classes.symmetry, symmetry)] {
+            let hashes: HashSet<u64> = (0..count).map(|index| counter.hash(index)).collect();
+            assert_eq!(hashes.len(), count);
+        }
+    }
 }
