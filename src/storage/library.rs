@@ -114,14 +114,17 @@ pub struct Library {
 }
 
 impl Library {
-    /// Opens the library in a folder, and removes a half-written file that a program left there when it died.
+    /// Opens the library in a folder, and removes half-written files that a program left in it or in its trash when it
+    /// died.
     pub fn open(folder: PathBuf) -> Self {
-        let temporary = folder.join(TEMPORARY);
-        if fs::symlink_metadata(&temporary).is_ok()
+        let half_written = half_written_in(&folder);
+        if !half_written.is_empty()
             && let Some(_lock) = Lock::if_free(&lock::path_in(&folder))
         {
-            // If this fails it does no harm, and the next start tries again.
-            let _ = fs::remove_file(temporary);
+            for path in half_written {
+                // If this fails it does no harm, and the next start tries again.
+                let _ = fs::remove_file(path);
+            }
         }
         Self {
             folder,
@@ -438,8 +441,9 @@ impl Library {
         Ok(deleted.name.clone())
     }
 
-    /// Lists everything in the folder and its journal that is neither a shape nor one of the library's own files, by
-    /// path, each with a description: files of others, half-written ones, unsaved work. None of them is harmful.
+    /// Lists everything in the folder and its journal that is neither a shape nor one of the library's own files, and
+    /// half-written files in its trash, by path, each with a description: files of others, half-written ones, unsaved
+    /// work. None of them is harmful.
     ///
     /// # Errors
     /// Returns an error if the folder exists but cannot be read.
@@ -447,14 +451,12 @@ impl Library {
         let mut found = Vec::new();
         for name in folder::names(&self.folder)? {
             let what = match name.to_str() {
-                Some(LOCK | COMMANDS | RECOGNISED_SET | FORMS) => continue,
+                Some(LOCK | COMMANDS | RECOGNISED_SET | FORMS | TEMPORARY) => continue,
                 Some(inner @ (TRASH | JOURNAL)) => match InnerFolder::of(&self.folder, inner) {
                     Ok(_) => continue,
                     Err(_) => "a symbolic link, which is not followed",
                 },
-                Some(name) if name == TEMPORARY || is_temporary(name) => {
-                    "half-written by a program that died, or being written"
-                }
+                Some(name) if is_temporary(name) => HALF_WRITTEN,
                 Some(name) if name_of(name).is_some() => continue,
                 Some(name) if name.strip_suffix(".json").is_some() => {
                     "not a shape: shapes cannot have this name"
@@ -463,6 +465,8 @@ impl Library {
             };
             found.push((self.folder.join(name), what));
         }
+        let half_written = half_written_in(&self.folder).into_iter();
+        found.extend(half_written.map(|path| (path, HALF_WRITTEN)));
         let journal = InnerFolder::of(&self.folder, JOURNAL);
         for path in journal.map_or(Ok(Vec::new()), |journal| journal.paths())? {
             let ending = path.extension().and_then(|ending| ending.to_str());
@@ -476,6 +480,20 @@ impl Library {
         found.sort();
         Ok(found)
     }
+}
+
+/// The description of a half-written file.
+const HALF_WRITTEN: &str = "half-written by a program that died, or being written";
+
+/// Returns the files that the holder of the library's lock is writing, or was writing when it died: in the folder, in
+/// its trash, or both.
+fn half_written_in(folder: &Path) -> Vec<PathBuf> {
+    let trash = InnerFolder::of(folder, TRASH).ok();
+    let folders = [Some(folder), trash.as_ref().map(InnerFolder::path)];
+    let paths = folders.into_iter().flatten().map(|own| own.join(TEMPORARY));
+    paths
+        .filter(|path| fs::symlink_metadata(path).is_ok())
+        .collect()
 }
 
 /// Returns the temporary path that the holder of the library's lock uses in a folder; None on a file system without

@@ -34,6 +34,7 @@ pub(crate) fn perform() -> bool {
     let folder = PathBuf::from(folder);
     match act {
         "journal" => journal(&folder),
+        "throw away" => throw_away(&folder),
         "recover" => recover(&folder),
         "churn" => churn(&folder),
         "naive" => naive(&folder),
@@ -61,6 +62,13 @@ fn journal(folder: &Path) {
     say("clearing");
     journal.clear();
     say("cleared");
+}
+
+/// Puts a shape that was never saved into the trash.
+fn throw_away(folder: &Path) {
+    let library = Library::open(folder.to_owned());
+    library.throw_away(&shape("lost", 7)).expect("thrown away");
+    say("thrown away");
 }
 
 /// Takes over the unsaved work of a dead program.

@@ -22,7 +22,7 @@ struct Deed {
     done: fn(&State, &Output) -> bool,
 }
 
-const DEEDS: [Deed; 7] = [
+const DEEDS: [Deed; 8] = [
     Deed {
         name: "saving over a shape",
         state: State::new,
@@ -75,6 +75,17 @@ const DEEDS: [Deed; 7] = [
             assert_eq!(state.library().restore("gone").is_ok(), !restored);
             assert_eq!(state.version("gone"), Some(3));
             restored
+        },
+    },
+    Deed {
+        name: "throwing away",
+        state: State::new,
+        command: |state| act::command("throw away", &state.folder),
+        done: |state, output| {
+            let thrown = state.library().restore("lost 1").is_ok();
+            assert_eq!(state.version("lost 1"), thrown.then_some(7));
+            assert!(thrown || output.stdout.is_empty(), "{output:?}");
+            thrown
         },
     },
     Deed {
@@ -197,7 +208,10 @@ pub(crate) fn refused() -> String {
         return "SKIPPED, strace is missing or may not trace".to_owned();
     }
     let calls = jobs().into_iter();
-    let by_program = calls.filter(|(deed, _)| !matches!(deed.name, "journalling" | "recovering"));
+    let by_program = calls.filter(|(deed, _)| {
+        let by_act = ["throwing away", "journalling", "recovering"];
+        !by_act.contains(&deed.name)
+    });
     let refused: Vec<(Deed, Call, &str, &str)> = by_program
         .flat_map(|(deed, call)| {
             let error = move |(error, text)| (deed, call.clone(), error, text);

@@ -315,20 +315,22 @@ fn foreign_files_are_skipped_and_reported() {
         scratch.put(file, "");
     }
     scratch.put(".taxel-tmp", "");
+    fs::create_dir(scratch.path(".trash")).expect("made");
+    scratch.put(".trash/.taxel-tmp", "");
     assert_eq!(scratch.own(), ["good"]);
     let left = scratch.library.leftovers().expect("read").into_iter();
     let left: Vec<String> = left
         .map(|(path, _)| {
-            path.file_name()
-                .map(|name| name.to_string_lossy().into_owned())
+            let path = path.strip_prefix(&scratch.folder).expect("inside");
+            path.display().to_string()
         })
-        .map(Option::unwrap_or_default)
         .collect();
     assert_eq!(
         left,
         [
             ".hidden.json",
             ".taxel-tmp",
+            ".trash/.taxel-tmp",
             "a:b.json",
             "good.json~",
             "notes.txt",
