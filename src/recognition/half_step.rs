@@ -56,7 +56,8 @@ impl HalfStep {
 }
 
 impl Model {
-    /// Touches every shape half a step beyond each pose of the model, and names the imprints.
+    /// Touches every shape half a step beyond each pose of the model, and names the imprints. Of a shard, only its own
+    /// poses count.
     ///
     /// It takes about as long as the training, and more where many imprints are new. `progress` is called from time to
     /// time, from any thread, with the work that is done; it stops the test by returning false.
@@ -73,6 +74,7 @@ impl Model {
         }
         let shapes = self.shapes().to_vec();
         let training = Training::new(shapes, *self.sensor(), self.anchor(), ranges)?;
+        let training = training.shard(self.shard());
         let touched = |poses| progress(HalfStepWork::Poses(poses));
         let between = training.allow_cut(true).progress(&touched).run()?;
         let keys = between.keys();
@@ -148,6 +150,7 @@ mod tests {
 
     use super::*;
     use crate::recognition::sets::{GridSteps, equal_figures};
+    use crate::sweep::Shard;
 
     #[test]
     fn it_can_be_stopped_while_nearest_imprints_are_searched() {
@@ -181,6 +184,23 @@ mod tests {
         let all = calls.load(Ordering::Relaxed);
         assert_eq!(stop_after(all - 1), Err(TrainingError::Stopped));
         assert_eq!(stop_after(all), Ok(result));
+    }
+
+    #[test]
+    fn a_shard_touches_beyond_its_own_poses_only() {
+        let steps = GridSteps::new(4, 30).expect("divisors");
+        let training = Training::fitting(equal_figures(), steps).expect("they fit");
+        let touches = |training: Training| {
+            let model = training.run().expect("not stopped");
+            let result = model.half_step(&|_| true).expect("few decimals");
+            assert_eq!(result.touches, u128::from(model.poses()) * model.weights());
+            result.touches
+        };
+        let shards = [1, 2].map(|number| {
+            let shard = Shard::new(number, 2).expect("one of two");
+            touches(training.clone().shard(shard))
+        });
+        assert_eq!(shards.iter().sum::<u128>(), touches(training));
     }
 
     #[test]

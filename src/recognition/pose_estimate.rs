@@ -78,8 +78,8 @@ fn whole_degrees(period: f64) -> u32 {
 
 impl Model {
     /// Finds the poses in which a shape leaves an imprint, by touching with the shape in every pose of the model.
-    /// `progress` is called as by [`Sweep::progress`]. None if there is no such shape, if it does not leave the
-    /// imprint, if the imprint is empty, or if it was stopped.
+    /// Of a shard, only its own poses count. `progress` is called as by [`Sweep::progress`]. None if there is no such
+    /// shape, if it does not leave the imprint, if the imprint is empty, or if it was stopped.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -123,7 +123,8 @@ impl Model {
         let period = exact_period(&source, self.ranges());
         let grid = PoseGrid::new(source, *self.sensor(), self.anchor(), *self.ranges()).ok()?;
         let wanted = |other: &Imprint| ImprintKey::of(other) == key;
-        let runs = Sweep::new(&grid).progress(progress).poses_where(&wanted)?;
+        let sweep = Sweep::new(&grid).shard(self.shard()).progress(progress);
+        let runs = sweep.poses_where(&wanted)?;
         let mut plane = Plane::new(*grid.sensor());
         let mut sums = PoseMoments::default();
         let mut degrees = vec![0; period.map_or(1, whole_degrees) as usize];
@@ -346,9 +347,11 @@ fn fewest(degrees: &[u64], all: u64) -> (u32, u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recognition::model::ShapeCount;
     use crate::recognition::sets::{GridSteps, equal_figures};
     use crate::recognition::training::Training;
     use crate::sensor::MatrixSize;
+    use crate::sweep::Shard;
 
     #[test]
     fn the_poses_of_an_imprint_agree_with_its_count_and_with_a_sum_by_hand() {
@@ -410,6 +413,32 @@ mod tests {
             model.pose_of(7, &Imprint::empty(MatrixSize::of(4, 4)), &|_| true),
             None
         );
+    }
+
+    #[test]
+    fn a_shard_counts_its_own_poses_only() {
+        let steps = GridSteps::new(4, 30).expect("divisors");
+        let training = Training::fitting(equal_figures(), steps).expect("they fit");
+        let grid = training.grids()[1].clone();
+        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(21));
+        let poses = |model: &Model| {
+            let held: u64 = model.counts_of(&imprint).iter().map(own_poses).sum();
+            let estimate = model.pose_of(1, &imprint, &|_| true);
+            assert_eq!(estimate.map_or(0, |estimate| estimate.poses), held);
+            held
+        };
+        let shards = [1, 2, 3].map(|number| {
+            let shard = Shard::new(number, 3).expect("one of three");
+            poses(&training.clone().shard(shard).run().expect("not stopped"))
+        });
+        let whole = poses(&training.run().expect("not stopped"));
+        assert_eq!(shards.iter().sum::<u64>(), whole);
+        assert!(shards.iter().all(|&poses| poses < whole), "{shards:?}");
+    }
+
+    /// Returns the poses of shape 1 in a count.
+    fn own_poses(count: &ShapeCount) -> u64 {
+        if count.shape == 1 { count.poses } else { 0 }
     }
 
     /// Angles at which a heptagon looks alike count as one.
