@@ -369,9 +369,12 @@ impl Model {
         if noise.flip == 0.0 && least > 0 {
             return None;
         }
+        // No distance is larger than the number of taxels.
+        let all = u32::from(imprint.columns()) * u32::from(imprint.rows());
+        let most = all.min(least + reach);
         Some(Distances {
             least,
-            touches: self.histogram(&observed, least, least + reach),
+            touches: self.histogram(&observed, least, most),
             method: SearchMethod::Scan,
         })
     }
@@ -550,6 +553,16 @@ mod tests {
         let own = mask(6, 6);
         assert!(own.is_some());
         assert_eq!((mask(2, 5), mask(64, 64)), (own.clone(), own));
+    }
+
+    #[test]
+    fn a_strong_noise_counts_no_distance_beyond_the_matrix() {
+        let noise = Noise::new(0.4999).expect("in range");
+        let touch = Imprint::empty(MatrixSize::of(16, 16));
+        let distances = rectangles().distances(&touch, &noise).expect("they fit");
+        for touches in &distances.touches {
+            assert_eq!(distances.least as usize + touches.len(), 16 * 16 + 1);
+        }
     }
 
     #[test]
