@@ -253,8 +253,8 @@ pub(super) fn kind_in_words(kind: FileType) -> &'static str {
 /// beside an old version of the other one: the file that has the second name is moved away first, and the second name
 /// is given last. So a program that dies in between leaves no file of the second name. The old one is then called
 /// `.taxel-tmp-XXXXXXXXXXXXXXXX`, until a program that writes into the folder a minute later or more removes it. Of two
-/// programs that name such files in one folder at once, one waits for the other. Returns the first file, open, for
-/// further writing.
+/// programs that name such files in one folder at once, one waits for the other, for two seconds at most. Returns the
+/// first file, open, for further writing.
 ///
 /// # Errors
 /// Returns the errors of [`FinishedFile::persist`]. If one of the files got no name, the old files are restored; the
@@ -296,7 +296,7 @@ pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, F
 
 /// Gives the second of two files that belong together its name again, unless another file has the name of the first
 /// one by now. Returns whether it did. Of two programs that name such files in one folder at once, one waits for the
-/// other.
+/// other, for two seconds at most.
 ///
 /// # Errors
 /// Returns the errors of [`FinishedFile::persist`].
@@ -326,7 +326,8 @@ fn move_away(path: &Path) -> Result<OldFile, FileError> {
 /// most; others wait as long as the file that is returned is open. The folder itself is locked, so nothing is left in
 /// it. None if the wait is over, or on a system that cannot lock a folder: the files are named all the same.
 fn lock_folder(folder: &Path) -> Option<File> {
-    const PATIENCE: Duration = Duration::from_secs(2);
+    // Tests wait longer: on a slow disk, several of their threads may take seconds.
+    const PATIENCE: Duration = Duration::from_secs(if cfg!(test) { 120 } else { 2 });
     const PAUSE: Duration = Duration::from_millis(2);
     let folder = File::open(folder).ok()?;
     let start = Instant::now();
