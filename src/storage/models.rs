@@ -16,6 +16,7 @@ use std::time::SystemTime;
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::formats::byte_order_mark::without_mark;
+use crate::formats::name::folded;
 use crate::formats::{ArchiveError, Name, read_model, write_model};
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
@@ -153,7 +154,7 @@ impl ModelFolder {
         alike.unwrap_or_else(|| name.clone())
     }
 
-    /// Returns the names of all models, sorted; files that do not look like models are left out.
+    /// Returns the names of all models, sorted regardless of case; files that do not look like models are left out.
     ///
     /// # Errors
     /// Returns the system's error, except if the folder does not exist.
@@ -167,7 +168,7 @@ impl ModelFolder {
             Name::new(stem).ok().filter(|_| is_model)
         };
         let mut names: Vec<Name> = files.iter().filter_map(name).collect();
-        names.sort_by(|one, other| one.as_str().cmp(other.as_str()));
+        names.sort_by_cached_key(|name| (folded(name.as_str()), name.clone()));
         Ok(names)
     }
 
@@ -431,6 +432,19 @@ mod tests {
             let file = models.path().join(format!("{name}.npz"));
             assert_eq!(models.file(&name), file);
         }
+    }
+
+    #[test]
+    fn models_are_listed_in_the_order_of_the_alphabet_as_shapes_are() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let models = ModelFolder::beside(&folder.path().join("library"));
+        fs::create_dir_all(models.path()).expect("made");
+        for name in ["Bar", "apple", "cup"] {
+            fs::write(models.path().join(format!("{name}.npz")), "").expect("written");
+        }
+        let names = models.names().expect("there");
+        let names: Vec<&str> = names.iter().map(Name::as_str).collect();
+        assert_eq!(names, ["apple", "Bar", "cup"]);
     }
 
     #[test]
