@@ -73,7 +73,7 @@ impl VarianceParts {
         }
     }
 
-    /// Adds a part of an orientation. All parts of an orientation must have the same `times`.
+    /// Adds a part of an orientation. All parts of an orientation must have the same `multiplicity`.
     pub(crate) fn add(&mut self, orientation: u64, part: OrientationSums) {
         let sums = match self.open.remove(&orientation) {
             Some(mut sums) => {

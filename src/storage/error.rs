@@ -183,7 +183,7 @@ pub enum LibraryError {
         /// The stamp of the file's present content.
         stamp: u64,
     },
-    /// The path is taken by something other than a file or folder.
+    /// The path is taken by something of another kind than expected: a folder instead of a file, for example.
     #[error("{}: is {what}, expected {expected}", path.display())]
     InTheWay {
         /// The path.
