@@ -193,7 +193,12 @@ pub(crate) fn is_removable(_: &Path) -> bool {
 pub(crate) fn share(_: &File, _: &Path) {}
 
 #[cfg(all(test, unix))]
+#[path = "../../tests/common/skip.rs"]
+mod skip;
+
+#[cfg(all(test, unix))]
 mod tests {
+    use super::skip::{lacking, skipped};
     use super::*;
     use std::fs::{self, Permissions};
     use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
@@ -239,8 +244,12 @@ mod tests {
         let list = |path: &Path| run("getfacl", &["-cpn"], path).expect("getfacl");
         let probe = folder.path().join("probe");
         fs::write(&probe, "").expect("written");
-        if run("setfacl", &granted, &probe).is_err() || !list(&probe).contains("user:1002:rw") {
-            eprintln!("SKIPPED: setfacl is missing, or the file system has no access lists");
+        if run("setfacl", &granted, &probe).is_err() {
+            lacking("setfacl");
+            return;
+        }
+        if !list(&probe).contains("user:1002:rw") {
+            skipped("the file system for temporary files has no access lists");
             return;
         }
         run("setfacl", &["-dm", "user:1003:rw"], folder.path()).expect("set");
@@ -290,7 +299,9 @@ mod tests {
     #[test]
     fn only_the_owner_replaces_a_file_in_a_folder_like_tmp() {
         if !rustix::process::geteuid().is_root() {
-            // A file of another user is at hand for root only, and root may replace it.
+            skipped(
+                "replacing files of others in a folder like /tmp: only root can make such files",
+            );
             return;
         }
         let folder = tempfile::tempdir().expect("a folder");
