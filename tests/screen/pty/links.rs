@@ -228,11 +228,10 @@ fn the_shell_does_not_receive_a_late_answer() {
     }
 }
 
-#[test]
-fn pictures_continue_after_a_stop_in_which_an_answer_was_lost() {
-    let Some(mut watched) = Watched::start() else {
-        return;
-    };
+/// Stops the program while an answer is lost, and returns the time from its continuation to the next question; None
+/// if there is no terminal to test with.
+fn time_to_continue() -> Option<Duration> {
+    let mut watched = Watched::start()?;
     watched.asks_after(0);
     watched.program.answers = false;
     watched.asks_after(1);
@@ -245,7 +244,15 @@ fn pictures_continue_after_a_stop_in_which_an_answer_was_lost() {
     let begun = Instant::now();
     watched.program.signal(Signal::CONT);
     watched.asks_after(2);
-    // The program waits longer for an answer over a stalled line.
-    assert!(begun.elapsed() < Duration::from_secs(9));
+    let time = begun.elapsed();
     watched.ends();
+    Some(time)
+}
+
+#[test]
+fn pictures_continue_after_a_stop_in_which_an_answer_was_lost() {
+    // The program waits ten seconds for an answer over a stalled line. A very busy machine may be as slow as that, but
+    // not every time.
+    let is_sooner = |time| time < Duration::from_secs(9);
+    assert!((0..5).any(|_| time_to_continue().is_none_or(is_sooner)));
 }
