@@ -321,6 +321,7 @@ fn compare_figures(kind: FigureKind, seed: u64) {
         ties += compare(&mut plane, &figure, &slow);
     }
     println!("{}: {ties} ties in {POSES} poses", kind.name());
+    assert!(ties > POSES / 10, "too few ties to test them");
 }
 
 #[test]
@@ -385,4 +386,5 @@ fn pictures_agree() {
         ties += compare(&mut plane, &picture, &slow);
     }
     println!("pictures: {ties} ties in {PICTURES} poses");
+    assert!(ties > PICTURES / 20, "too few ties to test them");
 }
