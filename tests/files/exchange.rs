@@ -7,6 +7,7 @@ use taxel::formats::{ImprintFormat, ImprintFormatError, read_imprint};
 use taxel::imprint::Imprint;
 
 use crate::common::size;
+use crate::property::config;
 
 /// An imprint of any size, with rows of few, many or all bits.
 fn imprints() -> impl Strategy<Value = Imprint> {
@@ -31,7 +32,7 @@ fn form() -> impl Strategy<Value = ImprintFormat> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(config(1000))]
 
     #[test]
     fn every_format_reads_back(imprint in imprints(), form in form()) {
@@ -125,7 +126,7 @@ fn decorated(imprint: &Imprint, style: [usize; 5]) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(config(1000))]
 
     #[test]
     fn tables_are_read_with_any_decoration(

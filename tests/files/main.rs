@@ -3,6 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+#[path = "../common/property.rs"]
+mod property;
+
 #[path = "../common/skip.rs"]
 mod skip;
 

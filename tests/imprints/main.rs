@@ -11,6 +11,9 @@ mod common;
 #[path = "../common/paper.rs"]
 mod paper;
 
+#[path = "../common/property.rs"]
+mod property;
+
 #[path = "../common/skip.rs"]
 mod skip;
 

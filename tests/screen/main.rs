@@ -3,6 +3,9 @@
 #[path = "../common/array.rs"]
 mod array;
 
+#[path = "../common/property.rs"]
+mod property;
+
 #[path = "../common/skip.rs"]
 mod skip;
 

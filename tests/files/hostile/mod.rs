@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use self::bodies::{BODIES, body};
+use crate::property::config;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use taxel::tui::app::message::Message;
@@ -53,7 +54,7 @@ fn changes() -> impl Strategy<Value = Vec<(usize, usize, Vec<u8>)>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3000))]
+    #![proptest_config(config(3000))]
 
     #[test]
     fn random_bytes_cause_no_panic(index in 0..BODIES.len(), bytes in vec(any::<u8>(), 0..200)) {
@@ -65,7 +66,8 @@ proptest! {
         index in 0..BODIES.len(), seed in any::<usize>(), changes in changes()
     ) {
         let (_, folder, read) = BODIES[index];
-        let (_, mut bytes) = seeds(folder).swap_remove(seed % seeds(folder).len());
+        let mut seeds = seeds(folder);
+        let (_, mut bytes) = seeds.swap_remove(seed % seeds.len());
         for (at, gone, new) in changes {
             let at = at % (bytes.len() + 1);
             let end = (at + gone).min(bytes.len());

@@ -13,6 +13,7 @@ use taxel::storage::{Expected, ShapeOrigin};
 
 use super::Scratch;
 use crate::common::size;
+use crate::property::config;
 
 fn imprints() -> impl Strategy<Value = Imprint> {
     (1..=64_u8, 1..=64_u8, vec(any::<u64>(), 64)).prop_map(|(columns, rows, words)| {
@@ -76,7 +77,7 @@ fn shapes() -> impl Strategy<Value = StoredShape> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(config(64))]
 
     #[test]
     fn a_saved_shape_is_loaded_unchanged(first in shapes(), second in shapes()) {

@@ -7,8 +7,8 @@ mod drawn;
 
 use self::drawn::{angle, area, drawn, figure, hundredths, imprints, kind, moved, polygon, star};
 use crate::common::{sensor, size};
+use crate::property::config;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use taxel::figure::{Figure, FigureKind};
 use taxel::formats::StoredShape;
 use taxel::geometry::Extent;
@@ -18,15 +18,6 @@ use taxel::picture::Picture;
 use taxel::sensor::Sensor;
 use taxel::source::Source;
 use taxel::touch::{Plane, reaches_beyond};
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(2008),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
 
 proptest! {
     #![proptest_config(config(10_000))]

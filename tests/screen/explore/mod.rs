@@ -13,6 +13,7 @@ use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
+use crate::property::config;
 use crate::session::{hides, press, session, shows, sized, started, then, world};
 
 /// A sweep of several hundred seconds on any machine.
@@ -510,7 +511,7 @@ fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config(150))]
 
     /// For any keys, on any size, with events of workers at any time: nothing panics, nothing impossible is on the
     /// screen, and every key is answered.

@@ -11,6 +11,7 @@ use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
+use crate::property::config;
 use crate::session::{hides, press, session, shows, started, then};
 
 /// Starts a session on a library that outlasts it.
@@ -328,7 +329,7 @@ fn any_keys() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config(200))]
 
     #[test]
     fn any_document_is_saved_and_loaded_unchanged(keys in any_keys()) {
