@@ -356,12 +356,12 @@ mod tests {
             let grid = grid.expect("in range");
             let result = Sweep::new(&grid).run();
             let mut plane = Plane::new(*grid.sensor());
-            for turn in [0, 1, 2] {
-                let zoom = turn.min(grid.counts()[Axis::ZoomX] - 1);
-                let ids = result.ids(PoseIndex::new([9, 9, turn, zoom, 0]), 3..17, 2..9);
+            for angle in [0, 1, 2] {
+                let zoom = angle.min(grid.counts()[Axis::ZoomX] - 1);
+                let ids = result.ids(PoseIndex::new([9, 9, angle, zoom, 0]), 3..17, 2..9);
                 assert_eq!(ids.len(), 14 * 7);
                 for (index, id) in (0..).zip(ids) {
-                    let index = [3 + index % 14, 2 + index / 14, turn, zoom, 0];
+                    let index = [3 + index % 14, 2 + index / 14, angle, zoom, 0];
                     let pose = grid.number(PoseIndex::new(index));
                     let touched = plane.touch(&grid.placed(pose));
                     assert_eq!(id, result.atlas.find(&touched), "pose {pose}");

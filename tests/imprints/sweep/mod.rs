@@ -288,7 +288,7 @@ fn a_stopped_sweep_keeps_what_is_complete() {
     let result = stopped_after(500_000);
     assert!(!result.complete());
     assert_eq!(done.load(Ordering::Relaxed), 500_000);
-    // Only whole turns are kept, and at most the last sixteen of them are lost.
+    // Only whole orientations are kept, and at most the last sixteen of them are lost.
     assert!((340_000..500_000).contains(&result.poses()) && result.poses() % 10_000 == 0);
     assert_eq!(
         result
@@ -305,7 +305,7 @@ fn a_stopped_sweep_keeps_what_is_complete() {
         shard: Shard::WHOLE,
     };
     assert_eq!(SweepResult::merge([result]).err(), Some(incomplete));
-    // The sweep does not even wait for the end of a turn.
+    // The sweep does not even wait for the end of an orientation.
     let result = stopped_after(1);
     assert_eq!((result.poses(), result.atlas().len()), (0, 0));
     assert!(done.load(Ordering::Relaxed) <= 5_000);

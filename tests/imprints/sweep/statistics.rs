@@ -49,24 +49,25 @@ fn statistics_equal_those_of_a_plain_loop() {
         let grid = small(source, "4:5.4:0.07", "3:351:29");
         let result = sweep(&grid);
         let mut plane = Plane::new(*grid.sensor());
-        let mut turns: Vec<Vec<Vec<f64>>> = Vec::new();
-        let turn = grid.row_length() * grid.rows_per_orientation();
+        let mut orientations: Vec<Vec<Vec<f64>>> = Vec::new();
+        let poses = grid.row_length() * grid.rows_per_orientation();
         for number in 0..grid.poses() {
-            if number % turn == 0 {
-                turns.push(vec![Vec::new(); features().len()]);
+            if number % poses == 0 {
+                orientations.push(vec![Vec::new(); features().len()]);
             }
             let regions = regions(&plane.touch(&grid.placed(number)));
             let Some(main) = main_region(&regions) else {
                 continue;
             };
             let description = Description::of(&regions[main]);
-            let lists = turns.last_mut().expect("a turn");
+            let lists = orientations.last_mut().expect("an orientation");
             feature_values(&description, |index, value| lists[index].push(value));
         }
         for (index, statistic) in result.statistics().iter().enumerate() {
             let key = &statistic.feature.key;
-            let by_turn: Vec<&[f64]> = turns.iter().map(|lists| &lists[index][..]).collect();
-            let all = by_turn.concat();
+            let by_orientation: Vec<&[f64]> =
+                orientations.iter().map(|lists| &lists[index][..]).collect();
+            let all = by_orientation.concat();
             assert_eq!(statistic.poses, all.len() as u64, "{key}");
             if all.is_empty() {
                 assert!(statistic.mean.is_none() && statistic.sd_angle.is_none());
@@ -81,16 +82,20 @@ fn statistics_equal_those_of_a_plain_loop() {
                 );
             };
             let weighted = |of: &dyn Fn(&[f64]) -> f64| {
-                let sum = by_turn.iter().filter(|turn| !turn.is_empty());
-                sum.map(|turn| of(turn) * turn.len() as f64).sum::<f64>() / all.len() as f64
+                let sum = by_orientation
+                    .iter()
+                    .filter(|orientation| !orientation.is_empty());
+                sum.map(|orientation| of(orientation) * orientation.len() as f64)
+                    .sum::<f64>()
+                    / all.len() as f64
             };
             if statistic.feature.circular {
                 let (length, direction) = resultant(&all);
-                let turns = weighted(&|turn| resultant(turn).0);
+                let within = weighted(&|poses| resultant(poses).0);
                 near(statistic.mean, direction, "mean");
                 near(statistic.sd, deviation(length), "sd");
-                near(statistic.sd_position, deviation(turns), "position");
-                near(statistic.sd_angle, deviation(length / turns), "angle");
+                near(statistic.sd_position, deviation(within), "position");
+                near(statistic.sd_angle, deviation(length / within), "angle");
                 continue;
             }
             let mean = all.iter().sum::<f64>() / all.len() as f64;
@@ -116,9 +121,14 @@ fn statistics_equal_those_of_a_plain_loop() {
                 weighted(&variance).sqrt(),
                 "position",
             );
-            let of_turn =
-                |turn: &[f64]| (turn.iter().sum::<f64>() / turn.len() as f64 - mean).powi(2);
-            near(statistic.sd_angle, weighted(&of_turn).sqrt(), "angle");
+            let of_orientation = |orientation: &[f64]| {
+                (orientation.iter().sum::<f64>() / orientation.len() as f64 - mean).powi(2)
+            };
+            near(
+                statistic.sd_angle,
+                weighted(&of_orientation).sqrt(),
+                "angle",
+            );
         }
     }
 }

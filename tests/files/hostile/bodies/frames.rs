@@ -41,8 +41,8 @@ pub(crate) fn recording(bytes: &[u8]) -> bool {
     is_read
 }
 
-/// Reads the metadata beside a recording. It must be the same when it is written and read again.
-pub(crate) fn description(bytes: &[u8]) -> bool {
+/// Reads the metadata of a recording from the file beside it. It must be the same when it is written and read again.
+pub(crate) fn metadata(bytes: &[u8]) -> bool {
     match RecordingMetadata::read(bytes) {
         Some(Ok(metadata)) => {
             let text = metadata.text().expect("it is written");

@@ -43,7 +43,7 @@ pub(crate) const BODIES: [Body; 21] = [
     ("session", "session", screen::session),
     ("recording", "recording", frames::recording),
     ("stream", "stream", frames::stream),
-    ("description", "description", frames::description),
+    ("metadata", "metadata", frames::metadata),
 ];
 
 /// Returns the body with a name.

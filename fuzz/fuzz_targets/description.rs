@@ -1,4 +1,0 @@
-//! The description beside a recording, from any bytes.
-#![no_main]
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("description", bytes));

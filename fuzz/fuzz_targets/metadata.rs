@@ -1,0 +1,4 @@
+//! The metadata beside a recording, from any bytes.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("metadata", bytes));
