@@ -161,10 +161,7 @@ impl<'a> Training<'a> {
 
     /// Returns the number of poses of all shapes together in this shard.
     pub fn poses(&self) -> u64 {
-        let rows = |grid: &PoseGrid| self.shard.rows(grid.rows());
-        let own = self.grids.iter();
-        own.map(|grid| (rows(grid).end - rows(grid).start) * grid.row_length())
-            .sum()
+        self.grids.iter().map(|grid| self.shard.poses(grid)).sum()
     }
 
     /// Returns the shapes of the set, in order.

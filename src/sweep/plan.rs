@@ -65,6 +65,12 @@ impl Shard {
         };
         cut(self.number - 1)..cut(self.number)
     }
+
+    /// Returns the number of poses of this shard in a grid.
+    pub fn poses(&self, grid: &PoseGrid) -> u64 {
+        let rows = self.rows(grid.rows());
+        (rows.end - rows.start) * grid.row_length()
+    }
 }
 
 impl FromStr for Shard {

@@ -83,8 +83,7 @@ impl SweepResult {
 
     /// Returns true if every pose of the shard was swept.
     pub fn complete(&self) -> bool {
-        let rows = self.shard.rows(self.grid.rows());
-        self.poses == (rows.end - rows.start) * self.grid.row_length()
+        self.poses == self.shard.poses(&self.grid)
     }
 
     pub(crate) fn new(
@@ -198,7 +197,7 @@ impl SweepResult {
         let own = shard.rows(grid.rows());
         let width = grid.row_length();
         check(
-            parts.poses <= (own.end - own.start) * width && parts.partly_off <= parts.poses,
+            parts.poses <= shard.poses(&grid) && parts.partly_off <= parts.poses,
             "more poses than there are",
         )?;
         let ascending = parts.first_poses.windows(2).all(|pair| pair[0] < pair[1]);

@@ -124,9 +124,7 @@ pub(crate) fn sweep(
     memory.check(grid).map_err(CliError::Memory)?;
     let new = |path| PoseFile::new(path, grid, wanted.there.existing());
     let mut poses = wanted.poses.as_ref().map(new).transpose()?;
-    let rows = shard.rows(grid.rows());
-    let all = (rows.end - rows.start) * grid.row_length();
-    let progress = Progress::new(all, wanted.quiet, charset);
+    let progress = Progress::new(shard.poses(grid), wanted.quiet, charset);
     let report = |poses: u64| {
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
