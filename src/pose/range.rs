@@ -156,10 +156,10 @@ impl DecimalRange {
     /// ```
     /// use taxel::pose::DecimalRange;
     /// let range: DecimalRange = "5:5.99:0.01".parse()?;
-    /// assert_eq!(range.half_a_step_on().map(|range| range.to_string()).as_deref(), Some("5.005:5.995:0.01"));
+    /// assert_eq!(range.shifted_by_half_a_step().map(|range| range.to_string()).as_deref(), Some("5.005:5.995:0.01"));
     /// # Ok::<(), taxel::pose::RangeError>(())
     /// ```
-    pub fn half_a_step_on(&self) -> Option<Self> {
+    pub fn shifted_by_half_a_step(&self) -> Option<Self> {
         if self.count == 1 {
             return Some(*self);
         }
@@ -472,7 +472,7 @@ mod tests {
     fn half_a_step_needs_one_more_decimal_if_a_range_can_have_it() {
         let half = |text: &str| {
             let range: DecimalRange = text.parse().expect("a range");
-            range.half_a_step_on().map(|half| half.to_string())
+            range.shifted_by_half_a_step().map(|half| half.to_string())
         };
         assert_eq!(half("5:5.9:0.1").as_deref(), Some("5.05:5.95:0.1"));
         assert_eq!(half("5").as_deref(), Some("5"));
@@ -480,7 +480,7 @@ mod tests {
         let expected = "0.000000000005:0.000000000025:0.00000000001";
         let parsed = |text: &str| text.parse::<DecimalRange>().ok();
         let range = parsed(finest).expect("a range");
-        assert_eq!(range.half_a_step_on(), parsed(expected));
+        assert_eq!(range.shifted_by_half_a_step(), parsed(expected));
         // They would need thirteen decimals, and sixteen digits.
         assert_eq!(half("0:0.000000000002:0.000000000001"), None);
         assert_eq!(half("0:999999999999999:111111111111111"), None);

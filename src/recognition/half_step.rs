@@ -68,15 +68,8 @@ impl Model {
         &self,
         progress: &(dyn Fn(HalfStepWork) -> bool + Sync),
     ) -> Result<HalfStep, TrainingError> {
-        let mut ranges = *self.ranges();
-        for axis in [Axis::X0, Axis::Y0, Axis::Angle] {
-            ranges[axis] = ranges[axis].half_a_step_on().ok_or(TrainingError::Steps)?;
-        }
-        let shapes = self.shapes().to_vec();
-        let training = Training::new(shapes, *self.sensor(), self.anchor(), ranges)?;
-        let training = training.shard(self.shard());
         let touched = |poses| progress(HalfStepWork::Poses(poses));
-        let between = training.allow_cut(true).progress(&touched).run()?;
+        let between = self.shifted_by_half_a_step(&touched)?;
         let keys = between.keys();
         let known: Vec<Option<usize>> = (0..keys.len())
             .map(|key| self.keys().find_ref(keys.get(key)))
@@ -123,6 +116,22 @@ impl Model {
             }
         }
         Ok(result)
+    }
+
+    /// Trains the same shapes half a step beyond each pose of the model.
+    fn shifted_by_half_a_step(
+        &self,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<Self, TrainingError> {
+        let mut ranges = *self.ranges();
+        for axis in [Axis::X0, Axis::Y0, Axis::Angle] {
+            let shifted = ranges[axis].shifted_by_half_a_step();
+            ranges[axis] = shifted.ok_or(TrainingError::Steps)?;
+        }
+        let shapes = self.shapes().to_vec();
+        let training = Training::new(shapes, *self.sensor(), self.anchor(), ranges)?;
+        let training = training.shard(self.shard()).allow_cut(true);
+        training.progress(progress).run()
     }
 }
 
@@ -212,7 +221,7 @@ mod tests {
         let model = training.run().expect("not stopped");
         let mut ranges = *model.ranges();
         for axis in [Axis::X0, Axis::Y0, Axis::Angle] {
-            ranges[axis] = ranges[axis].half_a_step_on().expect("few decimals");
+            ranges[axis] = ranges[axis].shifted_by_half_a_step().expect("few decimals");
         }
         let between = Training::new(shapes, *model.sensor(), model.anchor(), ranges);
         let between = between.expect("in range").allow_cut(true).run();

@@ -35,7 +35,7 @@ pub struct AngleEstimate {
     pub standard_deviation: Option<f64>,
     /// The fewest neighbouring whole degrees that hold 95 % of the poses: the first degree, and the number of
     /// degrees.
-    pub most: (u32, u32),
+    pub shortest_arc: (u32, u32),
 }
 
 impl AngleEstimate {
@@ -48,7 +48,7 @@ impl AngleEstimate {
         if deviation >= self.period / 12_f64.sqrt() {
             return None;
         }
-        let begun = self.ends().0 < 0 && mean >= f64::from(self.most.0);
+        let begun = self.ends().0 < 0 && mean >= f64::from(self.shortest_arc.0);
         Some((if begun { mean - self.period } else { mean }, deviation))
     }
 
@@ -56,7 +56,10 @@ impl AngleEstimate {
     /// of the period, the first is below 0.
     #[must_use]
     pub fn ends(&self) -> (i64, i64) {
-        let (first, count) = (i64::from(self.most.0), i64::from(self.most.1));
+        let (first, count) = (
+            i64::from(self.shortest_arc.0),
+            i64::from(self.shortest_arc.1),
+        );
         let (last, degrees) = (first + count - 1, i64::from(whole_degrees(self.period)));
         if last < degrees {
             (first, last)
@@ -306,7 +309,7 @@ impl PoseMoments {
                 period,
                 mean: directed.then(|| within_period(mean * period, period)),
                 standard_deviation: directed.then_some(deviation * period),
-                most: fewest(&degrees, self.poses),
+                shortest_arc: fewest(&degrees, self.poses),
             }
         });
         Some(PoseEstimate {
@@ -454,18 +457,18 @@ mod tests {
         let pose = model.pose_of(0, &imprint, &|_| true).expect("it leaves it");
         let angle = pose.angle.expect("it has one");
         assert!((angle.period - 360.0 / 7.0).abs() < 1e-12, "{angle:?}");
-        assert!(angle.most.1 <= 52, "{angle:?}");
+        assert!(angle.shortest_arc.1 <= 52, "{angle:?}");
         let (mean, spread) = angle.known().expect("one of few");
         assert!((-26.0..52.0).contains(&mean) && spread < 15.0, "{angle:?}");
     }
 
     #[test]
     fn degrees_that_pass_the_period_begin_below_0_and_hold_the_mean() {
-        let estimate = |period, mean, spread, most| AngleEstimate {
+        let estimate = |period, mean, spread, shortest_arc| AngleEstimate {
             period,
             mean: Some(mean),
             standard_deviation: Some(spread),
-            most,
+            shortest_arc,
         };
         let over = estimate(120.0, 119.0, 5.0, (109, 23));
         assert_eq!((over.ends(), over.known()), ((-11, 11), Some((-1.0, 5.0))));

@@ -32,7 +32,7 @@ pub struct RecognitionRate {
     pub held: u64,
     accuracy: f64,
     standard_error: f64,
-    claimed: f64,
+    mean_confidence: f64,
     held_share: f64,
 }
 
@@ -49,8 +49,8 @@ impl RecognitionRate {
     }
 
     /// Returns the mean probability of the answers. It estimates the accuracy if the assumed noise is the real one.
-    pub fn claimed(&self) -> f64 {
-        self.claimed
+    pub fn mean_confidence(&self) -> f64 {
+        self.mean_confidence
     }
 
     /// Returns the share of touches whose imprint the model holds.
@@ -70,9 +70,9 @@ impl RecognitionRate {
         let all = weighted(|own| own.touches);
         let squared = |weight: u32| f64::from(weight) * f64::from(weight);
         let variances = (shapes.iter()).map(|(weight, own)| squared(*weight) * own.variance());
-        let claimed = shapes
+        let confidences = shapes
             .iter()
-            .map(|(weight, own)| f64::from(*weight) * own.claimed);
+            .map(|(weight, own)| f64::from(*weight) * own.confidence);
         let part = share(1, all);
         Self {
             touches: sum(|own| own.touches),
@@ -80,7 +80,7 @@ impl RecognitionRate {
             held: sum(|own| own.held),
             accuracy: share(weighted(|own| own.right), all),
             standard_error: variances.sum::<f64>().sqrt() * part,
-            claimed: claimed.sum::<f64>() * part,
+            mean_confidence: confidences.sum::<f64>() * part,
             held_share: share(weighted(|own| own.held), all),
         }
     }
@@ -100,7 +100,7 @@ struct ShapeRate {
     right: u64,
     held: u64,
     /// The sum of the probabilities of the names that were given.
-    claimed: f64,
+    confidence: f64,
 }
 
 impl ShapeRate {
@@ -110,7 +110,7 @@ impl ShapeRate {
         self.touches += 1;
         self.right += u64::from(is_right);
         self.held += u64::from(judged.is_held);
-        self.claimed += judged.named.map_or(0.0, |(_, probability)| probability);
+        self.confidence += judged.named.map_or(0.0, |(_, probability)| probability);
     }
 
     /// Adds the counts of more touches of the same shape.
@@ -118,7 +118,7 @@ impl ShapeRate {
         self.touches += more.touches;
         self.right += more.right;
         self.held += more.held;
-        self.claimed += more.claimed;
+        self.confidence += more.confidence;
     }
 
     /// Returns the variance of the number of touches that are named right, which is binomial.
@@ -531,10 +531,10 @@ mod tests {
         let touches = NoisyTouches::new(sensor.size(), noise, 2000, 0);
         let rate = model.recognition_rate(&touches, &noise, &|_| true);
         let rate = rate.expect("not stopped");
-        // The long one is always named, so only the claimed probability is left to chance.
+        // The long one is always named, so only the confidence is left to chance.
         assert_eq!((rate.touches, rate.right), (4000, 2000));
         assert_eq!((rate.accuracy(), rate.standard_error()), (0.9, 0.0));
-        assert!((rate.claimed() - 0.9).abs() < 0.002, "{rate:?}");
+        assert!((rate.mean_confidence() - 0.9).abs() < 0.002, "{rate:?}");
     }
 
     /// Otherwise the first touches of a simulation would depend on which taxels are dead.
@@ -579,10 +579,10 @@ mod tests {
         let mean = rates.iter().map(RecognitionRate::accuracy).sum::<f64>() / count;
         let apart = rates.iter().map(|rate| (rate.accuracy() - mean).powi(2));
         let found = (apart.sum::<f64>() / (count - 1.0)).sqrt();
-        let claimed = rates.iter().map(RecognitionRate::standard_error);
-        let claimed = claimed.sum::<f64>() / count;
-        assert!(claimed > 0.0);
-        assert!((found / claimed - 1.0).abs() < 0.3, "{found} {claimed}");
+        let stated = rates.iter().map(RecognitionRate::standard_error);
+        let stated = stated.sum::<f64>() / count;
+        assert!(stated > 0.0);
+        assert!((found / stated - 1.0).abs() < 0.3, "{found} {stated}");
     }
 
     /// The imprint of the bar is 5 taxels long, or 6 if the bar lies between taxels.

@@ -288,8 +288,8 @@ impl ModelCache {
     fn keep_up_to(&self, most: u64, path: &Path, model: &Model) {
         // In memory first, so that nothing of a model that is too large is written to the disk.
         let mut bytes = Cursor::new(Vec::new());
-        let going = AtomicBool::new(false);
-        let mut output = FirstErrorWriter::new(&mut bytes, most, &going);
+        let stopped = AtomicBool::new(false);
+        let mut output = FirstErrorWriter::new(&mut bytes, most, &stopped);
         let written = write_model(model, &mut output);
         if output.finish(written).is_ok() && folder::make(&self.0).is_ok() {
             let _ = FinishedFile::new(path, bytes.get_ref(), Existing::Replaced)
@@ -359,10 +359,14 @@ mod tests {
         assert_eq!(models.names().expect("none").len(), 0);
         let model = training(4.0).run().expect("not stopped");
         let name = Name::new("set").expect("a name");
-        let going = AtomicBool::new(false);
-        let path = models.save(&model, &name, Existing::Kept, &going);
+        let stopped = AtomicBool::new(false);
+        let path = models.save(&model, &name, Existing::Kept, &stopped);
         let path = path.expect("written");
-        assert!(models.save(&model, &name, Existing::Kept, &going).is_err());
+        assert!(
+            models
+                .save(&model, &name, Existing::Kept, &stopped)
+                .is_err()
+        );
         let again = load_model(&path).expect("read");
         assert_eq!(Evaluation::of(&again), Evaluation::of(&model));
         assert_eq!(again.shapes(), model.shapes());
@@ -459,8 +463,8 @@ mod tests {
             fewer.expect("a set")
         };
         let model = fewer().run().expect("not stopped");
-        let going = AtomicBool::new(false);
-        save_model(&model, &path, Existing::Kept, &going).expect("written");
+        let stopped = AtomicBool::new(false);
+        save_model(&model, &path, Existing::Kept, &stopped).expect("written");
         assert!(ModelCache::load(&path, &fewer()).is_some());
         assert!(ModelCache::load(&path, &whole).is_none());
     }

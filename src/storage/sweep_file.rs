@@ -304,13 +304,13 @@ mod tests {
             let refused = refused.expect_err("stopped").to_string();
             assert!(refused.contains("stopped"), "{refused}");
             assert_eq!(files(folder.path()), [""; 0], "nothing is left");
-            let going = AtomicBool::new(false);
-            file.write(&result, Existing::Kept, &going)
+            let stopped = AtomicBool::new(false);
+            file.write(&result, Existing::Kept, &stopped)
                 .expect("written");
             let first = std::fs::read(&path).expect("it is there");
-            let again = file.write(&result, Existing::Kept, &going);
+            let again = file.write(&result, Existing::Kept, &stopped);
             assert!(again.expect_err("it is there").exists());
-            file.write(&result, Existing::Replaced, &going)
+            file.write(&result, Existing::Replaced, &stopped)
                 .expect("written again");
             assert_eq!(std::fs::read(&path).ok(), Some(first));
             std::fs::remove_file(&path).expect("it is there");
@@ -319,8 +319,8 @@ mod tests {
         assert_eq!(refused, [const { Some(AtlasEndingError) }; 2]);
         let nowhere = folder.path().join("nowhere/a.csv");
         let nowhere = AtlasFile::new(nowhere).expect("a format");
-        let going = AtomicBool::new(false);
-        let error = nowhere.write(&result, Existing::Kept, &going);
+        let stopped = AtomicBool::new(false);
+        let error = nowhere.write(&result, Existing::Kept, &stopped);
         let error = error.expect_err("there is no such folder").to_string();
         assert!(
             error.ends_with("a.csv: cannot write: No such file or directory (os error 2)"),
@@ -332,11 +332,11 @@ mod tests {
     fn a_pair_is_never_of_two_sweeps() {
         let folder = tempfile::tempdir().expect("a folder");
         let result = result();
-        let going = AtomicBool::new(false);
+        let stopped = AtomicBool::new(false);
         let (atlas, poses) = (folder.path().join("a.csv"), folder.path().join("a.npy"));
         let pair = |existing| {
             let file = AtlasFile::new(&atlas).expect("a format");
-            let first = file.prepare(&result, existing, &going).expect("written");
+            let first = file.prepare(&result, existing, &stopped).expect("written");
             (first, whole(&poses, &result.grid, existing))
         };
         let (first, second) = pair(Existing::Kept);
@@ -382,11 +382,11 @@ mod tests {
     fn a_pair_whose_second_file_cannot_be_named_leaves_neither() {
         let folder = tempfile::tempdir().expect("a folder");
         let (atlas, elsewhere) = (folder.path().join("a.csv"), folder.path().join("gone"));
-        let (result, going) = (result(), AtomicBool::new(false));
+        let (result, stopped) = (result(), AtomicBool::new(false));
         for existing in [Existing::Kept, Existing::Replaced] {
             std::fs::create_dir(&elsewhere).expect("made");
             let file = AtlasFile::new(&atlas).expect("a format");
-            let first = file.prepare(&result, existing, &going).expect("written");
+            let first = file.prepare(&result, existing, &stopped).expect("written");
             let second = whole(&elsewhere.join("a.npy"), &result.grid, existing);
             std::fs::remove_dir_all(&elsewhere).expect("removed");
             let refused = persist_pair(first, second).expect_err("its folder is gone");
@@ -397,7 +397,7 @@ mod tests {
 
     #[test]
     fn a_pair_that_cannot_be_named_leaves_the_old_files() {
-        let (result, going) = (result(), AtomicBool::new(false));
+        let (result, stopped) = (result(), AtomicBool::new(false));
         for (first, second) in [("gone/a.csv", "a.npy"), ("a.csv", "gone/a.npy")] {
             let folder = tempfile::tempdir().expect("a folder");
             let (atlas, poses) = (folder.path().join(first), folder.path().join(second));
@@ -407,7 +407,7 @@ mod tests {
                 std::fs::write(path, "old").expect("written");
             }
             let file = AtlasFile::new(&atlas).expect("a format");
-            let first = file.prepare(&result, Existing::Replaced, &going);
+            let first = file.prepare(&result, Existing::Replaced, &stopped);
             let second = whole(&poses, &result.grid, Existing::Replaced);
             std::fs::remove_dir_all(&elsewhere).expect("removed");
             let refused = persist_pair(first.expect("written"), second);

@@ -425,7 +425,13 @@ fn the_recognition_rate_is_as_published_and_as_claimed() {
         rate.accuracy()
     );
     // The accuracy equals the average claimed probability.
-    assert!(apart(rate.claimed(), rate.accuracy(), rate.standard_error()) < 3.0);
+    assert!(
+        apart(
+            rate.mean_confidence(),
+            rate.accuracy(),
+            rate.standard_error()
+        ) < 3.0
+    );
 }
 
 #[test]
@@ -437,7 +443,7 @@ fn the_claimed_accuracy_is_reached_at_every_noise() {
             let touches = NoisyTouches::new(Sensor::default().size(), noise, 150, 11);
             let rate = model.recognition_rate(&touches, &noise, &|_| true);
             let rate = rate.expect("not stopped");
-            let apart = (rate.claimed() - rate.accuracy()).abs() / rate.standard_error();
+            let apart = (rate.mean_confidence() - rate.accuracy()).abs() / rate.standard_error();
             assert!(apart < 3.0, "{name} at {flip}: {rate:?}");
         }
     }

@@ -49,9 +49,9 @@ fn save_model(library: &Library, shapes: &[(&str, f64, f64)]) {
     let name = Name::new("my parts").expect("a name");
     let models = ModelFolder::beside(library.folder());
     fs::create_dir_all(models.path()).expect("a folder");
-    let going = AtomicBool::new(false);
+    let stopped = AtomicBool::new(false);
     models
-        .save(&model, &name, Existing::Replaced, &going)
+        .save(&model, &name, Existing::Replaced, &stopped)
         .expect("written");
 }
 

@@ -232,7 +232,7 @@ fn noise_json(table: &[NoiseRow], sensor: &Sensor, seed: u64) -> String {
                 "right": row.rate.right,
                 "accuracy": row.rate.accuracy(),
                 "standard_error": row.rate.standard_error(),
-                "claimed": row.rate.claimed(),
+                "claimed": row.rate.mean_confidence(),
                 "held": row.rate.held_share(),
             })
         })
@@ -261,7 +261,7 @@ fn noise_csv(table: &[NoiseRow]) -> String {
             rate.right,
             rate.accuracy(),
             rate.standard_error(),
-            rate.claimed(),
+            rate.mean_confidence(),
             rate.held_share()
         );
     }
@@ -284,7 +284,7 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
             percent(rate.accuracy()),
             format!("{:.1}", 100.0 * rate.standard_error()),
             percent(rate.held_share()),
-            percent(rate.claimed()),
+            percent(rate.mean_confidence()),
         );
     }
     let touches = table.first().map_or(0, |row| row.rate.touches);

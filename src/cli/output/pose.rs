@@ -104,7 +104,7 @@ impl PoseReport {
         let named = model.shapes().get(shape)?;
         let [x, y] = estimate.position;
         let angle = estimate.angle.as_ref().map_or(0.0, |angle| {
-            let (first, count) = angle.most;
+            let (first, count) = angle.shortest_arc;
             angle
                 .mean
                 .unwrap_or(f64::from(first) + f64::from(count) / 2.0)
@@ -148,8 +148,8 @@ impl PoseReport {
                 mean: angle.mean,
                 sd: angle.standard_deviation,
                 period: angle.period,
-                from: angle.most.0,
-                degrees: angle.most.1,
+                from: angle.shortest_arc.0,
+                degrees: angle.shortest_arc.1,
             }),
         }
     }
