@@ -15,8 +15,11 @@ use crate::tui::keys::binding::Context;
 use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::Theme;
 
-/// Draws a page as the content of a file; None where there is nothing to draw.
-type PageDrawing = fn(&Results, DrawingFormat) -> Option<Result<Vec<u8>, String>>;
+/// Draws a page as the content of a file; a sentence says why there is no drawing.
+type PageDrawing = fn(&Results, DrawingFormat) -> Result<Vec<u8>, String>;
+
+/// The reason why a page without any value has no drawing.
+pub(super) const NOTHING_TO_DRAW: &str = "there is nothing to draw";
 
 /// A page of the results: what [`crate::tui::explore::pages`] lists. The functions get the area of the page.
 #[derive(Debug)]

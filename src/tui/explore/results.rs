@@ -14,7 +14,7 @@ use crate::index::wide;
 use crate::pose::{Axis, Pose, PoseIndex};
 use crate::sweep::SweepResult;
 use crate::touch::Plane;
-use crate::tui::explore::angles::curve::{AngleCurve, zooms_of};
+use crate::tui::explore::angles::curve::{AngleCurve, AngleSearch, zooms_of};
 use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::map::visible::VisibleImprints;
 use crate::tui::explore::message::{ExplorePage, Findings, name_of};
@@ -36,12 +36,9 @@ pub struct Results {
     values: Vec<Option<f64>>,
     /// The number of the descriptor of the scatter plot's horizontal axis, and its values by the imprints' numbers.
     x_feature: (usize, Vec<Option<f64>>),
-    /// The imprints of each angle; None until the page of angles was opened and they were found.
-    angle_curve: Option<Arc<AngleCurve>>,
-    /// The zooms for which the imprints of each angle were requested last.
-    angles_asked: Option<PoseIndex>,
-    /// The zooms for which the imprints of each angle could not be found last.
-    angles_failed: Option<PoseIndex>,
+    /// The zooms for which the imprints of each angle were requested last, and the search for them; None until the
+    /// page of angles was opened.
+    angles: Option<(PoseIndex, AngleSearch)>,
     /// The imprints that the map shows.
     visible_imprints: VisibleImprints,
     /// How many times the map was zoomed in, starting from its whole range.
@@ -79,9 +76,7 @@ impl Results {
             feature: 0,
             values: findings.sweep.atlas.values(0),
             x_feature: (X_FEATURE, findings.sweep.atlas.values(X_FEATURE)),
-            angle_curve: None,
-            angles_asked: None,
-            angles_failed: None,
+            angles: None,
             visible_imprints: VisibleImprints::default(),
             map_zoom: 0,
             order: findings.by_poses.clone(),
@@ -173,39 +168,38 @@ impl Results {
         self.x_feature = (number, self.sweep().atlas.values(number));
     }
 
+    /// Returns the search for the imprints of each angle at the zooms of the map; None if there was none.
+    pub fn angles(&self) -> Option<&AngleSearch> {
+        let own = |(zooms, _): &&_| *zooms == zooms_of(self.pose_index);
+        Some(&self.angles.as_ref().filter(own)?.1)
+    }
+
     /// Returns the imprints of each angle at the zooms of the map; None until a worker has found them.
     pub fn angle_curve(&self) -> Option<&AngleCurve> {
-        let curve = self.angle_curve.as_deref();
-        curve.filter(|curve| curve.is_at(self.pose_index))
+        match self.angles()? {
+            AngleSearch::Found(curve) => Some(curve),
+            _ => None,
+        }
     }
 
     /// Returns the place at whose zooms the page needs the imprints of each angle, if they were not requested yet.
     /// They count as requested afterwards.
     pub fn missing_angles(&mut self) -> Option<PoseIndex> {
-        let missing = self.page == ExplorePage::Angles
-            && self.angle_curve().is_none()
-            && self.angles_asked != Some(zooms_of(self.pose_index));
+        let missing = self.page == ExplorePage::Angles && self.angles().is_none();
         if missing {
-            self.angles_asked = Some(zooms_of(self.pose_index));
+            self.angles = Some((zooms_of(self.pose_index), AngleSearch::Running));
         }
         missing.then_some(self.pose_index)
     }
 
-    /// Takes the imprints of each angle. Imprints for zooms that were left meanwhile are dropped.
-    pub fn take_angles(&mut self, curve: Arc<AngleCurve>) {
-        if curve.is_at(self.pose_index) {
-            self.angle_curve = Some(curve);
+    /// Takes the end of the search for the imprints of each angle at the zooms of a place; None if it failed. Dropped
+    /// if other zooms were requested meanwhile.
+    pub fn take_angles(&mut self, place: PoseIndex, curve: Option<Arc<AngleCurve>>) {
+        if let Some((zooms, search)) = &mut self.angles
+            && *zooms == zooms_of(place)
+        {
+            *search = curve.map_or(AngleSearch::Failed, AngleSearch::Found);
         }
-    }
-
-    /// Notes that the imprints of each angle could not be found at the zooms of a place.
-    pub fn fail_angles(&mut self, place: PoseIndex) {
-        self.angles_failed = Some(zooms_of(place));
-    }
-
-    /// Returns true if the imprints of each angle could not be found at the zooms of the map.
-    pub fn angles_failed(&self) -> bool {
-        self.angles_failed == Some(zooms_of(self.pose_index))
     }
 
     /// Returns the imprints that the map showed last.
@@ -556,19 +550,49 @@ mod tests {
         results.turn_to(ExplorePage::Angles);
         let curve = |place| Arc::new(AngleCurve::of(results.sweep(), place));
         let first = results.pose_index();
-        let (early, late) = (curve(first), curve(first.with(Axis::ZoomX, 1)));
+        let second = first.with(Axis::ZoomX, 1);
+        let (early, late) = (curve(first), curve(second));
         assert_eq!(results.missing_angles(), Some(first));
         // The curve belongs to all angles and positions.
         results.move_along(Axis::X0, 1);
+        results.turn(1);
         assert_eq!(results.missing_angles(), None, "asked for already");
         results.move_along(Axis::X0, -1);
+        results.turn(-1);
         results.move_along(Axis::ZoomX, 1);
         assert!(results.missing_angles().is_some());
-        results.take_angles(late);
-        results.take_angles(early);
-        assert!(results.angle_curve().is_some());
+        results.take_angles(second, Some(Arc::clone(&late)));
+        results.take_angles(first, Some(early));
+        assert_eq!(results.angle_curve(), Some(&*late));
+        results.turn(1);
+        assert_eq!(results.angle_curve(), Some(&*late));
+        results.turn(-1);
         results.move_along(Axis::ZoomX, -1);
         assert_eq!(results.missing_angles(), Some(first), "asked for again");
+    }
+
+    #[test]
+    fn angles_that_arrive_at_another_zoom_are_there_or_asked_for_again_on_the_way_back() {
+        let mut results = with_zooms();
+        results.turn_to(ExplorePage::Angles);
+        let curve = |place| Some(Arc::new(AngleCurve::of(results.sweep(), place)));
+        let first = results.pose_index();
+        let second = first.with(Axis::ZoomX, 1);
+        let (early, late) = (curve(first), curve(second));
+        assert_eq!(results.missing_angles(), Some(first));
+        results.take_angles(first, early.clone());
+        results.move_along(Axis::ZoomX, 1);
+        assert_eq!(results.missing_angles(), Some(second));
+        results.move_along(Axis::ZoomX, -1);
+        let asked = results.missing_angles();
+        results.take_angles(second, late);
+        assert_eq!(asked, Some(first));
+        results.take_angles(first, early);
+        assert!(results.angle_curve().is_some());
+        results.move_along(Axis::ZoomX, 1);
+        assert_eq!(results.missing_angles(), Some(second));
+        results.take_angles(second, None);
+        assert!(matches!(results.angles(), Some(AngleSearch::Failed)));
     }
 
     #[test]

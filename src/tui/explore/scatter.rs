@@ -20,7 +20,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::imprints::no_row;
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::page::{ResultsPage, choose_descriptor};
+use crate::tui::explore::page::{NOTHING_TO_DRAW, ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::plot::{PlotField, draw_no_room};
@@ -168,11 +168,11 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     )
 }
 
-/// Returns the drawing of the page for a file; None if there is nothing to draw.
-fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, String>> {
+/// Returns the drawing of the page for a file.
+fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
     let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
     if points.is_empty() {
-        return None;
+        return Err(NOTHING_TO_DRAW.to_owned());
     }
     let (x, y) = (&features()[results.x_feature()], results.feature());
     let label =
@@ -184,5 +184,5 @@ fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, S
     if let Some((x, y)) = selected.and_then(|(_, entry)| point(results, &entry)) {
         plot = plot.with_chosen(x, y);
     }
-    Some(plot.content(format).map_err(|error| error.to_string()))
+    plot.content(format).map_err(|error| error.to_string())
 }

@@ -42,15 +42,13 @@ pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect
         ExploreMessage::Write(name, existing) if DrawingFormat::of_path(&name).is_some() => {
             let format = DrawingFormat::of_path(&name)?;
             let results = app.results_below()?;
-            let reason = match (pages::row(results.page()).drawing?)(results, format) {
-                Some(Ok(content)) => {
-                    return Some(Effect::File(FileRequest::Write(name, content, existing)));
+            match (pages::row(results.page()).drawing?)(results, format) {
+                Ok(content) => Some(Effect::File(FileRequest::Write(name, content, existing))),
+                Err(reason) => {
+                    refuse(app, reason);
+                    None
                 }
-                Some(Err(reason)) => reason,
-                None => "there is nothing to draw".to_owned(),
-            };
-            refuse(app, reason);
-            None
+            }
         }
         ExploreMessage::Write(name, existing) if is_own_file(app, &name) => {
             let results = app.results_below()?;
@@ -245,12 +243,9 @@ pub(in crate::tui) fn on_angles(
     let Some(results) = results.filter(|own| Arc::ptr_eq(own.findings(), findings)) else {
         return;
     };
-    match curve {
-        Ok(curve) => results.take_angles(curve),
-        Err(reason) => {
-            results.fail_angles(place);
-            refuse(app, reason);
-        }
+    results.take_angles(place, curve.as_ref().ok().cloned());
+    if let Err(reason) = curve {
+        refuse(app, reason);
     }
 }
 

@@ -5,6 +5,7 @@
 //! and every m-th y0 are swept, so that the plot is there within a second. Until then the page says "computing".
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
@@ -19,11 +20,20 @@ const MOST_ANGLES: u64 = 720;
 /// The maximum number of rows of positions, summed over all angles.
 const MOST_ROWS: u64 = 8_000;
 
+/// The state of the search for the imprints at each angle.
+#[derive(Clone, Debug)]
+pub enum AngleSearch {
+    /// A worker searches.
+    Running,
+    /// The imprints.
+    Found(Arc<AngleCurve>),
+    /// They cannot be found.
+    Failed,
+}
+
 /// The imprints at the angles of a sweep, at one zoom, with how often each one occurs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngleCurve {
-    /// The zooms, as a place at the first position and angle.
-    zooms: PoseIndex,
     /// The step between the angles that are sampled; 1 for all of them.
     pub every_angle: u64,
     /// The step between the rows of positions that are sampled; 1 for all of them.
@@ -81,16 +91,10 @@ impl AngleCurve {
         };
         let sampled: Vec<u64> = (0..angles).step_by(index(every_angle)).collect();
         Self {
-            zooms,
             every_angle,
             every_row,
             angles: sampled.into_par_iter().map(found).collect(),
         }
-    }
-
-    /// Returns true if the curve belongs to the zooms of a place.
-    pub fn is_at(&self, place: PoseIndex) -> bool {
-        self.zooms == zooms_of(place)
     }
 
     /// Returns the spread of a descriptor at each angle at which its values have a mean. `values` has the value of each
@@ -177,7 +181,6 @@ mod tests {
         let sweep = sweep("5:5.3:0.1", "0:80:20");
         let curve = AngleCurve::of(&sweep, PoseIndex::new([3, 2, 1, 0, 0]));
         assert_eq!((curve.every_angle, curve.every_row), (1, 1));
-        assert!(curve.is_at(PoseIndex::new([9, 0, 4, 0, 0])));
         for (number, feature) in features().iter().enumerate() {
             let values = sweep.atlas.values(number);
             let spread = curve.spread(&sweep, feature, &values);

@@ -19,9 +19,9 @@ use crate::formats::{DrawingFormat, PointPlot, axis_ends};
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::angles::curve::AngleSpread;
+use crate::tui::explore::angles::curve::{AngleSearch, AngleSpread};
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::page::{ResultsPage, choose_descriptor};
+use crate::tui::explore::page::{NOTHING_TO_DRAW, ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::plot::{PlotField, draw_no_room};
@@ -96,13 +96,13 @@ fn title(results: &Results, room: usize) -> String {
 
 /// Returns why there is no curve, in a few words.
 fn without_curve(results: &Results) -> &'static str {
-    match results.angle_curve() {
-        Some(_) if results.feature().circular => {
+    match results.angles() {
+        Some(AngleSearch::Found(_)) if results.feature().circular => {
             "no pose has a direction, or the directions cancel"
         }
-        Some(_) => "no pose has a value",
-        None if results.angles_failed() => "the imprints of each angle cannot be computed",
-        None => "computing",
+        Some(AngleSearch::Found(_)) => "no pose has a value",
+        Some(AngleSearch::Failed) => "the imprints of each angle cannot be computed",
+        Some(AngleSearch::Running) | None => "computing",
     }
 }
 
@@ -208,11 +208,11 @@ fn detail(at: &AngleSpread) -> String {
     )
 }
 
-/// Returns the drawing of the page for a file; None if there is nothing to draw.
-fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, String>> {
+/// Returns the drawing of the page for a file.
+fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
     let spread = spread(results);
     if spread.is_empty() {
-        return None;
+        return Err(NOTHING_TO_DRAW.to_owned());
     }
     let feature = results.feature();
     let label = format!("{}: {}", feature.key, feature.descriptor.name);
@@ -227,5 +227,5 @@ fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, S
             plot = plot.with_curve(name, &points, dashed);
         }
     }
-    Some(plot.content(format).map_err(|error| error.to_string()))
+    plot.content(format).map_err(|error| error.to_string())
 }

@@ -28,6 +28,7 @@ use crate::touch::Plane;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::map::letters::{LETTERS, letter, signs};
 use crate::tui::explore::map::visible::VisiblePoses;
+use crate::tui::explore::page::NOTHING_TO_DRAW;
 use crate::tui::explore::results::Results;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
@@ -83,10 +84,7 @@ pub(in crate::tui) fn draw(
 }
 
 /// Returns the drawing of the page for a file: the whole range at the present angle and zooms of the shape.
-pub(in crate::tui) fn drawing(
-    results: &Results,
-    format: DrawingFormat,
-) -> Option<Result<Vec<u8>, String>> {
+pub(in crate::tui) fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
     let grid = &results.sweep().grid;
     let [width, height, ..] = grid.counts().into_array();
     let stride = width.max(height).div_ceil(DRAWN).max(1);
@@ -97,10 +95,10 @@ pub(in crate::tui) fn drawing(
         (range.value(0), range.value((count - 1) * stride))
     };
     let (x0, y0) = (ends(Axis::X0, across), ends(Axis::Y0, down));
-    let map = PoseMap::new(x0, y0, usize::try_from(across).ok()?, &ids)?;
+    let map = PoseMap::new(x0, y0, index(across), &ids).ok_or(NOTHING_TO_DRAW)?;
     let title = format!("{}; {}", results.summary(false), heading(results));
     let content = map.with_title(&title).content(format);
-    Some(content.map_err(|error| error.to_string()))
+    content.map_err(|error| error.to_string())
 }
 
 /// Returns the angle and the zooms, each with its number and how many there are.
