@@ -193,7 +193,7 @@ impl World {
     #[must_use]
     pub fn with_model_cache(mut self, cache: Option<ModelCache>) -> Self {
         if let Some(cache) = cache {
-            self.workers.keep_models(cache);
+            self.workers.models.store.keep_in(cache);
         }
         self
     }
@@ -368,14 +368,14 @@ impl World {
     pub(in crate::tui) fn changes_due(&self) -> Option<Instant> {
         let changes = self.writer.next_check().into_iter();
         let read = self.reader.next_check().into_iter();
-        let read = read.chain(self.workers.model_next_check());
+        let read = read.chain(self.workers.models.next_check());
         changes.chain(read).min()
     }
 
     /// Returns the request that is waited for, if it takes long: a change, else something to read.
     pub(in crate::tui) fn waiting(&self) -> Option<String> {
         let read = || self.reader.status();
-        let model = || self.workers.model_status();
+        let model = || self.workers.models.status();
         self.writer.status().or_else(read).or_else(model)
     }
 

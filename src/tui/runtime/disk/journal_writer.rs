@@ -139,12 +139,7 @@ impl JournalWriter {
         }
     }
 
-    /// Waits until everything is written, but not for ever: a disk may hang. Returns false if it is not written.
-    fn flush(&self) -> bool {
-        self.written(PATIENCE)
-    }
-
-    /// Writes everything, waiting for at most `patience`. Returns false if it is not written by then.
+    /// Writes everything, waiting for at most `patience`: a disk may hang. Returns false if it is not written by then.
     pub(in crate::tui) fn written(&self, patience: Duration) -> bool {
         let (done, written) = channel();
         self.send(JournalRequest::Flush(done));
@@ -157,7 +152,7 @@ impl JournalWriter {
 impl Drop for JournalWriter {
     fn drop(&mut self) {
         if self.thread.is_some() && !self.hangs.get() {
-            self.flush();
+            self.written(PATIENCE);
         }
         self.notes = None;
         // A thread that hangs ends with the program.

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 
 use crate::memory::MemoryGuard;
 use crate::pose::{PoseGrid, PoseIndex};
-use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses};
+use crate::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile, is_poses};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::angles::curve::AngleCurve;
@@ -59,7 +59,7 @@ pub(in crate::tui) struct Workers {
     /// The thread that writes a file.
     writing: Option<JoinHandle<()>>,
     /// The worker that prepares models.
-    models: ModelWorker,
+    pub(in crate::tui::runtime) models: ModelWorker,
     /// The watcher of a source of frames.
     pub(in crate::tui::runtime) frames: FrameWatcher,
     /// The namer of the imprints of its frames.
@@ -84,21 +84,6 @@ impl Workers {
     /// Does work at once from now on, and stops it after this many poses.
     pub(in crate::tui::runtime) fn stop_after(&mut self, poses: u64) {
         self.execution = Execution::AtOnce(PoseLimit(Some(poses)));
-    }
-
-    /// Keeps trained models in a cache.
-    pub(in crate::tui::runtime) fn keep_models(&mut self, cache: ModelCache) {
-        self.models.store.keep_in(cache);
-    }
-
-    /// Returns a text about the model that is being read, if that takes long.
-    pub(in crate::tui::runtime) fn model_status(&self) -> Option<String> {
-        self.models.status()
-    }
-
-    /// Returns when to check again on the reading; None if nothing is read.
-    pub(in crate::tui::runtime) fn model_next_check(&self) -> Option<Instant> {
-        self.models.next_check()
     }
 
     /// Begins a piece of work. Without threads, does it and returns its last event.
