@@ -22,7 +22,7 @@ use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::work::threads;
 
 /// A source that is read from its beginning.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(in crate::tui::runtime) struct ScriptSource {
     /// The source.
     pub(in crate::tui::runtime) source: FrameSource,
@@ -38,10 +38,7 @@ pub(in crate::tui::runtime) struct ScriptSource {
 
 impl ScriptSource {
     /// Reads the source to its end, or until `take` breaks off.
-    pub(in crate::tui::runtime) fn read(
-        &self,
-        take: &mut dyn FnMut(FrameBatch) -> ControlFlow<()>,
-    ) {
+    fn read(&self, take: &mut dyn FnMut(FrameBatch) -> ControlFlow<()>) {
         let mut options = self.request.options.clone();
         options.playback = Playback::Once;
         // The skipped frames were recorded before.
@@ -125,7 +122,7 @@ impl ScriptReader {
         }
         self.more = None;
         if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join) {
-            // The panic goes on, as if the source were read on this thread.
+            // The panic goes on, as if the source were read on the script's thread.
             resume_unwind(panic);
         }
         None

@@ -213,11 +213,7 @@ impl Watched {
         let mut reader = match self.reader.take() {
             Some(reader) => reader,
             None => match self.open(access) {
-                Ok(source) => match ScriptReader::open(source.clone()) {
-                    Ok(reader) => reader,
-                    // Without threads, the source is read anew each time.
-                    Err(_) => return self.next_of(&source, count),
-                },
+                Ok(reader) => reader,
                 Err(reason) => {
                     self.feed.fail(reason);
                     return self.feed.take().into_iter().collect();
@@ -236,36 +232,22 @@ impl Watched {
         batches
     }
 
-    /// Reads the next frames, up to `count`, from the start of a source and on this thread.
-    fn next_of(&mut self, source: &ScriptSource, count: usize) -> Vec<FrameBatch> {
-        let (mut batches, end) = (Vec::new(), self.taken + count);
-        source.read(&mut |batch| {
-            self.taken += batch.frames.len();
-            batches.push(batch);
-            if self.taken < end {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        });
-        batches
-    }
-
     /// Opens the source from its start, with a new feed that takes over the recording.
     ///
     /// # Errors
-    /// Returns the reason why it cannot be read, in a sentence.
-    fn open(&mut self, access: &WriteAccess) -> Result<ScriptSource, String> {
+    /// Returns the reason why it cannot be read, in a sentence; the feed stays then.
+    fn open(&mut self, access: &WriteAccess) -> Result<ScriptReader, String> {
         let source = source::readable(&self.request.source, access)?;
-        let recording = self.feed.recording();
-        self.feed = Arc::new(FrameFeed::of(&self.request));
-        Ok(ScriptSource {
+        let feed = Arc::new(FrameFeed::of(&self.request));
+        let reader = ScriptReader::open(ScriptSource {
             source,
             request: Arc::clone(&self.request),
-            feed: Arc::clone(&self.feed),
+            feed: Arc::clone(&feed),
             skipped: self.taken,
-            recording,
-        })
+            recording: self.feed.recording(),
+        })?;
+        self.feed = feed;
+        Ok(reader)
     }
 }
 
@@ -358,13 +340,5 @@ mod tests {
         std::fs::write(&path, frames(0..8)).expect("written");
         assert_eq!([take(&mut watcher, 1), take(&mut watcher, 9)], [1, 1]);
         assert_eq!(taken, (0..8).map(f64::from).collect::<Vec<_>>());
-        // The same without a thread.
-        let mut watched = watcher.watched.take().expect("it is watched");
-        watched.taken = 3;
-        let source = watched.open(&access).expect("it is there");
-        let batches = watched.next_of(&source, 2);
-        let firsts = batches.iter().filter_map(|batch| batch.frames.first());
-        let firsts: Vec<f64> = firsts.map(|frame| frame.values()[0]).collect();
-        assert_eq!((firsts, watched.taken), (vec![3.0, 4.0], 5));
     }
 }
