@@ -357,6 +357,18 @@ fn only_taxels_set_by_hand_are_counted_as_dropped() {
 }
 
 #[test]
+fn undo_and_redo_select_the_region_that_was_selected_there() {
+    let ring = "f<6x:Tab>2<Enter>";
+    for keys in ["<Tab>nu", "<Tab>u<C-r>", ":move 1 0<Enter><Tab>u"] {
+        shows(&format!("{ring}{keys}"), &["Region 2 of 2: hole"]);
+    }
+    shows(
+        &format!("{ring}<Tab><Tab>:move 1 0<Enter><Tab>u"),
+        &["Region 1 of 2: exterior"],
+    );
+}
+
+#[test]
 fn tab_selects_the_next_region() {
     let ring = "f<6x:Tab>2<Enter>";
     shows(ring, &["Region 1 of 2: exterior"]);

@@ -57,7 +57,8 @@ pub(in crate::tui) fn settle(app: &mut App) {
     }
     app.read();
     let regions = app.reading().regions.len();
-    app.chosen = app.chosen.filter(|&index| index < regions);
+    let chosen = app.chosen().filter(|&index| index < regions);
+    app.history.choose(chosen);
 }
 
 /// Goes back or forward by one change, which a notice names: `done` is "undone" or "redone". `otherwise` is the

@@ -70,13 +70,15 @@ pub struct StoredName {
     pub owner: ShapeOrigin,
 }
 
-/// A document and the number of its origin.
-#[derive(Clone, Debug, PartialEq)]
+/// A document, the number of its origin, and what was chosen on it.
+#[derive(Clone, Debug)]
 struct Revision {
     /// The document.
     document: Document,
     /// The index of its origin in the history's list.
     origin: usize,
+    /// The index of the region that was chosen last; None for the main one.
+    chosen: Option<usize>,
 }
 
 /// A document with all its earlier and, after undo, later states. Going back to a state brings back its name too.
@@ -103,6 +105,7 @@ impl History {
             present: Revision {
                 document,
                 origin: 0,
+                chosen: None,
             },
             future: Vec::new(),
             origins,
@@ -113,6 +116,16 @@ impl History {
     /// Returns the document as it is now.
     pub fn present(&self) -> &Document {
         &self.present.document
+    }
+
+    /// Returns the index of the chosen region of the present document; None for the main one.
+    pub fn chosen(&self) -> Option<usize> {
+        self.present.chosen
+    }
+
+    /// Chooses a region of the present document. It stays chosen on the documents after it.
+    pub fn choose(&mut self, region: Option<usize>) {
+        self.present.chosen = region;
     }
 
     /// Returns the origin of the present document.
@@ -133,18 +146,14 @@ impl History {
     /// Adds a change of the document. A change that changes nothing leaves no trace.
     pub fn push(&mut self, document: Document) {
         if document != self.present.document {
-            let origin = self.present.origin;
-            self.replace(Revision { document, origin });
+            self.replace(document, self.present.origin);
         }
     }
 
     /// Adds a document that comes from somewhere else.
     pub fn begin(&mut self, document: Document, origin: DocumentOrigin) {
         self.origins.push(origin);
-        self.replace(Revision {
-            document,
-            origin: self.origins.len() - 1,
-        });
+        self.replace(document, self.origins.len() - 1);
     }
 
     /// Adds a document that is stored nowhere and comes from an earlier run. Drops the states before it if nothing is
@@ -224,13 +233,22 @@ impl History {
 
     /// Drops the last step if amendments have undone it: such a step is no change, and leaves no trace.
     fn drop_empty_step(&mut self) {
-        let present = &self.present;
-        self.past.pop_if(|past| *past == *present);
+        let Revision {
+            document, origin, ..
+        } = &self.present;
+        self.past
+            .pop_if(|past| past.document == *document && past.origin == *origin);
     }
 
-    /// Makes a state the present one and the former one the last of the past.
-    fn replace(&mut self, state: Revision) {
+    /// Makes a document the present one and the former one the last of the past.
+    fn replace(&mut self, document: Document, origin: usize) {
         self.drop_empty_step();
+        let chosen = self.present.chosen;
+        let state = Revision {
+            document,
+            origin,
+            chosen,
+        };
         self.past.push(std::mem::replace(&mut self.present, state));
         self.future.clear();
     }
@@ -246,8 +264,8 @@ impl History {
         self.drop_empty_step();
         let earlier = self.past.pop()?;
         let undone = self.step(&earlier, &self.present);
-        self.future
-            .push(std::mem::replace(&mut self.present, earlier));
+        let left = self.travel(earlier);
+        self.future.push(left);
         Some(undone)
     }
 
@@ -255,8 +273,16 @@ impl History {
     pub fn redo(&mut self) -> Option<String> {
         let later = self.future.pop()?;
         let redone = self.step(&self.present, &later);
-        self.past.push(std::mem::replace(&mut self.present, later));
+        let left = self.travel(later);
+        self.past.push(left);
         Some(redone)
+    }
+
+    /// Makes an earlier or a later state the present one, and returns the one that is left. The region that was chosen
+    /// there is chosen again; if none was, the choice stays.
+    fn travel(&mut self, mut state: Revision) -> Revision {
+        state.chosen = state.chosen.or(self.present.chosen);
+        std::mem::replace(&mut self.present, state)
     }
 
     /// Returns the change from one state to the next, in words.

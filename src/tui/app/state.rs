@@ -200,8 +200,6 @@ pub struct App {
     pub(in crate::tui) cursor: (u8, u8),
     /// The part of a large matrix that its window follows.
     pub(in crate::tui) followed: Followed,
-    /// The index of the region chosen with Tab; None for the main one.
-    pub(in crate::tui) chosen: Option<usize>,
     /// The mode, which decides what the arrow keys do.
     pub(in crate::tui) mode: Mode,
     /// The way of showing the taxels.
@@ -277,7 +275,6 @@ impl App {
             shown: ReadDocument::new(document.clone()),
             history: History::new(document),
             followed: Followed::Cursor,
-            chosen: None,
             mode: Mode::Draw,
             display: Display::Imprint,
             layers: Layers::default(),
@@ -409,7 +406,7 @@ impl App {
 
     /// Returns the part of the matrix that the window keeps visible.
     pub(in crate::tui) fn seen(&self) -> Bounds {
-        let region = self.reading().region(self.chosen);
+        let region = self.reading().region(self.chosen());
         match region.filter(|_| self.followed == Followed::Region) {
             Some((_, region)) => region.bounds(),
             None => Bounds::of_taxel(self.cursor().0, self.cursor().1),
@@ -535,7 +532,7 @@ impl App {
 
     /// Returns the index of the chosen region; None for the main one.
     pub fn chosen(&self) -> Option<usize> {
-        self.chosen
+        self.history.chosen()
     }
 
     /// Returns the name that the document is stored under, with the stamp and the owner of its file; None if it is

@@ -230,7 +230,7 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
         .map_or(String::new(), |id| format!("imprint {id} "));
     let_go(app);
     change(app, document);
-    app.chosen = None;
+    app.history.choose(None);
     let undo = app.key_of(&action::UNDO);
     let explore = app.key_of(&action::EXPLORE);
     inform(

@@ -91,7 +91,7 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
                 let opened = format!("{name} opened");
                 let origin = DocumentOrigin::of(&document).called(&opened);
                 begin(app, origin, document);
-                app.chosen = None;
+                app.history.choose(None);
                 inform(app, opened);
             }
             Err(reason) => refuse(app, format!("{name}: {reason}")),

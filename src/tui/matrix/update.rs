@@ -306,7 +306,7 @@ fn edit(app: &mut App, message: &Message) {
 /// are one to a line, key and value with a tab between; the imprint is in the form of its text files.
 fn copy(app: &mut App, what: Copied) -> Option<Effect> {
     let seen = app.reading();
-    let (name, text) = match (what, seen.description(app.chosen)) {
+    let (name, text) = match (what, seen.description(app.chosen())) {
         (Copied::Imprint, _) => ("imprint", seen.imprint.to_string() + "\n"),
         (Copied::Descriptors, None) => {
             refuse(app, NO_REGION);
@@ -403,12 +403,12 @@ fn choose_region(app: &mut App, by: i8) {
     // Also if the region stays the same: it may be out of sight.
     app.followed = Followed::Region;
     let seen = app.reading();
-    let Some((now, _)) = seen.region(app.chosen) else {
+    let Some((now, _)) = seen.region(app.chosen()) else {
         return inform(app, NO_REGION);
     };
     let count = seen.regions.len();
     if count == 1 {
         return inform(app, "there is no other region");
     }
-    app.chosen = Some(around(now, by, count));
+    app.history.choose(Some(around(now, by, count)));
 }

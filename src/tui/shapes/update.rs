@@ -344,7 +344,7 @@ fn put_on_matrix(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
         });
     }
     begin(app, origin, document);
-    app.chosen = None;
+    app.history.choose(None);
     inform(app, format!("{} loaded", shape.name));
     Ok(())
 }
