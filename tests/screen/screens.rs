@@ -387,6 +387,39 @@ fn the_smallest_screen_shows_an_imprint_of_the_list() {
     shows(&sized((20, 7), false, sweep), &["poses", "\n>  0 "]);
 }
 
+/// If there is too little room for a question, what it is about is cut, never its answers.
+#[test]
+fn the_answers_to_a_question_are_visible_on_small_screens() {
+    let long = "a".repeat(64);
+    let delete = format!("<Space>s{long}<Enter>da<Enter>");
+    for size in [(20, 6), (40, 12)] {
+        for (keys, begins, answers) in [
+            (
+                "f<Enter>q",
+                "The imprint",
+                "Quit anyway? (y: lose it, n: stay, s: save first)",
+            ),
+            (
+                "<Space>nf<Enter>q",
+                "The imprint",
+                "Quit anyway? (y: lose them, n: stay, s: save first)",
+            ),
+            (
+                "<Space>sone<Enter>n<Space>sone<Enter>",
+                "\"one\" already",
+                "Replace it? (y/n)",
+            ),
+            (&delete, "Delete", " (y/n)"),
+        ] {
+            let screen = sized(size, false, keys).screen();
+            let text = screen.split_whitespace().collect::<Vec<_>>().join(" ");
+            for piece in [begins, answers] {
+                assert!(text.contains(piece), "{piece:?} in {size:?}:\n{screen}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_narrow_form_shows_the_limits_that_a_value_misses() {
     for size in [(80, 24), (60, 20), (40, 12)] {

@@ -29,7 +29,7 @@ use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::search::page::SearchDialog;
 use crate::tui::shapes::state::ListDialog;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::theme::Theme;
 
 /// A page that lies over the matrix, with its state.
 #[derive(Clone, Debug)]
@@ -126,6 +126,8 @@ pub(in crate::tui) use topmost;
 /// A question, and what each answer does. Leaving it without an answer does nothing.
 #[derive(Clone, Debug)]
 pub struct Question {
+    /// The sentences before the question; empty if it says all.
+    pub about: String,
     /// The question.
     pub text: String,
     /// The message that yes sends.
@@ -138,24 +140,46 @@ pub struct Question {
     pub saves_first: bool,
     /// The meanings of yes and no, in a few words; None if the question says them.
     pub meanings: Option<[&'static str; 2]>,
+    /// The meaning of leaving it without an answer, in a few words; None if that does nothing.
+    pub left: Option<&'static str>,
 }
 
 impl Question {
-    /// Returns a question where only yes does something.
-    pub fn new(text: impl Into<String>, yes: Message) -> Self {
+    /// Returns a question where only yes does something, with the sentences before it.
+    pub fn new(about: impl Into<String>, text: impl Into<String>, yes: Message) -> Self {
         Self {
+            about: about.into(),
             text: text.into(),
             yes,
             no: None,
             prompt: None,
             saves_first: false,
             meanings: None,
+            left: None,
         }
     }
 
     /// Creates the question whether to replace the file or the shape of this name; yes sends the message `yes`.
     pub fn replaces(name: &str, yes: Message) -> Self {
-        Self::new(format!("{name:?} already exists. Replace it?"), yes)
+        Self::new(format!("{name:?} already exists."), "Replace it?", yes)
+    }
+
+    /// Returns the keys of the answers and their meanings: `(y: lose it, n: stay, s: save first)`.
+    pub fn answers(&self, keymap: &Keymap) -> String {
+        let key = |answer| keymap.label(Context::Question, answer);
+        let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
+        let mut answers = match self.meanings {
+            Some([of_yes, of_no]) => format!("{yes}: {of_yes}, {no}: {of_no}"),
+            None => format!("{yes}/{no}"),
+        };
+        let save = self.saves_first.then_some("save first");
+        for (answer, meaning) in [(&action::SAVE, save), (&action::CANCEL, self.left)] {
+            let key = key(answer);
+            if let Some(meaning) = meaning.filter(|_| !key.is_empty()) {
+                answers += &format!(", {key}: {meaning}");
+            }
+        }
+        format!("({answers})")
     }
 }
 
@@ -168,27 +192,12 @@ impl Page for Question {
         Slot::Question
     }
 
-    /// Draws nothing: a question is a remark.
+    /// Draws nothing: a question stands in the line of notices, see [`crate::tui::app::notice`].
     fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
         None
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
         self.saves_first || *message != Message::Save
-    }
-
-    fn remark(&self, keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
-        let key = |answer| keymap.label(Context::Question, answer);
-        let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
-        let save = Some(key(&action::SAVE)).filter(|key| self.saves_first && !key.is_empty());
-        let save = save.map_or(String::new(), |key| format!(", {key}: save first"));
-        let answers = match self.no {
-            Some(_) => String::new(),
-            None => match self.meanings {
-                Some([of_yes, of_no]) => format!(" ({yes}: {of_yes}, {no}: {of_no}{save})"),
-                None => format!(" ({yes}/{no}{save})"),
-            },
-        };
-        Some((format!("{}{answers}", self.text), Role::Error))
     }
 }

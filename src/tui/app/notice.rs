@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::layout::Panes;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, Notice};
@@ -12,17 +12,10 @@ use crate::tui::widget::write;
 /// Returns the notice, else the request to the disk that the user waits for, else the text of the top page. A
 /// question stands after the notice.
 pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
-    let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
-    let is_question = top.is_some_and(|page| page.slot() == Slot::Question);
-    if is_question && let Some((question, role)) = remark {
-        let text = match &app.notice {
-            Some(Notice::Info(said) | Notice::Refusal(said) | Notice::Failure(said)) => {
-                format!("{said}. {question}")
-            }
-            None => question,
-        };
-        return Some((text, role));
+    if let Some(Dialog::Question(question)) = app.dialogs.last() {
+        return Some((asked(app, panes, question), Role::Error));
     }
+    let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
     let notice = app.notice.as_ref().map(|notice| match notice {
         Notice::Info(text) => (text.clone(), Role::Key),
         Notice::Refusal(text) | Notice::Failure(text) => (format!("! {text}"), Role::Error),
@@ -37,6 +30,37 @@ pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(Strin
     }
 }
 
+/// Returns a question with its answers, after the notice. Where there is too little room, the notice is left out, and
+/// the sentences before the question end in an ellipsis: the answers are always there.
+fn asked(app: &App, panes: &Panes, question: &Question) -> String {
+    let answers = question.answers(app.keymap());
+    // A question without sentences before it may be too long itself: it has a name in it.
+    let (start, end) = match question.about.as_str() {
+        "" => (&*question.text, answers),
+        about => (about, format!("{} {answers}", question.text)),
+    };
+    let room = panes.notice.bottom().saturating_sub(panes.body.y);
+    let fits = |text: &String| lines(app, panes, text) <= usize::from(room);
+    let said = match &app.notice {
+        Some(Notice::Info(said) | Notice::Refusal(said) | Notice::Failure(said)) => {
+            format!("{said}. ")
+        }
+        None => String::new(),
+    };
+    let whole = Some(format!("{said}{start} {end}")).filter(fits);
+    let most = usize::from(room) * usize::from(panes.notice.width);
+    let mut shorter = (0..=most.min(write::width(start))).rev().map(|columns| {
+        let start = write::fitted(start, columns, app.theme());
+        format!("{start} {end}")
+    });
+    whole.or_else(|| shorter.find(fits)).unwrap_or(end)
+}
+
+/// Returns the number of lines that a text takes in the area of notices.
+fn lines(app: &App, panes: &Panes, text: &str) -> usize {
+    write::broken(&app.theme().text(text), usize::from(panes.notice.width)).len()
+}
+
 /// Returns the lines that a notice takes. A prompt keeps its line, and the notice stands above it.
 pub fn block(app: &App, panes: &Panes, text: &str) -> Rect {
     let is_typed = |page: &dyn Page| page.slot() == Slot::Prompt;
@@ -45,7 +69,7 @@ pub fn block(app: &App, panes: &Panes, text: &str) -> Rect {
         y: panes.notice.y - u16::from(is_typed),
         ..panes.notice
     };
-    let lines = write::broken(&app.theme().text(text), usize::from(last.width)).len();
+    let lines = lines(app, panes, text);
     let room = last.bottom().saturating_sub(panes.body.y);
     let height = u16::try_from(lines).unwrap_or(room).clamp(1, room.max(1));
     Rect {

@@ -124,8 +124,7 @@ pub trait Page {
         false
     }
 
-    /// Returns the text of the page for the line of notices. It is shown while there is no notice; the text of a
-    /// question always.
+    /// Returns the text of the page for the line of notices. It is shown while there is no notice.
     fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
         None
     }

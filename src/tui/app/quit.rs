@@ -24,11 +24,11 @@ pub(in crate::tui) fn quit(app: &mut App) {
     let ends = recording(app).map_or(String::new(), |name| {
         format!("; the recording in {name} ends")
     });
-    let text = format!("{what} not saved{ends}. Quit anyway?");
+    let about = format!("{what} not saved{ends}.");
     let question = Question {
         saves_first: can_save_first(app),
         meanings: Some([lost, "stay"]),
-        ..Question::new(text, Message::QuitNow)
+        ..Question::new(about, "Quit anyway?", Message::QuitNow)
     };
     app.dialogs.push(Dialog::Question(question));
 }

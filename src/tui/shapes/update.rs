@@ -17,7 +17,6 @@ use crate::tui::app::quit::quit;
 use crate::tui::app::state::{App, Mode};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
-use crate::tui::keys::binding::Context;
 use crate::tui::live;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::runtime::effect::Effect;
@@ -128,7 +127,8 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         LibraryEvent::Differs(shape, stamp, text) => {
             app.saving.pop_front();
             let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
-            let question = Question::new(format!("{text}. Replace it?"), Message::Request(store));
+            let about = format!("{text}.");
+            let question = Question::new(about, "Replace it?", Message::Request(store));
             app.dialogs.push(Dialog::Question(question));
         }
         LibraryEvent::Removed(name) => {
@@ -143,7 +143,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
             app.history.restored(&name);
             inform(app, format!("{name} is back"));
         }
-        LibraryEvent::Found(left) => offer(app, "", &left),
+        LibraryEvent::Found(left) => offer(app, &left),
         LibraryEvent::Recovered(shape) => {
             let document = Document::of_shape(&shape);
             let origin = DocumentOrigin::unsaved(&document).called("unsaved work brought back");
@@ -156,7 +156,8 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         LibraryEvent::GivenUp(name, left) => {
             app.removed.push(name.clone());
             if let Some(left) = left {
-                offer(app, &format!("{name} is in the trash. "), &left);
+                inform(app, format!("{name} is in the trash"));
+                offer(app, &left);
             } else {
                 let how = how_to_restore(app, &name);
                 let text = "the unsaved work is in the trash as";
@@ -203,23 +204,17 @@ fn on_stored(app: &mut App, name: String, stamp: u64) {
 /// Asks whether to restore the unsaved work of a program that crashed.
 /// Work of several crashes is offered one after the other; no answer keeps it for the next start. While a sensor is
 /// watched the question waits below that page.
-fn offer(app: &mut App, before: &str, left: &Leftover) {
-    let key = |answer| app.keymap().label(Context::Question, answer);
-    let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
-    let later = key(&action::CANCEL);
+fn offer(app: &mut App, left: &Leftover) {
     let of = match left.waiting {
         0 | 1 => String::new(),
         all => format!(" (1 of {all})"),
     };
-    let text = format!(
-        "{before}There is unsaved work from last time{of}: {}.",
-        left.what
-    );
-    let answers =
-        format!("{yes} restores it, {no} moves it to the trash, {later} asks again next time");
+    let text = format!("There is unsaved work from last time{of}: {}.", left.what);
     let question = Question {
         no: Some(Message::GiveUp),
-        ..Question::new(format!("{text} Restore it? {answers}"), Message::Recover)
+        meanings: Some(["yes", "to the trash"]),
+        left: Some("ask next time"),
+        ..Question::new(text.clone(), "Restore it?", Message::Recover)
     };
     let live = |dialog: &Dialog| matches!(dialog, Dialog::Live(_));
     match app.dialogs.iter().position(live) {
@@ -305,7 +300,7 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
 /// Asks whether to delete a shape.
 fn ask_removal(app: &mut App, name: String) {
     let text = format!("Delete {name:?}?");
-    let question = Question::new(text, Message::Request(LibraryRequest::Remove(name)));
+    let question = Question::new("", text, Message::Request(LibraryRequest::Remove(name)));
     app.dialogs.push(Dialog::Question(question));
 }
 

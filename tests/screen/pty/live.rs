@@ -681,7 +681,7 @@ fn unsaved_work_from_last_time_does_not_prevent_recording() {
         program.types(b" ");
         program.shows("frozen");
         program.types(b"\x1b");
-        program.shows("Restore it? y restores it");
+        program.shows("Restore it? (y: yes, n: to the trash");
         program.shows("a.npy: 3 frames recorded");
         program.types(answer);
         program.shows(if answer == b"y" {
