@@ -75,6 +75,13 @@ fn files_that_cannot_be_opened_or_written_are_reported() {
         &["not a regular file"],
     );
     press(&mut session, "<Esc>");
+    // In the same words as `taxel describe`.
+    then(
+        &mut session,
+        &format!(":open {place}/nope<Enter>"),
+        &["nope: cannot read: No such file or directory"],
+    );
+    press(&mut session, "<Esc>");
     then(
         &mut session,
         "<Space>:write x.doc<Enter>",

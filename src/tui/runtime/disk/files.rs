@@ -77,7 +77,7 @@ fn refuse_baud(source: &FrameSource, request: &WatchRequest) -> Result<(), Strin
 /// Opens a file with a shape, or with an imprint in any format.
 fn open(name: &str) -> Result<OpenedFile, String> {
     let path = location::below_home(name).ok_or("no home folder, so ~ cannot be used")?;
-    let sentence = |error: std::io::Error| error.to_string();
+    let sentence = |error: std::io::Error| format!("cannot read: {error}");
     let kind = fs::metadata(&path).map_err(sentence)?;
     if !kind.is_file() {
         return Err("not a regular file".to_owned());
