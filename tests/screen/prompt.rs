@@ -47,15 +47,19 @@ fn the_cursor_and_the_shape_are_moved_by_commands() {
         ("cursor 3 12", "column  3, row 12"),
         (
             "cursor 16 0",
-            "! there is no such taxel: columns are 0 to 15, rows 0 to 15",
+            "! column 16 is not on the sensor (allowed: 0 to 15)",
         ),
         (
             "cursor -1 0",
-            "! there is no such taxel: columns are 0 to 15, rows 0 to 15",
+            "! column -1 is not on the sensor (allowed: 0 to 15)",
         ),
         (
             "cursor 12345678901234567890 0",
-            "! there is no such taxel: columns are 0 to 15, rows 0 to 15",
+            "! column 12345678901234567890 is not on the sensor (allowed: 0 to 15)",
+        ),
+        (
+            "cursor 0 16",
+            "! row 16 is not on the sensor (allowed: 0 to 15)",
         ),
         (
             "cursor far",
@@ -66,11 +70,11 @@ fn the_cursor_and_the_shape_are_moved_by_commands() {
         ("move 0 -100", "! y0: -96 is below -16"),
         (
             "move 1",
-            "! move takes DX DY in cells, like 0.5 -1, found \"1\"",
+            "! move takes DX DY in cells (like 0.5 -1), found \"1\"",
         ),
-        ("move far away", "like 0.5 -1, found \"far away\""),
-        ("move", "! move takes DX DY in cells, like 0.5 -1"),
-        ("turn", "! turn takes DEGREES, like 30.5"),
+        ("move far away", "(like 0.5 -1), found \"far away\""),
+        ("move", "! move takes DX DY in cells (like 0.5 -1)"),
+        ("turn", "! turn takes DEGREES (like 30.5)"),
         ("step larger", "step 0.1"),
         ("region previous", "there is no other region"),
         ("help", "On the matrix"),
@@ -330,7 +334,7 @@ fn commands_do_what_keys_do() {
         ),
         (
             "figure \"hexagon\"",
-            "! figure takes a kind without quotes: hexagon",
+            "! leave out the quotes: figure hexagon",
         ),
         ("figure hexagon --side", "! --side needs a value"),
         ("figure hexagon --side=", "! --side needs a value"),

@@ -139,24 +139,20 @@ fn degrees(text: &str) -> Result<Message, String> {
 
 /// Reads a taxel of the sensor.
 fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
-    for text in [column, row] {
+    let index = |what: &str, text: &str, count: u8| {
         let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+        let found = shortened(text);
         if digits.is_empty() || !digits.bytes().all(|digit| digit.is_ascii_digit()) {
-            let text = shortened(text);
             return Err(format!(
-                "cursor takes a column and a row like 3 4, or a direction alone, found {text:?}"
+                "cursor takes a column and a row like 3 4, or a direction alone, found {found:?}"
             ));
         }
-    }
-    let within = |text: &str, count: u8| text.parse().ok().filter(|&at: &u8| at < count);
-    match (within(column, sensor.columns()), within(row, sensor.rows())) {
-        (Some(column), Some(row)) => Ok(Message::PointAt(column, row)),
-        _ => Err(format!(
-            "there is no such taxel: columns are 0 to {}, rows 0 to {}",
-            sensor.columns() - 1,
-            sensor.rows() - 1
-        )),
-    }
+        let within = text.parse().ok().filter(|&at: &u8| at < count);
+        let last = count - 1;
+        within.ok_or_else(|| format!("{what} {found} is not on the sensor (allowed: 0 to {last})"))
+    };
+    let column = index("column", column, sensor.columns())?;
+    Ok(Message::PointAt(column, index("row", row, sensor.rows())?))
 }
 
 /// Reads a distance in cells along x and y; None unless both are finite numbers.
@@ -169,9 +165,9 @@ fn unexpected(command: &PromptCommand, rest: &str) -> String {
     let words = command.words.iter().map(|(word, _)| *word);
     let mut taken: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
     let form = command.arguments.map(|arguments| match arguments {
-        Arguments::Degrees => "DEGREES, like 30.5",
-        Arguments::Distance => "DX DY in cells, like 0.5 -1",
-        Arguments::Taxel => "COLUMN ROW, like 3 4",
+        Arguments::Degrees => "DEGREES (like 30.5)",
+        Arguments::Distance => "DX DY in cells (like 0.5 -1)",
+        Arguments::Taxel => "COLUMN ROW (like 3 4)",
         other => other.form(),
     });
     taken.extend(form);
@@ -223,7 +219,7 @@ fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     let kind: FigureKind = kind.parse().map_err(|_| {
         let bare = kind.trim_matches(['"', '\'']);
         match bare.parse::<FigureKind>() {
-            Ok(_) => format!("figure takes a kind without quotes: {bare}"),
+            Ok(_) => format!("leave out the quotes: figure {bare}"),
             Err(_) => RecordError::FigureKind {
                 found: shortened(kind),
             }
