@@ -182,7 +182,7 @@ impl World {
         self
     }
 
-    /// Stops each sweep and each training with more poses at once, like a user who does not wait for it.
+    /// Stops each sweep and each training after this many poses, like a user who does not wait for it.
     #[must_use]
     pub fn with_pose_limit(mut self, poses: u64) -> Self {
         self.workers.stop_after(poses);

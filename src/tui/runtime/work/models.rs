@@ -60,12 +60,12 @@ impl ModelStore {
         self.folder.iter().flat_map(names).collect()
     }
 
-    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training, which it
-    /// may refuse; `progress` is called during the training, as by a sweep.
+    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training; `progress` is
+    /// called during it, as by a sweep.
     pub(in crate::tui::runtime) fn model(
         &self,
         choice: &ModelChoice,
-        begins: &dyn Fn(u64) -> bool,
+        begins: &dyn Fn(u64),
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<Model, String> {
         let Some(training) = choice.training() else {
@@ -73,9 +73,7 @@ impl ModelStore {
         };
         let training = training.map_err(|error| error.to_string())?;
         cached_or_trained(self.cache.as_ref(), training, |training| {
-            if !begins(training.poses()) {
-                return Err("training was stopped".to_owned());
-            }
+            begins(training.poses());
             let memory = MemoryGuard::new(
                 None,
                 "take fewer shapes or coarser steps, or train it in shards on the command line (taxel model train --shard)",
@@ -189,8 +187,8 @@ impl ModelWorker {
         let (store, reading) = (self.store.clone(), self.reading.clone());
         let post = match execution {
             Execution::AtOnce(limit) => {
-                let begins = |poses| limit.allows(poses);
-                let calls: Calls<'_> = (&begins, &|_| true);
+                let progress = limit.count();
+                let calls: Calls<'_> = (&|_| {}, &progress);
                 let event = prepare(&store, number, choice, known, &reading, calls);
                 return Some(WorkerEvent::Recognition(event));
             }
@@ -204,7 +202,6 @@ impl ModelWorker {
                 post(WorkerEvent::Recognition(RecognitionEvent::Begun(
                     number, poses,
                 )));
-                true
             };
             let progress = |poses| proceed(poses, &stop, Some(&clock));
             let event = guarded(number, || {
@@ -255,9 +252,9 @@ impl ModelWorker {
     }
 }
 
-/// Two functions. The first is called with the number of poses before a training, and returns whether to begin it.
-/// The second is called during it with the number of poses done, as by a sweep.
-type Calls<'a> = (&'a dyn Fn(u64) -> bool, &'a (dyn Fn(u64) -> bool + Sync));
+/// Two functions. The first is called with the number of poses before a training, the second during it with the number
+/// of poses done, as by a sweep.
+type Calls<'a> = (&'a dyn Fn(u64), &'a (dyn Fn(u64) -> bool + Sync));
 
 /// Reads a model from the cache or trains it, and evaluates it. The event also has the names of stored models, which
 /// may have changed.

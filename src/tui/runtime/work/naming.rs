@@ -114,10 +114,7 @@ impl ShapeNamer {
             choice,
             noise,
         } = &own.naming;
-        let train = || {
-            own.store
-                .model(choice, &|poses| own.limit.allows(poses), &|_| true)
-        };
+        let train = || own.store.model(choice, &|_| {}, &own.limit.count());
         let event = match own.model.get_or_init(train) {
             Ok(model) => {
                 let named = NamedImprint::new(model, imprint, noise.as_ref());
@@ -156,7 +153,7 @@ fn answer(
     say: &dyn Fn(LiveEvent),
 ) -> Result<(), String> {
     let progress = |_: u64| !stop.load(Ordering::Relaxed);
-    let model = store.model(&naming.choice, &|_| true, &progress)?;
+    let model = store.model(&naming.choice, &|_| {}, &progress)?;
     while let Ok(imprint) = imprints.recv() {
         let named = NamedImprint::new(&model, &imprint, naming.noise.as_ref());
         say(LiveEvent::Named(naming.number, Box::new(named)));

@@ -91,21 +91,19 @@ pub(in crate::tui::runtime) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, 
     done.map_err(|_| "the work failed; this is a bug".to_owned())
 }
 
-/// The largest number of poses of work that is done at once; None for any number.
+/// The largest number of poses of a piece of work that is done at once; None for any number.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::tui::runtime) struct PoseLimit(pub(in crate::tui::runtime) Option<u64>);
 
 impl PoseLimit {
-    /// Returns true if work with this number of poses is begun.
-    pub(in crate::tui::runtime) fn allows(self, poses: u64) -> bool {
-        self.0.is_none_or(|most| poses <= most)
-    }
-
-    /// Returns a function for work whose poses are not counted beforehand. It is called with the number of poses done
-    /// since the last call, and returns whether to go on.
+    /// Returns the progress function of a piece of work. It is called with the number of poses done since the last
+    /// call, and returns whether to go on.
     pub(in crate::tui::runtime) fn count(self) -> impl Fn(u64) -> bool + Sync {
         let done = AtomicU64::new(0);
-        move |poses| self.allows(done.fetch_add(poses, Ordering::Relaxed) + poses)
+        move |poses| {
+            let done = done.fetch_add(poses, Ordering::Relaxed) + poses;
+            self.0.is_none_or(|most| done <= most)
+        }
     }
 }
 

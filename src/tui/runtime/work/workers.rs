@@ -81,7 +81,7 @@ impl Workers {
         self.execution = Execution::OnThreads(post);
     }
 
-    /// Does work at once from now on, and stops it after this many poses.
+    /// Does work at once from now on, and stops each piece after this many poses.
     pub(in crate::tui::runtime) fn stop_after(&mut self, poses: u64) {
         self.execution = Execution::AtOnce(PoseLimit(Some(poses)));
     }
@@ -180,13 +180,7 @@ impl Workers {
     fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
         let stop = self.begin();
         let post = match &self.execution {
-            Execution::AtOnce(limit) if limit.allows(grid.poses()) => {
-                return Some(sweep(number, &grid, &|_| true));
-            }
-            Execution::AtOnce(_) => {
-                let text = "stopped before anything was complete".to_owned();
-                return Some(WorkerEvent::Failed(number, text));
-            }
+            Execution::AtOnce(limit) => return Some(sweep(number, &grid, &limit.count())),
             Execution::OnThreads(post) => post,
         };
         let thread = on_a_thread(number, post, move |post| {
