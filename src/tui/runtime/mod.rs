@@ -37,11 +37,10 @@ use std::time::{Duration, Instant};
 
 use crate::tui::runtime::disk::journal_writer::JournalWriter;
 use crate::tui::runtime::disk::leftover;
-use crate::tui::runtime::disk::queue::{
-    DiskAnswer, DiskQueue, DiskRequest, newest_orphan, not_recorded,
-};
+use crate::tui::runtime::disk::queue::DiskQueue;
 use crate::tui::runtime::disk::reading::Reader;
 use crate::tui::runtime::disk::reminders::Reminders;
+use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest, newest_orphan, not_recorded};
 use crate::tui::runtime::disk::shape_log::ShapeLog;
 pub use crate::tui::runtime::disk::shape_log::ShapeSink;
 use crate::tui::runtime::disk::write_access::WriteAccess;

@@ -1,7 +1,8 @@
 //! Work with the disk, which may answer late, or never.
 //!
 //! ```text
-//! queue            requests, carried out in order on a thread of their own
+//! request          what is asked of the disk, and how it is carried out
+//! queue            requests in order, on a thread of their own
 //! reading          what is being read, for the page that asked
 //! files            opens and writes files of imprints
 //! write_access     where files may be written
@@ -10,6 +11,8 @@
 //! reminders        what is remembered for the next run
 //! shape_log        which stored shapes were used, for a record
 //! ```
+
+pub(super) mod request;
 
 pub(super) mod queue;
 

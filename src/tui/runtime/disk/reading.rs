@@ -9,7 +9,8 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use crate::tui::runtime::disk::queue::{DiskAnswer, DiskQueue, DiskRequest};
+use crate::tui::runtime::disk::queue::DiskQueue;
+use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest};
 
 /// Requests to read, and their answers.
 #[derive(Debug)]

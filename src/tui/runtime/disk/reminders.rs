@@ -9,7 +9,8 @@ use crate::storage::{Library, RememberedFile};
 use crate::tui::app::state::App;
 use crate::tui::form::memory::FormMemory;
 use crate::tui::recognise::reach::trained_set;
-use crate::tui::runtime::disk::queue::{DiskQueue, DiskRequest};
+use crate::tui::runtime::disk::queue::DiskQueue;
+use crate::tui::runtime::disk::request::DiskRequest;
 
 /// The remembered files, and their content as far as it is known.
 #[derive(Debug)]

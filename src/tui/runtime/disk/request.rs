@@ -1,0 +1,313 @@
+//! The requests to the disk: to the library, to files and to recordings; how each is carried out, and its answer.
+
+use std::io::ErrorKind;
+use std::sync::Arc;
+
+use rustix::fs::{Access, access};
+use rustix::io::Errno;
+
+use crate::formats::recording::{RecordedView, RecordingMetadata};
+use crate::formats::{Name, StoredShape};
+use crate::storage::{
+    Expected, Library, LibraryError, LoadedShape, Orphan, RememberedFile, UNNAMED,
+};
+use crate::tui::app::library::{LibraryEvent, LibraryRequest, Purpose};
+use crate::tui::app::message::FileEvent;
+use crate::tui::live::message::LiveEvent;
+use crate::tui::runtime::disk::files;
+use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::effect::FileRequest;
+use crate::tui::runtime::frames::recording::Recording;
+use crate::tui::runtime::work::models::ModelStore;
+
+/// A request to the disk.
+#[derive(Debug)]
+pub(in crate::tui::runtime) enum DiskRequest {
+    /// Read or change the library.
+    Library(LibraryRequest),
+    /// Move unsaved work of a program that crashed to the trash, and look for more of it.
+    ThrowAway(Box<Orphan>),
+    /// Read or write a file, or list some.
+    File(FileRequest),
+    /// Remember lines for the next run, in place of those remembered before.
+    Remember(RememberedFile, Vec<String>),
+    /// Remember further lines for the next run.
+    RememberMore(RememberedFile, Vec<String>),
+    /// Create a file and record the frames of the source of that number in it.
+    BeginRecording(u64, Box<RecordingMetadata>),
+    /// Write threshold, tare and marks into the metadata of a recording of the source of that number.
+    WriteMetadata(u64, Arc<Recording>, Box<RecordedView>),
+    /// Write out all waiting frames of a recording of the source of that number.
+    FlushRecording(u64, Arc<Recording>),
+    /// Finish a recording of the source of that number.
+    EndRecording(u64, Arc<Recording>),
+}
+
+/// The outcome of a request.
+#[derive(Debug)]
+pub(in crate::tui::runtime) enum DiskAnswer {
+    /// The shape that was to be saved; the stamp of its file, or the error; and the stored shape that is in its way,
+    /// if any.
+    Stored(
+        Box<StoredShape>,
+        Result<u64, LibraryError>,
+        Option<Box<LoadedShape>>,
+    ),
+    /// The name of the unsaved work in the trash, or the error; and the next work to offer, with the number of
+    /// offers.
+    ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
+    /// The answer to a request about a file.
+    File(FileEvent),
+    /// Any other answer of the library.
+    Library(LibraryEvent),
+    /// The file name and the recording for the source of that number, or the reason why there is none.
+    Recording(u64, Result<(String, Arc<Recording>), String>),
+    /// An event for the page of the source of that number.
+    Live(u64, LiveEvent),
+    /// No answer is wanted.
+    Nothing,
+}
+
+impl DiskRequest {
+    /// Returns a description of the request for a message, in a few words.
+    pub(super) fn words(&self) -> String {
+        match self {
+            Self::Library(request) => request_words(request),
+            Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
+            Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
+            Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
+            Self::File(FileRequest::Source(request)) => format!("Opening {}", request.name()),
+            Self::File(FileRequest::Paths(_)) => "Listing files".to_owned(),
+            Self::Remember(..) | Self::RememberMore(..) => "Remembering it".to_owned(),
+            Self::BeginRecording(..) => "Starting a recording".to_owned(),
+            Self::WriteMetadata(_, recording, _) => {
+                format!("Saving the metadata of {}", recording.path().display())
+            }
+            Self::FlushRecording(_, recording) | Self::EndRecording(_, recording) => {
+                format!("Saving {}", recording.path().display())
+            }
+        }
+    }
+
+    /// Returns true if the request makes an earlier one needless: of the metadata of a recording, only the
+    /// latest stays.
+    pub(super) fn replaces(&self, earlier: &Self) -> bool {
+        match (self, earlier) {
+            (Self::WriteMetadata(_, own, _), Self::WriteMetadata(_, other, _)) => {
+                Arc::ptr_eq(own, other)
+            }
+            _ => false,
+        }
+    }
+
+    /// Returns true if the request needs the lock of the library, which another program may hold.
+    pub(super) fn locks(&self) -> bool {
+        match self {
+            Self::Library(request) => request.is_change(),
+            Self::ThrowAway(_) => true,
+            _ => false,
+        }
+    }
+
+    /// Carries out the request.
+    pub(super) fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
+        match self {
+            Self::Library(request) => answer(library, request),
+            Self::ThrowAway(orphan) => throw_away(library, *orphan),
+            Self::File(request) => {
+                let models = ModelStore::beside(library);
+                DiskAnswer::File(files::perform(request, &models, access))
+            }
+            Self::Remember(file, lines) => {
+                file.write(&lines);
+                DiskAnswer::Nothing
+            }
+            Self::RememberMore(file, lines) => {
+                file.add(lines);
+                DiskAnswer::Nothing
+            }
+            Self::BeginRecording(number, metadata) => {
+                DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
+            }
+            Self::WriteMetadata(number, of, view) => written(number, of.write_metadata(*view)),
+            Self::FlushRecording(number, recording) => written(number, recording.flush().map(drop)),
+            Self::EndRecording(number, recording) => {
+                let ended = recording.finish();
+                ended.map_or(DiskAnswer::Nothing, |event| DiskAnswer::Live(number, event))
+            }
+        }
+    }
+}
+
+/// Returns a description of a request to the library for a message, in a few words.
+fn request_words(request: &LibraryRequest) -> String {
+    match request {
+        LibraryRequest::List => "Listing the shapes".to_owned(),
+        LibraryRequest::Models => "Listing the models".to_owned(),
+        LibraryRequest::Trash => "Listing the deleted shapes".to_owned(),
+        LibraryRequest::Read(_) => "Reading the shapes".to_owned(),
+        LibraryRequest::Named(Purpose::Load, name) => format!("Loading {name}"),
+        LibraryRequest::Named(_, name) => format!("Reading {name}"),
+        LibraryRequest::Store(shape, _) => format!("Saving {}", shape.name),
+        LibraryRequest::Deletable(name) => format!("Looking for {name}"),
+        LibraryRequest::Remove(name) => format!("Deleting {name}"),
+        LibraryRequest::Restore(Some(name)) => format!("Restoring {name}"),
+        LibraryRequest::Restore(None) => "Restoring a shape".to_owned(),
+    }
+}
+
+/// Carries out a request to the library.
+fn answer(library: &Library, request: LibraryRequest) -> DiskAnswer {
+    let sentence = |error| sentence(library, &error);
+    DiskAnswer::Library(match request {
+        LibraryRequest::List => LibraryEvent::List(library.list().map_err(sentence)),
+        LibraryRequest::Models => {
+            let names = ModelStore::beside(library).names().into_iter();
+            LibraryEvent::Models(names.map(|name| name.to_string()).collect())
+        }
+        LibraryRequest::Trash => LibraryEvent::Trash(library.in_trash().map_err(sentence)),
+        LibraryRequest::Read(names) => {
+            let read = names.into_iter().map(|name| {
+                let loaded = library.load(&name).map_err(sentence);
+                (name, loaded)
+            });
+            LibraryEvent::Read(read.collect())
+        }
+        LibraryRequest::Named(purpose, name) => {
+            let loaded = library.load(&name).map(Box::new);
+            LibraryEvent::Named(purpose, loaded.map_err(sentence))
+        }
+        LibraryRequest::Store(shape, expected) => return store(library, shape, expected),
+        LibraryRequest::Deletable(name) => {
+            let found = library.deletable(&name).map_err(sentence);
+            LibraryEvent::Deletable(match found {
+                Ok(_) if is_read_only(library) => Err(format!("not deleted: {READ_ONLY}")),
+                found => found,
+            })
+        }
+        LibraryRequest::Remove(name) => {
+            let removed = library.delete(&name);
+            let removed = removed.map_err(|error| not_changed(library, "not deleted", &error));
+            removed.map_or_else(LibraryEvent::Failed, LibraryEvent::Removed)
+        }
+        LibraryRequest::Restore(name) => {
+            let restored = restore(library, name);
+            let restored = restored.map_err(|error| not_changed(library, "not restored", &error));
+            restored.map_or_else(LibraryEvent::Failed, LibraryEvent::Restored)
+        }
+    })
+}
+
+/// Why nothing in the library can be changed.
+const READ_ONLY: &str = "the library is read-only";
+
+/// Returns true if the system lets nobody, or not this user, write in the library's folder.
+fn is_read_only(library: &Library) -> bool {
+    let writable = access(library.folder(), Access::WRITE_OK);
+    matches!(writable, Err(Errno::ACCESS | Errno::PERM | Errno::ROFS))
+}
+
+/// Returns true if an error says that nothing in the library can be changed. A file system that went read-only after an
+/// error of the disk may still call its folders writable, so the error itself decides first.
+fn says_read_only(library: &Library, error: &LibraryError) -> bool {
+    match error {
+        LibraryError::System(refused) => {
+            refused.error.kind() == ErrorKind::ReadOnlyFilesystem || is_read_only(library)
+        }
+        _ => false,
+    }
+}
+
+/// Returns the sentence about a refused change: `what` says what was not done. In a read-only library each file would
+/// be refused, so the file's name would only mislead.
+fn not_changed(library: &Library, what: &str, error: &LibraryError) -> String {
+    if says_read_only(library, error) {
+        format!("{what}: {READ_ONLY}")
+    } else {
+        sentence(library, error)
+    }
+}
+
+/// Saves a shape, or reads the one that is in its way.
+fn store(library: &Library, shape: Box<StoredShape>, expected: Expected) -> DiskAnswer {
+    let stored = library.save(&shape, expected);
+    let in_the_way = match &stored {
+        Err(error) if says_read_only(library, error) => {
+            let text = format!("not saved: {READ_ONLY}; :write FILE saves elsewhere");
+            return DiskAnswer::Library(LibraryEvent::NotStored(text));
+        }
+        Err(LibraryError::Exists { .. } | LibraryError::Changed { .. }) => {
+            library.load(shape.name.as_str()).ok()
+        }
+        _ => None,
+    };
+    DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
+}
+
+/// Returns the answer after something was written to a recording of the source of that number: a failure ends the
+/// recording.
+fn written(number: u64, written: Result<(), String>) -> DiskAnswer {
+    let failed = |reason| DiskAnswer::Live(number, LiveEvent::NotRecorded(reason));
+    written.map_or_else(failed, |()| DiskAnswer::Nothing)
+}
+
+/// Returns a line about a recording that could not be finished or continued, if the answer says so.
+pub(in crate::tui::runtime) fn not_recorded(answer: &DiskAnswer) -> Option<String> {
+    match answer {
+        DiskAnswer::Live(_, LiveEvent::NotFinished(reason) | LiveEvent::NotRecorded(reason)) => {
+            Some(format!("{reason}\n"))
+        }
+        _ => None,
+    }
+}
+
+/// Returns an error of the library in a sentence, with the name that was probably meant.
+fn sentence(library: &Library, error: &LibraryError) -> String {
+    format!("{error}{}", library.suggestion(error))
+}
+
+/// Restores the shape that was deleted last, of that name or of any.
+fn restore(library: &Library, name: Option<String>) -> Result<String, LibraryError> {
+    name.map_or_else(|| library.restore_last(), |name| library.restore(&name))
+}
+
+/// Moves unsaved work to the trash. Other work is looked for only if this one is gone; otherwise the same work would be
+/// offered, and moved, again without end.
+fn throw_away(library: &Library, orphan: Orphan) -> DiskAnswer {
+    let mut shape = orphan.shape.clone();
+    if let Ok(name) = Name::new(UNNAMED) {
+        shape = shape.renamed(name);
+    }
+    let thrown = library.throw_away(&shape);
+    let is_gone = thrown.is_ok() && orphan.discard();
+    let next = is_gone.then(|| newest_orphan(library)).flatten();
+    DiskAnswer::ThrownAway(thrown, next)
+}
+
+/// Returns the newest unsaved work, and the number of all such works. The others are offered after it, or by other
+/// programs.
+pub(in crate::tui::runtime) fn newest_orphan(library: &Library) -> Option<(Box<Orphan>, usize)> {
+    let mut all = Orphan::all(library);
+    let count = all.len();
+    all.pop().map(|newest| (Box::new(newest), count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::storage::FileError;
+
+    /// The folder of a file system that went read-only after an error is still said to be writable.
+    #[test]
+    fn the_error_itself_says_that_a_library_is_read_only() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let library = Library::open(folder.path().to_owned());
+        let said = |kind: ErrorKind| {
+            let error = FileError::new("write it", folder.path(), kind.into());
+            not_changed(&library, "not deleted", &error.into())
+        };
+        let expected = "not deleted: the library is read-only";
+        assert_eq!(said(ErrorKind::ReadOnlyFilesystem), expected);
+        assert!(said(ErrorKind::StorageFull).contains("cannot write it"));
+    }
+}
