@@ -7,6 +7,7 @@
 //! history          the most recent frames, as many as fit into a given amount of memory
 //! cursor           which frame is shown: the newest one, or one that the user stays at
 //! naming           what a model says about the imprint
+//! names            the sets of shapes that name imprints
 //! reading          values, imprint and descriptors of one frame
 //! marks            the marked frames
 //! refusal          why something cannot be done with the shown frame
@@ -32,6 +33,8 @@ pub mod message;
 pub mod history;
 
 pub mod naming;
+
+pub mod names;
 
 pub mod reading;
 

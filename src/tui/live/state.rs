@@ -5,12 +5,11 @@ use std::sync::Arc;
 use crate::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use crate::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
 use crate::imprint::Imprint;
-use crate::storage::ModelChoice;
 use crate::tui::live::cursor::{FrameCursor, ProvisionalOutcome};
 use crate::tui::live::display::LiveDisplay;
 use crate::tui::live::marks::FrameMarks;
 use crate::tui::live::message::{FeedStatus, FrameBatch, SourceGaps, SourceState};
-use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
+use crate::tui::live::names::ShapeNames;
 use crate::tui::live::range::ShadeRange;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::recording_state::RecordingState;
@@ -18,7 +17,6 @@ use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::tare::{LiveTare, TareMark};
 use crate::tui::live::threshold;
-use crate::tui::widget::number::other;
 
 /// The maximum number of frames that a tare by key is made of.
 const TARED: usize = 30;
@@ -61,14 +59,8 @@ pub struct Live {
     recording: RecordingState,
     /// The marked frames.
     marks: FrameMarks,
-    /// The model that names imprints, and its last answer.
-    naming: Option<Naming>,
-    /// The set that returns if the next one cannot be read; None if imprints were not named.
-    named_before: Option<ModelChoice>,
-    /// The set that could not be read last: the next step through the sets goes on from there.
-    unreadable: Option<ModelChoice>,
-    /// Whether the names of the user's own models were asked for, to choose the next one.
-    pub awaits_models: bool,
+    /// The sets of shapes that name imprints.
+    pub names: ShapeNames,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
     reading: Option<LiveReading>,
     /// Why the shown frame cannot be processed, or why it has no imprint.
@@ -94,17 +86,13 @@ impl Live {
             not_drawn: 0,
             recording: RecordingState::default(),
             marks: FrameMarks::default(),
-            naming: None,
-            named_before: request.model.clone(),
-            unreadable: None,
-            awaits_models: false,
+            names: ShapeNames::new(&request, number),
             reading: None,
             error: None,
             request,
             number,
         };
         live.set_rule(live.request.rule);
-        live.name_by(live.request.model.clone(), number);
         live
     }
 
@@ -274,83 +262,11 @@ impl Live {
         Ok((shown.frame.number, marked))
     }
 
-    /// Returns the model that names imprints, and its last answer; None if imprints are not named.
-    pub fn naming(&self) -> Option<&Naming> {
-        self.naming.as_ref()
-    }
-
-    /// Returns the request to name imprints; None if imprints are not named.
-    pub fn naming_request(&self) -> Option<&NamingRequest> {
-        self.naming.as_ref().map(|naming| &naming.request)
-    }
-
-    /// Names imprints by a set of shapes, as the work of this number; None stops naming. Earlier answers are dropped.
-    fn name_by(&mut self, choice: Option<ModelChoice>, number: u64) {
-        let noise = self.request.noise();
-        self.naming = choice.map(|choice| {
-            Naming::new(NamingRequest {
-                number,
-                choice,
-                noise,
-            })
-        });
-    }
-
-    /// Names imprints by the next set of shapes: first the requested one, then the built-in ones, then the user's own
-    /// models, then none. `number` is the number of this work.
-    pub fn next_model(&mut self, own: impl Iterator<Item = ModelChoice>, number: u64) {
-        let asked = self.request.model.clone();
-        let sets = ModelChoice::BUILT_IN.into_iter().chain(own);
-        let sets = sets.filter(|set| Some(set) != asked.as_ref()).map(Some);
-        let mut all: Vec<Option<ModelChoice>> = std::iter::once(None).chain(sets).collect();
-        if asked.is_some() {
-            all.insert(1, asked);
-        }
-        let chosen = self.naming_request().map(|naming| naming.choice.clone());
-        let failed = self.unreadable.take().map(Some);
-        let next = other(all, &chosen, failed.as_ref(), 1);
-        // A model in a file is sure to be readable only once it has named something.
-        if chosen.as_ref().is_none_or(|chosen| !chosen.is_read()) {
-            self.named_before = chosen;
-        }
-        self.name_by(next, number);
-    }
-
     /// Returns the imprint to name now, and notes that it was asked for. Returns None if an answer is still expected
     /// or already known, or if no taxel is active.
     pub fn ask_name(&mut self) -> Option<Imprint> {
         let imprint = self.reading.as_ref()?.imprint?;
-        self.naming.as_mut()?.ask(&imprint).then_some(imprint)
-    }
-
-    /// Returns true if imprints are named by the work of this number.
-    pub fn is_named_by(&self, number: u64) -> bool {
-        self.naming_request()
-            .is_some_and(|request| request.number == number)
-    }
-
-    /// Takes the answer of a model. Answers of work of another number are dropped.
-    pub fn take_name(&mut self, number: u64, named: NamedImprint) {
-        if self.is_named_by(number)
-            && let Some(naming) = &mut self.naming
-        {
-            self.named_before = Some(naming.request.choice.clone());
-            naming.take(named);
-        }
-    }
-
-    /// Takes the reason why the model cannot be used. The set before it returns, as the work of this number; if there
-    /// was no other, the reason stays visible.
-    pub fn fail_name(&mut self, reason: &str, number: u64) {
-        let Some(naming) = &mut self.naming else {
-            return;
-        };
-        if self.named_before.as_ref() == Some(&naming.request.choice) {
-            naming.fail(reason.to_owned());
-        } else {
-            self.unreadable = Some(naming.request.choice.clone());
-            self.name_by(self.named_before.clone(), number);
-        }
+        self.names.ask(&imprint).then_some(imprint)
     }
 
     /// Returns the unit of the values, with a space before it; empty if it is not known.
@@ -590,8 +506,7 @@ impl Live {
         self.status.state = SourceState::Waiting;
         self.status.gaps = SourceGaps::default();
         self.seen_gaps = SourceGaps::default();
-        let choice = self.naming.take().map(|naming| naming.request.choice);
-        self.name_by(choice, number);
+        self.names.restart(number);
     }
 
     /// Reads the shown frame again.

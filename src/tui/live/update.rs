@@ -74,7 +74,7 @@ fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
         number: page.number(),
         request: Arc::clone(page.request()),
         write,
-        naming: page.naming_request().cloned().map(Box::new),
+        naming: page.names.request().cloned().map(Box::new),
     })
 }
 
@@ -213,7 +213,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Mark => mark(app, page),
         // The next one may be a model of the user.
         LiveMessage::NextModel => {
-            page.awaits_models = true;
+            page.names.awaits_models = true;
             return Some(Effect::Library(LibraryRequest::Models));
         }
         LiveMessage::Source(source) => return Some(check_source(app, source)),
@@ -237,14 +237,14 @@ fn next_layer(app: &mut App, page: &mut Live) {
 pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effect> {
     let number = app.works + 1;
     let page = topmost!(&mut app.dialogs, Live)?;
-    if !std::mem::take(&mut page.awaits_models) {
+    if !std::mem::take(&mut page.names.awaits_models) {
         return None;
     }
     app.works = number;
     let own = own.iter().map(|name| ModelChoice::from_text(name));
-    page.next_model(own, number);
+    page.names.next(own, number);
     let effect = name_by(page);
-    let text = match page.naming_request() {
+    let text = match page.names.request() {
         Some(naming) => format!("shapes are named by {}", naming.choice),
         None => "shapes are not named".to_owned(),
     };
@@ -254,7 +254,7 @@ pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effe
 
 /// Names the imprints of a page as it says.
 fn name_by(page: &Live) -> Effect {
-    let naming = page.naming_request().cloned().map(Box::new);
+    let naming = page.names.request().cloned().map(Box::new);
     Effect::Frames(FrameWork::NameBy(page.number(), naming))
 }
 
@@ -262,9 +262,9 @@ fn name_by(page: &Live) -> Effect {
 fn on_no_name(app: &mut App, source: u64, by: u64, reason: &str) -> Option<Effect> {
     let next = app.works + 1;
     let page = page(app).filter(|page| page.number() == source && !page.stopped());
-    let page = page.filter(|page| page.is_named_by(by))?;
-    page.fail_name(reason, next);
-    let returned = (!page.is_named_by(by)).then(|| name_by(page));
+    let page = page.filter(|page| page.names.is_by(by))?;
+    page.names.fail(reason, next);
+    let returned = (!page.names.is_by(by)).then(|| name_by(page));
     app.works = next;
     refuse(app, reason);
     returned
@@ -420,7 +420,7 @@ fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
             page.set_recording(Some(name.clone()));
             return inform(app, format!("recording in {name}"));
         }
-        LiveEvent::Named(by, named) => page.take_name(*by, (**named).clone()),
+        LiveEvent::Named(by, named) => page.names.take(*by, (**named).clone()),
         LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
     }
     let (trouble, refusal) = troubles(page);
@@ -450,16 +450,16 @@ mod tests {
         request.model = Some(own[0].clone());
         let mut page = Live::new(Arc::new(request), 1);
         let mut sets = Vec::new();
-        while let Some(naming) = page.naming_request().cloned() {
+        while let Some(naming) = page.names.request().cloned() {
             sets.push(naming.choice);
-            page.next_model(own.clone().into_iter(), naming.number + 1);
+            page.names.next(own.clone().into_iter(), naming.number + 1);
         }
         let [asked, other] = own;
         let built_in = ModelChoice::BUILT_IN.to_vec();
         assert_eq!(sets, [vec![asked.clone()], built_in, vec![other]].concat());
-        page.next_model(std::iter::once(asked.clone()), 9);
+        page.names.next(std::iter::once(asked.clone()), 9);
         assert_eq!(
-            page.naming_request().map(|naming| &naming.choice),
+            page.names.request().map(|naming| &naming.choice),
             Some(&asked)
         );
     }

@@ -189,7 +189,7 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
         lines.extend(shown.map(|descriptor| described(reading, descriptor, theme)));
         lines.push(regions(reading));
     }
-    if let Some(naming) = live.naming() {
+    if let Some(naming) = live.names.naming() {
         let shown = live.reading().and_then(|reading| reading.imprint);
         lines.extend(named(naming, shown.as_ref(), theme));
     }
