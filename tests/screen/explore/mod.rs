@@ -521,7 +521,10 @@ proptest! {
         sizes in prop::collection::vec((1_u16..=120, 1_u16..=50), 60),
         clicks in prop::collection::vec((0_u16..120, 0_u16..50), 60),
     ) {
-        let mut program = Beside::new("fr<Enter>");
+        // These keys may also export something: not into the folder of the sources.
+        let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+        let world = world().confined_to(folder.path().to_owned());
+        let mut program = Beside::within(world, "fr<Enter>");
         program.press(SHORT);
         program.until("rectangle: 600 poses");
         for ((key, (width, height)), (column, row)) in keys.into_iter().zip(sizes).zip(clicks) {
