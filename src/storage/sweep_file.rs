@@ -160,7 +160,7 @@ pub fn is_poses(name: impl AsRef<Path>) -> bool {
 /// let failed = AtomicBool::new(false);
 /// let go_on = |_| !failed.load(Ordering::Relaxed);
 /// let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &failed);
-/// let result = Sweep::new(&grid).progress(&go_on).rows(&mut take).run();
+/// let result = Sweep::new(&grid).progress(&go_on).run_with_rows(&mut take);
 /// if let Some(whole) = file.finish()? {
 ///     whole.persist()?;
 /// }
@@ -443,7 +443,7 @@ mod tests {
             let shard: Shard = shard.parse().expect("a shard");
             let progress = |_| go_on;
             let sweep = Sweep::new(&grid).shard(shard).progress(&progress);
-            sweep.rows(&mut take).run();
+            sweep.run_with_rows(&mut take);
             file.finish().expect("no error").is_some()
         };
         let cases = [("1/1", true), ("1/1", false), ("1/2", true), ("2/2", true)];

@@ -65,7 +65,7 @@ pub struct PoseRun {
 }
 
 impl Sweep<'_> {
-    /// Counts the imprints without describing them. Does not call `rows`. Returns None if the sweep was stopped.
+    /// Counts the imprints without describing them. Returns None if the sweep was stopped.
     ///
     /// ```
     /// use taxel::prelude::*;

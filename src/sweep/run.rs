@@ -4,7 +4,7 @@
 //! added to the atlas one after the other, while the next portion is being swept. At the end the imprints are sorted by
 //! their first poses, so their numbers are the same for any number of threads.
 //!
-//! With [`Sweep::rows`], imprints are numbered as they are found. So tasks come in the order of their first
+//! With [`Sweep::run_with_rows`], imprints are numbered as they are found. So tasks come in the order of their first
 //! orientations, mirror images are swept separately, and the rows of a group come together.
 
 use std::fmt;
@@ -39,12 +39,11 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 /// assert!(result.poses() <= grid.poses());
 /// # Ok::<(), taxel::pose::GridError>(())
 /// ```
-#[must_use = "nothing is swept before `run`, `count` or `poses_where`"]
+#[must_use = "nothing is swept before `run`, `run_with_rows`, `count` or `poses_where`"]
 pub struct Sweep<'a> {
     pub(super) grid: &'a PoseGrid,
     shard: Shard,
     progress: &'a (dyn Fn(u64) -> bool + Sync),
-    rows: Option<&'a mut TakeRow<'a>>,
 }
 
 impl fmt::Debug for Sweep<'_> {
@@ -52,7 +51,6 @@ impl fmt::Debug for Sweep<'_> {
         f.debug_struct("Sweep")
             .field("grid", &self.grid)
             .field("shard", &self.shard)
-            .field("rows", &self.rows.is_some())
             .finish_non_exhaustive()
     }
 }
@@ -64,7 +62,6 @@ impl<'a> Sweep<'a> {
             grid,
             shard: Shard::WHOLE,
             progress: &|_| true,
-            rows: None,
         }
     }
 
@@ -81,16 +78,19 @@ impl<'a> Sweep<'a> {
         self
     }
 
-    /// Calls `rows` once for each complete row: one y0 at one angle and one pair of zooms. Rows do not come in the
-    /// order of the grid if several orientations show the same shape.
-    pub fn rows(mut self, rows: &'a mut TakeRow<'a>) -> Self {
-        self.rows = Some(rows);
-        self
-    }
-
     /// Runs the sweep. If it is stopped early, the result holds what is complete: whole orientations or parts of
     /// them, with all their numbers. Unfinished work is lost, a few seconds at most.
-    pub fn run(mut self) -> SweepResult {
+    pub fn run(self) -> SweepResult {
+        self.run_to(None)
+    }
+
+    /// Runs the sweep as [`Self::run`] does, and calls `take` once for each complete row: one y0 at one angle and one
+    /// pair of zooms. Rows do not come in the order of the grid if several orientations show the same shape.
+    pub fn run_with_rows(self, take: &mut TakeRow<'_>) -> SweepResult {
+        self.run_to(Some(take))
+    }
+
+    fn run_to(self, rows: Option<&mut TakeRow<'_>>) -> SweepResult {
         let (grid, shard) = (self.grid, self.shard);
         let sensor = grid.sensor();
         let mut done = Accumulator {
@@ -100,7 +100,7 @@ impl<'a> Sweep<'a> {
             variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
             poses: 0,
             partly_off: 0,
-            rows: self.rows.take(),
+            rows,
         };
         let (layout, keep_runs) = (done.atlas.layout().clone(), done.rows.is_some());
         self.each_portion(&layout, keep_runs, |portion| done.add(portion));
@@ -133,7 +133,6 @@ impl<'a> Sweep<'a> {
             grid,
             shard,
             progress,
-            ..
         } = self;
         let rows = shard.rows(grid.rows());
         let stopped = AtomicBool::new(false);
@@ -188,17 +187,17 @@ fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
 }
 
 /// The results of a sweep so far.
-struct Accumulator<'a, 'w> {
+struct Accumulator<'a, 'w, 'r> {
     grid: &'a PoseGrid,
     atlas: Atlas,
     table: Table,
     variance_parts: VarianceParts,
     poses: u64,
     partly_off: u64,
-    rows: Option<&'w mut TakeRow<'w>>,
+    rows: Option<&'w mut TakeRow<'r>>,
 }
 
-impl Accumulator<'_, '_> {
+impl Accumulator<'_, '_, '_> {
     fn add(&mut self, portion: &Portion) {
         let width = self.grid.row_length();
         let ids: Vec<Vec<u32>> = portion

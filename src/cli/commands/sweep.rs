@@ -129,13 +129,11 @@ pub(crate) fn sweep(
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
     };
-    let mut sweep = Sweep::new(grid).shard(shard).progress(&report);
-    let mut take;
-    if let Some(file) = &mut poses {
-        take = |row: u64, ids: &[u32]| file.take(row, ids, stopped);
-        sweep = sweep.rows(&mut take);
-    }
-    let result = pool.install(|| sweep.run());
+    let sweep = Sweep::new(grid).shard(shard).progress(&report);
+    let result = pool.install(|| match &mut poses {
+        Some(file) => sweep.run_with_rows(&mut |row, ids| file.take(row, ids, stopped)),
+        None => sweep.run(),
+    });
     progress.finish();
     if memory.exceeded() {
         return Err(CliError::Memory(memory.message()));

@@ -277,7 +277,7 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
         assert!(ids[start..start + width].iter().all(|&id| id == u32::MAX));
         ids[start..start + width].copy_from_slice(numbers);
     };
-    let result = Sweep::new(grid).rows(&mut take).run();
+    let result = Sweep::new(grid).run_with_rows(&mut take);
     let imprints: Vec<_> = result.atlas().entries().collect();
     let free = Sweep::new(grid).run();
     let told = |result: &SweepResult| format!("{:?}", result.statistics());

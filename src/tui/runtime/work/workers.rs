@@ -329,8 +329,8 @@ fn write_poses(
     let full = AtomicBool::new(false);
     let progress = |poses: u64| proceed(poses, stop, clock) && !full.load(Ordering::Relaxed);
     let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
-    let sweep = Sweep::new(&result.grid).progress(&progress).rows(&mut take);
-    sweep.run();
+    let sweep = Sweep::new(&result.grid).progress(&progress);
+    sweep.run_with_rows(&mut take);
     let Some(whole) = file.finish()? else {
         return Ok(false);
     };
