@@ -5,24 +5,21 @@ use std::cmp::Ordering;
 use crate::recognition::model::{Gathered, Model, ModelError, ModelHead, ShapeCount};
 use crate::sweep::Shard;
 
-impl Model {
-    /// Merges all shards of one training into the same model that a single run gives. [`ModelMerge`] needs less
-    /// memory.
-    ///
-    /// # Errors
-    /// Returns an error if no shard is given, or one is missing, given twice, or of another training.
-    pub fn merge(shards: impl IntoIterator<Item = Self>) -> Result<Self, ModelError> {
-        let mut shards: Vec<Self> = shards.into_iter().collect();
-        shards.sort_by_key(|model| model.shard().number());
-        let mut merge = ModelMerge::default();
-        for model in &shards {
-            merge.add(model)?;
-        }
-        merge.finish()
-    }
-}
-
-/// Merges the shards of a training one after another: memory holds only what is already merged and one shard.
+/// The shards of a training that were added so far. Memory holds only what is already merged and one shard.
+///
+/// ```
+/// use taxel::recognition::{GridSteps, ModelMerge, Training, equal_figures};
+/// use taxel::sweep::Shard;
+///
+/// let training = Training::fitting(equal_figures(), GridSteps::new(4, 45)?)?;
+/// let mut merge = ModelMerge::default();
+/// for number in 1..=2 {
+///     let shard = Shard::new(number, 2).unwrap();
+///     merge.add(&training.clone().shard(shard).run()?)?;
+/// }
+/// assert_eq!(merge.finish()?, training.run()?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct ModelMerge {
     /// The training as the first shard describes it, with the poses so far and the last shard.

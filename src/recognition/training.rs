@@ -146,7 +146,7 @@ impl<'a> Training<'a> {
         self
     }
 
-    /// Takes only one part of the poses; [`Model::merge`] merges all parts.
+    /// Takes only one part of the poses; [`ModelMerge`](crate::recognition::ModelMerge) merges all parts.
     pub fn shard(mut self, shard: Shard) -> Self {
         self.shard = shard;
         self

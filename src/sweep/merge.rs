@@ -128,23 +128,6 @@ impl SweepMerge {
     }
 }
 
-impl SweepResult {
-    /// Merges all shards of a grid into the result that a single sweep of the whole grid gives. [`SweepMerge`] needs
-    /// less memory.
-    ///
-    /// # Errors
-    /// Returns an error if a shard is missing, given twice, incomplete, or of another grid.
-    pub fn merge(results: impl IntoIterator<Item = Self>) -> Result<Self, MergeError> {
-        let mut results: Vec<Self> = results.into_iter().collect();
-        results.sort_by_key(|result| result.shard.number());
-        let mut merge = SweepMerge::default();
-        for result in results {
-            merge.add(result)?;
-        }
-        merge.finish()
-    }
-}
-
 /// Returns what differs between two grids; None if they are equal. The source lies where its ranges begin, so it is
 /// compared last.
 fn difference(one: &PoseGrid, other: &PoseGrid) -> Option<&'static str> {

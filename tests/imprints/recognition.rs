@@ -237,6 +237,15 @@ fn counts_equal_those_of_touching_pose_by_pose() {
 }
 
 #[test]
+/// Merges shards in the given order.
+fn merge_all(shards: &[Model]) -> Result<Model, ModelError> {
+    let mut merge = ModelMerge::default();
+    for shard in shards {
+        merge.add(shard)?;
+    }
+    merge.finish()
+}
+
 fn merged_shards_equal_the_whole_model() {
     let (shapes, ranges) = small();
     let whole = train(shapes.clone(), 16, ranges);
@@ -249,10 +258,10 @@ fn merged_shards_equal_the_whole_model() {
             .run()
             .expect("no pose is cut off")
     };
-    let merged = Model::merge([part(3), part(1), part(2)]).expect("all three");
+    let merged = merge_all(&[1, 2, 3].map(part)).expect("all three");
     assert!(merged == whole && merged != part(1));
     assert_eq!(merged.shard(), Shard::WHOLE);
-    let error = |parts: Vec<Model>| Model::merge(parts).expect_err("no whole").to_string();
+    let error = |parts: Vec<Model>| merge_all(&parts).expect_err("no whole").to_string();
     assert_eq!(
         error(Vec::new()),
         "no shard was given, expected all those of one training"
@@ -316,7 +325,7 @@ fn cut_poses_are_refused_unless_allowed() {
         let part = set().allow_cut(true).shard(shard).run();
         part.expect("allowed")
     };
-    let merged = Model::merge([1, 2, 3].map(part)).expect("all three");
+    let merged = merge_all(&[1, 2, 3].map(part)).expect("all three");
     assert_eq!(merged.cut(), [360_000]);
 }
 

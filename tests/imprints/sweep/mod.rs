@@ -137,8 +137,8 @@ fn the_result_does_not_depend_on_threads_and_shards() {
                 let shard = Shard::new(number, of).expect("a shard");
                 Sweep::new(&grid).shard(shard).run()
             });
-            let merged = SweepResult::merge(shards.collect::<Vec<_>>().into_iter().rev());
-            assert_eq!(told(&merged.expect("all shards")), whole, "{of} shards");
+            let merged = merge_all(shards).expect("all shards");
+            assert_eq!(told(&merged), whole, "{of} shards");
         }
     }
 }
@@ -192,11 +192,20 @@ fn rows_taken_from_symmetry_equal_computed_rows() {
             let row = Shard::new(number, rows).expect("a shard");
             Sweep::new(&grid).shard(row).run()
         });
-        let merged = SweepResult::merge(one_by_one).expect("all shards");
+        let merged = merge_all(one_by_one).expect("all shards");
         assert_eq!(told(&whole), told(&merged), "{:?}", grid.source());
         assert_eq!(differences(&grid), Ok(0), "{:?}", grid.source());
         assert!(whole.atlas().len() > 50, "{:?}", grid.source());
     }
+}
+
+/// Merges shards in the given order.
+fn merge_all(shards: impl IntoIterator<Item = SweepResult>) -> Result<SweepResult, MergeError> {
+    let mut merge = SweepMerge::default();
+    for shard in shards {
+        merge.add(shard)?;
+    }
+    merge.finish()
 }
 
 #[test]
@@ -211,8 +220,7 @@ fn shards_are_merged_only_if_all_are_there() {
             .shard(Shard::new(number, of).expect("a shard"))
             .run()
     };
-    let merge =
-        |results: Vec<SweepResult>| SweepResult::merge(results).map(|result| result.poses());
+    let merge = |results: Vec<SweepResult>| merge_all(results).map(|result| result.poses());
     assert_eq!(merge(vec![]), Err(MergeError::Nothing));
     assert_eq!(
         merge(vec![shard(&grid, 1, 3), shard(&grid, 2, 3)]),
@@ -304,7 +312,7 @@ fn a_stopped_sweep_keeps_what_is_complete() {
     let incomplete = MergeError::Incomplete {
         shard: Shard::WHOLE,
     };
-    assert_eq!(SweepResult::merge([result]).err(), Some(incomplete));
+    assert_eq!(merge_all([result]).err(), Some(incomplete));
     // The sweep does not even wait for the end of an orientation.
     let result = stopped_after(1);
     assert_eq!((result.poses(), result.atlas().len()), (0, 0));

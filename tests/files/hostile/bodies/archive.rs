@@ -12,7 +12,7 @@ use taxel::picture::Picture;
 use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::{Shard, Sweep, SweepResult};
+use taxel::sweep::{Shard, Sweep, SweepMerge, SweepResult};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -65,7 +65,8 @@ fn is_sound(result: SweepResult) {
     let table = String::from_utf8(table).expect("it is a text");
     assert_eq!(table.lines().count(), result.atlas().len() + 1);
     assert!(!table.contains("NaN") && !table.contains("inf"));
-    if let Err(error) = SweepResult::merge([result]) {
+    let mut merge = SweepMerge::default();
+    if let Err(error) = merge.add(result).and_then(|()| merge.finish()) {
         is_short(&error.to_string());
     }
 }

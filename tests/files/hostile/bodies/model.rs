@@ -8,7 +8,7 @@ use taxel::formats::{named_shape, named_shape_of_words, read_model, write_model}
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;
 use taxel::pose::{Anchor, Axis, Ranges};
-use taxel::recognition::{Evaluation, Evidence, Model, NamedShape, Training};
+use taxel::recognition::{Evaluation, Evidence, Model, ModelMerge, NamedShape, Training};
 use taxel::sensor::Sensor;
 use taxel::sweep::Shard;
 
@@ -92,7 +92,8 @@ fn is_sound(model: &Model) {
         answer.ranking.is_empty() || (sum - 1.0).abs() < 1e-9,
         "{sum}"
     );
-    if let Err(error) = Model::merge([again]) {
+    let mut merge = ModelMerge::default();
+    if let Err(error) = merge.add(&again).and_then(|()| merge.finish()) {
         is_short(&error.to_string());
     }
 }
