@@ -117,7 +117,8 @@ fn seven_figures_are_told_apart_as_often_as_published() {
     // No classifier on descriptors passes it, either.
     let settings = ClassifierSettings::default();
     for classifier in Classifier::ALL {
-        let reached = classifier.evaluate(&model, &settings).evaluation;
+        let reached = classifier.evaluate(&model, &settings, &|_| true);
+        let reached = reached.expect("not stopped").evaluation;
         let sum: u128 = reached.confusion.cells().map(|cell| cell.2).sum();
         println!("{} {:.4}", classifier.name(), reached.error());
         assert_eq!(sum, limit.touches);
@@ -236,7 +237,6 @@ fn counts_equal_those_of_touching_pose_by_pose() {
     );
 }
 
-#[test]
 /// Merges shards in the given order.
 fn merge_all(shards: &[Model]) -> Result<Model, ModelError> {
     let mut merge = ModelMerge::default();
@@ -246,6 +246,7 @@ fn merge_all(shards: &[Model]) -> Result<Model, ModelError> {
     merge.finish()
 }
 
+#[test]
 fn merged_shards_equal_the_whole_model() {
     let (shapes, ranges) = small();
     let whole = train(shapes.clone(), 16, ranges);
@@ -507,7 +508,9 @@ fn a_shape_that_may_leave_an_empty_imprint_is_named_by_its_template() {
     let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
     let nothing = Imprint::empty(size(16, 16));
     assert_eq!(model.recognise(Evidence::of(&[nothing])).shape, Some(1));
-    let reached = Classifier::Template.evaluate(&model, &ClassifierSettings::default());
+    let settings = ClassifierSettings::default();
+    let reached = Classifier::Template.evaluate(&model, &settings, &|_| true);
+    let reached = reached.expect("not stopped");
     assert_eq!(reached.evaluation.error(), 0.0);
 }
 
@@ -520,7 +523,8 @@ fn nearest_neighbours_with_equal_features_vote_together() {
         let mut settings = ClassifierSettings::default();
         settings.descriptors = Some(given.descriptors().to_vec());
         settings.sample = usize::MAX;
-        let reached = Classifier::Knn.evaluate(&model, &settings).evaluation;
+        let reached = Classifier::Knn.evaluate(&model, &settings, &|_| true);
+        let reached = reached.expect("not stopped").evaluation;
         let (reached, limit) = (reached.right, given.evaluate(&model).right);
         assert!(reached <= limit, "{descriptors}: {reached} of {limit}");
     }

@@ -4,6 +4,7 @@
 //! one touch. Each question of `Evaluated` has a function here; `output/evaluation` makes the output.
 
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
@@ -18,6 +19,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::note::note;
 use crate::cli::output::progress::Progress;
+use crate::cli::signals::Signals;
 use crate::formats::ending::has_ending;
 use crate::formats::value::percent;
 use crate::formats::{ConfusionMap, DrawingFormat, json};
@@ -29,7 +31,7 @@ use crate::storage::UnfinishedFile;
 ///
 /// # Errors
 /// Returns an error if there is no such model, if the file of the matrix cannot be written, or if a signal stops a
-/// simulation.
+/// classifier or a simulation.
 pub(crate) fn confusion(
     asked: &ConfusionArguments,
     shelf: &Shelf,
@@ -52,7 +54,8 @@ pub(crate) fn confusion(
             shown(asked, &given.evaluate(&model), None, charset)
         }
         Evaluated::Classifier(classifier) => {
-            let reached = reached(*classifier, &model, asked, charset);
+            let signals = Signals::catch().map_err(CliError::System)?;
+            let reached = reached(*classifier, &model, asked, charset, &signals)?;
             shown(asked, &reached.evaluation, Some(&reached), charset)
         }
         Evaluated::Greedy => Ok(chosen(&model, asked, charset)),
@@ -123,25 +126,32 @@ fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
 }
 
 /// Returns the result of a classifier that is not the best one, and shows the progress meanwhile.
+///
+/// # Errors
+/// Returns [`CliError::Stopped`] after a signal.
 fn reached(
     classifier: Classifier,
     model: &Model,
     asked: &ConfusionArguments,
     charset: Charset,
-) -> ClassifierEvaluation {
+    signals: &Signals,
+) -> Result<ClassifierEvaluation, CliError> {
     let keys = model.keys().len() as u64;
     let progress = Progress::counting("imprints", keys, asked.quiet, charset);
-    let add = |keys| progress.add(keys);
-    let reached = classifier.evaluate_with_progress(model, &asked.classifiers, &add);
+    let report = |keys| {
+        progress.add(keys);
+        !signals.stopped.load(Ordering::Relaxed)
+    };
+    let reached = classifier.evaluate(model, &asked.classifiers, &report);
     progress.finish();
-    reached
+    reached.ok_or_else(|| signals.failure())
 }
 
 /// Returns the errors of all other classifiers and the limit. Also writes them as comma-separated values if a file is
 /// given.
 ///
 /// # Errors
-/// Returns [`CliError::Ending`] for a file that is not a table.
+/// Returns [`CliError::Ending`] for a file that is not a table, and [`CliError::Stopped`] after a signal.
 fn all_classifiers(
     model: &Model,
     asked: &ConfusionArguments,
@@ -158,7 +168,10 @@ fn all_classifiers(
             expected: ".csv",
         });
     }
-    let all = Classifier::ALL.map(|classifier| reached(classifier, model, asked, charset));
+    let signals = Signals::catch().map_err(CliError::System)?;
+    let all = Classifier::ALL.into_iter();
+    let all = all.map(|classifier| reached(classifier, model, asked, charset, &signals));
+    let all: Vec<ClassifierEvaluation> = all.collect::<Result<_, _>>()?;
     let limit = Evaluation::of(model);
     if let Some(path) = &asked.export {
         let table = evaluation::classifiers_csv(&all, &limit);

@@ -126,19 +126,28 @@ type Scores = Vec<f64>;
 impl Classifier {
     /// Trains the classifier on a model's touches and classifies all of them.
     ///
-    /// Ties go to the first shape in the order of the set.
-    pub fn evaluate(self, model: &Model, settings: &ClassifierSettings) -> ClassifierEvaluation {
-        self.evaluate_with_progress(model, settings, &|_| ())
-    }
-
-    /// Returns the same as [`Self::evaluate`]. `progress` is called from time to time, from any thread, with the number
-    /// of keys of the model that were classified since the last call.
-    pub fn evaluate_with_progress(
+    /// Ties go to the first shape in the order of the set. `progress` is called from time to time, from any thread,
+    /// with the number of keys of the model that were classified since the last call, and stops the evaluation by
+    /// returning `false`. Returns None if it was stopped.
+    ///
+    /// ```
+    /// use taxel::recognition::{
+    ///     Classifier, ClassifierSettings, Evaluation, GridSteps, Training, equal_figures,
+    /// };
+    ///
+    /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+    /// let settings = ClassifierSettings::default();
+    /// let result = Classifier::Lda.evaluate(&model, &settings, &|_| true).expect("not stopped");
+    /// // No classifier of one touch is better than the model.
+    /// assert!(result.evaluation.right <= Evaluation::of(&model).right);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn evaluate(
         self,
         model: &Model,
         settings: &ClassifierSettings,
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> ClassifierEvaluation {
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Option<ClassifierEvaluation> {
         let evaluate =
             |scores: &(dyn Fn(usize) -> Scores + Sync)| evaluate(model, scores, progress);
         let features = || FeatureTable::new(model, settings.descriptors.as_deref());
@@ -159,7 +168,7 @@ impl Classifier {
                     let row = table.row(key);
                     classes.iter().map(|class| value(class, row)).collect()
                 };
-                (evaluate(&scores), Some(table))
+                (evaluate(&scores)?, Some(table))
             }
             Self::Lda | Self::Qda => {
                 let table = features();
@@ -168,47 +177,44 @@ impl Classifier {
                     let row = table.row(key);
                     classes.iter().map(|class| class.score(row)).collect()
                 };
-                (evaluate(&scores), Some(table))
+                (evaluate(&scores)?, Some(table))
             }
             Self::Knn => {
                 let table = features();
                 let touches = Sample::new(model, sample);
                 let scores = |key| touches.scores(&table, settings.neighbours.max(1), key);
-                (evaluate(&scores), Some(table))
+                (evaluate(&scores)?, Some(table))
             }
             Self::Template => {
                 let templates = Templates::new(model, settings.templates.max(1));
-                (evaluate(&|key| templates.scores(model, key)), None)
+                (evaluate(&|key| templates.scores(model, key))?, None)
             }
         };
         // For templates, imprints are compared, not features.
         let (features, dropped) = table
             .map(|table| (table.names, table.dropped))
             .unwrap_or_default();
-        ClassifierEvaluation {
+        Some(ClassifierEvaluation {
             classifier: self,
             evaluation,
             features,
             dropped,
             sample: (self == Self::Knn && sample.is_drawn(model)).then_some(sample),
-        }
+        })
     }
 }
 
-/// Classifies every key by its scores.
+/// Classifies every key by its scores; None if it was stopped.
 fn evaluate(
     model: &Model,
     scores: &(dyn Fn(usize) -> Scores + Sync),
-    progress: &(dyn Fn(u64) + Sync),
-) -> Evaluation {
-    let ranked: Vec<[Option<usize>; 3]> = (0..model.keys().len())
-        .into_par_iter()
-        .map(|key| {
-            let ranked = first_two(&scores(key));
-            progress(1);
-            ranked
-        })
-        .collect();
+    progress: &(dyn Fn(u64) -> bool + Sync),
+) -> Option<Evaluation> {
+    let ranked = (0..model.keys().len()).into_par_iter().map(|key| {
+        let ranked = first_two(&scores(key));
+        progress(1).then_some(ranked)
+    });
+    let ranked: Vec<[Option<usize>; 3]> = ranked.collect::<Option<_>>()?;
     let mut evaluation = Evaluation::new(model);
     evaluation.keys = model.keys().len();
     for (key, [named, second, tie]) in ranked.into_iter().enumerate() {
@@ -228,7 +234,7 @@ fn evaluate(
         }
     }
     evaluation.information_bits = information(&evaluation.confusion);
-    evaluation.finished()
+    Some(evaluation.finished())
 }
 
 /// Returns the shape with the lowest score, the one with the second lowest, and the second one again if the two are
@@ -296,7 +302,8 @@ mod tests {
                 neighbours: 3,
                 ..ClassifierSettings::default()
             };
-            Classifier::Knn.evaluate(&model, &settings)
+            let reached = Classifier::Knn.evaluate(&model, &settings, &|_| true);
+            reached.expect("not stopped")
         };
         let all = reached(usize::MAX, 0);
         assert_eq!((&all, all.sample), (&reached(usize::MAX, 1), None));
@@ -306,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn the_progress_of_every_classifier_counts_all_keys() {
+    fn every_classifier_reports_all_keys_and_can_be_stopped() {
         let sensor = Sensor::default();
         let bar = Figure::rectangle(6.0, 3.0).on(&sensor).expect("in range");
         let steps = GridSteps::new(4, 45).expect("divisors");
@@ -314,11 +321,14 @@ mod tests {
         let model = training.expect("it fits").run().expect("not stopped");
         for classifier in Classifier::ALL {
             let keys = AtomicU64::new(0);
+            let settings = ClassifierSettings::default();
             let add = |more| {
                 keys.fetch_add(more, Ordering::Relaxed);
+                true
             };
-            classifier.evaluate_with_progress(&model, &ClassifierSettings::default(), &add);
+            assert!(classifier.evaluate(&model, &settings, &add).is_some());
             assert_eq!(keys.into_inner(), model.keys().len() as u64);
+            assert_eq!(classifier.evaluate(&model, &settings, &|_| false), None);
         }
     }
 
