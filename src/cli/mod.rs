@@ -77,6 +77,7 @@ use crate::tui::live::request::WatchRequest;
 /// cannot be written to, the exit status still tells what happened.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     signals::outlive_file_limit();
+    threads::bound();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let mut charset = Charset::of(&arguments, std::env::var_os);
     let failure = match perform(arguments, &mut charset) {

@@ -342,6 +342,20 @@ fn two_jobs_may_resume_one_shard_at_the_same_time() {
     }
 }
 
+/// A thread for each would take minutes to start.
+#[test]
+fn a_million_threads_are_not_started() {
+    for (line, input) in [("sweep rectangle --angle 0 --quiet", ""), ("batch", "{}\n")] {
+        let arguments: Vec<&std::ffi::OsStr> = line.split(' ').map(std::ffi::OsStr::new).collect();
+        let mut program = super::program(&arguments, "C.UTF-8");
+        let child = program.env("RAYON_NUM_THREADS", "999999").spawn();
+        let started = std::time::Instant::now();
+        let run = super::finish(child.expect("the program starts"), input.as_bytes());
+        assert!(started.elapsed().as_secs() < 20, "{line}");
+        assert!(!run.stdout.is_empty(), "{line}: {}", run.stderr);
+    }
+}
+
 #[test]
 fn a_sweep_goes_on_if_a_signal_is_ignored() {
     let sweep = "sweep octagon --side 6 --columns 32 --rows 32 --angle 0:44:0.02 --jobs 1 --quiet";

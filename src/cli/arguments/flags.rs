@@ -127,12 +127,12 @@ pub(super) fn anchor() -> Arg {
     .help_heading("Grid")
 }
 
-/// Defines `--jobs`, the number of threads.
+/// Defines `--jobs`, the number of threads, of which [`count`](crate::cli::threads::count) takes eight per core at most.
 pub(super) fn jobs() -> Arg {
     option("jobs", "N", "Threads; default all cores").value_parser(whole::<u16>(1..=1024))
 }
 
-/// Returns the value of [`jobs`]; if not given 0, which means a thread for each core.
+/// Returns the value of [`jobs`]; if not given 0, which means the default number.
 pub(super) fn jobs_of(matches: &ArgMatches) -> usize {
     matches
         .get_one::<u16>("jobs")

@@ -180,7 +180,9 @@ pub(crate) const ENVIRONMENT: &str = "
   TERM, COLORTERM  what the terminal can show
   LC_ALL, LC_CTYPE, LANG
                    ASCII only, unless the locale is UTF-8
-  COLUMNS, LINES   the size of a terminal that does not report it";
+  COLUMNS, LINES   the size of a terminal that does not report it
+  RAYON_NUM_THREADS
+                   threads of a command without --jobs, at most 8 per core";
 
 /// The files, for the manual page; `--help` leaves them out.
 pub(crate) const FILES: &str = "

@@ -40,7 +40,7 @@ pub(crate) struct RecogniseArguments {
     pub(crate) pose: bool,
     /// The pitch in mm; if given, the place of the shape is in mm too.
     pub(crate) pitch_mm: Option<f64>,
-    /// The number of threads that answer lines; 0 means one per core.
+    /// The number of threads that answer lines; 0 means the default.
     pub(crate) jobs: usize,
     /// Whether the answer is a line of JSON. Lines of touches are always answered in JSON.
     pub(crate) json: bool,

@@ -60,7 +60,7 @@ pub(crate) enum Request {
     /// Write a stored shape or a file in another format.
     Export(OsString, Export, Pitch),
     /// Answer lines of JSON from a file or standard input; with the sensor for lines without one, and the number of
-    /// threads (0 means one per core).
+    /// threads (0 means the default).
     Batch(Option<PathBuf>, Sensor, usize),
     /// Sweep a grid of poses.
     Sweep(Box<SweepArguments>),

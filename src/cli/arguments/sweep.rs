@@ -34,7 +34,7 @@ pub(crate) struct SweepArguments {
     pub(crate) ranges: GivenRanges,
     /// The part of the grid to sweep.
     pub(crate) shard: Shard,
-    /// The number of threads; 0 means one per core.
+    /// The number of threads; 0 means the default.
     pub(crate) jobs: usize,
     /// The files to write, and the form of the summary.
     pub(crate) wanted: Wanted,

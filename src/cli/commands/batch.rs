@@ -14,7 +14,7 @@ use crate::quote::shortened_message;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
 
-/// Answers each line of `input`, with up to `jobs` threads (0 means one per core). `sensor` is for lines without one;
+/// Answers each line of `input`, with up to `jobs` threads (0 means the default). `sensor` is for lines without one;
 /// `lookup` finds pictures by name.
 ///
 /// # Errors

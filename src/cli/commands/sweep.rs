@@ -97,7 +97,7 @@ pub(crate) fn grid(
     Ok((grid, notes))
 }
 
-/// Sweeps a shard of a grid on `jobs` threads (0 means one per core), writes the files, and returns the summary to
+/// Sweeps a shard of a grid on `jobs` threads (0 means the default), writes the files, and returns the summary to
 /// print.
 ///
 /// # Errors

@@ -42,7 +42,7 @@ pub(crate) struct SeparateArguments {
     pub(crate) positions: Option<CellPositions>,
     /// The error (0 to 1) for which the smallest sufficient size is searched.
     pub(crate) wanted: Option<f64>,
-    /// The number of threads; 0 means one per core.
+    /// The number of threads; 0 means the default.
     pub(crate) jobs: usize,
     /// How the answer is printed.
     pub(crate) form: EvaluationForm,

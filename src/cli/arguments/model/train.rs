@@ -38,7 +38,7 @@ pub(crate) struct TrainArguments {
     pub(crate) given: Given,
     /// The part of the grid to train on; `taxel merge` merges the parts.
     pub(crate) shard: Shard,
-    /// The number of threads; 0 means one per core.
+    /// The number of threads; 0 means the default.
     pub(crate) jobs: usize,
     /// The most memory that the training may use, if given.
     pub(crate) memory: Option<MemorySize>,

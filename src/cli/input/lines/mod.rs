@@ -10,16 +10,15 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::num::NonZero;
 use std::os::fd::AsFd;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::thread;
 
 use crate::cli::error::CliError;
 use crate::cli::input::content::{self, InputSource};
 use crate::cli::input::lines::block::{Block, BlockReader};
 use crate::cli::input::lines::buffers::Buffers;
+use crate::cli::threads;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::json;
 use crate::storage::FileId;
@@ -92,10 +91,10 @@ impl LineInput {
     }
 }
 
-/// Answers each line of `input`, with up to `jobs` threads (0 means one per core). The answers do not depend on their
-/// number. Each thread uses a closure of its own, made by `answerer`, which appends the answer without a line end, or
-/// returns what is wrong with the line. `noun` is what a line contains, for the message about a line that is too
-/// long.
+/// Answers each line of `input`, with up to `jobs` threads (0 for the default, [`threads::count`]). The answers do not
+/// depend on their number. Each thread uses a closure of its own, made by `answerer`, which appends the answer without a
+/// line end, or returns what is wrong with the line. `noun` is what a line contains, for the message about a line that
+/// is too long.
 ///
 /// # Errors
 /// Returns [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`], [`CliError::Write`] or, if the
@@ -113,16 +112,12 @@ where
     if input.is_output() {
         return Err(CliError::OwnInput { name: input.name });
     }
-    let jobs = match jobs {
-        0 => thread::available_parallelism().map_or(1, NonZero::get),
-        jobs => jobs,
-    };
     // There are separate buffers for lines and for answers, which are longer.
     let (read, written) = (Arc::<Buffers>::default(), Buffers::default());
     let mut blocks = BlockReader::new(input.read, Arc::clone(&read));
     let mut output = AnswerWriter::new(output, input.name);
     in_order::in_order(
-        jobs,
+        threads::count(jobs),
         move || blocks.next_block(),
         || {
             let (read, written) = (&read, &written);
