@@ -139,7 +139,14 @@ fn imprints_are_exported_through_standard_input_and_output() {
         "",
     );
     // Drawn on a sensor this small, the upper side extends from 2 to 6.
-    assert_eq!(run, said("0,0,1,1\n"));
+    let beyond = "the figure reaches beyond the sensor\n".to_owned();
+    assert_eq!(
+        run,
+        Run {
+            stderr: beyond,
+            ..said("0,0,1,1\n")
+        }
+    );
 }
 
 #[test]

@@ -73,6 +73,23 @@ no active taxels, so no regions to describe
         assert_eq!(run.stdout, expected[1..], "{x0}");
         assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     }
+    // An answer without a place for it is followed by a note.
+    let figure = "figure hexagon --x0 -0.8 --y0 3 --columns 3 --rows 2";
+    let answers = [
+        (
+            "--json",
+            "{\"imprint\":[\"...\",\"...\"],\"na\":0,\"regions\":[]}\n",
+        ),
+        ("--export - --format txt", "...\n...\n"),
+    ];
+    for (form, answer) in answers {
+        let run = taxel(&format!("{figure} {form}"), "");
+        let note = "the figure reaches beyond the sensor\n";
+        assert_eq!(
+            (run.status, &*run.stdout, &*run.stderr),
+            (Some(0), answer, note)
+        );
+    }
 }
 
 #[test]

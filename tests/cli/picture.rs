@@ -18,7 +18,7 @@ fn without_flags_a_picture_is_the_shape_itself() {
 #[test]
 fn picture_and_batch_give_the_same_answer_for_a_pose() {
     let shelf = Shelf::new();
-    let json = shelf.does(
+    let json = shelf.run(
         "picture|key|--x0|3.5|--y0|-1|--angle|30|--zoom-x|0.8|--zoom-y|1.25|--columns|20|--threshold|0.4|--json",
         "",
     );
@@ -27,7 +27,8 @@ fn picture_and_batch_give_the_same_answer_for_a_pose() {
         "batch|--columns|20|--threshold|0.4",
         &format!("{pose}\n{pose}"),
     );
-    assert_eq!(answer, json.repeat(2));
+    assert_eq!(answer, json.stdout.repeat(2));
+    assert_eq!(json.stderr, "the picture reaches beyond the sensor\n");
 }
 
 #[test]

@@ -23,7 +23,8 @@ pub(crate) fn content(content: &Content, form: Form, charset: Charset) -> String
         Content::Shape(shape) => {
             made.push(shape.name.to_string());
             if let Some(source) = &shape.source {
-                made.extend(report::made(source, &shape.sensor));
+                made.push(source.to_string());
+                made.extend(report::beyond(source, &shape.sensor));
             }
             made.push(report::size(imprint, sensor, pitch));
         }

@@ -22,7 +22,8 @@ use crate::touch::Plane;
 pub(crate) struct Touched {
     /// For standard output: the imprint with its descriptors, or with `--export -` the exported file instead.
     pub(crate) answer: Vec<u8>,
-    /// For standard error: what else was done, one line each. A table contains these lines itself.
+    /// For standard error: what the sensor cuts off, and what else was done, one line each. A table contains these lines
+    /// itself.
     pub(crate) notes: Vec<String>,
 }
 
@@ -44,8 +45,9 @@ pub(crate) fn touch(
     let imprint = Plane::new(sensor).touch(&source);
     let (Form::Json(pitch) | Form::Table(pitch)) = form;
     let pitch = pitch.of(Some(&sensor));
-    let mut made = report::made(&source, &sensor);
-    let mut notes = Vec::new();
+    let mut made = vec![source.to_string()];
+    let beyond = report::beyond(&source, &sensor);
+    let mut notes: Vec<String> = beyond.into_iter().collect();
     let mut begun = None;
     if let Some(export) = export {
         let title = source.to_string();

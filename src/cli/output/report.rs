@@ -37,13 +37,10 @@ pub(crate) fn json(imprint: &Imprint) -> String {
     line
 }
 
-/// Returns the lines about the source of an imprint, one of them if it reaches beyond the sensor.
-pub(crate) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
-    let mut lines = vec![source.to_string()];
-    if reaches_beyond(source, sensor) {
-        lines.push(format!("the {} reaches beyond the sensor", source.noun()));
-    }
-    lines
+/// Returns the line that the sensor cuts off a part of the source, if it does.
+pub(crate) fn beyond(source: &Source, sensor: &Sensor) -> Option<String> {
+    let noun = source.noun();
+    reaches_beyond(source, sensor).then(|| format!("the {noun} reaches beyond the sensor"))
 }
 
 /// Returns the line with the size of the matrix, the pitch and the threshold if they are known, and the active
