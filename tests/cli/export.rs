@@ -4,6 +4,7 @@ use tempfile::TempDir;
 
 use super::RING;
 use super::Run;
+use super::library::Shelf;
 use super::misused;
 use super::program;
 use super::refused;
@@ -150,6 +151,26 @@ fn imprints_are_exported_through_standard_input_and_output() {
 }
 
 #[test]
+fn force_without_a_file_or_a_shape_is_refused() {
+    let shelf = Shelf::new();
+    for line in [
+        "export|washer|-|--format|txt|--force",
+        "figure|ellipse|--export|-|--format|txt|--force",
+    ] {
+        let run = shelf.run(line, "");
+        refused(&run, 2, "--force has no effect on standard output");
+    }
+    // Here it is for the shape.
+    for force in ["", "|--force"] {
+        let run = shelf.run(
+            &format!("figure|ellipse|--save|oval|--export|-|--format|txt{force}"),
+            "",
+        );
+        assert_eq!((run.status, &*run.stderr), (Some(0), "saved as oval\n"));
+    }
+}
+
+#[test]
 fn files_are_only_overwritten_with_force() {
     let folder = Folder::new();
     folder.write("old.svg", b"mine");
@@ -186,7 +207,7 @@ fn files_are_only_overwritten_with_force() {
     refused(
         &folder.run("export washer no/such.svg"),
         1,
-        "no/such.svg: cannot write: No such file or directory (os error 2)",
+        "no/such.svg: cannot write: no such folder",
     );
     assert_eq!(folder.names(), ["folder.svg", "old.svg"]);
 }

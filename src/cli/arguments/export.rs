@@ -11,7 +11,7 @@ use crate::cli::arguments::{form, parameters};
 use crate::cli::error::CliError;
 use crate::cli::settings::pitch::Pitch;
 use crate::cli::settings::resolved::Effective;
-use crate::formats::{DrawingFormat, ImprintFormat};
+use crate::formats::{DrawingFormat, ImprintFormat, Name};
 use crate::parameter::Parameter;
 use crate::storage::Existing;
 
@@ -121,6 +121,9 @@ impl Export {
     }
 
     /// Returns the file to write, in the format given by `--format` or by its extension.
+    ///
+    /// # Errors
+    /// Returns an error if the format is not known, and [`CliError::Unused`] for a `--force` that replaces nothing.
     pub(super) fn of(
         matches: &ArgMatches,
         path: &Path,
@@ -129,7 +132,15 @@ impl Export {
     ) -> Result<Self, CliError> {
         let format = matches.get_one::<String>("format").map(String::as_str);
         let export = Self::new(path, format, flags::existing(matches));
-        export.map_err(|message| misused(command, name, &message))
+        let export = export.map_err(|message| misused(command, name, &message))?;
+        // It may be meant for the shape of --save.
+        let saves = matches!(matches.try_get_one::<Name>("save"), Ok(Some(_)));
+        if export.path.is_none() && export.existing == Existing::Replaced && !saves {
+            let reason = "on standard output".to_owned();
+            let flag = "force";
+            return Err(CliError::Unused { flag, reason });
+        }
+        Ok(export)
     }
 
     /// Returns the pitch for an export.
