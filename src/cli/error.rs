@@ -233,6 +233,12 @@ pub(crate) enum CliError {
         /// The system's reason.
         error: io::Error,
     },
+    /// There is no folder to check.
+    #[error("{name} does not exist; it is made when a shape is saved")]
+    NoFolder {
+        /// The folder that `--library` names.
+        name: String,
+    },
     /// Some shapes of the library are damaged. Each has been listed.
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes {

@@ -281,6 +281,10 @@ impl Surroundings {
     /// Returns [`CliError::Shapes`] if `check` finds damaged files, after it has printed all of them.
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
+        let is_list = matches!(asked, LibraryCommand::Names(_) | LibraryCommand::List(_));
+        if let Some(text) = library::missing(shelf).filter(|_| is_list) {
+            note(&text, charset);
+        }
         let text = match asked {
             LibraryCommand::Names(which) => library::names(shelf, which)?,
             LibraryCommand::List(json) => library::list(shelf, json, charset)?,

@@ -222,12 +222,23 @@ fn ambiguous_names_are_reported() {
 }
 
 #[test]
-fn a_check_mentions_a_folder_that_does_not_exist() {
+fn a_check_of_a_folder_that_does_not_exist_fails_and_a_list_warns() {
     let folder = tempfile::tempdir().expect("a folder");
     let missing = folder.path().join("shapes_missing").display().to_string();
-    let run = super::taxel(&format!("library --library {missing} check"), "");
-    let said = format!("28 shapes, all intact; {missing} does not exist\n");
-    assert_eq!((run.status, run.stdout), (Some(0), said));
+    let said = format!("{missing} does not exist; it is made when a shape is saved\n");
+    for json in ["", " --json"] {
+        let run = super::taxel(&format!("library --library {missing} check{json}"), "");
+        let failed = (Some(1), String::new(), format!("error: {said}"));
+        assert_eq!((run.status, run.stdout, run.stderr), failed);
+    }
+    for (form, start) in [("", "name"), (" --json", "[{"), (" --names", "arrow")] {
+        let run = super::taxel(&format!("library list{form} --library {missing}"), "");
+        assert_eq!(
+            (run.status, run.stderr),
+            (Some(0), format!("warning: {said}"))
+        );
+        assert!(run.stdout.starts_with(start), "{}", run.stdout);
+    }
     // The library of the environment has no folder yet, as that of a new user.
     let run = super::taxel("library check", "");
     let said = "28 shapes, all intact\n".to_owned();
@@ -400,7 +411,7 @@ fn saving_with_name_and_file_swapped_explains_the_order() {
         program.current_dir(folder);
         finish(program.spawn().expect("it starts"), b"")
     };
-    let missing = |name: &str| format!("no stored shape and no file is called {name:?}");
+    let missing = |name: &str| format!("no stored shape or file named {name:?}");
     let order = "; the name comes first: taxel library save";
     let told = missing("ring") + order + " ring imprint.txt";
     refused(&save("ring"), 1, &told);

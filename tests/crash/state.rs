@@ -95,7 +95,13 @@ impl State {
 
     /// Starts the program after the crash: it is not blocked, finds every file whole, cleans up, and can save again.
     pub(crate) fn starts(&self) {
-        let check = taxel(&["library", "check"], &self.folder);
+        // Before the first save there may be no folder, which a check would report as missing.
+        let reads = if self.folder.exists() {
+            "check"
+        } else {
+            "list"
+        };
+        let check = taxel(&["library", reads], &self.folder);
         assert_eq!(
             check.status.code(),
             Some(0),

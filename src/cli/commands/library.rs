@@ -154,6 +154,14 @@ pub(crate) fn names(shelf: &Shelf, which: NameSet) -> Result<String, CliError> {
     Ok(names.map(|name| name + "\n").collect())
 }
 
+/// Returns a warning about a list without shapes of the user's: the folder that `--library` names does not exist.
+pub(crate) fn missing(shelf: &Shelf) -> Option<String> {
+    let folder = shelf.missing_folder()?.display();
+    Some(format!(
+        "warning: {folder} does not exist; it is made when a shape is saved"
+    ))
+}
+
 /// Lists all shapes: a table, or an array of objects in JSON.
 pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<String, CliError> {
     let lines = lines(&shelf.readable())?;
@@ -336,12 +344,17 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
 /// array of objects, and [`CliError::Shapes`] if a shape is damaged, to be reported after it.
 ///
 /// # Errors
-/// Returns an error if the folder cannot be listed.
+/// Returns an error if the folder cannot be listed, and [`CliError::NoFolder`] if `--library` names one that does not
+/// exist: a script must not take a mistyped name, or a disk that is not there, for a sound library.
 pub(crate) fn check(
     shelf: &Shelf,
     as_json: bool,
     charset: Charset,
 ) -> Result<(String, Result<(), CliError>), CliError> {
+    if let Some(folder) = shelf.missing_folder() {
+        let name = folder.to_string_lossy().into_owned();
+        return Err(CliError::NoFolder { name });
+    }
     let library = shelf.readable();
     let lines = lines(&library)?;
     let shapes = lines.len();
@@ -361,10 +374,7 @@ pub(crate) fn check(
         json::ascii(&findings) + "\n"
     } else {
         let lines = findings.iter().map(Finding::to_string);
-        let missing = shelf.missing_folder().map_or(String::new(), |folder| {
-            format!("; {} does not exist", folder.display())
-        });
-        let whole = (broken == 0).then(|| format!("{shapes} shapes, all intact{missing}"));
+        let whole = (broken == 0).then(|| format!("{shapes} shapes, all intact"));
         let lines = lines.chain(whole);
         lines
             .map(|line| charset.line(&line).into_owned() + "\n")
