@@ -343,6 +343,21 @@ fn settings_for_frames_are_used() {
     assert_eq!(stream.lines().count(), 3, "{stream}");
     let own = answered(format!("watch {samples}/tekscan.asf --once --tare 0"));
     assert_eq!(own.lines().count(), 3, "{own}");
+    // If that format is the wrong one, the message says where it comes from.
+    let watched = |format: &str| {
+        let child = at_home(&format!("watch - --once --tare 0{format}"), home.path()).spawn();
+        super::finish(
+            child.expect("it starts"),
+            "1 2 3 4 5\n".repeat(4).as_bytes(),
+        )
+    };
+    let origin = "; the settings say format \"flexitac\", which --format overrides\n";
+    let refused = watched("");
+    assert_eq!(refused.status, Some(1), "{}", refused.stderr);
+    assert!(refused.stderr.ends_with(origin), "{}", refused.stderr);
+    let named = watched(" --format flexitac");
+    assert!(!named.stderr.contains("settings"), "{}", named.stderr);
+    assert_eq!(watched(" --format lines").status, Some(0));
 }
 
 #[test]

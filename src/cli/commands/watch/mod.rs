@@ -102,7 +102,7 @@ pub(crate) fn watch(
         asked.options.playback != Playback::Once && !matches!(source, FrameSource::File(_));
     let mut watcher = Watcher {
         asked,
-        reports: SourceReports::new(&source, note),
+        reports: SourceReports::new(&source, &asked.options, note),
         gate: ChannelGate::new(&source, asked),
         processing,
         rule: None,

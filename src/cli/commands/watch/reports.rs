@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use crate::acquire::{AcquireError, FrameSource};
+use crate::acquire::{AcquireError, AcquireOptions, FrameSource};
 use crate::cli::error::{CliError, stream_advice};
 use crate::formats::recording::RecordingError;
-use crate::formats::stream::{NoFrameReason, StreamCounts, StreamRefusal};
+use crate::formats::stream::{NoFrameReason, StreamCounts, StreamFormat, StreamRefusal};
 use crate::formats::value::counted;
 
 /// The shortest time between two reports of dropped frames.
@@ -14,6 +14,8 @@ const REPORT: Duration = Duration::from_secs(1);
 /// The reports about a source, which begin with its name.
 pub(super) struct SourceReports<'a> {
     source: &'a FrameSource,
+    /// The format of streams that the settings name; None if a flag names one.
+    format: Option<StreamFormat>,
     /// The function that writes a line on standard error.
     note: &'a mut dyn FnMut(&str),
     /// The number of dropped frames reported so far.
@@ -24,9 +26,14 @@ pub(super) struct SourceReports<'a> {
 
 impl<'a> SourceReports<'a> {
     /// Begins without a report.
-    pub(super) fn new(source: &'a FrameSource, note: &'a mut dyn FnMut(&str)) -> Self {
+    pub(super) fn new(
+        source: &'a FrameSource,
+        options: &AcquireOptions,
+        note: &'a mut dyn FnMut(&str),
+    ) -> Self {
         Self {
             source,
+            format: options.stream_format,
             note,
             dropped: 0,
             reported: None,
@@ -103,7 +110,11 @@ impl<'a> SourceReports<'a> {
     fn undecoded(&self, refusal: StreamRefusal) -> CliError {
         match (refusal, self.source) {
             (StreamRefusal::Unknown, FrameSource::File(_)) => self.damaged(RecordingError::Unknown),
-            _ => self.refused(&format!("{refusal}{}", stream_advice(refusal))),
+            _ => self.refused(&format!(
+                "{refusal}{}{}",
+                stream_advice(refusal),
+                self.format_advice()
+            )),
         }
     }
 
@@ -122,9 +133,19 @@ impl<'a> SourceReports<'a> {
             Some(NoFrameReason::Refused(refusal)) => Err(self.undecoded(refusal)),
             Some(reason @ NoFrameReason::Undecoded { reason: None, .. }) => {
                 let advice = "check --rows, --columns and --format";
-                Err(self.refused(&format!("{reason}; {advice}")))
+                Err(self.refused(&format!("{reason}; {advice}{}", self.format_advice())))
             }
-            Some(reason) => Err(self.refused(&reason)),
+            Some(reason) => Err(self.refused(&format!("{reason}{}", self.format_advice()))),
         }
+    }
+
+    /// Returns the end of a message about a stream that is read in the format of the settings; otherwise empty.
+    fn format_advice(&self) -> String {
+        self.format.map_or_else(String::new, |format| {
+            format!(
+                "; the settings say format {:?}, which --format overrides",
+                format.name()
+            )
+        })
     }
 }
