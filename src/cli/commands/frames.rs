@@ -557,10 +557,7 @@ fn save_and_export(
     let begun = export.map(|export| export.begin_frame(imprint, heat, title, pitch));
     let begun = begun.transpose()?;
     if let Some(Saving { name, force }) = &output.kept.saving {
-        let sensor = Sensor::default()
-            .with(Parameter::Columns, imprint.columns().into())
-            .and_then(|sensor| sensor.with(Parameter::Rows, imprint.rows().into()))
-            .unwrap_or(Sensor::LARGEST);
+        let sensor = Sensor::of_size(imprint.size());
         let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
         let shape = StoredShape {
             name: name.clone(),

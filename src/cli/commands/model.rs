@@ -41,10 +41,9 @@ use crate::recognition::{Evaluation, Model, NamedShape, Training, TrainingError}
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{
-    ArchiveFileError, ModelCache, ModelFolder, UnfinishedFile, cached_or_trained, load_model,
-    load_whole_model, model_hash, save_model,
+    ArchiveFileError, ModelCache, ModelChoice, ModelFolder, UnfinishedFile, cached_or_trained,
+    load_model, load_whole_model, model_hash, save_model, unknown_set,
 };
-use crate::storage::{ModelChoice, unknown_set};
 use crate::sweep::Shard;
 
 /// Trains a model and writes it. Returns the text to print, with the error if there is no file. The path is tried
@@ -291,7 +290,7 @@ pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliErr
     // Built-in sets come before models and files of their names, so that nothing changes the meaning of the default;
     // `./figures` is the file.
     let is_there = |choice: &ModelChoice| match choice {
-        ModelChoice::Stored(name) => folder(shelf).is_ok_and(|models| models.file(name).exists()),
+        ModelChoice::Stored(name) => is_kept(name, shelf),
         _ => true,
     };
     if let Some(choice) = name.map(ModelChoice::from_name).filter(is_there) {

@@ -202,17 +202,13 @@ impl Recogniser<'_> {
     /// Returns [`CliError::Mask`] if the mask of dead taxels differs in size from a touch.
     fn answer(&self, touches: &[Imprint]) -> Result<Answer, CliError> {
         let mut evidence = self.evidence(touches);
-        if let Some(noise) = &self.noise {
-            for touch in touches {
-                if let Some(mask) = noise.dead()
-                    && mask.size() != touch.size()
-                {
-                    return Err(CliError::Mask {
-                        mask: mask.size(),
-                        imprint: touch.size(),
-                    });
-                }
-            }
+        if let Some(mask) = self.noise.as_ref().and_then(Noise::dead)
+            && let Some(other) = touches.iter().find(|touch| touch.size() != mask.size())
+        {
+            return Err(CliError::Mask {
+                mask: mask.size(),
+                imprint: other.size(),
+            });
         }
         if let Some(least) = self.asked.reject {
             evidence = evidence.reject_below(least);

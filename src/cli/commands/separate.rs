@@ -55,6 +55,7 @@ pub(crate) fn separate(
     if let Some(path) = &asked.export {
         drop(UnfinishedFile::new(path, asked.existing)?);
     }
+    // An answer without all its sizes says so, even with --quiet.
     if let Some(text) = left_out(asked, &sizes) {
         note(&text, charset);
     }

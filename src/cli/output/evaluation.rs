@@ -135,7 +135,6 @@ impl NamedBy {
 
 /// Returns the summary of an evaluation in lines: touches, error, certain, top two, information.
 pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
-    let number = |count: u128| grouped(count);
     let of_touches = |part: u128| percent(share(part, evaluation.touches));
     let Evaluation {
         touches,
@@ -149,14 +148,14 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
         "{} of {}, {} distinct\n",
         counted(*touches, "touch"),
         counted(evaluation.labels.len() as u64, "shape"),
-        number(evaluation.keys as u128)
+        grouped(evaluation.keys as u64)
     );
     let mut line = |name: &str, value: u128, note: &str| {
         // Cannot fail: the text is kept in memory.
         let _ = writeln!(
             text,
             "{name:<12} {:>16}  {:>7}{note}",
-            number(value),
+            grouped(value),
             of_touches(value)
         );
     };
