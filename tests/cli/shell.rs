@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 use super::commands::commands;
 use super::misused;
 use super::program;
+use super::refused;
 use super::skip::lacking;
 use super::taxel;
 
@@ -390,6 +391,10 @@ fn man_pages_say_the_same_as_the_help() {
         taxel("man", "").stdout,
         fs::read_to_string(pages.join("taxel.1")).expect("a page")
     );
+    let page = pages.join("taxel.1").display().to_string();
+    let run = taxel(&format!("man {page}"), "");
+    let file = format!("{page}: cannot write: a file, expected a folder");
+    refused(&run, 1, &file);
     let run = taxel("man figure", "");
     let (name, _) = run.stderr.split_once('\n').expect("a line");
     assert_eq!(

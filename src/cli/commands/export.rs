@@ -4,6 +4,8 @@
 //! Standard output, `-`, gets the same bytes.
 
 use std::ffi::OsStr;
+use std::fs;
+use std::io;
 use std::path::Path;
 
 use crate::cli::arguments::export::{Export, ExportFormat};
@@ -149,6 +151,21 @@ pub(crate) enum Exported {
 /// Returns the note that a file was written.
 pub(crate) fn written(path: &Path) -> String {
     format!("written: {}", path.display())
+}
+
+/// Makes a folder for the files to write, and the folders above it, if they do not exist.
+///
+/// # Errors
+/// Returns [`CliError::File`] if this fails, or if the folder is a file.
+pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
+    fs::create_dir_all(folder).map_err(|error| CliError::File {
+        name: folder.to_string_lossy().into_owned(),
+        error: if folder.exists() {
+            io::Error::other("a file, expected a folder")
+        } else {
+            error
+        },
+    })
 }
 
 /// Writes a file, completely or not at all.

@@ -4,7 +4,6 @@
 //! EXAMPLES; the program's own page also has ENVIRONMENT and FILES. In the text below the flags, indented lines are
 //! kept as they are and others are filled; `Examples:` starts the section of that name.
 
-use std::fs;
 use std::io;
 use std::path::Path;
 
@@ -32,10 +31,7 @@ pub(crate) fn main_page() -> Result<Vec<u8>, CliError> {
 /// # Errors
 /// Returns an error if the folder cannot be created or a file cannot be written.
 pub(crate) fn write(folder: &Path) -> Result<String, CliError> {
-    fs::create_dir_all(folder).map_err(|error| CliError::File {
-        name: folder.display().to_string(),
-        error,
-    })?;
+    export::make_folder(folder)?;
     let built = built();
     let commands = all(&built);
     for command in &commands {

@@ -15,7 +15,6 @@
 //! the user's, and writes only below its own folder, unless `--allow-outside` is given.
 
 use std::collections::{HashMap, HashSet};
-use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -71,10 +70,7 @@ pub(crate) fn run(
     };
     let running = options(asked, settings, charset);
     if let Some(folder) = &asked.drawings {
-        fs::create_dir_all(folder).map_err(|error| CliError::File {
-            name: folder.to_string_lossy().into_owned(),
-            error,
-        })?;
+        export::make_folder(folder)?;
     }
     let (mut output, mut names, mut lost) = (io::stdout().lock(), Names::default(), None);
     let mut show = |shown: ScriptOutput<'_>| match write(shown, asked, &mut output, &mut names) {
@@ -191,15 +187,8 @@ impl Names {
 /// Returns the errors of the file, and an error for more than [`MOST_BYTES`] bytes.
 fn text(source: &InputSource) -> io::Result<String> {
     let mut bytes = Vec::new();
-    match source {
-        InputSource::File(path) => File::open(path)?
-            .take(MOST_BYTES + 1)
-            .read_to_end(&mut bytes)?,
-        InputSource::Standard => io::stdin()
-            .lock()
-            .take(MOST_BYTES + 1)
-            .read_to_end(&mut bytes)?,
-    };
+    let mut input = source.open()?.take(MOST_BYTES + 1);
+    input.read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(io::Error::other(
             "larger than 16 MiB, the limit for a script",
