@@ -93,7 +93,7 @@ pub(crate) enum CliError {
     #[error("{}{}", shortened_message(&.0.to_string()), place_advice(.0))]
     Library(#[from] LibraryError),
     /// An argument is neither the name of a shape nor a file.
-    #[error("no stored shape and no file is called {name:?}{near}")]
+    #[error("no stored shape or file named {name:?}{near}")]
     Nowhere {
         /// The argument.
         name: String,
@@ -161,7 +161,7 @@ pub(crate) enum CliError {
         size: MatrixSize,
     },
     /// No model beside the library has this name.
-    #[error("no model is called {name:?}; 'taxel model list' shows all{near}")]
+    #[error("no model named {name:?}; 'taxel model list' shows all{near}")]
     NoModel {
         /// The argument.
         name: String,
@@ -180,7 +180,7 @@ pub(crate) enum CliError {
         imprint: MatrixSize,
     },
     /// A name that no shape of the model has.
-    #[error("--expect: no shape of the model is called {name:?}{near}")]
+    #[error("--expect: the model has no shape named {name:?}{near}")]
     NotInModel {
         /// The name.
         name: String,

@@ -141,13 +141,13 @@ pub enum LibraryError {
     #[error(transparent)]
     Name(#[from] NameError),
     /// No shape has that name.
-    #[error("no shape is called {name:?}")]
+    #[error("no shape named {name:?}")]
     Unknown {
         /// The given name.
         name: String,
     },
     /// No shape in the trash has that name.
-    #[error("nothing called {name:?} is in the trash")]
+    #[error("no shape named {name:?} in the trash")]
     NotInTrash {
         /// The given name.
         name: String,

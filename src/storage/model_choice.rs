@@ -96,7 +96,7 @@ pub(crate) fn unknown_set(name: &str, stored: &[Name]) -> String {
     let stored = stored.iter().filter(|stored| !is_own(stored));
     let all: Vec<&str> = own.chain(stored.map(Name::as_str)).collect();
     format!(
-        "no model or file {:?}; there are {}{}",
+        "no model or file named {:?}; models: {}{}",
         shortened(name),
         all.join(", "),
         did_you_mean(name, all.iter().copied())

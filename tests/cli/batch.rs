@@ -94,7 +94,7 @@ fn bad_lines_are_answered_in_their_places() {
             "2: column 2: expected a value: a string in double quotes, a number, a list or an object",
         ),
         error("4: side: 99 is above 16 (allowed: above 0, up to 16)"),
-        error("5: picture: no shape is called \\\"gasket\\\""),
+        error("5: picture: no shape named \\\"gasket\\\""),
         error("6: column 12: figure: not UTF-8, or an escape of no character"),
         error(
             "7: column 1: expected a value: a string in double quotes, a number, a list or an object",

@@ -241,7 +241,7 @@ fn menu_hints_help_and_notices_show_the_keys_of_the_settings_file() {
     shows("f", &["Ctrl-N field"]);
     shows(
         ":nonsense<Enter>",
-        &["\"nonsense\" is unknown; Tab shows the commands"],
+        &["no command named \"nonsense\"; Tab shows all"],
     );
 }
 

@@ -228,10 +228,10 @@ fn a_shape_can_be_described_by_its_name() {
 #[test]
 fn a_file_that_cannot_be_read_is_named() {
     let run = taxel("describe no-such-shape", "");
-    let message = "no stored shape and no file is called \"no-such-shape\"";
+    let message = "no stored shape or file named \"no-such-shape\"";
     refused(&run, 1, message);
     let run = taxel("describe Wsher", "");
-    let message = "no stored shape and no file is called \"Wsher\"; did you mean \"washer\"?";
+    let message = "no stored shape or file named \"Wsher\"; did you mean \"washer\"?";
     refused(&run, 1, message);
     let run = taxel("describe no/such-file", "");
     let message = "no/such-file: cannot read: No such file or directory (os error 2)";

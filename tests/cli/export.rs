@@ -242,7 +242,7 @@ fn bad_targets_are_refused_with_what_is_expected() {
     refused(
         &taxel("export nowhere a.svg", ""),
         1,
-        "no stored shape and no file is called \"nowhere\"",
+        "no stored shape or file named \"nowhere\"",
     );
     refused(
         &taxel("export - - --format csv", "P1 2 1 2"),

@@ -247,15 +247,15 @@ fn a_word_that_is_not_a_figure_is_refused_with_a_tip() {
     for (line, message) in [
         (
             "describe|hexagon",
-            "no stored shape and no file is called \"hexagon\"; \"hexagon\" is a figure, which taxel figure and taxel sweep take",
+            "no stored shape or file named \"hexagon\"; \"hexagon\" is a figure, which taxel figure and taxel sweep take",
         ),
         (
             "recognise|hexagon",
-            "no stored shape and no file is called \"hexagon\"; \"hexagon\" is a figure, which taxel figure and taxel sweep take",
+            "no stored shape or file named \"hexagon\"; \"hexagon\" is a figure, which taxel figure and taxel sweep take",
         ),
         (
             "model|train|hexagon|--out|no.npz",
-            "no shape is called \"hexagon\"; \"hexagon\" is a figure: --shape 'hexagon=hexagon side=4'",
+            "no shape named \"hexagon\"; \"hexagon\" is a figure: --shape 'hexagon=hexagon side=4'",
         ),
     ] {
         refused(&shelf.run(line, ""), 1, message);

@@ -206,7 +206,7 @@ fn one_of_several_channels_must_be_named() {
     refused(
         "xsensor.csv",
         "--peak --channel top",
-        "expected one of left, right\n",
+        "no channel named \"top\"; channels: left, right\n",
     );
     let right = answered("xsensor.csv", "--channel right --peak --at-least 18 --json");
     assert_eq!(
@@ -646,7 +646,7 @@ fn a_listing_shows_only_the_requested_channel() {
     assert_eq!((none.status, none.stdout.as_str()), (Some(1), ""));
     assert!(
         none.stderr
-            .contains("no channel is called \"middle\", expected one of left, right\n"),
+            .contains("no channel named \"middle\"; channels: left, right\n"),
         "{}",
         none.stderr
     );

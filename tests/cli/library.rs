@@ -91,16 +91,16 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     let restores = "deleted my ring; to restore it: taxel library restore --library ";
     assert!(deleted.starts_with(restores), "{deleted}");
     assert!(deleted.ends_with(" 'my ring'\n"), "{deleted}");
-    shelf.refuses("library|show|my ring", "no shape is called \"my ring\"");
-    shelf.refuses("library|delete|my ring", "no shape is called \"my ring\"");
+    shelf.refuses("library|show|my ring", "no shape named \"my ring\"");
+    shelf.refuses("library|delete|my ring", "no shape named \"my ring\"");
     // A typing error in the name of a shape, in the library and in its trash.
     shelf.refuses(
         "library|show|wahser",
-        "no shape is called \"wahser\"; did you mean \"washer\"?",
+        "no shape named \"wahser\"; did you mean \"washer\"?",
     );
     shelf.refuses(
         "library|restore|mi ring",
-        "nothing called \"mi ring\" is in the trash; did you mean \"my ring\"?",
+        "no shape named \"mi ring\" in the trash; did you mean \"my ring\"?",
     );
     assert_eq!(
         shelf.does("library|restore|MY RING", ""),
@@ -108,7 +108,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     );
     shelf.refuses(
         "library|restore|my ring",
-        "nothing called \"my ring\" is in the trash",
+        "no shape named \"my ring\" in the trash",
     );
     let count = taxel::storage::shipped::names().count() + 1;
     assert_eq!(
@@ -157,7 +157,7 @@ fn an_existing_shape_is_only_replaced_with_force() {
     shelf.refuses("library|delete|washer", undeletable);
     shelf.refuses(
         "library|restore|washer",
-        "nothing called \"washer\" is in the trash",
+        "no shape named \"washer\" in the trash",
     );
 }
 
@@ -386,7 +386,7 @@ fn a_library_path_below_a_file_still_has_the_shipped_shapes() {
     refused(
         &run("library show nothing"),
         1,
-        "no shape is called \"nothing\"",
+        "no shape named \"nothing\"",
     );
     let saved = run("library save mine washer");
     assert_eq!(saved.status, Some(1));

@@ -416,7 +416,7 @@ fn models_can_be_named_listed_and_shown() {
     refused(
         &place.run("model delete parts", ""),
         1,
-        "no model is called \"parts\"; 'taxel model list' shows all",
+        "no model named \"parts\"; 'taxel model list' shows all",
     );
 }
 
@@ -450,11 +450,11 @@ fn similar_names_are_suggested() {
     for (line, message) in [
         (
             "model confusion figurs",
-            "no model or file \"figurs\"; there are figures, figures-30, shapes; did you mean \"figures\"?",
+            "no model or file named \"figurs\"; models: figures, figures-30, shapes; did you mean \"figures\"?",
         ),
         (
             "model train gaer --out m.npz",
-            "no shape is called \"gaer\"; did you mean \"gear\"?",
+            "no shape named \"gaer\"; did you mean \"gear\"?",
         ),
         (
             "model train --shape 'disc=elipse' --out m.npz",
@@ -546,7 +546,7 @@ fn meaningless_sets_are_refused_in_one_sentence() {
     refused(
         &taxel("model confusion nowhere", ""),
         1,
-        "no model or file \"nowhere\"; there are figures, figures-30, shapes",
+        "no model or file named \"nowhere\"; models: figures, figures-30, shapes",
     );
     misused(
         "model train parts.jsonl",
@@ -1173,7 +1173,7 @@ fn a_folder_and_a_fifo_in_place_of_a_set_are_told_apart() {
     let place = Place::new();
     fs::create_dir(place.0.path().join("parts")).expect("made");
     let train = |what: &str| format!("model train {what} {COARSE} --out m.npz");
-    let said = "no shape is called \"parts\"; there is a folder of this name, but a set is a file";
+    let said = "no shape named \"parts\"; there is a folder of this name, but a set is a file";
     refused(&place.run(&train("parts"), ""), 1, said);
     let pipe = place.0.path().join("ff");
     if super::wait::fifo(&pipe) {

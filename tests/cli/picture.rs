@@ -72,7 +72,7 @@ fn a_name_of_the_library_is_preferred_to_a_file() {
     for (arguments, message) in [
         (
             "picture|nothing",
-            "no stored shape and no file is called \"nothing\"",
+            "no stored shape or file named \"nothing\"",
         ),
         (
             "picture|no/such.txt",
@@ -105,7 +105,7 @@ fn a_batch_reports_unknown_names() {
     assert!(answers[0].contains(r#""na":1,"#) && answers[4] == answers[0]);
     assert_eq!(
         answers[1],
-        r#"{"error":"line 2: picture: no shape is called \"none\""}"#
+        r#"{"error":"line 2: picture: no shape named \"none\""}"#
     );
     assert!(
         answers[2].contains("line 3: picture: '/' cannot be in a name"),

@@ -218,17 +218,17 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     refused(
         &place.run("recognise square.txt --model r --expect disc", ""),
         1,
-        "--expect: no shape of the model is called \"disc\"",
+        "--expect: the model has no shape named \"disc\"",
     );
     refused(
         &place.run("recognise square.txt --model nobody", ""),
         1,
-        "no model or file \"nobody\"; there are figures, figures-30, shapes, r, twins",
+        "no model or file named \"nobody\"; models: figures, figures-30, shapes, r, twins",
     );
     refused(
         &place.run("recognise nothing.txt --model r", ""),
         1,
-        "no stored shape and no file is called \"nothing.txt\"",
+        "no stored shape or file named \"nothing.txt\"",
     );
 }
 

@@ -409,8 +409,8 @@ fn a_file_without_frames_that_no_longer_grows_ends_at_its_end() {
 fn a_missing_channel_is_refused_in_a_recording_and_reported_in_a_stream() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.npy");
-    let one = "no channel is called \"nope\": the recording has one channel, without a name; leave out --channel\n";
-    let several = "no channel is called \"nope\", expected one of ";
+    let one = "no channel named \"nope\": the recording has one channel, without a name; leave out --channel\n";
+    let several = "no channel named \"nope\"; channels: ";
     for (name, expected) in [
         ("u2.npy", one),
         ("xsensor.csv", several),
@@ -431,7 +431,8 @@ fn a_missing_channel_is_refused_in_a_recording_and_reported_in_a_stream() {
     assert!(!taxel(&line, "").stdout.is_empty());
     let run = taxel("watch - --channel nope", stream(0..3));
     assert_eq!((run.status, lines(&run.stdout).len()), (Some(0), 3));
-    let said = "standard input: no channel is called \"nope\": a stream has none, and all frames are taken\n";
+    let said =
+        "standard input: no channel named \"nope\": a stream has none, and all frames are taken\n";
     assert_eq!(run.stderr, said);
 }
 
@@ -472,7 +473,7 @@ fn the_channels_of_json_lines_are_chosen_by_name() {
         );
         assert_eq!(found[5]["channel"], "right");
         let told = refused(&format!("{command} --channel up"), input);
-        let expected = "no channel is called \"up\", expected one of left, right";
+        let expected = "no channel named \"up\"; channels: left, right";
         assert!(told.contains(expected), "{command}: {told}");
     }
 }

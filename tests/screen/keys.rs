@@ -152,7 +152,7 @@ fn kinds_are_chosen_by_arrows_and_letters() {
         "fz",
         &[
             "< ellipse ",
-            "! no kind begins with 'z': ellipse, rectangle",
+            "! no kind begins with 'z'; kinds: ellipse, rectangle",
         ],
     );
     // Values remain when the kind changes, and are there again when it changes back.
@@ -244,7 +244,7 @@ fn pasted_text_only_goes_into_fields() {
     form.send(Message::Paste("Hexagon\n".to_owned()));
     shows(&form, &["< hexagon   >"]);
     form.send(Message::Paste("nut".to_owned()));
-    shows(&form, &["no kind is called \"nut\": ellipse, rectangle"]);
+    shows(&form, &["no kind named \"nut\"; kinds: ellipse, rectangle"]);
     form.send(Message::Paste("2.5".to_owned()));
     shows(&form, &["side 2.50"]);
     for page in [
@@ -657,7 +657,7 @@ fn recognise_steps_through_sets_and_accepts_a_name() {
     shows(
         &format!(":recognise figures-30<Enter>{hexagon}a:recognise nothing<Enter>"),
         &[
-            "no model or file \"nothing\"; there are figures, figures-30, shapes",
+            "no model or file named \"nothing\"; models: figures, figures-30, shapes",
             "Recognise: model figures-30",
             "likely: hexagon",
             "1 touch kept",

@@ -92,7 +92,7 @@ fn a_source_from_which_no_frame_came_says_why() {
         (
             "r0c0,r0c1\n1,2\n",
             " --channel x",
-            "no channel is called \"x\": the recording has one channel",
+            "no channel named \"x\": the recording has one channel",
         ),
     ] {
         let file = folder.path().join("a.csv");
@@ -120,7 +120,7 @@ fn an_unreadable_source_or_a_missing_model_opens_no_page() {
     shows(
         &keys,
         &[
-            "! no model or file \"nope\"; there are figures",
+            "! no model or file named \"nope\"; models: figures",
             ":watch tests",
         ],
     );

@@ -323,10 +323,10 @@ fn commands_do_what_keys_do() {
         &["descriptors sent to your terminal's clipboard ("],
     );
     for (line, message) in [
-        ("fly", "! \"fly\" is unknown; Tab shows the commands"),
+        ("fly", "! no command named \"fly\"; Tab shows all"),
         (
             "explroe",
-            "! \"explroe\" is unknown; Tab shows the commands; did you mean \"explore\"?",
+            "! no command named \"explroe\"; Tab shows all; did you mean \"explore\"?",
         ),
         (
             "figure blob",
@@ -366,7 +366,7 @@ fn commands_do_what_keys_do() {
         ),
         ("zoom", "! zoom takes in or out"),
         ("save a/b", "! '/' cannot be in a name"),
-        ("load nowhere", "! no shape is called \"nowhere\""),
+        ("load nowhere", "! no shape named \"nowhere\""),
     ] {
         then(&mut session, &format!(":{line}<Enter>"), &[message]);
         press(&mut session, "<Esc>");
@@ -398,13 +398,13 @@ fn the_shape_is_turned_and_zoomed_by_commands() {
 #[test]
 fn a_refused_prompt_stays_open() {
     for (line, refusal) in [
-        ("load nope", "! no shape is called \"nope\""),
-        ("picture nope", "! no shape is called \"nope\""),
+        ("load nope", "! no shape named \"nope\""),
+        ("picture nope", "! no shape named \"nope\""),
         (
             "picture wahser",
-            "! no shape is called \"wahser\"; did you mean \"washer\"?",
+            "! no shape named \"wahser\"; did you mean \"washer\"?",
         ),
-        ("delete nope", "! no shape is called \"nope\""),
+        ("delete nope", "! no shape named \"nope\""),
         (
             "delete arrow",
             "! \"arrow\" is shipped with taxel and cannot be deleted",

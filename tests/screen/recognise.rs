@@ -72,7 +72,10 @@ fn a_stored_model_that_was_trained_anew_is_read_again() {
     let name = Name::new("my parts").expect("a name");
     fs::remove_file(ModelFolder::beside(library.folder()).file(&name)).expect("deleted");
     press(&mut session, ":recognise my parts<Enter>");
-    shows(&session, &["no model or file \"my parts\"", "not read"]);
+    shows(
+        &session,
+        &["no model or file named \"my parts\"", "not read"],
+    );
 }
 
 #[test]
@@ -152,7 +155,7 @@ fn a_stored_model_is_completed_used_and_remembered() {
     let missing = ":recognise ./nowhere.npz<Enter>";
     shows(
         &begin(missing),
-        &["no model or file \"./nowhere.npz\"; there are"],
+        &["no model or file named \"./nowhere.npz\"; models: "],
     );
     let in_folder = format!(":recognise {}<Enter>", folder.path().display());
     shows(&begin(&in_folder), &["not a regular file"]);
@@ -163,7 +166,7 @@ fn a_stored_model_is_completed_used_and_remembered() {
     // A file in the working folder is named without a path; this one contains no model.
     shows(&begin(":recognise Cargo.toml<Enter>"), &["Cargo.toml: "]);
     // A model that does not exist is refused with a list of the others, and not remembered.
-    let all = "no model or file \"nonsense\"; there are figures, figures-30, shapes, my parts";
+    let all = "no model or file named \"nonsense\"; models: figures, figures-30, shapes, my parts";
     shows(&begin(":recognise nonsense<Enter>"), &[all]);
     shows(&begin("r"), &["Recognise: model shapes"]);
 }
@@ -254,7 +257,7 @@ fn nothing_is_cut_off_beside_a_large_sensor() {
 
 #[test]
 fn a_set_that_does_not_exist_changes_nothing() {
-    let refused = "no model or file \"nope\"; there are figures, figures-30, shapes";
+    let refused = "no model or file named \"nope\"; models: figures, figures-30, shapes";
     let shows_no = |session: &Session, text: &str| {
         let screen = session.screen();
         assert!(!screen.contains(text), "{text:?} on\n{screen}");

@@ -62,11 +62,11 @@ impl ChannelChoice {
 pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
     if names == [UNNAMED] {
         return format!(
-            "no channel is called {asked:?}: the recording has one channel, without a name; leave out --channel"
+            "no channel named {asked:?}: the recording has one channel, without a name; leave out --channel"
         );
     }
     format!(
-        "no channel is called {asked:?}, expected one of {}{}",
+        "no channel named {asked:?}; channels: {}{}",
         names.join(", "),
         did_you_mean(asked, names.iter().copied())
     )
@@ -104,8 +104,7 @@ mod tests {
         assert_eq!(choice.missing(), None, "a stream has none");
         choice.add(&channel(Some("left")));
         choice.add(&channel(Some("right")));
-        let said =
-            r#"no channel is called "righ", expected one of left, right; did you mean "right"?"#;
+        let said = r#"no channel named "righ"; channels: left, right; did you mean "right"?"#;
         assert_eq!(choice.missing().as_deref(), Some(said));
     }
 

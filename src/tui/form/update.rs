@@ -42,12 +42,15 @@ pub(in crate::tui) fn update(
         Message::Type(character) => {
             if !dialog.insert(character) {
                 let kind = quoted_character(character);
-                refuse(app, format!("no kind begins with {kind}: {}", kinds()));
+                refuse(
+                    app,
+                    format!("no kind begins with {kind}; kinds: {}", kinds()),
+                );
             }
         }
         Message::Paste(text) => {
             if !dialog.paste(&text) {
-                refuse(app, format!("no kind is called {text:?}: {}", kinds()));
+                refuse(app, format!("no kind named {text:?}; kinds: {}", kinds()));
             }
         }
         Message::Defaults => dialog.set_defaults(),

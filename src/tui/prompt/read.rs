@@ -48,7 +48,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let command = find(name).ok_or_else(|| {
         let complete = app.keymap().label(Context::Command, &action::NEXT);
         format!(
-            "{:?} is unknown; {complete} shows the commands{}",
+            "no command named {:?}; {complete} shows all{}",
             shortened(name),
             did_you_mean(name, commands().iter().map(|command| command.name))
         )

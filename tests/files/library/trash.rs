@@ -15,14 +15,14 @@ fn a_deleted_shape_is_restored_unchanged() {
     assert_eq!(scratch.own(), ["two"]);
     assert_eq!(
         refusal(scratch.library.load("one"), &scratch),
-        "no shape is called \"one\""
+        "no shape named \"one\""
     );
     assert_eq!(scratch.library.restore("one").expect("restored"), "one");
     let after = std::fs::read(scratch.path("one.json")).expect("there");
     assert_eq!(before, after);
     assert_eq!(
         refusal(scratch.library.restore("one"), &scratch),
-        "nothing called \"one\" is in the trash"
+        "no shape named \"one\" in the trash"
     );
 }
 
@@ -110,12 +110,12 @@ fn shipped_shapes_cannot_be_deleted() {
     assert_eq!(refusal(scratch.library.delete("Washer"), &scratch), message);
     assert_eq!(
         refusal(scratch.library.delete("nothing"), &scratch),
-        "no shape is called \"nothing\""
+        "no shape named \"nothing\""
     );
     let nowhere = Library::open(scratch.path("nowhere"));
     assert_eq!(
         refusal(nowhere.delete("nothing"), &scratch),
-        "no shape is called \"nothing\""
+        "no shape named \"nothing\""
     );
     assert!(nowhere.restore("nothing").is_err() && !scratch.path("nowhere").exists());
 }

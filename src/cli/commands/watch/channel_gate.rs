@@ -109,7 +109,7 @@ impl<'a> ChannelGate<'a> {
         self.first = FirstFrame::Came { held };
         if let (Some(wanted), false) = (self.wanted(), self.has_channels()) {
             reports.say(&format!(
-                "no channel is called {wanted:?}: a stream has none, and all frames are taken"
+                "no channel named {wanted:?}: a stream has none, and all frames are taken"
             ));
         }
         passes

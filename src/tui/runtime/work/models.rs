@@ -112,7 +112,7 @@ impl ModelStore {
             choice => choice.name().to_owned(),
         };
         let path = self.path(choice);
-        let path = path.ok_or_else(|| format!("there is no model {name}"))?;
+        let path = path.ok_or_else(|| format!("no model named {name:?}"))?;
         match path.metadata() {
             // Opening a pipe waits, and opening a serial line may reset its device.
             Ok(kind) if !kind.is_file() => Err(format!("{}: not a regular file", shortened(&name))),

@@ -27,7 +27,7 @@ pub(crate) fn shape(bytes: &[u8]) -> bool {
 pub(crate) fn job(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
         "washer" => Ok(Imprint::empty(Sensor::default().size())),
-        _ => Err("no shape is called so".to_owned()),
+        _ => Err("no shape named so".to_owned()),
     };
     match Job::read(bytes, Sensor::default(), &lookup) {
         Ok(job) => {
