@@ -8,6 +8,7 @@ use std::time::Duration;
 use crate::acquire::growing_file::ReadAnew;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
 use crate::formats::stream::{StreamCounts, StreamFormat};
+use crate::formats::system_error::system_reason;
 #[cfg(feature = "tui")]
 use crate::formats::value::decimal;
 use crate::frame::{Frame, FrameSize};
@@ -158,7 +159,7 @@ pub enum AcquireEvent<'a> {
 impl AcquireEvent<'_> {
     /// Returns the words for [`Self::Lost`].
     pub(crate) fn lost(error: &io::Error) -> String {
-        format!("lost: {error}; trying again each second")
+        format!("lost: {}; trying again each second", system_reason(error))
     }
 
     /// Returns the words for [`Self::Back`].
@@ -172,7 +173,7 @@ impl AcquireEvent<'_> {
 #[non_exhaustive]
 pub enum AcquireError {
     /// The source cannot be opened, or read on.
-    #[error("cannot {doing}: {error}")]
+    #[error("cannot {doing}: {}", system_reason(error))]
     Io {
         /// The operation, in words that follow "cannot".
         doing: &'static str,

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use crate::acquire::event::{AcquireError, AcquireOptions};
 use crate::acquire::recorder::RecorderError;
 use crate::formats::recording::{ReadOptions, RecordingError, format_of};
+use crate::formats::system_error::system_reason;
 use crate::storage::FileId;
 
 /// A source of frames.
@@ -112,7 +113,10 @@ impl FrameSource {
         if !is_connection {
             return AcquireError::opening(error);
         }
-        let text = format!("{error}; a connection is written tcp://{name}");
+        let text = format!(
+            "{}; a connection is written tcp://{name}",
+            system_reason(&error)
+        );
         AcquireError::opening(io::Error::new(error.kind(), text))
     }
 

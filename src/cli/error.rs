@@ -12,6 +12,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::Name;
 use crate::formats::recording::{RecordingError, RecordingNote};
 use crate::formats::stream::StreamRefusal;
+use crate::formats::system_error::{system_reason, write_reason};
 use crate::formats::value::counted;
 use crate::parameter::ParameterError;
 use crate::parameter::number::short;
@@ -73,7 +74,7 @@ pub(crate) enum CliError {
         lines: u64,
     },
     /// Lines cannot be read, or not to the end.
-    #[error("{name}: cannot read: {error}")]
+    #[error("{name}: cannot read: {}", system_reason(error))]
     Read {
         /// The file, or standard input.
         name: String,
@@ -87,7 +88,7 @@ pub(crate) enum CliError {
         name: String,
     },
     /// Standard output cannot be written to.
-    #[error("cannot write to standard output: {0}")]
+    #[error("cannot write to standard output: {}", system_reason(.0))]
     Write(io::Error),
     /// An operation of the library failed: no such shape, no folder, a damaged file.
     #[error("{}{}", shortened_message(&.0.to_string()), place_advice(.0))]
@@ -226,7 +227,7 @@ pub(crate) enum CliError {
         name: String,
     },
     /// A file cannot be written.
-    #[error("{name}: cannot write: {error}")]
+    #[error("{name}: cannot write: {}", write_reason(error))]
     File {
         /// The name of the file or of its folder.
         name: String,
@@ -280,7 +281,7 @@ pub(crate) enum CliError {
         free: String,
     },
     /// The file of `--record` cannot be created.
-    #[error("{name}: cannot record: {error}")]
+    #[error("{name}: cannot record: {}", write_reason(error))]
     Record {
         /// The file's name.
         name: String,
@@ -345,10 +346,10 @@ pub(crate) enum CliError {
         status: u8,
     },
     /// The system does not provide threads or signal handlers.
-    #[error("{0}")]
+    #[error("{}", system_reason(.0))]
     System(io::Error),
     /// The screen cannot be opened, as without a terminal, or it failed.
-    #[error("{0}")]
+    #[error("{}", system_reason(.0))]
     Screen(io::Error),
 }
 

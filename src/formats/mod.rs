@@ -14,6 +14,9 @@ pub(crate) mod byte_order_mark;
 
 pub(crate) mod ending;
 
+#[cfg(any(feature = "frames", feature = "library", feature = "sweep"))]
+pub(crate) mod system_error;
+
 pub(crate) mod described;
 
 #[cfg(feature = "json")]

@@ -9,11 +9,14 @@ use crate::formats::ArchiveError;
 use crate::formats::name::NameError;
 #[cfg(feature = "library")]
 use crate::formats::shape::ShapeError;
+use crate::formats::system_error::system_reason;
+#[cfg(feature = "sweep")]
+use crate::formats::system_error::write_reason;
 
 /// The error for an operation on a file that the system refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[error("{}: cannot {doing}: {error}", path.display())]
+#[error("{}: cannot {doing}: {}", path.display(), system_reason(error))]
 pub struct FileError {
     /// The operation, in words that follow "cannot".
     pub doing: &'static str,
@@ -49,7 +52,10 @@ impl FileError {
     #[must_use]
     pub(crate) fn and(self, note: Option<String>) -> Self {
         let Some(note) = note else { return self };
-        let error = io::Error::new(self.error.kind(), format!("{}; {note}", self.error));
+        let error = io::Error::new(
+            self.error.kind(),
+            format!("{}; {note}", system_reason(&self.error)),
+        );
         Self { error, ..self }
     }
 
@@ -77,7 +83,10 @@ impl FileError {
         if self.is_in_place {
             let message =
                 "the folder was changed but cannot be synced, so a power cut may undo that";
-            io::Error::new(self.error.kind(), format!("{message}: {}", self.error))
+            io::Error::new(
+                self.error.kind(),
+                format!("{message}: {}", system_reason(&self.error)),
+            )
         } else {
             self.error
         }
@@ -117,7 +126,11 @@ impl ArchiveFileError {
 
     /// Creates the error for an operation that the system refused, in words that follow "cannot".
     pub(crate) fn doing(doing: &str, path: &Path, error: &io::Error) -> Self {
-        let text = format!("cannot {doing}: {error}");
+        let reason = match doing {
+            "write" => write_reason(error),
+            _ => system_reason(error),
+        };
+        let text = format!("cannot {doing}: {reason}");
         Self::new(path, io::Error::new(error.kind(), text))
     }
 

@@ -33,8 +33,8 @@ fn the_files_in_the_examples_folder_are_answered() {
         );
     }
     for (file, reason) in [
-        ("nothing.jsonl", "No such file"),
-        (folder, "Is a directory"),
+        ("nothing.jsonl", "no such file or folder"),
+        (folder, "it is a folder"),
     ] {
         let run = taxel(&format!("batch {file}"), "");
         let begins = format!("error: {file}: cannot read: {reason}");

@@ -234,12 +234,12 @@ fn a_file_that_cannot_be_read_is_named() {
     let message = "no stored shape or file named \"Wsher\"; did you mean \"washer\"?";
     refused(&run, 1, message);
     let run = taxel("describe no/such-file", "");
-    let message = "no/such-file: cannot read: No such file or directory (os error 2)";
+    let message = "no/such-file: cannot read: no such file or folder";
     refused(&run, 1, message);
     refused(
         &taxel("describe .", ""),
         1,
-        ".: cannot read: Is a directory (os error 21)",
+        ".: cannot read: it is a folder",
     );
 }
 

@@ -417,7 +417,7 @@ fn a_copy_that_cannot_be_made_is_not_a_fault_of_the_input() {
     };
     let child = command().spawn().expect("the program starts");
     let piped = super::finish(child, &std::fs::read(&sample).expect("a sample"));
-    let message = "error: standard input: cannot read: cannot keep a copy in /nonexistent (TMPDIR): No such file";
+    let message = "error: standard input: cannot read: cannot keep a copy in /nonexistent (TMPDIR): no such file or folder";
     assert!(piped.stderr.starts_with(message), "{}", piped.stderr);
     // A file needs no copy.
     let file = std::fs::File::open(&sample).expect("a sample");

@@ -956,7 +956,7 @@ fn meaningless_words_of_a_shape_are_refused() {
 fn files_that_cannot_be_used_are_refused_before_any_work() {
     let place = Place::new();
     let run = place.run("model train missing.jsonl --out x.npz", "");
-    let message = "missing.jsonl: cannot read: No such file or directory (os error 2)";
+    let message = "missing.jsonl: cannot read: no such file or folder";
     refused(&run, 1, message);
     for shard in ["1/2", "2/2"] {
         let out = format!("part-{}.npz", &shard[..1]);
@@ -1191,6 +1191,6 @@ fn a_folder_and_a_fifo_in_place_of_a_set_are_told_apart() {
         assert!(run.stderr.ends_with(&said), "{}", run.stderr);
     }
     let run = place.run("sweep rectangle --x0 5 --y0 5 --atlas none/a.npz", "");
-    let said = "none/a.npz: cannot write: No such file or directory (os error 2)";
+    let said = "none/a.npz: cannot write: no such folder";
     refused(&run, 1, said);
 }

@@ -76,7 +76,7 @@ fn a_name_of_the_library_is_preferred_to_a_file() {
         ),
         (
             "picture|no/such.txt",
-            "no/such.txt: cannot read: No such file or directory (os error 2)",
+            "no/such.txt: cannot read: no such file or folder",
         ),
         (
             "picture|washer|--zoom-x|0",

@@ -22,7 +22,7 @@ fn messages_name_the_script_and_the_line() {
         (
             "Source nofile.csv",
             1,
-            "line 1: nofile.csv: cannot open it: No such file",
+            "line 1: nofile.csv: cannot open it: no such file or folder",
         ),
         (
             "Frames 1",

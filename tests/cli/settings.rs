@@ -212,7 +212,7 @@ fn a_named_settings_file_must_exist_and_be_text() {
         assert_eq!(run.status, Some(2));
         assert!(run.stderr.starts_with(&expected), "{}", run.stderr);
     };
-    told("cannot read: No such file or directory");
+    told("cannot read: no such file or folder");
     fs::write(&file, b"theme = '\xff'").expect("written");
     told("not UTF-8");
     fs::write(&file, vec![b'#'; (1 << 20) + 1]).expect("written");
@@ -232,7 +232,7 @@ fn a_link_to_settings_that_are_missing_is_reported() {
     std::os::unix::fs::symlink("/nonexistent/taxel", folder.join("taxel")).expect("linked");
     let run = run(&mut at_home("config", home.path()));
     assert_eq!(run.status, Some(2));
-    let message = "config.toml: cannot read: No such file or directory";
+    let message = "config.toml: cannot read: no such file or folder";
     assert!(run.stderr.contains(message), "{}", run.stderr);
 }
 

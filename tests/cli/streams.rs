@@ -126,7 +126,7 @@ fn a_full_disk_is_reported() {
         super::refused(
             &run,
             1,
-            "cannot write to standard output: No space left on device (os error 28)",
+            "cannot write to standard output: No space left on device",
         );
     }
 }
@@ -169,7 +169,7 @@ fn unreadable_input_is_reported() {
     let stderr = String::from_utf8(output.stderr).expect("text");
     assert_eq!(
         stderr,
-        "error: standard input: cannot read: Is a directory (os error 21)\n"
+        "error: standard input: cannot read: it is a folder\n"
     );
     assert_eq!(output.status.code(), Some(1));
 }

@@ -593,7 +593,7 @@ fn impossible_sweeps_are_refused() {
         ),
         (
             "merge missing.npz --out all.npz",
-            "missing.npz: cannot read: No such file or directory (os error 2)",
+            "missing.npz: cannot read: no such file or folder",
         ),
     ] {
         let stderr = format!("error: {message}\n");

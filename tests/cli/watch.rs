@@ -555,7 +555,7 @@ fn a_lost_connection_is_made_again() {
 
 #[test]
 fn an_address_without_tcp_is_refused_with_a_hint() {
-    let message = "robot:7000: cannot open it: No such file or directory (os error 2)";
+    let message = "robot:7000: cannot open it: no such file or folder";
     let told = format!("{message}; a connection is written tcp://robot:7000");
     super::refused(&taxel("watch robot:7000", ""), 1, &told);
     for name in ["robot:port", "robot:70000", ":7000", "no/robot:7000"] {

@@ -108,7 +108,7 @@ fn an_unreadable_source_or_a_missing_model_opens_no_page() {
     let keys = ":watch nowhere.csv<Enter>";
     shows(
         keys,
-        &["! nowhere.csv: cannot open it: No such", ":watch nowhere"],
+        &["! nowhere.csv: cannot open it: no such", ":watch nowhere"],
     );
     hides(keys, &["no frame yet"]);
     let keys = ":watch tcp://robot<Enter>";

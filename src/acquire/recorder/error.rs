@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::formats::recording::MetadataError;
+use crate::formats::system_error::{system_reason, write_reason};
 use crate::storage::FileError;
 
 /// The error for frames that cannot be recorded.
@@ -11,7 +12,7 @@ use crate::storage::FileError;
 #[non_exhaustive]
 pub enum RecorderError {
     /// The system cannot write the file.
-    #[error("{}: cannot record: {error}", path.display())]
+    #[error("{}: cannot record: {}", path.display(), write_reason(error))]
     Io {
         /// The file.
         path: PathBuf,
@@ -58,7 +59,7 @@ pub enum RecorderError {
 #[non_exhaustive]
 pub enum MetadataFileError {
     /// The system cannot read the file.
-    #[error("{}: cannot read: {error}", path.display())]
+    #[error("{}: cannot read: {}", path.display(), system_reason(error))]
     Io {
         /// The file.
         path: PathBuf,

@@ -31,6 +31,7 @@ use crate::acquire::frame_rate::FrameRate;
 #[cfg(feature = "tui")]
 use crate::formats::recording::RecordedView;
 use crate::formats::recording::RecordingMetadata;
+use crate::formats::system_error::system_reason;
 use crate::frame::{Frame, FrameSize};
 use crate::storage::{Existing, FileId, FinishedFile, UnfinishedFile, persist_pair};
 
@@ -168,7 +169,7 @@ impl FrameRecorder {
     /// Keeps the message of a failure for the metadata, if it is the first.
     pub(crate) fn note_failure(&mut self, error: &RecorderError) {
         match error {
-            RecorderError::Io { error, .. } => self.note_reason(&error.to_string()),
+            RecorderError::Io { error, .. } => self.note_reason(&system_reason(error)),
             error => self.note_reason(&error.to_string()),
         }
     }

@@ -8,7 +8,7 @@
 use std::cell::RefCell;
 use std::fs::{self, File};
 use std::hash::{BuildHasher, RandomState};
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -16,8 +16,10 @@ use std::sync::Arc;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
+use crate::cli::output::note::note;
 use crate::cli::output::record_writer::RecordWriter;
 use crate::cli::settings::resolved::Effective;
+use crate::formats::system_error::system_reason;
 use crate::storage::{Library, ModelCache, Orphan};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
@@ -89,8 +91,9 @@ pub(crate) fn screen(
         let name = record.path.to_string_lossy().into_owned();
         if let Err(error) = record.end(ended.as_ref().ok().copied()) {
             is_whole = false;
-            let message = format!("error: {name}: the record ends early: {error}");
-            let _ = writeln!(io::stderr().lock(), "{}", charset.line(&message));
+            let error = system_reason(&error);
+            let text = format!("error: {name}: the record ends early: {error}");
+            note(&text, charset);
         }
     }
     match ended.map_err(CliError::Screen)?.status() {
@@ -143,19 +146,19 @@ impl ScreenRecord {
         // The file comes last: if something else failed, it would be left behind and prevent the next try.
         let mut start = of_options(options);
         start.extend(found(library));
-        let file = File::create_new(&path).map_err(|error| match error.kind() {
-            ErrorKind::AlreadyExists => CliError::Recorded {
-                name: path.to_string_lossy().into_owned(),
-                free: free(&path).to_string_lossy().into_owned(),
-            },
-            _ => CliError::Record {
-                name: path.to_string_lossy().into_owned(),
-                error,
-            },
-        })?;
         let name = path.to_string_lossy().into_owned();
+        let file = File::create_new(&path).map_err(|error| {
+            let name = name.clone();
+            match error.kind() {
+                ErrorKind::AlreadyExists => CliError::Recorded {
+                    name,
+                    free: free(&path).to_string_lossy().into_owned(),
+                },
+                _ => CliError::Record { name, error },
+            }
+        })?;
         let on_failure = move |error: &io::Error| {
-            let reason = format!("{name}: the record ends here: {error}");
+            let reason = format!("{name}: the record ends here: {}", system_reason(error));
             sender.send(Message::Worker(WorkerEvent::Refused(reason)));
         };
         Ok(Self {

@@ -14,6 +14,7 @@ use serde::de::IgnoredAny;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::recording::may_be_recording;
 use crate::formats::shape::MAX_BYTES;
+use crate::formats::system_error::system_reason;
 use crate::formats::{Content, ContentError, read_content};
 use crate::quote::shortened_message;
 
@@ -72,7 +73,7 @@ pub(crate) fn standard() -> io::Result<io::Stdin> {
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum InputError {
     /// The input cannot be opened or read.
-    #[error("cannot read: {0}")]
+    #[error("cannot read: {}", system_reason(.0))]
     Read(#[from] io::Error),
     /// The input is larger than any imprint or shape.
     #[error("larger than 1 MiB, the limit for an imprint or a shape")]

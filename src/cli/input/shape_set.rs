@@ -20,6 +20,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::figure::Figure;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::ending::has_ending;
+use crate::formats::system_error::system_reason;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
 use crate::quote::shortened;
@@ -146,7 +147,12 @@ fn lines(
         .take(MAX_SET + 1)
         .read_to_end(&mut text);
     let refused = |place: String, error: String| CliError::Set { place, error };
-    read.map_err(|error| refused(name.to_owned(), format!("cannot read: {error}")))?;
+    read.map_err(|error| {
+        refused(
+            name.to_owned(),
+            format!("cannot read: {}", system_reason(&error)),
+        )
+    })?;
     if text.len() as u64 > MAX_SET {
         let error = "larger than 64 MiB, the limit for a set of shapes";
         return Err(refused(name.to_owned(), error.to_owned()));

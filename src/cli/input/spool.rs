@@ -7,6 +7,8 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::fs::FileExt;
 
+use crate::formats::system_error::system_reason;
+
 /// The most that is copied, in bytes, so that an endless input does not fill the disk.
 const MOST: u64 = 4 << 30;
 
@@ -64,8 +66,9 @@ impl SpooledInput {
 fn not_copied(error: &io::Error) -> io::Error {
     let folder = std::env::temp_dir();
     let text = format!(
-        "cannot keep a copy in {} (TMPDIR): {error}",
-        folder.display()
+        "cannot keep a copy in {} (TMPDIR): {}",
+        folder.display(),
+        system_reason(error)
     );
     io::Error::new(error.kind(), text)
 }

@@ -24,6 +24,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Wrong};
 use crate::cli::settings::flags::Chosen;
 use crate::cli::settings::sensors::{SENSOR_SETTINGS, SensorSettings, TABLES, Written};
+use crate::formats::system_error::system_reason;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::location;
@@ -75,7 +76,7 @@ impl Loaded {
         let read = open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
         let there = match read {
             Err(error) if may_be_missing && is_missing(&path, &error) => false,
-            Err(error) => return Err(failure(format!("cannot read: {error}"))),
+            Err(error) => return Err(failure(format!("cannot read: {}", system_reason(&error)))),
             Ok(_) => true,
         };
         if bytes.len() > MAX_BYTES {

@@ -2,6 +2,7 @@
 
 use std::io;
 
+use crate::formats::system_error::system_reason;
 use crate::parameter::number::counted;
 
 /// The error for a recording that cannot be read, or not to its end.
@@ -9,7 +10,7 @@ use crate::parameter::number::counted;
 #[non_exhaustive]
 pub enum RecordingError {
     /// An error of the system.
-    #[error("cannot read: {0}")]
+    #[error("cannot read: {}", system_reason(.0))]
     Io(io::Error),
     /// Not one of the known formats.
     #[error("not a recording of a known format: expected {FORMS}")]

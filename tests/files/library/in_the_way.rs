@@ -125,7 +125,7 @@ fn a_library_path_that_is_not_a_folder_is_reported() {
         assert_eq!(refusal(kept, &scratch), message);
     }
     let library = Library::open(scratch.path("file"));
-    let message = "FOLDER/file: cannot read the folder: Not a directory (os error 20)";
+    let message = "FOLDER/file: cannot read the folder: not a folder";
     assert_eq!(refusal(library.list(), &scratch), message);
     let folder = scratch.path("a/b/c");
     let library = Library::open(folder.clone());

@@ -547,11 +547,11 @@ fn is_refused(folder: &Path, arguments: &str, said: &str) {
 fn a_source_that_cannot_be_opened_opens_no_page() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    let missing = "error: nope.csv: cannot open it: No such file or directory (os error 2)";
+    let missing = "error: nope.csv: cannot open it: no such file or folder";
     is_refused(folder, "nope.csv", missing);
     let connection = "; a connection is written tcp://robot:7000";
     is_refused(folder, "robot:7000", connection);
-    let is_folder = "error: .: cannot open it: Is a directory (os error 21)";
+    let is_folder = "error: .: cannot open it: it is a folder";
     is_refused(folder, ".", is_folder);
     let no_port = "error: tcp://robot: cannot open it: expected tcp://HOST:PORT";
     is_refused(folder, "tcp://robot", no_port);
@@ -615,7 +615,7 @@ fn a_recording_that_cannot_be_started_opens_no_page() {
     fs::write(folder.join("old.npy"), "mine").expect("written");
     let there = "error: old.npy already exists; --force replaces it";
     is_refused(folder, "touch.txt --write old.npy", there);
-    let missing = "error: no/new.npy: cannot record: No such file or directory (os error 2)";
+    let missing = "error: no/new.npy: cannot record: no such folder";
     is_refused(folder, "touch.txt --write no/new.npy", missing);
     // The file to be replaced is kept until the first frame comes, and no other file appears.
     fs::write(folder.join("empty.txt"), "").expect("written");
@@ -706,9 +706,7 @@ fn the_reason_why_nothing_is_recorded_stays_on_the_page() {
     watched.shows_the_first_frame();
     fs::remove_dir_all(watched.folder.path()).expect("removed");
     watched.program.types(b"r");
-    watched
-        .program
-        .shows("No such file or directory (os error 2)");
+    watched.program.shows("cannot record: no such folder");
     watched.sends(1..5);
     watched.program.shows("frame 4");
     watched.program.shows("recording  none: ");

@@ -1,0 +1,48 @@
+//! Puts errors of the system in the words of messages.
+
+use std::io::{Error, ErrorKind};
+
+/// Returns the reason of the system for refusing something, without the number of the error. Files and folders are
+/// called so, not directories.
+pub(crate) fn system_reason(error: &Error) -> String {
+    let Some(number) = error.raw_os_error() else {
+        return error.to_string();
+    };
+    match error.kind() {
+        ErrorKind::NotFound => "no such file or folder".to_owned(),
+        ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        ErrorKind::NotADirectory => "not a folder".to_owned(),
+        _ => {
+            let text = error.to_string();
+            let number = format!(" (os error {number})");
+            text.strip_suffix(&number).unwrap_or(&text).to_owned()
+        }
+    }
+}
+
+/// Returns the reason of the system for refusing to write a file. If it does not find the file, its folder is missing.
+#[cfg(any(feature = "acquire", feature = "sweep"))]
+pub(crate) fn write_reason(error: &Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound if error.raw_os_error().is_some() => "no such folder".to_owned(),
+        _ => system_reason(error),
+    }
+}
+
+#[cfg(all(test, unix, any(feature = "acquire", feature = "sweep")))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reason_has_no_number() {
+        let reasons = |number| {
+            let error = Error::from_raw_os_error(number);
+            [system_reason(&error), write_reason(&error)]
+        };
+        assert_eq!(reasons(2), ["no such file or folder", "no such folder"]);
+        assert_eq!(reasons(21), ["it is a folder"; 2]);
+        assert_eq!(reasons(28), ["No space left on device"; 2]);
+        let own = Error::other("the disk does not answer");
+        assert_eq!(system_reason(&own), "the disk does not answer");
+    }
+}
