@@ -305,6 +305,18 @@ fn the_terminal_of_the_keys_is_not_watched() {
     let folder = tempfile::tempdir().expect("a folder");
     let said = "error: standard input: this is your terminal; pipe frames into 'taxel watch -'";
     is_refused(folder.path(), "-", said);
+    // Set up as a serial line, the terminal would keep its echo off, and Ctrl-C would be a byte of a frame.
+    for (arguments, name, status) in [
+        ("/dev/stdin --json", "/dev/stdin", 1),
+        ("/dev/tty --at-least 3 | cat", "/dev/tty", 0),
+        ("/dev/stderr < /dev/null | cat", "/dev/stderr", 0),
+    ] {
+        let mut program = watching(folder.path(), arguments);
+        program.ends_well(status);
+        program.shows(&format!(
+            "error: {name}: this is your terminal; pipe frames"
+        ));
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Refuses flags that have no effect for a source, before it is watched.
+//! Refuses sources that cannot be watched, and flags that have no effect for a source, before it is opened.
 
 use std::path::Path;
 
@@ -7,6 +7,15 @@ use crate::cli::arguments::watch::WatchArguments;
 use crate::cli::error::CliError;
 use crate::cli::input::recording::RecordingFile;
 use crate::formats::recording::{ReadOptions, no_channel};
+use crate::tui::runtime::check_source;
+
+/// Refuses a source that cannot be read even if one waits, and the user's own terminal.
+pub(super) fn check_readable(source: &FrameSource) -> Result<(), CliError> {
+    check_source(source).map_err(|message| CliError::Frames {
+        name: source.name(),
+        message,
+    })
+}
 
 /// Refuses flags that have no effect for a source: those of serial lines for others, those of playing for a stream,
 /// and a channel that a recording does not have.

@@ -43,7 +43,7 @@ use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::commands::watch::answers::Answers;
 use crate::cli::commands::watch::channel_gate::ChannelGate;
-use crate::cli::commands::watch::check::check;
+use crate::cli::commands::watch::check::{check, check_readable};
 use crate::cli::commands::watch::recording::WatchRecording;
 use crate::cli::commands::watch::reports::SourceReports;
 use crate::cli::commands::watch::tare_queue::TareQueue;
@@ -58,7 +58,6 @@ use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::stream::StreamCounts;
 use crate::frame::{Frame, FrameSize, Processing, SetRule};
 use crate::tui::live::request::WatchRequest;
-use crate::tui::runtime::check_source;
 
 /// The state of a watched source, which handles its frames as they come.
 struct Watcher<'a> {
@@ -92,6 +91,10 @@ pub(crate) fn watch(
     note: &mut dyn FnMut(&str),
 ) -> Result<u8, CliError> {
     let source = FrameSource::new(&asked.source);
+    if matches!(source, FrameSource::Serial(_)) {
+        // The user's terminal would be set up as a serial line, on which Ctrl-C is only a byte.
+        check_readable(&source)?;
+    }
     let signals = Signals::catch().map_err(CliError::System)?;
     let processing = processing::processing(&asked.processing)?;
     check(&source, asked)?;
@@ -153,10 +156,7 @@ fn line_writer(
 /// recording cannot be started.
 pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
     let source = FrameSource::new(&asked.source);
-    check_source(&source).map_err(|message| CliError::Frames {
-        name: source.name(),
-        message,
-    })?;
+    check_readable(&source)?;
     check(&source, asked)?;
     if let Some(path) = &asked.write {
         // The recording is created and dropped again: no file appears before the first frame.

@@ -65,8 +65,8 @@ fn is_own_terminal(path: &Path) -> bool {
     let Ok(own) = fs::metadata(path).map(device) else {
         return false;
     };
-    let (input, output) = (io::stdin(), io::stdout());
-    let mut streams = [input.as_fd(), output.as_fd()].into_iter();
+    let (input, output, errors) = (io::stdin(), io::stdout(), io::stderr());
+    let mut streams = [input.as_fd(), output.as_fd(), errors.as_fd()].into_iter();
     let controlling = fs::metadata("/dev/tty").map(device);
     controlling.is_ok_and(|controlling| controlling == own)
         || streams.any(|stream| {
