@@ -129,6 +129,10 @@ fn wrong_usage_exits_with_status_2() {
     misused("describe", "the following required arguments");
     misused("describe one two", "unexpected argument 'two' found\n");
     misused(
+        "frames touch.csv -- --peak",
+        "unexpected argument '--peak' found\n",
+    );
+    misused(
         "--columns 3 figure hexagon",
         "'--columns' must come after 'figure'; before it, it is a flag of the screen\n",
     );

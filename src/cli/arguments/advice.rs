@@ -85,8 +85,9 @@ fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> 
     let own = names
         .iter()
         .try_fold(program, |command, name| command.find_subcommand(name))?;
-    // If a subcommand of this command takes the flag, clap says so: the flag only has to come later.
-    if own.get_subcommands().any(|inner| has(inner, flag)) {
+    // If a subcommand of this command takes the flag, clap says so: the flag only has to come later. A flag of the
+    // command itself is one argument too many after `--`.
+    if has(own, flag) || own.get_subcommands().any(|inner| has(inner, flag)) {
         return None;
     }
     let mut owners = Vec::new();
