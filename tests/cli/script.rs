@@ -25,6 +25,11 @@ fn messages_name_the_script_and_the_line() {
             "line 1: nofile.csv: cannot open it: no such file or folder",
         ),
         (
+            "Source src",
+            1,
+            "line 1: src: cannot open it: it is a folder",
+        ),
+        (
             "Frames 1",
             1,
             "line 1: expected 1 frame, found 0: no source",

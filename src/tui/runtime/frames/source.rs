@@ -78,12 +78,12 @@ fn is_own_terminal(path: &Path) -> bool {
 }
 
 /// Returns true if the source is a file with content. Files of `/proc`, which may have to be waited for like pipes,
-/// are empty. A missing file counts as a file with content: opening it reports the error.
+/// are empty. A missing file and a folder count as files with content: opening them reports the error.
 fn is_file(source: &FrameSource) -> bool {
     match source {
-        FrameSource::File(path) => path
-            .metadata()
-            .map_or(true, |metadata| metadata.is_file() && metadata.len() > 0),
+        FrameSource::File(path) => path.metadata().map_or(true, |found| {
+            found.is_dir() || (found.is_file() && found.len() > 0)
+        }),
         _ => false,
     }
 }
