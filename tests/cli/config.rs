@@ -84,7 +84,11 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
         ),
         (
             "[sensor]\ncolumns = 0x10\n",
-            "2:11: expected a decimal number, found \"10\"",
+            "2:11: expected a decimal number, found \"0x10\"",
+        ),
+        (
+            "[frames]\nleast = 1e308\n",
+            "2:9: expected a whole number from 1 to 4096, found \"1e308\"",
         ),
         (
             "[keys.matrx]\nx = 'toggle'\n",

@@ -213,7 +213,7 @@ impl Config {
                     let known = SENSOR.iter().find(|(name, _)| *name == key);
                     let names = || SENSOR.map(|(name, _)| name);
                     let (_, parameter) = known.ok_or_else(|| unknown(key, byte, &names()))?;
-                    let number = number(value)?;
+                    let number = number(text, value)?;
                     self.sensor = self
                         .sensor
                         .with(*parameter, number)
@@ -246,7 +246,7 @@ impl Config {
                 unknown(key, byte, &names)
             })?;
             let line = line_and_column(text, byte).0;
-            let value = sensor_value(row, value)?;
+            let value = sensor_value(text, row, value)?;
             self.sensors.add(row.key, Written { value, line });
             places.push((row.key, byte));
         }
@@ -358,31 +358,37 @@ fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Ref
 
 /// Reads the value of a setting of real sensors.
 fn sensor_value(
+    text: &str,
     row: &SensorSetting,
     value: &Spanned<DeValue<'_>>,
 ) -> Result<SettingValue, Refusal> {
     if row.kind == SettingKind::Format {
-        let text = string(value)?;
-        let format = text.parse::<StreamFormat>().ok();
-        if format.is_none() && text != AUTO {
-            return Err(unfit(row.kind.expected(), text, value));
+        let name = string(value)?;
+        let format = name.parse::<StreamFormat>().ok();
+        if format.is_none() && name != AUTO {
+            return Err(unfit(row.kind.expected(), name, value));
         }
         return Ok(SettingValue::Format(format));
     }
-    let found = number(value)?;
-    let wrong = || unfit(row.kind.expected(), &found.to_string(), value);
+    let found = number(text, value)?;
+    let wrong = || unfit(row.kind.expected(), written(text, value), value);
     row.kind.value(found).ok_or_else(wrong)
 }
 
 /// Reads a number in decimal notation. NaN and infinities are accepted here; the parameter's range refuses them.
-fn number(value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
-    let (text, decimal) = match value.get_ref() {
+fn number(text: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
+    let (digits, decimal) = match value.get_ref() {
         DeValue::Integer(number) => (number.as_str(), number.radix() == 10),
         DeValue::Float(number) => (number.as_str(), true),
         _ => return Err(other_kind("a number", value)),
     };
-    let number = text.parse().ok().filter(|_| decimal);
-    number.ok_or_else(|| unfit("a decimal number".to_owned(), text, value))
+    let number = digits.parse().ok().filter(|_| decimal);
+    number.ok_or_else(|| unfit("a decimal number".to_owned(), written(text, value), value))
+}
+
+/// Returns a value as it is written in the text of the file.
+fn written<'t>(text: &'t str, value: &Spanned<DeValue<'_>>) -> &'t str {
+    &text[value.span()]
 }
 
 /// Returns the error for an unknown key.
