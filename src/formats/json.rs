@@ -244,6 +244,7 @@ fn kind(expected: &str) -> &str {
         "a boolean" => "true or false",
         "a sequence" => "a list",
         "a map" => "an object",
+        other if other.starts_with("struct ") => "an object",
         other => other,
     }
 }

@@ -22,6 +22,9 @@ pub(crate) mod described;
 #[cfg(feature = "json")]
 pub(crate) mod json;
 
+#[cfg(any(feature = "sweep", feature = "frames"))]
+pub(crate) mod json_object;
+
 #[cfg(feature = "json")]
 pub(crate) mod record;
 

@@ -285,9 +285,13 @@ fn lines_are_answered_in_their_order() {
         run.stdout,
         run.stderr
     );
-    let run = place.run("recognise - --model r --json", "{\"imprint\":[\"#\"]}\n5\n");
     let expected = "expected an object with an imprint, touches or a frame";
-    assert!(run.stdout.contains(expected), "{}", run.stdout);
+    for (other, found) in [("5", "the number 5"), ("[[\"#\"]]", "a list")] {
+        let lines = format!("{{\"imprint\":[\"#\"]}}\n{other}\n");
+        let run = place.run("recognise - --model r --json", &lines);
+        let message = format!("found {found}, {expected}");
+        assert!(run.stdout.contains(&message), "{}", run.stdout);
+    }
     // The answers of a batch are such lines.
     let poses = "{\"figure\":\"rectangle\",\"length\":4.2,\"width\":4.2,\"x0\":5.2,\"y0\":5.3,\"angle\":20}\n";
     let answers = place.run("batch", &poses.repeat(3));

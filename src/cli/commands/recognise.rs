@@ -31,9 +31,9 @@ use crate::cli::output::progress::Progress;
 use crate::formats::Content;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::framed::{FrameRows, RuleRecord};
-use crate::formats::json;
 use crate::formats::record::Text;
 use crate::formats::value::counted;
+use crate::formats::{json, json_object};
 use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
 use crate::quote::{did_you_mean, shortened_message};
@@ -460,7 +460,7 @@ impl RecogniseLine {
     fn read(line: &[u8]) -> Result<Self, String> {
         let without_nan = json::WithoutNan::new(line);
         let line = &*without_nan.line;
-        let keys: LineKeys<'_> = serde_json::from_slice(line).map_err(|error| {
+        let keys: LineKeys<'_> = json_object::read(line).map_err(|error| {
             format!(
                 "column {}: {}",
                 without_nan.column(error.column().max(1)),

@@ -7,7 +7,7 @@ use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
 use crate::formats::framed::{FrameRows, RuleRecord, matrix};
-use crate::formats::json;
+use crate::formats::{json, json_object};
 use crate::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
 use crate::matrix::Matrix;
 use crate::quote::shortened_message;
@@ -175,14 +175,14 @@ impl RecordingMetadata {
         struct Format {
             format: String,
         }
-        let is_own = match serde_json::from_slice::<Format>(bytes) {
+        let is_own = match json_object::read::<Format>(bytes) {
             Ok(own) => own.format == FORMAT,
             Err(_) => bytes
                 .windows(FORMAT.len())
                 .any(|text| text == FORMAT.as_bytes()),
         };
         is_own.then(|| {
-            let described = serde_json::from_slice::<Described>(bytes);
+            let described = json_object::read::<Described>(bytes);
             described
                 .map_err(|error| MetadataError::json(&error))
                 .and_then(Self::of)
@@ -401,5 +401,9 @@ mod tests {
         let unit = wrong("\"unit\":3");
         let expected = "line 1, column 34: found the number 3, expected a string";
         assert_eq!(unit, expected);
+        let list = format!("[\"{FORMAT}\",\"a source\"]");
+        let read = RecordingMetadata::read(list.as_bytes()).expect("it names the format");
+        let error = read.expect_err("a list").to_string();
+        assert_eq!(error, "line 1, column 1: found a list, expected an object");
     }
 }
