@@ -18,6 +18,11 @@ fn messages_name_the_script_and_the_line() {
         ("Keys f\nExpect /zzz/", 1, "line 2: no /zzz/ on the screen"),
         ("Keys f\nFly", 2, "line 2: \"Fly\" is unknown"),
         ("Set columns 99", 2, "line 1: columns: 99 is above 64"),
+        (
+            "\u{feff}Set columns 99",
+            2,
+            "line 1: columns: 99 is above 64",
+        ),
         ("Keys q\nKeys f", 3, "line 2: the program had already ended"),
         (
             "Source nofile.csv",
@@ -53,6 +58,9 @@ fn messages_name_the_script_and_the_line() {
         run.stderr.starts_with("error: -k: key \"<Foo>\""),
         "{run:?}"
     );
+    let run = run_in("C.UTF-8", &["script", "-"], b"Keys f\nType \"\xff\"\n");
+    let message = "error: standard input: line 2: not UTF-8\n";
+    assert_eq!((run.status, run.stderr.as_str()), (Some(2), message));
     let run = taxel("script nowhere.taxel", "");
     assert!(
         run.stderr

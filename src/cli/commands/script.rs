@@ -27,6 +27,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::resolved::Effective;
 use crate::formats::Name;
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::name::folded;
 use crate::tui::app::state::Options;
 use crate::tui::keys::key::parse;
@@ -51,12 +52,16 @@ pub(crate) fn run(
 ) -> Result<(), CliError> {
     let name = asked.source.as_ref().map(InputSource::name);
     let script = match &asked.source {
-        Some(source) => text(source).map_err(|error| CliError::NoScript {
+        Some(source) => bytes(source).map_err(|error| CliError::NoScript {
             name: source.name(),
             error: error.into(),
         })?,
-        None => String::new(),
+        None => Vec::new(),
     };
+    let script = text(&script).map_err(|error| CliError::Script {
+        name: name.clone(),
+        failure: error.into(),
+    })?;
     let keys = parse(asked.keys.as_deref().unwrap_or("")).map_err(|error| CliError::Script {
         name: None,
         failure: runner::ScriptFailure::Script(ScriptError {
@@ -80,7 +85,7 @@ pub(crate) fn run(
             ControlFlow::Break(())
         }
     };
-    let result = runner::run_shown(&script, &keys, &running, world, &mut show);
+    let result = runner::run_shown(script, &keys, &running, world, &mut show);
     match lost {
         Some(failure) => Err(failure),
         None => result.map_err(|failure| CliError::Script { name, failure }),
@@ -181,11 +186,25 @@ impl Names {
     }
 }
 
-/// Reads a script. It may be long, since a record contains a whole library. Invalid UTF-8 is replaced.
+/// Returns the text of a script.
+///
+/// # Errors
+/// Returns an error with the line of the first byte that is not UTF-8.
+fn text(script: &[u8]) -> Result<&str, ScriptError> {
+    let script = without_mark(script);
+    str::from_utf8(script).map_err(|error| ScriptError {
+        line: script[..error.valid_up_to()]
+            .split(|&byte| byte == b'\n')
+            .count(),
+        message: "not UTF-8".to_owned(),
+    })
+}
+
+/// Reads a script. It may be long, since a record contains a whole library.
 ///
 /// # Errors
 /// Returns the errors of the file, and an error for more than [`MOST_BYTES`] bytes.
-fn text(source: &InputSource) -> io::Result<String> {
+fn bytes(source: &InputSource) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut input = source.open()?.take(MOST_BYTES + 1);
     input.read_to_end(&mut bytes)?;
@@ -194,7 +213,7 @@ fn text(source: &InputSource) -> io::Result<String> {
             "larger than 16 MiB, the limit for a script",
         ));
     }
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    Ok(bytes)
 }
 
 #[cfg(test)]
