@@ -431,6 +431,17 @@ fn with_flag(error: &GridError) -> String {
 }
 
 impl CliError {
+    /// Puts the flag that gave a file before the file's name, if the error is in the file.
+    pub(crate) fn of_flag(self, flag: &str) -> Self {
+        match self {
+            Self::Input { name, error } => {
+                let name = format!("{flag} {name}");
+                Self::Input { name, error }
+            }
+            error => error,
+        }
+    }
+
     /// Returns true if the reader of our output has closed it, as in `taxel batch | head -1`. This is not an error.
     pub(crate) fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Write(error) | Self::Screen(error) if error.kind() == io::ErrorKind::BrokenPipe)

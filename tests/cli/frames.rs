@@ -784,6 +784,11 @@ fn a_mask_and_a_gain_may_come_from_standard_input() {
         imprint("--gain -", "1,1\n0,3\n"),
         serde_json::json!(["##", ".#"])
     );
+    for flag in ["--mask nowhere", "--gain nowhere"] {
+        let run = taxel(&format!("{line} {flag}"), "");
+        let message = format!("error: {flag}: cannot read: ");
+        assert!(run.stderr.starts_with(&message), "{}", run.stderr);
+    }
     let run = taxel(&format!("{line} --mask -"), "no imprint");
     assert!(
         run.stderr.starts_with("error: --mask standard input: "),

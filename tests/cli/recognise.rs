@@ -459,6 +459,9 @@ fn mistyped_names_are_refused_before_training() {
         let is_trained = std::fs::exists(place.path("cache")).expect("it can be looked at");
         assert!(!is_trained, "{line}");
     }
+    let run = place.run("recognise square.txt --noise 0.01 --mask there.svg", "");
+    let message = "error: --mask there.svg: ";
+    assert!(run.stderr.starts_with(message), "{}", run.stderr);
 }
 
 /// One thread only: every further thread has a stack, which is counted, too.

@@ -288,7 +288,10 @@ impl Recogniser<'_> {
 /// Returns an error if the mask cannot be read.
 fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, CliError> {
     Ok(match (asked.noise, &asked.mask) {
-        (Some(noise), Some(mask)) => Some(noise.without(*shelf.find(mask)?.imprint())),
+        (Some(noise), Some(mask)) => {
+            let mask = shelf.find(mask).map_err(|error| error.of_flag("--mask"))?;
+            Some(noise.without(*mask.imprint()))
+        }
         (noise, _) => noise,
     })
 }

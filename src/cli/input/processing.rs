@@ -34,7 +34,8 @@ pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliE
 /// # Errors
 /// Returns an error if the file is damaged, or does not have exactly one frame.
 fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
-    let mut file = RecordingFile::open(path, ReadOptions::default())?;
+    let opened = RecordingFile::open(path, ReadOptions::default());
+    let mut file = opened.map_err(|error| error.of_flag("--gain"))?;
     file.prefix_name("--gain ");
     let mut gain = Matrix::filled(MatrixSize::SMALLEST, 1.0);
     let (mut found, mut is_recording) = (None, false);
