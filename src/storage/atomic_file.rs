@@ -234,7 +234,7 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
     }
 }
 
-/// Returns the kind of something that is not a regular file.
+/// Returns the kind of a file in words, with its article.
 pub(super) fn kind_in_words(kind: FileType) -> &'static str {
     #[cfg(unix)]
     if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
@@ -244,6 +244,8 @@ pub(super) fn kind_in_words(kind: FileType) -> &'static str {
         "a symbolic link"
     } else if kind.is_dir() {
         "a folder"
+    } else if kind.is_file() {
+        "a file"
     } else {
         "a device or a socket"
     }

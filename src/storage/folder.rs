@@ -143,7 +143,9 @@ pub(crate) fn make(path: &Path) -> Result<(), LibraryError> {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
             // Another program was faster, or something else has the name.
             if !path.is_dir() {
-                return Err(in_the_way(path, "not a folder", "a folder"));
+                let kind = |found: Metadata| kind_in_words(found.file_type());
+                let what = path.metadata().map_or("a broken symbolic link", kind);
+                return Err(in_the_way(path, what, "a folder"));
             }
         }
         made => made.map_err(|error| FileError::new("make the folder", path, error))?,

@@ -107,14 +107,11 @@ fn a_library_path_that_is_not_a_folder_is_reported() {
     scratch.put("file", "");
     symlink("nowhere", scratch.path("dangling")).expect("a link");
     for (inner, message) in [
-        ("file", "FOLDER/file: is not a folder, expected a folder"),
-        (
-            "file/inner",
-            "FOLDER/file: is not a folder, expected a folder",
-        ),
+        ("file", "FOLDER/file: is a file, expected a folder"),
+        ("file/inner", "FOLDER/file: is a file, expected a folder"),
         (
             "dangling",
-            "FOLDER/dangling: is not a folder, expected a folder",
+            "FOLDER/dangling: is a broken symbolic link, expected a folder",
         ),
     ] {
         let library = Library::open(scratch.path(inner));
