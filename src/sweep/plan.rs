@@ -94,7 +94,7 @@ impl fmt::Display for Shard {
 
 /// The error for text that is not a shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("\"{text}\" is not a shard, expected K/N with K from 1 to N")]
+#[error("\"{text}\" is not a shard, expected K/N with K from 1 to N and N up to 4294967295")]
 #[non_exhaustive]
 pub struct ShardError {
     /// The text, shortened.

@@ -553,7 +553,7 @@ fn impossible_sweeps_are_refused() {
         ),
         (
             "sweep hexagon --shard 4/3",
-            "\"4/3\" is not a shard, expected K/N with K from 1 to N",
+            "\"4/3\" is not a shard, expected K/N with K from 1 to N and N up to 4294967295",
         ),
         (
             "sweep hexagon --atlas x.txt",
