@@ -958,6 +958,19 @@ fn files_that_cannot_be_used_are_refused_before_any_work() {
     let run = place.run("model train missing.jsonl --out x.npz", "");
     let message = "missing.jsonl: cannot read: no such file or folder";
     refused(&run, 1, message);
+    std::os::unix::fs::symlink("loop", place.path("loop")).expect("a link");
+    for line in [
+        "model train loop --out x.npz",
+        "model confusion loop",
+        "recognise washer --model loop",
+    ] {
+        let run = place.run(line, "");
+        let message = "Too many levels of symbolic links";
+        assert!(run.stderr.contains(message), "{line}: {}", run.stderr);
+    }
+    let run = place.run("model train parts.jsonl/ --out x.npz", "");
+    let message = "parts.jsonl/: cannot read: not a folder";
+    refused(&run, 1, message);
     for shard in ["1/2", "2/2"] {
         let out = format!("part-{}.npz", &shard[..1]);
         place.done(&format!(

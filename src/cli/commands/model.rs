@@ -296,7 +296,8 @@ pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliErr
     if let Some(choice) = name.map(ModelChoice::from_name).filter(is_there) {
         return Ok(choice);
     }
-    if Path::new(which).exists() {
+    // A broken link is a file, too: the reason why it cannot be opened is reported.
+    if Path::new(which).symlink_metadata().is_ok() {
         return Ok(ModelChoice::File(which.into()));
     }
     Err(unknown(which, shelf))

@@ -120,14 +120,15 @@ fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
 fn source_of_lines(what: &OsStr, shelf: &Shelf) -> Option<InputSource> {
     let path = Path::new(what);
     let ending = has_ending(path, "jsonl") || has_ending(path, "json");
-    // A FIFO, too.
-    let is_readable = path.metadata().is_ok_and(|found| !found.is_dir());
+    // A FIFO, too, and a broken link, so that the reason why it cannot be opened is reported.
+    let found = path.metadata();
+    let is_file = found.map_or_else(|_| path.is_symlink(), |found| !found.is_dir());
     let known = || {
         what.to_str()
             .is_some_and(|name| shelf.imprint(name).is_ok())
     };
-    let is_source =
-        what == "-" || ending || path.components().count() > 1 || is_readable && !known();
+    let has_slash = what.as_encoded_bytes().contains(&b'/');
+    let is_source = what == "-" || ending || has_slash || is_file && !known();
     is_source.then(|| InputSource::of(path))
 }
 
