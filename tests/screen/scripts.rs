@@ -160,6 +160,8 @@ fn malformed_commands_are_reported_with_their_line() {
             "Keys <20000x:Down>",
             "line 1: key \"<20000x:Down>\" at character 1: a key repeats at most 10,000 times",
         ),
+        ("ExpectAt 3,4 \"\"", "line 1: expected a text, found \"\""),
+        ("Click \"\"", "line 1: expected a text, found \"\""),
         (
             "ExpectAt 3,4",
             "line 1: expected a position like 12,5 and then a text",

@@ -103,7 +103,7 @@ const COMMANDS: [(&str, ReadCommand); 21] = [
     }),
     ("ExpectAt", |text| {
         let (at, text) = two(text, "a text")?;
-        Ok(ScriptCommand::ExpectAt(position(at)?, quoted(text)?))
+        Ok(ScriptCommand::ExpectAt(position(at)?, filled(text)?))
     }),
     ("ExpectStyle", |text| {
         let (at, name) = two(text, "a style")?;
@@ -194,7 +194,7 @@ fn alone(name: &str, rest: &str, command: ScriptCommand) -> Result<ScriptCommand
 /// Reads what to click on: a text in quotes or a position.
 fn click(text: &str) -> Result<ScriptCommand, String> {
     if text.starts_with('"') {
-        return quoted(text).map(ScriptCommand::ClickText);
+        return filled(text).map(ScriptCommand::ClickText);
     }
     position(text).map(ScriptCommand::Click)
 }
@@ -340,6 +340,14 @@ fn quoted(text: &str) -> Result<String, String> {
             shortened(text)
         )
     })
+}
+
+/// Reads a text in quotes that is not empty: an empty one stands everywhere on the screen.
+fn filled(text: &str) -> Result<String, String> {
+    match quoted(text)? {
+        empty if empty.is_empty() => Err("expected a text, found \"\"".to_owned()),
+        text => Ok(text),
+    }
 }
 
 /// The greatest compiled size of a pattern in bytes; it allows `.{1000}` and little more, since the time to search a
