@@ -143,8 +143,10 @@ fn it_idles_after_its_start() {
         program.status("VmHWM")
     );
     assert_eq!((after, written), (before, 0));
-    // For the build of the tests; 9.8 MB were measured.
-    assert!(program.status("VmHWM") <= 12 * 1024);
+    // For the build of the tests: 1.3 MB were measured, and 12 MB together with the pages of the program file, of which
+    // the system maps more or fewer.
+    assert!(program.status("RssAnon") <= 2 * 1024);
+    assert!(program.status("VmHWM") <= 14 * 1024);
 }
 
 /// A sweep wakes the program about ten times a second; after it was stopped, nothing does.
