@@ -86,21 +86,26 @@ pub(crate) fn screen(
     }
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
     let ended = terminal::run(app, first, world, &terminal, (sender, mailbox), &mut watch);
-    let mut is_whole = true;
-    if let Some(record) = record.take() {
-        let name = record.path.to_string_lossy().into_owned();
-        if let Err(error) = record.end(ended.as_ref().ok().copied()) {
-            is_whole = false;
-            let error = system_reason(&error);
-            let text = format!("error: {name}: the record ends early: {error}");
-            note(&text, charset);
-        }
-    }
+    let outcome = ended.as_ref().ok().copied();
+    let record = record.take();
+    let is_whole = record.is_none_or(|record| is_whole(record, outcome, charset));
     match ended.map_err(CliError::Screen)?.status() {
         0 => Ok(u8::from(!is_whole)),
         // The reason that ended the program takes precedence.
         status => Ok(status),
     }
+}
+
+/// Ends a record, and returns true if it is whole. If it is not, a note says why.
+fn is_whole(record: ScreenRecord, outcome: Option<terminal::Outcome>, charset: Charset) -> bool {
+    let name = record.path.to_string_lossy().into_owned();
+    let ended = record.end(outcome);
+    if let Err(error) = &ended {
+        let reason = system_reason(error);
+        let text = format!("error: {name}: the record ends early: {reason}");
+        note(&text, charset);
+    }
+    ended.is_ok()
 }
 
 /// Returns how the terminal is used, according to the settings and the environment.
