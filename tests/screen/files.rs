@@ -79,7 +79,7 @@ fn files_that_cannot_be_opened_or_written_are_reported() {
     then(
         &mut session,
         &format!(":open {place}/nope<Enter>"),
-        &["nope: cannot read: No such file or directory"],
+        &["nope: cannot read: no such file or folder"],
     );
     press(&mut session, "<Esc>");
     then(

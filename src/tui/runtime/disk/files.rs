@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use crate::acquire::FrameSource;
 use crate::formats::recording::may_be_recording;
+use crate::formats::system_error::system_reason;
 use crate::formats::{Content, imprint_file, read_content};
 use crate::storage::{Existing, FinishedFile, ModelChoice, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
@@ -77,7 +78,7 @@ fn refuse_baud(source: &FrameSource, request: &WatchRequest) -> Result<(), Strin
 /// Opens a file with a shape, or with an imprint in any format.
 fn open(name: &str) -> Result<OpenedFile, String> {
     let path = location::below_home(name).ok_or("no home folder, so ~ cannot be used")?;
-    let sentence = |error: std::io::Error| format!("cannot read: {error}");
+    let sentence = |error: std::io::Error| format!("cannot read: {}", system_reason(&error));
     let kind = fs::metadata(&path).map_err(sentence)?;
     if !kind.is_file() {
         return Err("not a regular file".to_owned());
