@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 use crate::formats::recording::RecordingMetadata;
+use crate::formats::system_error::system_reason;
 use crate::frame::Frame;
 use crate::storage::Existing;
 use crate::tui::live::message::{FrameBatch, ProvisionalChange, RecordedFrames, SourceState};
@@ -216,7 +217,8 @@ impl FrameFeed {
             }),
             AcquireEvent::Absent(error) => self.change(|pending| {
                 let name = request.source.to_string_lossy();
-                let text = format!("waiting for {name}, trying again each second: {error}");
+                let reason = system_reason(error);
+                let text = format!("waiting for {name}, trying again each second: {reason}");
                 pending.status().state = SourceState::Lost(text);
             }),
             AcquireEvent::Lost(error) => self.change(|pending| pending.lose(error)),

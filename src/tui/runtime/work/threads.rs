@@ -16,6 +16,8 @@ use std::time::{Duration, Instant};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
 
+use crate::formats::system_error::system_reason;
+
 /// The longest time that the end of the program waits for the disk.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(1500);
 
@@ -65,7 +67,7 @@ pub(in crate::tui::runtime) fn start(
     body: impl FnOnce() + Send + 'static,
 ) -> Result<JoinHandle<()>, String> {
     let thread = Builder::new().spawn(body);
-    thread.map_err(|error| format!("cannot start a thread: {error}"))
+    thread.map_err(|error| format!("cannot start a thread: {}", system_reason(&error)))
 }
 
 /// Waits for a thread to end, but not for longer than `patience`. It is not joined: a disk or a host that does not
