@@ -1,30 +1,15 @@
 //! Measures the lines per second of `taxel batch`, with the lines of the README: on one core, and on all of them.
-//!
-//! The runs alternate, and ratios are taken between the fastest of each: other work on the machine slows both.
 
 use std::fs::{self, File};
 use std::process::{Command, Stdio};
 use std::thread::available_parallelism;
-use std::time::{Duration, Instant};
+
+use timing::{Work, in_turn};
+
+mod timing;
 
 /// The number of times that the lines of the README's file are repeated.
 const TIMES: usize = 40_000;
-
-/// The number of turns.
-const TURNS: usize = 7;
-
-/// Returns the fastest time of each function over several turns.
-fn fastest<const N: usize>(mut run: [&mut dyn FnMut(); N]) -> [Duration; N] {
-    let mut best = [Duration::MAX; N];
-    for _ in 0..TURNS {
-        for (run, best) in run.iter_mut().zip(&mut best) {
-            let start = Instant::now();
-            run();
-            *best = start.elapsed().min(*best);
-        }
-    }
-    best
-}
 
 /// Answers a file with the given number of threads.
 fn batch(input: &std::path::Path, jobs: usize) {
@@ -36,25 +21,19 @@ fn batch(input: &std::path::Path, jobs: usize) {
     assert!(status.is_ok_and(|status| status.success()));
 }
 
-/// Measures one thread, then one for each core.
-fn lines() {
+fn main() {
     let folder = tempfile::tempdir().expect("a folder");
     let input = folder.path().join("lines.jsonl");
     let poses = include_str!("../examples/poses.jsonl");
     fs::write(&input, poses.repeat(TIMES)).expect("written");
     let lines = poses.lines().count() * TIMES;
     let cores = available_parallelism().map_or(1, Into::into);
-    let mut one = || batch(&input, 1);
-    let mut all = || batch(&input, cores);
-    let [one, all] = fastest([&mut one, &mut all]);
+    let one = Work::new(|| batch(&input, 1));
+    let all = Work::new(|| batch(&input, cores));
+    let [one, all] = in_turn(7, [one, all]).map(|least| least.wall);
     #[expect(clippy::cast_precision_loss, reason = "a rate")]
-    let rate = |time: Duration| lines as f64 / time.as_secs_f64();
+    let rate = |time: f64| lines as f64 / time;
     println!("one thread: {:.0} lines a second", rate(one));
     println!("{cores} threads: {:.0} lines a second", rate(all));
-    let ratio = one.as_secs_f64() / all.as_secs_f64();
-    println!("{cores} threads / one thread: {ratio:.2}");
-}
-
-fn main() {
-    lines();
+    println!("{cores} threads / one thread: {:.2}", one / all);
 }

@@ -2,16 +2,16 @@
 
 use std::fs;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use taxel::formats::{Name, StoredShape};
 use taxel::prelude::*;
 
+use timing::{Work, in_turn};
+
+mod timing;
+
 /// The number of shapes.
 const SHAPES: usize = 100_000;
-
-/// The number of turns; the fastest counts.
-const TURNS: usize = 5;
 
 fn main() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -25,26 +25,23 @@ fn main() {
         let text = shape.expect("of one size").write();
         fs::write(folder.path().join(name + ".json"), text).expect("written");
     }
-    let (mut list, mut plain) = (Duration::MAX, Duration::MAX);
-    for _ in 0..TURNS {
-        let start = Instant::now();
+    let list = Work::new(|| {
         let status = Command::new(env!("CARGO_BIN_EXE_taxel"))
             .args(["library", "list", "--library"])
             .arg(folder.path())
             .stdout(Stdio::null())
             .status();
         assert!(status.is_ok_and(|status| status.success()));
-        list = list.min(start.elapsed());
-        let start = Instant::now();
+    });
+    let plain = Work::new(|| {
         let files = fs::read_dir(folder.path()).expect("a folder").flatten();
         let bytes = files.map(|file| fs::read(file.path()).expect("read").len());
         assert!(bytes.sum::<usize>() > SHAPES);
-        plain = plain.min(start.elapsed());
-    }
+    });
+    let [list, plain] = in_turn(5, [list, plain]).map(|least| least.wall);
+    println!("library list of {SHAPES} shapes: {list:.2} s");
     println!(
-        "library list of {SHAPES} shapes: {:.2} s",
-        list.as_secs_f64()
+        "library list / reading the files one by one: {:.2}",
+        list / plain
     );
-    let ratio = list.as_secs_f64() / plain.as_secs_f64();
-    println!("library list / reading the files one by one: {ratio:.2}");
 }

@@ -1,15 +1,18 @@
 //! Recognition of seven figures of about 30 cells each (`cargo bench --bench recognition`): training compared with the
 //! sweeps that it consists of, the evaluation of the model, and answers to single touches.
 //!
-//! Training and its sweeps are compared in one run, because their ratio shows what training adds: the keys of all
-//! imprints, and one table of them.
+//! The ratio of training and its sweeps shows what training adds: the keys of all imprints, and one table of them. Both
+//! are measured in wall-clock time on all cores, the rest in processor time.
 
 use std::hint::black_box;
 
-use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use taxel::prelude::*;
 use taxel::recognition::{Evaluation, Evidence, GridSteps, Model, Training, equal_figures};
 use taxel::sweep::Sweep;
+
+use timing::{Work, in_turn};
+
+mod timing;
 
 fn training() -> Training<'static> {
     Training::fitting(equal_figures(), GridSteps::FINE).expect("they fit")
@@ -19,63 +22,72 @@ fn train() -> Model {
     training().run().expect("nothing is cut off")
 }
 
-/// Measures training, the sweeps of its shapes, and the evaluation.
-fn whole(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("train");
-    group.sample_size(10);
+/// Measures training, and the sweeps of its shapes.
+fn whole() {
     let grids = training().grids().to_vec();
-    group.throughput(Throughput::Elements(
-        grids.iter().map(PoseGrid::poses).sum(),
-    ));
-    group.bench_function("seven figures", |bencher| {
-        let run = |training: Training<'_>| training.run().expect("nothing is cut off");
-        bencher.iter_batched(training, run, BatchSize::PerIteration);
+    let trained = Work::new(|| {
+        black_box(train());
     });
-    group.bench_function("their sweeps", |bencher| {
-        bencher.iter(|| {
-            for grid in &grids {
-                black_box(Sweep::new(grid).run());
-            }
-        });
+    let swept = Work::new(|| {
+        for grid in &grids {
+            black_box(Sweep::new(grid).run());
+        }
     });
-    group.finish();
+    let [trained, swept] = in_turn(10, [trained, swept]).map(|least| least.wall);
+    let poses: u64 = grids.iter().map(PoseGrid::poses).sum();
+    println!("training of {poses} poses: {trained:.3} s");
+    println!("their sweeps alone: {swept:.3} s");
+    println!("training / sweeps: {:.2}", trained / swept);
+}
 
-    let model = train();
-    let mut group = criterion.benchmark_group("evaluate");
-    group.throughput(Throughput::Elements(model.keys().len() as u64));
-    group.bench_function("confusion", |bencher| {
-        bencher.iter(|| Evaluation::of(&model));
+/// Measures the evaluation of a model.
+fn evaluation(model: &Model) {
+    let confusion = Work::new(|| {
+        black_box(Evaluation::of(black_box(model)));
     });
-    group.bench_function("pairs", |bencher| bencher.iter(|| model.pair_errors()));
-    group.finish();
+    let pairs = Work::new(|| {
+        black_box(black_box(model).pair_errors());
+    });
+    let [confusion, pairs] = in_turn(100, [confusion, pairs]).map(|least| least.processor * 1e3);
+    println!(
+        "confusion of {} keys: {confusion:.2} ms",
+        model.keys().len()
+    );
+    println!("errors of all pairs: {pairs:.2} ms");
 }
 
 /// Measures a touch that some shapes leave, a touch that no shape leaves, and finding the pose of a shape.
-fn answers(criterion: &mut Criterion) {
-    let model = train();
+fn answers(model: &Model) {
     let known: Imprint = "..........\n...####...\n..######..\n..######..\n..######..\n..######..\n...####...\n.........."
         .parse()
         .expect("rows");
     let mut unknown = known;
     unknown.toggle(5, 3);
     assert!(!model.counts_of(&known).is_empty() && model.counts_of(&unknown).is_empty());
-    let mut group = criterion.benchmark_group("answer");
-    group.bench_function("posterior", |bencher| {
-        bencher.iter(|| model.posterior(black_box(&known)));
+    let touches = [known];
+    let posterior = Work::new(|| {
+        black_box(model.posterior(black_box(&known)));
     });
-    group.bench_function("answer", |bencher| {
-        let touches = [known];
-        bencher.iter(|| model.recognise(Evidence::of(black_box(&touches))));
+    let answer = Work::new(|| {
+        black_box(model.recognise(Evidence::of(black_box(&touches))));
     });
-    group.bench_function("nearest of an unknown one", |bencher| {
-        bencher.iter(|| model.nearest(black_box(&unknown)));
+    let nearest = Work::new(|| {
+        black_box(model.nearest(black_box(&unknown)));
     });
-    group.sample_size(10);
-    group.bench_function("pose", |bencher| {
-        bencher.iter(|| model.pose_of(0, black_box(&known), &|_| true));
+    let pose = Work::new(|| {
+        black_box(model.pose_of(0, black_box(&known), &|_| true));
     });
-    group.finish();
+    let answers = in_turn(100, [posterior, answer, nearest, pose]);
+    let [posterior, answer, nearest, pose] = answers.map(|least| least.processor * 1e6);
+    println!("posterior: {posterior:.2} µs");
+    println!("whole answer: {answer:.1} µs");
+    println!("nearest imprints of an unknown one: {nearest:.0} µs");
+    println!("pose: {pose:.0} µs");
 }
 
-criterion_group!(benches, whole, answers);
-criterion_main!(benches);
+fn main() {
+    whole();
+    let model = train();
+    evaluation(&model);
+    answers(&model);
+}

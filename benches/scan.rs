@@ -5,12 +5,14 @@
 //! than any set of shapes tried so far has.
 
 use std::hint::black_box;
-use std::time::Instant;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use taxel::prelude::*;
 use taxel::recognition::{Model, ModelHead, NamedShape, Noise, ShapeCount};
 use taxel::sweep::Shard;
+
+use timing::{Least, Work, in_turn};
+
+mod timing;
 
 /// A simple random generator that gives the same templates on every machine.
 fn next(state: &mut u64) -> u64 {
@@ -64,41 +66,35 @@ fn touch() -> Imprint {
     touch
 }
 
-fn scan(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("scan");
-    group.sample_size(10);
-    let single = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .expect("a thread");
+#[expect(clippy::cast_precision_loss, reason = "for reading")]
+fn main() {
+    // One thread: the processor time of several would count their waiting for work.
+    let single = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let single = single.expect("a thread");
     let touch = touch();
+    let size = Sensor::default().size();
 
     // Nothing can be skipped: at e = 0.45 every distance matters.
-    let model_of_10_000 = model(10_000);
     let every = Noise::new(0.45).expect("in range");
-    group.throughput(Throughput::Elements(
-        model_of_10_000.pairs(Sensor::default().size()),
-    ));
-    group.bench_function("every pair, 10,000 keys, 1 thread", |bencher| {
-        bencher.iter(|| single.install(|| black_box(model_of_10_000.distances(&touch, &every))));
+    let small = model(10_000);
+    let pairs = small.pairs(size) as f64;
+    let scan = Work::new(|| {
+        single.install(|| black_box(small.distances(&touch, &every)));
     });
-
-    let start = Instant::now();
-    let million = model(1_000_000);
-    black_box(million.pairs(Sensor::default().size()));
+    let [scan] = in_turn(20, [scan]);
     println!(
-        "a million keys prepared in {:.1} s",
-        start.elapsed().as_secs_f64()
+        "every pair, 10,000 keys: {:.2} ns a pair",
+        scan.nanoseconds() / pairs
     );
-    let usual = Noise::new(0.01).expect("in range");
-    group.throughput(Throughput::Elements(
-        million.pairs(Sensor::default().size()),
-    ));
-    group.bench_function("a query on 1,000,000 keys, 1 thread", |bencher| {
-        bencher.iter(|| single.install(|| black_box(million.distances(&touch, &usual))));
-    });
-    group.finish();
-}
 
-criterion_group!(benches, scan);
-criterion_main!(benches);
+    let large = model(1_000_000);
+    let mut prepared = Least::default();
+    prepared.measure(1, || black_box(large.pairs(size)));
+    println!("a million keys prepared in {:.1} s", prepared.wall);
+    let usual = Noise::new(0.01).expect("in range");
+    let query = Work::new(|| {
+        single.install(|| black_box(large.distances(&touch, &usual)));
+    });
+    let [query] = in_turn(20, [query]);
+    println!("a query on a million keys: {:.1} ms", query.wall * 1e3);
+}

@@ -3,15 +3,12 @@
 //! sensor, the figure and the step. All descriptors of each imprint's main region and all statistics are included.
 //!
 //! `cargo bench --bench sweep` prints two tables; an argument after `--` selects the rows whose names contain it. For
-//! single touches, 20,000 poses spread over the grid are measured and the time is extrapolated. Each row is measured
-//! in several rounds, with all methods in turn, and each number is the smallest of its rounds. Work on one thread is
-//! measured in processor time, which other work on the machine disturbs least. Two threads are compared with one by
-//! wall-clock time, with both cores awake.
+//! single touches, 20,000 poses spread over the grid are measured. Work on one thread is measured in processor time. Two
+//! threads are compared with one by wall-clock time, with both cores awake.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use rustix::time::{ClockId, clock_gettime};
 use taxel::atlas::{ImprintSummary, feature_values};
 use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
@@ -22,6 +19,7 @@ use taxel::touch::Plane;
 
 use cases::{Case, cases, figure, sensor};
 use peer::{Outline, Peer};
+use timing::{Least, selected};
 
 #[expect(
     clippy::cast_possible_truncation,
@@ -35,6 +33,7 @@ use peer::{Outline, Peer};
 )]
 #[expect(dead_code, reason = "another benchmark looks at more of it")]
 mod peer;
+mod timing;
 
 #[path = "../tests/imprints/sweep/cases.rs"]
 #[expect(
@@ -83,21 +82,6 @@ fn growing() -> Vec<Case> {
         case("step 0.005", 3.0, 16, "5:5.995:0.005"),
         case("step 0.0025", 3.0, 16, "5:5.9975:0.0025"),
     ]
-}
-
-/// Returns the seconds that some work takes: processor time of all threads together, and wall-clock time.
-fn seconds(work: impl FnOnce()) -> [f64; 2] {
-    let processor = || clock_gettime(ClockId::ProcessCPUTime);
-    let (start, wall) = (processor(), Instant::now());
-    work();
-    let (end, wall) = (processor(), wall.elapsed());
-    #[expect(clippy::cast_precision_loss, reason = "times of a few seconds")]
-    let spent = (end.tv_sec - start.tv_sec) as f64 + (end.tv_nsec - start.tv_nsec) as f64 / 1e9;
-    [spent, wall.as_secs_f64()]
-}
-
-fn least(times: &[f64]) -> f64 {
-    times.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// Returns poses spread over the grid.
@@ -184,14 +168,15 @@ fn sizes(source: &Source) -> Option<(FigureKind, [f32; 2], Option<f32>)> {
     Some((figure.kind(), sizes, get(Parameter::Thickness)))
 }
 
-/// The times of one row, in seconds for the whole grid, and the number of distinct imprints.
+/// The times of one row, and the number of distinct imprints.
 #[derive(Default)]
 struct Times {
-    one: Vec<f64>,
-    /// The wall-clock times on one thread and on two.
-    walls: [Vec<f64>; 2],
-    touch: Vec<f64>,
-    peer: Vec<f64>,
+    /// A sweep on one thread, and on two.
+    sweeps: [Least; 2],
+    /// One touch.
+    touch: Least,
+    /// One touch by the peer; pictures have none.
+    peer: Option<Least>,
     distinct: usize,
 }
 
@@ -221,69 +206,59 @@ impl Pools {
 
     /// Sweeps once on one thread and once on two.
     fn sweep(&self, grid: &PoseGrid, times: &mut Times) {
-        let [one, two] = self.0.each_ref().map(|pool| {
+        for (pool, least) in self.0.iter().zip(&mut times.sweeps) {
             wake(pool);
-            seconds(|| {
-                let result = pool.install(|| Sweep::new(grid).run());
-                times.distinct = black_box(result).atlas().len();
-            })
-        });
-        times.one.push(one[0]);
-        times.walls[0].push(one[1]);
-        times.walls[1].push(two[1]);
+            let result = least.measure(1, || pool.install(|| Sweep::new(grid).run()));
+            times.distinct = result.atlas().len();
+        }
     }
 }
 
-#[expect(clippy::cast_precision_loss, reason = "for reading")]
 fn measure(pools: &Pools, grid: &PoseGrid) -> Times {
     let poses: Vec<Pose> = sample(grid).collect();
     let sources = placed(grid);
+    let touches = u32::try_from(poses.len()).expect("a sample");
     let mut plane = Plane::new(*grid.sensor());
     let mut peer = Peer::new(grid.sensor().columns(), grid.sensor().rows());
-    let scale = grid.poses() as f64 / poses.len() as f64;
     let mut times = Times::default();
     for _ in 0..ROUNDS {
         pools.sweep(grid, &mut times);
-        let [touch, _] = seconds(|| touch_all(&mut plane, &sources));
-        times.touch.push(scale * touch);
+        let touch = || touch_all(&mut plane, &sources);
+        times.touch.measure(touches, touch);
         if let Some((kind, sizes, wall)) = sizes(grid.source()) {
-            let work = || touch_peer(&mut peer, kind, sizes, wall, &poses);
-            times.peer.push(scale * seconds(work)[0]);
+            let touch = || touch_peer(&mut peer, kind, sizes, wall, &poses);
+            times.peer.get_or_insert_default().measure(touches, touch);
         }
     }
     times
 }
 
+/// Returns the processor time of a sweep on one thread, in nanoseconds a pose.
 #[expect(clippy::cast_precision_loss, reason = "for reading")]
-fn per_pose(times: &[f64], grid: &PoseGrid) -> f64 {
-    least(times) * 1e9 / grid.poses() as f64
+fn per_pose(times: &Times, grid: &PoseGrid) -> f64 {
+    times.sweeps[0].nanoseconds() / grid.poses() as f64
 }
 
 /// Prints a row of the table of the paper's grid.
 fn print(name: &str, grid: &PoseGrid, times: &Times) {
-    let own = per_pose(&times.one, grid);
-    let [one, two] = times.walls.each_ref().map(|walls| least(walls));
-    let touch = per_pose(&times.touch, grid);
-    let (peer, ratio) = if times.peer.is_empty() {
-        ("-".to_owned(), "-".to_owned())
-    } else {
-        let peer = per_pose(&times.peer, grid);
+    let own = per_pose(times, grid);
+    let [one, two] = times.sweeps;
+    let touch = times.touch.nanoseconds();
+    let (peer, ratio) = times.peer.map_or(("-".to_owned(), "-".to_owned()), |peer| {
+        let peer = peer.nanoseconds();
         (format!("{peer:.0}"), format!("{:.0}", peer / own))
-    };
+    });
     println!(
         "{name:<26} {:>8} {:>7.0} {own:>8.2} {:>7.2} {touch:>8.0} {peer:>8} {:>7.0} {ratio:>7}",
         times.distinct,
-        least(&times.one) * 1e3,
-        one / two,
+        one.processor * 1e3,
+        one.wall / two.wall,
         touch / own,
     );
 }
 
 fn main() {
-    let only = std::env::args()
-        .skip(1)
-        .find(|argument| !argument.starts_with('-'))
-        .unwrap_or_default();
+    let only = selected();
     let pools = Pools::new();
     println!(
         "3,600,000 poses    distinct      ms  ns/pose  2 thr.    touch     peer  touch:   peer:"
@@ -306,14 +281,14 @@ fn main() {
         for _ in 0..ROUNDS {
             pools.sweep(&grid, &mut times);
         }
-        let time = least(&times.one);
+        let time = times.sweeps[0].processor;
         println!(
             "{:<26} {:>7} {:>8} {:>8.1} {:>8.1} {:>8.2}",
             case.name,
             grid.poses(),
             times.distinct,
             time * 1e3,
-            per_pose(&times.one, &grid),
+            per_pose(&times, &grid),
             time / *first.get_or_insert(time),
         );
     }

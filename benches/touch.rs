@@ -1,11 +1,11 @@
 //! One touch with all descriptors of all regions, compared with code that one would write without taxel ([`peer`]).
 //!
 //! Measures three figures with both, and each stage of taxel by itself: figure to imprint, imprint to regions, regions
-//! to every value of [`DESCRIPTORS`]. Also measures the time from a key press to the drawn screen.
+//! to every value of [`DESCRIPTORS`]. Also measures the time from a key press to the drawn screen. An argument after
+//! `--` selects figures and keys by a part of their names.
 
 use std::hint::black_box;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use taxel::description::{DESCRIPTORS, Description, Region, RegionKind, each_region, regions};
 use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
@@ -16,6 +16,7 @@ use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
 use peer::{Outline, Peer};
+use timing::{Work, in_turn, selected};
 
 #[expect(
     clippy::cast_possible_truncation,
@@ -28,6 +29,10 @@ use peer::{Outline, Peer};
     reason = "written as one would for oneself"
 )]
 mod peer;
+mod timing;
+
+/// Enough for both to run undisturbed at least once.
+const ROUNDS: usize = 300;
 
 fn figure(kind: FigureKind, values: &[(Parameter, f64)]) -> Figure {
     let value = |parameter| {
@@ -146,77 +151,73 @@ fn assert_alike(name: &str, plane: &mut Plane, figure: &Figure, peer: &mut Peer,
     }
 }
 
-fn touch(criterion: &mut Criterion) {
+/// Measures a touch with all descriptors, and the same by the peer.
+fn touch(name: &str, figure: &Figure, peer_touch: PeerTouch) {
     let mut plane = Plane::new(Sensor::default());
     let mut peer = Peer::new(16, 16);
-    for (name, figure, peer_touch) in FIGURES {
-        let figure = figure();
-        assert_alike(name, &mut plane, &figure, &mut peer, peer_touch);
-        let mut group = criterion.benchmark_group(name);
-        group.bench_function("taxel", |bencher| {
-            bencher.iter(|| each_region(plane.touched(black_box(&figure)), describe));
-        });
-        group.bench_function("peer", |bencher| {
-            bencher.iter(|| {
-                black_box(peer_touch(&mut peer));
-            });
-        });
-        group.finish();
-    }
+    assert_alike(name, &mut plane, figure, &mut peer, peer_touch);
+    let own = Work::new(|| each_region(plane.touched(black_box(figure)), describe));
+    let theirs = Work::new(|| {
+        black_box(peer_touch(&mut peer));
+    });
+    let [own, theirs] = in_turn(ROUNDS, [own, theirs]).map(|least| least.nanoseconds());
+    println!("{name:<10} {own:>7.0} {theirs:>8.0} {:>13.2}", theirs / own);
 }
 
-fn stages(criterion: &mut Criterion) {
+/// Measures the stages of a touch, each by itself.
+fn stages(name: &str, figure: &Figure) {
     let mut plane = Plane::new(Sensor::default());
-    for (name, figure, _) in FIGURES {
-        let figure = figure();
-        let imprint = plane.touch(&figure);
-        let found = regions(&imprint);
-        let mut group = criterion.benchmark_group(format!("{name}/stages"));
-        group.bench_function("touch", |bencher| {
-            bencher.iter(|| {
-                black_box(plane.touched(black_box(&figure)));
-            });
+    let imprint = plane.touch(figure);
+    let found = regions(&imprint);
+    let touch = Work::new(|| {
+        black_box(plane.touched(black_box(figure)));
+    });
+    let regions = Work::new(|| {
+        each_region(black_box(&imprint), |region| {
+            black_box(region);
         });
-        group.bench_function("regions", |bencher| {
-            bencher.iter(|| {
-                each_region(black_box(&imprint), |region| {
-                    black_box(region);
-                });
-            });
-        });
-        group.bench_function("descriptors", |bencher| {
-            bencher.iter(|| black_box(&found).iter().for_each(describe));
-        });
-        group.finish();
-    }
+    });
+    let descriptors = Work::new(|| black_box(&found).iter().for_each(describe));
+    let stages = in_turn(ROUNDS, [touch, regions, descriptors]);
+    let [touch, regions, descriptors] = stages.map(|least| least.nanoseconds());
+    println!("{name:<10} {touch:>7.0} {regions:>8.0} {descriptors:>13.0}");
 }
 
-/// Measures the time from a key press to a finished frame of 80 × 24 in a test buffer: moving the cursor, and toggling
-/// a taxel.
-fn frame(criterion: &mut Criterion) {
-    let options = Options::plain(false);
-    let mut group = criterion.benchmark_group("frame");
-    // Two keys and two frames restore the first state; `u` undoes, so that the history does not grow.
-    for (name, keys) in [
+/// Measures the time from a key press to a finished frame of 80 × 24 in a test buffer. Two keys and two frames restore
+/// the first state.
+fn frame(name: &str, keys: [&str; 2]) {
+    let world = World::scratch().expect("a folder for the time being");
+    let mut session = Session::new(&Options::plain(false), world, 80, 24);
+    session.keys("f<Enter>").expect("keys that exist");
+    let both = Work::new(|| {
+        for key in keys {
+            session.keys(black_box(key)).expect("keys that exist");
+            // The screen is drawn when its cursor is asked for.
+            black_box(session.cursor());
+        }
+    });
+    let [both] = in_turn(ROUNDS, [both]);
+    println!("{name:<10} {:>7.0}", both.nanoseconds() / 2e3);
+}
+
+fn main() {
+    let selected = selected();
+    let figures = FIGURES.iter().filter(|(name, ..)| name.contains(&selected));
+    println!("touch        taxel     peer  peer / taxel    ns, all descriptors of all regions");
+    for (name, figure, peer_touch) in figures.clone() {
+        touch(name, &figure(), *peer_touch);
+    }
+    println!("\nstage      imprint  regions   descriptors    ns");
+    for (name, figure, _) in figures {
+        stages(name, &figure());
+    }
+    println!("\nkey          frame    µs");
+    // `u` undoes, so that the history does not grow.
+    let keys = [
         ("move", ["<Right>", "<Left>"]),
         ("toggle", ["<Space>", "u"]),
-    ] {
-        let world = World::scratch().expect("a folder for the time being");
-        let mut session = Session::new(&options, world, 80, 24);
-        session.keys("f<Enter>").expect("keys that exist");
-        group.throughput(Throughput::Elements(2));
-        group.bench_function(name, |bencher| {
-            bencher.iter(|| {
-                for key in keys {
-                    session.keys(black_box(key)).expect("keys that exist");
-                    // The screen is drawn when its cursor is asked for.
-                    black_box(session.cursor());
-                }
-            });
-        });
+    ];
+    for (name, keys) in keys.iter().filter(|(name, _)| name.contains(&selected)) {
+        frame(name, *keys);
     }
-    group.finish();
 }
-
-criterion_group!(benches, touch, stages, frame);
-criterion_main!(benches);
