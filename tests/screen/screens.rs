@@ -7,62 +7,75 @@ use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 use crate::session::{hides, on, press, shows, sized, then, world};
 
-/// No size is too small for any screen, and none causes a panic.
+/// Keys that open the screens.
+const SCREENS: [&str; 23] = [
+    "",
+    "f",
+    "fh<Tab>x",
+    "f<Enter>c",
+    "f<Enter>cc",
+    "f<Enter>gq",
+    "?",
+    "?<PageDown>",
+    "f<Enter>i",
+    "f<Enter><Space>=",
+    "<Space>q",
+    "fr<Enter>e",
+    "fr<Enter>e9<Enter>",
+    "<Space>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>",
+    "fr<Enter>:explore --x0 5:6:0.1 --y0 0:16:0.1 --angle 0<Enter>2",
+    "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>3",
+    "fr<Enter>:explore --x0 0:16:0.1 --y0 0:16:0.1 --angle 0<Enter>4<99x:Right>",
+    "fr<Enter>:explore --x0 0:16:0.1 --y0 0:16:0.1 --angle 0<Enter>4+",
+    "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>5",
+    "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>6",
+    "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>/na>18 x",
+    "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>ma'",
+    "fr<Enter>:explore --x0 5 --y0 5 --angle 0<Enter>x/tmp",
+];
+
+/// Draws every screen in many sizes; no size is too small, and none causes a panic.
+fn draw_in_every_size(columns: u8, rows: u8) {
+    for keys in SCREENS {
+        let options = Options {
+            sensor: Sensor::new(columns, rows).expect("sides from 1 to 64"),
+            theme: Theme {
+                ascii: false,
+                console: false,
+                depth: ColorDepth::TwoFiftySix,
+                palette: Palette::Dark,
+            },
+            mouse: true,
+            seed: 0,
+        };
+        let mut session = on(world(), &options, (80, 24), keys);
+        for width in (0..=120).step_by(7).chain(17..=24).chain(58..70) {
+            for height in (0..=50).step_by(3) {
+                session.resize(width, height);
+                // Asking for the cursor draws the screen.
+                let _ = session.cursor();
+            }
+        }
+        let lines = session.screen().lines().count();
+        assert!(lines <= 51, "{keys} with {columns} x {rows}");
+    }
+}
+
+// One test for each sensor, so that they run at the same time.
+
+#[test]
+fn every_size_of_every_screen_is_drawn_with_one_column() {
+    draw_in_every_size(1, 64);
+}
+
 #[test]
 fn every_size_of_every_screen_is_drawn() {
-    let screens = [
-        "",
-        "f",
-        "fh<Tab>x",
-        "f<Enter>c",
-        "f<Enter>cc",
-        "f<Enter>gq",
-        "?",
-        "?<PageDown>",
-        "f<Enter>i",
-        "f<Enter><Space>=",
-        "<Space>q",
-        "fr<Enter>e",
-        "fr<Enter>e9<Enter>",
-        "<Space>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>",
-        "fr<Enter>:explore --x0 5:6:0.1 --y0 0:16:0.1 --angle 0<Enter>2",
-        "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>3",
-        "fr<Enter>:explore --x0 0:16:0.1 --y0 0:16:0.1 --angle 0<Enter>4<99x:Right>",
-        "fr<Enter>:explore --x0 0:16:0.1 --y0 0:16:0.1 --angle 0<Enter>4+",
-        "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>5",
-        "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>6",
-        "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>/na>18 x",
-        "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>ma'",
-        "fr<Enter>:explore --x0 5 --y0 5 --angle 0<Enter>x/tmp",
-    ];
-    for keys in screens {
-        for side in [1, 16, 64] {
-            let sensor = Sensor::new(side, 65 - side).expect("sides from 1 to 64");
-            let options = Options {
-                sensor,
-                theme: Theme {
-                    ascii: false,
-                    console: false,
-                    depth: ColorDepth::TwoFiftySix,
-                    palette: Palette::Dark,
-                },
-                mouse: true,
-                seed: 0,
-            };
-            let mut session = on(world(), &options, (80, 24), keys);
-            for width in (0..=120).step_by(7).chain(17..=24).chain(58..70) {
-                for height in (0..=50).step_by(3) {
-                    session.resize(width, height);
-                    // Asking for the cursor draws the screen.
-                    let _ = session.cursor();
-                }
-            }
-            assert!(
-                session.screen().lines().count() <= 51,
-                "keys {keys}, side {side}"
-            );
-        }
-    }
+    draw_in_every_size(16, 49);
+}
+
+#[test]
+fn every_size_of_every_screen_is_drawn_with_one_row() {
+    draw_in_every_size(64, 1);
 }
 
 /// On a matrix that is too large for the screen, the described region scrolls into view, wherever the cursor is, and a
