@@ -7,12 +7,14 @@
 //! [`glam`].
 
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec2;
 
 use crate::description::chain::{ChainSteps, OutlineCounts};
 use crate::description::region::{Region, RegionKind};
 use crate::imprint::{Bounds, Imprint};
+use crate::sensor::MAX_SIDE;
 
 /// The counts and sums of one region, from which all descriptors are computed. Coordinates and lengths are in cell
 /// sides, directions in degrees counter-clockwise from +x as seen on the screen. If the fields are changed to numbers
@@ -115,9 +117,7 @@ impl Description {
 
     /// Returns the directions of the two diagonals of the upright rectangle, from 0 to below 180 degrees.
     pub fn diagonals(&self) -> [f64; 2] {
-        let sides = self.sides();
-        // Both sides are positive, so there is no quadrant to find: `atan2` would return the same number.
-        let rising = libm::atan(sides.y / sides.x).to_degrees();
+        let rising = rising_diagonal(self.whole_sides());
         [rising, 180.0 - rising]
     }
 
@@ -174,6 +174,31 @@ impl Description {
         let way = self.cd() - self.cg();
         // Upwards is counter-clockwise. 0 − y, not −y: that would make a zero negative, and atan2 return −180.
         (way.length() >= 1e-9).then(|| libm::atan2(0.0 - way.y, way.x).to_degrees())
+    }
+}
+
+/// Returns the direction of the rising diagonal of a rectangle of this width and height, in degrees. There are few
+/// rectangles of whole taxels, and an arc tangent takes longer than all other descriptors, so it is computed once for
+/// each of them.
+fn rising_diagonal([width, height]: [i32; 2]) -> f64 {
+    const LARGEST: usize = MAX_SIDE as usize;
+    /// The bits of each direction; 0 before it is computed, since no direction is 0.
+    static COMPUTED: [[AtomicU64; LARGEST]; LARGEST] =
+        [const { [const { AtomicU64::new(0) }; LARGEST] }; LARGEST];
+    // Both sides are positive, so there is no quadrant to find: `atan2` would return the same number.
+    let compute = || libm::atan(f64::from(height) / f64::from(width)).to_degrees();
+    let slot = |side: i32| usize::try_from(side - 1).unwrap_or(usize::MAX);
+    let row = COMPUTED.get(slot(width));
+    let Some(computed) = row.and_then(|row| row.get(slot(height))) else {
+        return compute();
+    };
+    match computed.load(Ordering::Relaxed) {
+        0 => {
+            let rising = compute();
+            computed.store(rising.to_bits(), Ordering::Relaxed);
+            rising
+        }
+        bits => f64::from_bits(bits),
     }
 }
 
