@@ -26,12 +26,61 @@ pub(crate) fn short(value: f64) -> String {
     decimal(value, 6)
 }
 
+/// The words for the sizes on an axis. A coarser pitch makes the shapes smaller in cells, so "larger" alone would say
+/// the opposite of what it means for a pitch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SizeWords {
+    /// One value of the axis.
+    pub(crate) noun: &'static str,
+    /// Several of them.
+    pub(crate) plural: &'static str,
+    /// The value at which the shapes are smallest in cells.
+    pub(crate) smallest: &'static str,
+    /// A value at which they are smaller than at another one.
+    pub(crate) smaller: &'static str,
+    /// A value at which they are larger.
+    pub(crate) larger: &'static str,
+    /// The unit after a number, with a space before it; empty for scales.
+    pub(crate) unit: &'static str,
+}
+
+impl SizeWords {
+    /// Returns the words for an axis.
+    pub(crate) const fn of(axis: SizeAxis) -> Self {
+        match axis {
+            SizeAxis::Scale => Self {
+                noun: "scale",
+                plural: "scales",
+                smallest: "smallest",
+                smaller: "smaller",
+                larger: "larger",
+                unit: "",
+            },
+            SizeAxis::Pitch => Self {
+                noun: "pitch",
+                plural: "pitches",
+                smallest: "coarsest",
+                smaller: "coarser",
+                larger: "finer",
+                unit: " mm",
+            },
+        }
+    }
+
+    /// Returns a number of larger sizes as the subject of a sentence, with `condition` after the noun and the verb
+    /// "miss": `1 finer pitch misses`, `2 finer pitches miss`.
+    pub(crate) fn larger_miss(&self, count: usize, condition: &str) -> String {
+        match count {
+            1 => format!("1 {} {}{condition} misses", self.larger, self.noun),
+            more => format!("{more} {} {}{condition} miss", self.larger, self.plural),
+        }
+    }
+}
+
 /// Formats a value of the axis with its name and unit.
 pub(crate) fn size_label(axis: SizeAxis, value: f64) -> String {
-    match axis {
-        SizeAxis::Pitch => format!("pitch {} mm", short(value)),
-        _ => format!("scale {}", short(value)),
-    }
+    let words = SizeWords::of(axis);
+    format!("{} {}{}", words.noun, short(value), words.unit)
 }
 
 /// Returns a row of names, then a row for each size and threshold. Shares are written with all digits, counts as

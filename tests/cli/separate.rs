@@ -121,8 +121,8 @@ fn the_smallest_size_that_reaches_an_error_is_found() {
     let text = place.done(&format!("{line} --want 0.1"));
     assert!(
         text.contains(&format!(
-            "an error of at most 0.1 is first reached at scale {scale}:"
-        )) && text.contains("searched upwards in steps of 0.5, then of 0.05"),
+            "the smallest scale with an error of at most 0.1 is {scale}:"
+        )) && text.contains("tried from the smallest on in steps of 0.5, then of 0.05"),
         "{text}"
     );
     let text = place.done(&format!("{line} --want 0"));
@@ -133,19 +133,33 @@ fn the_smallest_size_that_reaches_an_error_is_found() {
     let table = place.done(&format!("{line} --csv"));
     let run = place.run(&format!("{line} --want 0.1 --csv"), "");
     assert_eq!(run.stdout, table);
-    let said = format!("an error of at most 0.1 is first reached at scale {scale}:");
+    let said = format!("the smallest scale with an error of at most 0.1 is {scale}:");
     assert!(run.stderr.starts_with(&said), "{}", run.stderr);
     let never = place.json(&format!("{line} --want 0 --json"));
     assert!(never["want"][0]["smallest"].is_null());
     let text = place.done(&format!("{line} --want 0.9"));
-    assert!(text.contains("it is the first that was tried"), "{text}");
-    // A finer pitch means larger shapes, so the search starts at the top.
-    let text = place.done(
-        "model separate rectangles.jsonl --pitch 0.4:1:0.2 --positions 5 --angle 0:350:10 --quiet --want 0.1",
-    );
+    assert!(text.contains("no smaller scale was tried"), "{text}");
+}
+
+/// A finer pitch means larger shapes, so the search starts at the coarsest. A buyer must not read that a coarser pitch
+/// than the one found does as well.
+#[test]
+fn the_answer_about_pitches_says_coarser_and_finer() {
+    let place = Place::new();
+    let line =
+        "model separate rectangles.jsonl --pitch 0.4:1:0.2 --positions 5 --angle 0:350:10 --quiet";
+    let text = place.done(&format!("{line} --want 0.1"));
     assert!(
-        text.contains("first reached at pitch 0.")
-            && text.contains("searched downwards in steps of 0.2"),
+        text.contains("the coarsest pitch with an error of at most 0.1 is 0.")
+            && text.contains(" mm: ")
+            && text.contains("tried from the coarsest on in steps of 0.2 mm, then of 0.02 mm")
+            && text.contains("every finer pitch that was tried reaches it, too"),
+        "{text}"
+    );
+    let text = place.done(&format!("{line} --want 0.9"));
+    assert!(
+        text.contains("with an error of at most 0.9 is 1 mm: ")
+            && text.contains("no coarser pitch was tried; it may reach the error as well"),
         "{text}"
     );
 }

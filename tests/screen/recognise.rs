@@ -414,11 +414,11 @@ fn escape_stops_the_sizes_and_keeps_the_results() {
     program.until("1 of 251 sizes; Esc stops");
     press(&mut program.session, "<Esc>");
     program.until("stopped; what was found stays");
-    shows(&program.session, &["stopped; V goes on", "\n0.5 "]);
+    shows(&program.session, &["stopped; V resumes", "\n0.5 "]);
     press(&mut program.session, "V");
     shows(&program.session, &["of 251 sizes; Esc stops"]);
     press(&mut program.session, "<Esc>");
-    program.until("stopped; V goes on");
+    program.until("stopped; V resumes");
     press(&mut program.session, "<Esc>");
     shows(&program.session, &["Recognise: model figures"]);
     // A second Esc does not wait for the work to stop.

@@ -307,10 +307,12 @@ Trains the set at each scale, which multiplies all lengths, or at each pitch, if
 lengths are in mm, and prints how many touches even the best classifier names
 wrong. Sizes at which the shapes do not fit on 64 x 64 taxels are left out, and
 standard error lists them. With --pitch, a taxel of a stored shape is 1 mm; the
-shape's own pitch and threshold are ignored. --want tries the sizes from the
-smallest upwards, then tenths of a step before the first size that reaches the
-error. The error is not monotonic, so --want also reports how many larger sizes
-miss it again. With --csv, its answer goes to standard error.
+shape's own pitch and threshold are ignored.
+
+--want tries scales from the smallest up, or pitches from the coarsest down,
+until one reaches the error, and then tenths of a step before that one. The
+error is not monotonic, so --want also prints how many of the larger scales, or
+finer pitches, miss it again. With --csv, its answer goes to standard error.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20

@@ -18,18 +18,10 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{number, percent_fine};
 use crate::cli::output::plot;
 use crate::formats::json;
-use crate::formats::separation::{SeparationCurve, short, size_label};
+use crate::formats::separation::{SeparationCurve, SizeWords, short};
 use crate::formats::value::{grouped, percent};
 use crate::pose::DecimalRange;
 use crate::recognition::{SeparationPoint, SizeAxis};
-
-/// Returns the name of an axis in a sentence.
-fn noun(axis: SizeAxis) -> &'static str {
-    match axis {
-        SizeAxis::Pitch => "pitch",
-        _ => "scale",
-    }
-}
 
 /// Returns the table and a plot for each threshold. `wanted` is the error of `--want`; the result of its search comes
 /// last, in a sentence for each threshold.
@@ -104,50 +96,47 @@ pub(crate) fn all_found(
 /// Returns what a search found, and how it searched. The steps are named because the error is not monotonic in the
 /// size: a size between two that were tried may reach the wanted error as well.
 fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: f64) -> String {
+    let words = SizeWords::of(axis);
+    let SizeWords {
+        noun,
+        smallest: extreme,
+        smaller,
+        larger,
+        unit,
+        ..
+    } = words;
     let wanted = short(wanted);
-    let coarse = short(sizes.step());
     let Some(smallest) = &curve.smallest else {
-        return format!(
-            "no {} that was tried has an error of at most {wanted}\n",
-            noun(axis)
-        );
+        return format!("no {noun} that was tried has an error of at most {wanted}\n");
     };
-    let order = match axis {
-        SizeAxis::Pitch => "downwards",
-        _ => "upwards",
-    };
-    let (place, error) = (
-        size_label(axis, smallest.point.value),
-        smallest.point.error(),
-    );
     let mut text = format!(
-        "an error of at most {wanted} is first reached at {place}: {}\n",
-        percent_fine(error)
+        "the {extreme} {noun} with an error of at most {wanted} is {}{unit}: {}\n",
+        short(smallest.point.value),
+        percent_fine(smallest.point.error())
     );
     if smallest.step > 0.0 {
-        let fine = short(smallest.step);
+        let (coarse, fine) = (short(sizes.step()), short(smallest.step));
         let _ = writeln!(
             text,
-            "  searched {order} in steps of {coarse}, then of {fine} before the first that reaches it"
+            "  tried from the {extreme} on in steps of {coarse}{unit}, then of {fine}{unit} before the first that reaches it"
         );
     } else {
         let _ = writeln!(
             text,
-            "  it is the first that was tried; smaller sizes may reach it as well"
+            "  no {smaller} {noun} was tried; it may reach the error as well"
         );
     }
-    match smallest.missed_again {
-        0 => text += "  all larger sizes that were tried reach it, too\n",
-        1 => {
-            text += "  the error is not monotonic: 1 larger size that was tried misses it again\n";
-        }
-        more => {
-            let _ = writeln!(
-                text,
-                "  the error is not monotonic: {more} larger sizes that were tried miss it again"
-            );
-        }
-    }
+    let _ = match smallest.missed_again {
+        0 => writeln!(
+            text,
+            "  every {larger} {noun} that was tried reaches it, too"
+        ),
+        count => writeln!(
+            text,
+            "  the error is not monotonic: {} it again",
+            words.larger_miss(count, " that was tried")
+        ),
+    };
     text
 }
 
@@ -224,11 +213,11 @@ struct FoundJson {
     threshold: f64,
     /// The wanted error.
     error: f64,
-    /// The smallest size that reaches it.
+    /// The point with the smallest scale, that is, the coarsest pitch, that reaches it.
     smallest: Option<PointJson>,
-    /// The step of the search; 0 if the first size that was tried reaches the error, so that smaller ones may reach
-    /// it too.
+    /// The step of the search; 0 if the smallest scale that was tried reaches the error, so that smaller ones may
+    /// reach it too.
     step: Option<f64>,
-    /// The number of larger sizes whose error is too large again.
+    /// The number of larger scales, that is, finer pitches, whose error is too large again.
     missed_again: Option<usize>,
 }

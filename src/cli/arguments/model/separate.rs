@@ -40,7 +40,7 @@ pub(crate) struct SeparateArguments {
     pub(crate) angles: Option<DecimalRange>,
     /// Positions per cell along x and y; None for those of the model, or else 100.
     pub(crate) positions: Option<CellPositions>,
-    /// The error (0 to 1) for which the smallest sufficient size is searched.
+    /// The error (0 to 1) for which the smallest sufficient scale, or coarsest pitch, is searched.
     pub(crate) wanted: Option<f64>,
     /// The number of threads; 0 means the default.
     pub(crate) jobs: usize,
@@ -56,8 +56,12 @@ pub(crate) struct SeparateArguments {
 
 /// Defines `taxel model separate`.
 pub(super) fn command() -> Command {
-    let want = option("want", "ERROR", "Find the smallest size with this error")
-        .value_parser(parse_probability);
+    let want = option(
+        "want",
+        "ERROR",
+        "Find the smallest scale, or the coarsest pitch,\nwith at most this error (0 to 1)",
+    )
+    .value_parser(parse_probability);
     let export = option(
         "export",
         "FILE",

@@ -194,7 +194,7 @@ impl SeparationRequest {
             count => format!("{count} × {count} positions"),
         };
         format!(
-            "{positions} of a cell, angle {}; threshold {}",
+            "{positions} per cell, angle {}; threshold {}",
             self.angles,
             short(self.threshold)
         )

@@ -95,22 +95,21 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
         return false;
     }
     let found = page.selected().and_then(|size| {
-        let example = size.worst.as_ref()?.example.as_ref()?;
-        Some((size.point.value, example.imprint?))
+        let worst = size.worst.as_ref()?;
+        let example = worst.example.as_ref()?;
+        let name = |shape| page.request().trained.name(shape);
+        let (touched, named) = (name(worst.touched), name(worst.named));
+        let size = size_label(page.request().axis, size.point.value);
+        let about = format!("imprint of {touched}, named {named}, at {size}");
+        Some((about, example.imprint?))
     });
-    let Some((size, imprint)) = found else {
+    let Some((about, imprint)) = found else {
         refuse(app, "no shapes are confused at this size");
         return false;
     };
     let own = *page.request().trained.model.sensor();
     let (sensor, imprint) = onto(&imprint, app.history.present().sensor, own);
-    let size = size_label(page.request().axis, size);
-    put(
-        app,
-        sensor,
-        &imprint,
-        &format!("confused imprint at {size}"),
-    );
+    put(app, sensor, &imprint, &about);
     true
 }
 

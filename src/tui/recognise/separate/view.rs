@@ -2,20 +2,20 @@
 //!
 //! ```text
 //! Separate: model figures-30                 the model
-//! 10 × 10 positions of a cell, angle 0:358:2 its steps; while it works, a gauge
+//! 10 × 10 positions per cell, angle 0:358:2  its steps; while it works, a gauge
 //!  70 % |⠉⠢⢄                                  the error against the size; dots at the wanted one
 //!   0 % |....⠈⠉⠒⠤
 //!        0.5   1   1.5   2
 //! scale    error  certain     keys  sensor    what was found of each size
 //! 0.5     62.1 %    5.2 %      310  16 × 16
-//! at most 1 % from scale 2.3 on               what was looked for
+//! error at most 1 %: scale 2.3 or larger       what was looked for
 //! scale 1: octagon named ellipse in 52.4 %    the pair that is confused most, with an imprint
 //! ```
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::separation::{short, size_label};
+use crate::formats::separation::{SizeWords, short, size_label};
 use crate::formats::value::{decimal, grouped, percent};
 use crate::recognition::{SizeAxis, SmallestSize};
 use crate::tui::app::message::Message;
@@ -268,20 +268,32 @@ impl Separate {
     fn wanted_text(&self, keymap: &Keymap) -> String {
         let wanted = format!("{} %", decimal(100.0 * self.request().wanted, 3));
         let axis = self.request().axis;
+        let words = SizeWords::of(axis);
         match self.smallest() {
-            None if self.work().is_some() => format!("looking for an error of at most {wanted}"),
-            None => {
-                let go_on = keymap.label(Context::Separate, &action::SEPARATE);
-                format!("stopped; {go_on} goes on")
+            None if self.work().is_some() => {
+                let (smallest, noun) = (words.smallest, words.noun);
+                format!("looking for the {smallest} {noun} with an error of at most {wanted}")
             }
-            Some(None) => format!("no size that was tried has an error of at most {wanted}"),
+            None => {
+                let resume = keymap.label(Context::Separate, &action::SEPARATE);
+                format!("stopped; {resume} resumes")
+            }
+            Some(None) => {
+                let noun = words.noun;
+                format!("no {noun} that was tried has an error of at most {wanted}")
+            }
             Some(Some(smallest)) => {
                 let place = size_label(axis, smallest.point.value);
-                let found = format!("at most {wanted} first at {place}{}", tried(smallest));
+                let how = tried(words, smallest);
                 match smallest.missed_again {
-                    0 => found,
-                    1 => format!("{found}; 1 larger size misses it"),
-                    more => format!("{found}; {more} larger sizes miss it"),
+                    0 => format!(
+                        "error at most {wanted}: {place} or {} ({how})",
+                        words.larger
+                    ),
+                    count => format!(
+                        "error at most {wanted}: {place} ({how}); {} it",
+                        words.larger_miss(count, "")
+                    ),
                 }
             }
         }
@@ -289,11 +301,11 @@ impl Separate {
 }
 
 /// Returns how a size was searched for.
-fn tried(smallest: &SmallestSize) -> String {
+fn tried(words: SizeWords, smallest: &SmallestSize) -> String {
     if smallest.step > 0.0 {
-        format!(", in steps of {}", short(smallest.step))
+        format!("steps of {}{}", short(smallest.step), words.unit)
     } else {
-        ", the first that was tried".to_owned()
+        format!("no {} one was tried", words.smaller)
     }
 }
 
