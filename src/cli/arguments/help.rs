@@ -194,12 +194,12 @@ pub(crate) const FILES: &str = "
 /// `taxel sweep`: ranges and their defaults.
 pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
-exact. By default, ranges have the paper's resolution: one cell in steps of 0.01
-and every whole degree, 3.6 million poses. Figures start at x0 = y0 = 5, and
-pictures in the cell that they lie in. If the sensor would cut the shape off
-there at any angle, taxel uses a cell near the middle. It prints the ranges.
-Figures are solid without --thickness. A picture keeps its own sensor, unless
-flags change it.
+exact. By default, ranges have the resolution of the paper's program: one cell
+in steps of 0.01 and every whole degree, 3.6 million poses. Figures start at
+x0 = y0 = 5, and pictures in the cell that they lie in. If the sensor would cut
+the shape off there at any angle, taxel takes the cell nearest to the middle in
+which nothing is cut off. It always prints the ranges. Figures are solid without
+--thickness. A picture keeps its own sensor, unless flags change it.
 
 Examples:
   taxel sweep rectangle --length 6 --width 3
