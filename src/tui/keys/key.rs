@@ -2,7 +2,7 @@
 //!
 //! There are only keys that arrive from every terminal: no Alt, no Ctrl with a digit. A character is written as
 //! itself, but `<` as `<lt>`. Named keys and Ctrl are written in angle brackets, and so is a character given by its
-//! number, `<U+3000>`. `<3x:Down>` repeats a key.
+//! number, `<U+3000>`. `<3x:Down>` and `<3x:+>` repeat a key.
 
 use std::fmt;
 
@@ -192,8 +192,11 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
             let found = || rest[..used].chars().take(24).collect();
             let unknown = || KeyError::Unknown { at, found: found() };
             let name = &rest[1..end.ok_or_else(unknown)?];
-            let (times, name) = name.split_once("x:").unwrap_or(("1", name));
-            let key = named(name).ok_or_else(unknown)?;
+            let (times, key) = match name.split_once("x:") {
+                Some((times, name)) => (times, character(name).or_else(|| named(name))),
+                None => ("1", named(name)),
+            };
+            let key = key.ok_or_else(unknown)?;
             if times.is_empty() || !times.bytes().all(|digit| digit.is_ascii_digit()) {
                 return Err(unknown());
             }
@@ -212,18 +215,25 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
     Ok(keys)
 }
 
+/// Returns the key of a text of one character.
+fn character(text: &str) -> Option<Key> {
+    let mut characters = text.chars();
+    let first = characters.next()?;
+    characters.next().is_none().then_some(Key::Char(first))
+}
+
 /// Returns the key of a name, given without its angle brackets.
 fn named(name: &str) -> Option<Key> {
     let ctrl = || {
         let letter = name
             .strip_prefix("C-")
             .or_else(|| name.strip_prefix("c-"))?;
-        let mut characters = letter.chars();
-        let letter = characters.next().filter(char::is_ascii_alphabetic)?;
-        characters
-            .next()
-            .is_none()
-            .then(|| Key::Ctrl(letter.to_ascii_lowercase()))
+        match character(letter)? {
+            Key::Char(letter) if letter.is_ascii_alphabetic() => {
+                Some(Key::Ctrl(letter.to_ascii_lowercase()))
+            }
+            _ => None,
+        }
     };
     let numbered = || {
         let number = u32::from_str_radix(name.strip_prefix("U+")?, 16).ok()?;
@@ -258,5 +268,22 @@ mod tests {
         assert_eq!(parse("<C-i><C-m>"), Ok(vec![Key::Tab, Key::Enter]));
         assert_eq!(Key::Char('\u{3000}').to_string(), "<U+3000>");
         assert!(parse("<U+110000>").is_err() && parse("<U+>").is_err());
+    }
+
+    #[test]
+    fn every_key_can_be_repeated() {
+        for (text, key) in [
+            ("<3x:+>", Key::Char('+')),
+            ("<3x:a>", Key::Char('a')),
+            ("<3x:x>", Key::Char('x')),
+            ("<3x:lt>", Key::Char('<')),
+            ("<3x:U+3E>", Key::Char('>')),
+            ("<3x:C-r>", Key::Ctrl('r')),
+            ("<3x:Down>", Key::Arrow(Arrow::Down)),
+        ] {
+            assert_eq!(parse(text), Ok(vec![key; 3]), "{text}");
+        }
+        // Without a number, it is no repetition, and a character alone needs no brackets.
+        assert!(parse("<a>").is_err() && parse("<x:a>").is_err() && parse("<3x:>").is_err());
     }
 }
