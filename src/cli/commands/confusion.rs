@@ -143,7 +143,6 @@ fn reached(
         !signals.stopped.load(Ordering::Relaxed)
     };
     let reached = classifier.evaluate(model, &asked.classifiers, &report);
-    progress.finish();
     reached.ok_or_else(|| signals.failure())
 }
 

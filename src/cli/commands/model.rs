@@ -86,7 +86,7 @@ pub(crate) fn train(
         note(&grid_text(&sensor, anchor, &ranges), charset);
     }
     let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
-    let progress = Progress::new(training.poses(), asked.quiet, charset);
+    let progress = |poses| Progress::new(poses, asked.quiet, charset);
     let pool = threads::pool(asked.jobs)?;
     let model = pool.install(|| run(training, &memory, &progress, stopped));
     let remedy = grid.remedy;
@@ -113,23 +113,23 @@ pub(crate) fn train(
     Ok(Summary::new(text, written))
 }
 
-/// Runs a training until it is done, memory runs short or `stopped` becomes true.
+/// Runs a training until it is done, memory runs short or `stopped` becomes true. `progress` starts to show the progress
+/// of a number of poses.
 ///
 /// # Errors
 /// Returns the error of the training, which is [`TrainingError::Stopped`] for both kinds of stop.
 fn run(
     training: Training<'_>,
     memory: &MemoryGuard,
-    progress: &Progress,
+    progress: &dyn Fn(u64) -> Progress,
     stopped: &AtomicBool,
 ) -> Result<Model, TrainingError> {
+    let progress = progress(training.poses());
     let report = |poses: u64| {
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
     };
-    let model = training.progress(&report).run();
-    progress.finish();
-    model
+    training.progress(&report).run()
 }
 
 /// Returns the text to print about a model. `done` tells whether its file was written or existed already; None if there
@@ -245,8 +245,7 @@ impl FoundModel {
                 None,
                 "train a model of fewer shapes or coarser steps (taxel model train)",
             );
-            let progress = progress(training.poses());
-            let model = run(training, &memory, &progress, &AtomicBool::new(false));
+            let model = run(training, &memory, progress, &AtomicBool::new(false));
             model.map_err(|error| match error {
                 TrainingError::Stopped => CliError::Memory(memory.message()),
                 error => error.into(),

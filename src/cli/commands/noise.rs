@@ -99,7 +99,6 @@ pub(crate) fn degradation(
             });
         }
     }
-    progress.finish();
     write_noise(&table, all_asked)?;
     Ok(match all_asked.form {
         EvaluationForm::Json => noise_json(&table, &sensor, asked.seed),
@@ -324,7 +323,7 @@ pub(crate) fn half_step(
             HalfStepWork::Poses(poses) => progress.add(poses),
             HalfStepWork::Search { of } => {
                 let begun = || {
-                    progress.finish();
+                    progress.clear();
                     Progress::counting("imprints", of, asked.quiet, charset)
                 };
                 search.get_or_init(begun).add(1);
@@ -333,10 +332,6 @@ pub(crate) fn half_step(
         !signals.stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let result = model.half_step(&report);
-    progress.finish();
-    if let Some(search) = search.get() {
-        search.finish();
-    }
     let result = result.map_err(|error| signals.training_failure(error, &memory))?;
     if asked.form == EvaluationForm::Json {
         let answer = json!({
@@ -379,7 +374,6 @@ pub(crate) fn touches(
     };
     let results = model.touches_until(asked.until, asked.runs, asked.seed, &report);
     let results = results.ok_or_else(|| signals.failure())?;
-    progress.finish();
     let names = model.shapes().iter().map(|shape| shape.name.as_str());
     let shapes: Vec<_> = names.zip(&results).collect();
     let weights = model.shapes().iter().map(|shape| f64::from(shape.weight));

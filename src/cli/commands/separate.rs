@@ -69,7 +69,7 @@ pub(crate) fn separate(
     };
     let pool = threads::pool(asked.jobs)?;
     let curves = pool.install(|| curves(asked, &separation, (&sizes, &thresholds), &report));
-    progress.finish();
+    drop(progress);
     let curves = curves.map_err(|error| signals.training_failure(error, &memory))?;
     if let Some(path) = &asked.export {
         let content = match DrawingFormat::of_path(path) {

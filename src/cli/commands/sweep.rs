@@ -134,7 +134,7 @@ pub(crate) fn sweep(
         Some(file) => sweep.run_with_rows(&mut |row, ids| file.take(row, ids, stopped)),
         None => sweep.run(),
     });
-    progress.finish();
+    drop(progress);
     if memory.exceeded() {
         return Err(CliError::Memory(memory.message()));
     }

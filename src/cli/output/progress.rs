@@ -36,7 +36,7 @@ pub(crate) struct Progress {
 enum Shown {
     /// No progress is shown.
     Nothing,
-    /// A bar on the terminal.
+    /// A bar on the terminal. It removes itself when it is dropped, so also when the work fails.
     Bar(ProgressBar),
     /// Lines of text, with the times of the start and of the last line.
     Lines(Instant, Mutex<Instant>),
@@ -120,8 +120,8 @@ impl Progress {
         )
     }
 
-    /// Removes the bar; lines stay.
-    pub(crate) fn finish(&self) {
+    /// Removes the bar, as dropping it does; lines stay. For a progress that another one follows in its scope.
+    pub(crate) fn clear(&self) {
         if let Shown::Bar(bar) = &self.shown {
             bar.finish_and_clear();
         }
