@@ -49,8 +49,13 @@ impl Signals {
     /// Catches the signals from now on.
     ///
     /// # Errors
-    /// Returns the system's error if it does not allow this.
-    pub(crate) fn catch() -> io::Result<Self> {
+    /// Returns [`CliError::System`] if the system does not allow this.
+    pub(crate) fn catch() -> Result<Self, CliError> {
+        Self::registered().map_err(CliError::System)
+    }
+
+    /// Returns the same as [`Self::catch`], with the system's error.
+    fn registered() -> io::Result<Self> {
         let (stopped, last) = (Arc::default(), Arc::default());
         for (index, &(signal, status)) in STOPPING.iter().enumerate() {
             if is_ignored(signal) {
@@ -63,12 +68,17 @@ impl Signals {
         Ok(Self { stopped, last })
     }
 
+    /// Returns true until a signal asks to stop.
+    pub(crate) fn goes_on(&self) -> bool {
+        !self.stopped.load(Ordering::Relaxed)
+    }
+
     /// Returns the error of a command that failed: "stopped" if a signal came, else its own error.
     pub(crate) fn failure_or(&self, error: CliError) -> CliError {
-        if self.stopped.load(Ordering::Relaxed) {
-            self.failure()
-        } else {
+        if self.goes_on() {
             error
+        } else {
+            self.failure()
         }
     }
 

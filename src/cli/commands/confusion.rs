@@ -4,7 +4,6 @@
 //! one touch. Each question of `Evaluated` has a function here; `output/evaluation` makes the output.
 
 use std::path::Path;
-use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
@@ -54,7 +53,7 @@ pub(crate) fn confusion(
             shown(asked, &given.evaluate(&model), None, charset)
         }
         Evaluated::Classifier(classifier) => {
-            let signals = Signals::catch().map_err(CliError::System)?;
+            let signals = Signals::catch()?;
             let reached = reached(*classifier, &model, asked, charset, &signals)?;
             shown(asked, &reached.evaluation, Some(&reached), charset)
         }
@@ -140,7 +139,7 @@ fn reached(
     let progress = Progress::counting("imprints", keys, asked.quiet, charset);
     let report = |keys| {
         progress.add(keys);
-        !signals.stopped.load(Ordering::Relaxed)
+        signals.goes_on()
     };
     let reached = classifier.evaluate(model, &asked.classifiers, &report);
     reached.ok_or_else(|| signals.failure())
@@ -167,7 +166,7 @@ fn all_classifiers(
             expected: ".csv",
         });
     }
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     let all = Classifier::ALL.into_iter();
     let all = all.map(|classifier| reached(classifier, model, asked, charset, &signals));
     let all: Vec<ClassifierEvaluation> = all.collect::<Result<_, _>>()?;

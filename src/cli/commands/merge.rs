@@ -164,7 +164,7 @@ pub(crate) fn merge(
     } else {
         let result = sweeps(&parts, &memory)?;
         // Until here nothing is written, so a signal may just end the program.
-        let signals = Signals::catch().map_err(CliError::System)?;
+        let signals = Signals::catch()?;
         let summary = leave(&result, start, wanted, Ok(None), charset, &signals)?;
         (result.atlas.len(), summary)
     };
@@ -243,7 +243,7 @@ fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
         // Before anything is written.
         fits_in_table("confusion matrix", model.shapes().len())?;
     }
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     let saved = wanted.atlas.as_ref().map_or(Ok(()), |file| {
         let existing = wanted.there.existing();
         let saved = save_model(model, file.path(), existing, &signals.stopped);

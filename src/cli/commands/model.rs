@@ -61,7 +61,7 @@ pub(crate) fn train(
     let shapes = shape_set::read(&asked.set, shelf)?;
     let grid = TrainingGrid::of(asked, &shapes)?;
     let (sensor, anchor, ranges) = (grid.sensor, grid.anchor, grid.ranges);
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     let stopped = &signals.stopped;
     let training = Training::new(shapes, sensor, anchor, ranges)?
         .shard(asked.shard)

@@ -17,7 +17,6 @@
 use std::fmt::Write;
 use std::iter;
 use std::sync::OnceLock;
-use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
@@ -67,7 +66,7 @@ pub(crate) fn degradation(
     charset: Charset,
 ) -> Result<String, CliError> {
     let given = given_of(asked, all_asked);
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     let sensor = matrix(model, asked.size)?;
     check_dead(&asked.dead, &sensor)?;
     if let Some(text) = left_out(model, &sensor).filter(|_| !all_asked.quiet) {
@@ -79,7 +78,7 @@ pub(crate) fn degradation(
     let progress = Progress::counting("touches", all, all_asked.quiet, charset);
     let report = |touches: u64| {
         progress.add(touches);
-        !signals.stopped.load(Ordering::Relaxed)
+        signals.goes_on()
     };
     let mut table = Vec::new();
     for &dead in &asked.dead {
@@ -313,7 +312,7 @@ pub(crate) fn half_step(
     asked: &ConfusionArguments,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     let memory = MemoryGuard::new(None, "test a model of fewer shapes or coarser steps");
     let poses = model.poses() * model.shapes().len() as u64;
     let progress = Progress::new(poses, asked.quiet, charset);
@@ -329,7 +328,7 @@ pub(crate) fn half_step(
                 search.get_or_init(begun).add(1);
             }
         }
-        !signals.stopped.load(Ordering::Relaxed) && memory.allows()
+        signals.goes_on() && memory.allows()
     };
     let result = model.half_step(&report);
     let result = result.map_err(|error| signals.training_failure(error, &memory))?;
@@ -365,12 +364,12 @@ pub(crate) fn touches(
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
     let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     let all = asked.runs * model.shapes().len() as u64;
     let progress = Progress::counting("runs", all, asked.quiet, charset);
     let report = |runs: u64| {
         progress.add(runs);
-        !signals.stopped.load(Ordering::Relaxed)
+        signals.goes_on()
     };
     let results = model.touches_until(asked.until, asked.runs, asked.seed, &report);
     let results = results.ok_or_else(|| signals.failure())?;

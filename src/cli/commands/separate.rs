@@ -8,7 +8,6 @@
 //! size, a file that exists.
 
 use std::ffi::OsStr;
-use std::sync::atomic::Ordering;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::separate::SeparateArguments;
@@ -51,7 +50,7 @@ pub(crate) fn separate(
         None => vec![usual],
     };
     let sizes = fitting(asked, &separation, &thresholds)?;
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     if let Some(path) = &asked.export {
         drop(UnfinishedFile::new(path, asked.existing)?);
     }
@@ -65,7 +64,7 @@ pub(crate) fn separate(
     let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
     let report = |poses: u64| {
         progress.add(poses);
-        !signals.stopped.load(Ordering::Relaxed) && memory.allows()
+        signals.goes_on() && memory.allows()
     };
     let pool = threads::pool(asked.jobs)?;
     let curves = pool.install(|| curves(asked, &separation, (&sizes, &thresholds), &report));

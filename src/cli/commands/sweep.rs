@@ -10,7 +10,6 @@
 //! The result of a sweep: `--atlas` writes every distinct imprint with its number of poses, `--poses` writes the
 //! number of its imprint for each pose, and standard output gets a summary.
 
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::cli::arguments::flags::{ShardFile, TOO_LITTLE_MEMORY};
@@ -110,7 +109,7 @@ pub(crate) fn sweep(
     charset: Charset,
 ) -> Result<Summary, CliError> {
     let start = Instant::now();
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     let stopped = &signals.stopped;
     let summary = |kept| Summary::new(text(kept, start, wanted, charset), Ok(()));
     if let Some(kept) = kept(grid, shard, wanted, charset)? {
@@ -127,7 +126,7 @@ pub(crate) fn sweep(
     let progress = Progress::new(shard.poses(grid), wanted.quiet, charset);
     let report = |poses: u64| {
         progress.add(poses);
-        !stopped.load(Ordering::Relaxed) && memory.allows()
+        signals.goes_on() && memory.allows()
     };
     let sweep = Sweep::new(grid).shard(shard).progress(&report);
     let result = pool.install(|| match &mut poses {
@@ -188,7 +187,7 @@ fn write(
     let atlas = match &wanted.atlas {
         Some(file) => {
             let whole = file.prepare(result, wanted.there.existing(), &signals.stopped);
-            if signals.stopped.load(Ordering::Relaxed) {
+            if !signals.goes_on() {
                 return Err(signals.failure());
             }
             Some(whole?)

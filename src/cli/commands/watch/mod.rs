@@ -35,7 +35,7 @@ mod tare_queue;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire};
 use crate::cli::arguments::watch::WatchArguments;
@@ -95,7 +95,7 @@ pub(crate) fn watch(
         // The user's terminal would be set up as a serial line, on which Ctrl-C is only a byte.
         check_readable(&source)?;
     }
-    let signals = Signals::catch().map_err(CliError::System)?;
+    let signals = Signals::catch()?;
     let processing = processing::processing(&asked.processing)?;
     check(&source, asked)?;
     // Errors in these are reported before a recording begins.
@@ -120,7 +120,7 @@ pub(crate) fn watch(
     let acquired = acquire(&source, &asked.options, &signals.stopped, &mut |event| {
         watcher.on(event)
     });
-    let stopped = signals.stopped.load(Ordering::Relaxed);
+    let stopped = !signals.goes_on();
     watcher.finish(acquired, stopped)?;
     Ok(match signals.failure() {
         CliError::Stopped { status } if stopped => status,
