@@ -4,7 +4,7 @@
 //! arguments is shortened before it is quoted, and escaped when it is printed.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::acquire::RecorderError;
 use crate::cli::input::content::InputError;
@@ -351,6 +351,14 @@ pub(crate) enum CliError {
     /// The screen cannot be opened, as without a terminal, or it failed.
     #[error("{}", system_reason(.0))]
     Screen(io::Error),
+}
+
+impl CliError {
+    /// Returns the error of a file whose content cannot be made or written.
+    pub(crate) fn of_file(path: &Path, error: io::Error) -> Self {
+        let name = path.to_string_lossy().into_owned();
+        Self::File { name, error }
+    }
 }
 
 impl From<FileError> for CliError {

@@ -270,5 +270,6 @@ fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, C
         title += &format!(", certain {}", percent(certain));
     }
     let map = map.with_title(&title);
-    map.content(format).map_err(CliError::Write)
+    map.content(format)
+        .map_err(|error| CliError::of_file(path, error))
 }

@@ -100,7 +100,13 @@ impl Export {
     fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
         let content = match self.format {
             ExportFormat::Imprint(format) => format.write(imprint),
-            ExportFormat::Drawing(format) => draw().content(format).map_err(CliError::Write)?,
+            ExportFormat::Drawing(format) => {
+                let drawn = draw().content(format);
+                drawn.map_err(|error| match &self.path {
+                    Some(path) => CliError::of_file(path, error),
+                    None => CliError::Write(error),
+                })?
+            }
         };
         match &self.path {
             None => Ok(Begun::Content(content)),
@@ -158,13 +164,13 @@ pub(crate) fn written(path: &Path) -> String {
 /// # Errors
 /// Returns [`CliError::File`] if this fails, or if the folder is a file.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
-    fs::create_dir_all(folder).map_err(|error| CliError::File {
-        name: folder.to_string_lossy().into_owned(),
-        error: if folder.exists() {
+    fs::create_dir_all(folder).map_err(|error| {
+        let error = if folder.exists() {
             io::Error::other("a file, expected a folder")
         } else {
             error
-        },
+        };
+        CliError::of_file(folder, error)
     })
 }
 

@@ -36,7 +36,7 @@ pub(crate) fn write(folder: &Path) -> Result<String, CliError> {
     let commands = all(&built);
     for command in &commands {
         let file = folder.join(format!("{}.1", name(command)));
-        let page = page(command).map_err(CliError::Write)?;
+        let page = page(command).map_err(|error| CliError::of_file(&file, error))?;
         // Pages of an earlier version are replaced.
         export::put(&file, &page, Existing::Replaced)?;
     }

@@ -133,7 +133,9 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
         return Ok(());
     };
     let content = match DrawingFormat::of_path(path) {
-        Some(format) => noise_plot(table).content(format).map_err(CliError::Write)?,
+        Some(format) => noise_plot(table)
+            .content(format)
+            .map_err(|error| CliError::of_file(path, error))?,
         None => noise_csv(table).into_bytes(),
     };
     put(path, &content, asked.existing)

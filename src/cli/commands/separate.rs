@@ -74,7 +74,7 @@ pub(crate) fn separate(
         let content = match DrawingFormat::of_path(path) {
             Some(format) => drawing(asked.axis, &curves, asked.wanted)
                 .content(format)
-                .map_err(CliError::Write)?,
+                .map_err(|error| CliError::of_file(path, error))?,
             None => csv(asked.axis, &curves).into_bytes(),
         };
         put(path, &content, asked.existing)?;
