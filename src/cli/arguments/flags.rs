@@ -203,8 +203,8 @@ impl ShardFile {
         }
     }
 
-    /// Returns whether to replace a file that appears meanwhile.
-    pub(crate) fn existing(self) -> Existing {
+    /// Returns whether the finished file replaces one that exists by then.
+    pub(crate) fn at_writing(self) -> Existing {
         match self {
             Self::Replaced => Existing::Replaced,
             Self::Refused | Self::Resumed => Existing::Kept,

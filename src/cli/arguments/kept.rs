@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::export::{self, Export};
-use crate::cli::arguments::flags::{force, misused, option};
+use crate::cli::arguments::flags::{existing, force, misused, option};
 use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::formats::Name;
+use crate::storage::Existing;
 
 /// The places in which a touch is kept, in addition to printing it.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ pub(crate) struct Saving {
     /// The name of the stored shape.
     pub(crate) name: Name,
     /// Whether to replace an own shape of this name.
-    pub(crate) force: bool,
+    pub(crate) existing: Existing,
 }
 
 /// Defines the flags that keep the result of a touch: `--save`, `--export` with `--format`, and `--force`. They are
@@ -98,7 +99,7 @@ impl Saving {
     /// Reads `--save` with its `--force`.
     fn of(matches: &ArgMatches) -> Option<Self> {
         let name = matches.get_one::<Name>("save")?.clone();
-        let force = matches.get_flag("force");
-        Some(Self { name, force })
+        let existing = existing(matches);
+        Some(Self { name, existing })
     }
 }

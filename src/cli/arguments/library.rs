@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::{ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    alone, force, json, name, of_sensor, required, switch, unhandled_subcommand, what,
+    alone, existing, force, json, name, of_sensor, required, switch, unhandled_subcommand, what,
 };
 use crate::cli::arguments::form::Form;
 use crate::cli::arguments::help::{
@@ -104,8 +104,8 @@ impl LibraryCommand {
             ("list", _) => Self::List(own.get_flag("json")),
             ("show", Some(name)) => Self::Show(name, Form::of(own, settings)?),
             ("save", Some(name)) => {
-                let force = own.get_flag("force");
-                Self::Save(Saving { name, force }, required(own, "what")?)
+                let existing = existing(own);
+                Self::Save(Saving { name, existing }, required(own, "what")?)
             }
             ("delete", Some(name)) => Self::Delete(name),
             ("restore", Some(name)) => Self::Restore(name),

@@ -48,7 +48,7 @@ pub(crate) struct Wanted {
     /// `--poses`: the file of each pose's imprint.
     pub(crate) poses: Option<PathBuf>,
     /// The action if a file exists already.
-    pub(crate) there: ShardFile,
+    pub(crate) existing: ShardFile,
     /// Whether the summary is one line of JSON.
     pub(crate) json: bool,
     /// Whether to show no progress and no notes.
@@ -198,7 +198,7 @@ impl Wanted {
         Self {
             atlas: matches.get_one::<AtlasFile>("atlas").cloned(),
             poses: poses.ok().flatten().cloned(),
-            there: ShardFile::of(matches),
+            existing: ShardFile::of(matches),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
             memory: flags::memory_of(matches),

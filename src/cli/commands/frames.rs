@@ -556,7 +556,7 @@ fn save_and_export(
     let export = export.map(|export: &Export| export.numbered(frame.number));
     let begun = export.map(|export| export.begin_frame(imprint, heat, title, pitch));
     let begun = begun.transpose()?;
-    if let Some(Saving { name, force }) = &output.kept.saving {
+    if let Some(Saving { name, existing }) = &output.kept.saving {
         let sensor = Sensor::of_size(imprint.size());
         let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
         let shape = StoredShape {
@@ -565,7 +565,10 @@ fn save_and_export(
             imprint: *imprint,
             source: None,
         };
-        lines.push(format!("saved as {}", output.shelf.save(&shape, *force)?));
+        lines.push(format!(
+            "saved as {}",
+            output.shelf.save(&shape, *existing)?
+        ));
     }
     Ok(match begun.map(Begun::end).transpose()? {
         Some(Exported::Content(content)) => Some(content),

@@ -221,7 +221,7 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
             source: None,
         },
     };
-    let name = shelf.save(&shape, saving.force)?;
+    let name = shelf.save(&shape, saving.existing)?;
     Ok(format!("saved as {name}\n"))
 }
 

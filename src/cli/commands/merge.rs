@@ -124,7 +124,7 @@ pub(crate) fn merge(
 ) -> Result<Summary, CliError> {
     let start = Instant::now();
     if let Some(file) = &wanted.atlas {
-        file.check(wanted.there.existing())?;
+        file.check(wanted.existing.at_writing())?;
     }
     check_no_shard(files, wanted)?;
     let parts = files.iter().map(|path| Part::of(path));
@@ -245,7 +245,7 @@ fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
     }
     let signals = Signals::catch()?;
     let saved = wanted.atlas.as_ref().map_or(Ok(()), |file| {
-        let existing = wanted.there.existing();
+        let existing = wanted.existing.at_writing();
         let saved = save_model(model, file.path(), existing, &signals.stopped);
         saved.map_err(|error| signals.failure_or(error.into()))
     });

@@ -67,7 +67,7 @@ pub(crate) fn train(
         .shard(asked.shard)
         .allow_cut(asked.allow_cut);
     let wanted = training.clone();
-    let kept = || match asked.there {
+    let kept = || match asked.existing {
         ShardFile::Resumed => resume::model(&path, &wanted, asked.shard, asked.allow_cut),
         ShardFile::Refused | ShardFile::Replaced => Ok(None),
     };
@@ -81,7 +81,7 @@ pub(crate) fn train(
     };
     let _folder = make_folder()?;
     // A path that cannot be written is an error before the work, not after it.
-    drop(UnfinishedFile::new(&path, asked.there.existing())?);
+    drop(UnfinishedFile::new(&path, asked.existing.at_writing())?);
     if !asked.quiet {
         note(&grid_text(&sensor, anchor, &ranges), charset);
     }
@@ -97,7 +97,7 @@ pub(crate) fn train(
     // Another training that was stopped may have removed the folder, which was empty. If it cannot be made again,
     // `save_model` says so.
     let _again = make_folder();
-    let saved = save_model(&model, &path, asked.there.existing(), stopped);
+    let saved = save_model(&model, &path, asked.existing.at_writing(), stopped);
     let (done, written) = match saved {
         Ok(()) => (Some("written"), Ok(())),
         // Another job may have written this shard meanwhile: it was queued again, or started twice.

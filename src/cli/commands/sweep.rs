@@ -116,12 +116,12 @@ pub(crate) fn sweep(
         return Ok(summary(&kept));
     }
     if let Some(file) = &wanted.atlas {
-        file.check(wanted.there.existing())?;
+        file.check(wanted.existing.at_writing())?;
     }
     let pool = threads::pool(jobs)?;
     let memory = MemoryGuard::new(wanted.memory, TOO_LITTLE_MEMORY);
     memory.check(grid).map_err(CliError::Memory)?;
-    let new = |path| PoseFile::new(path, grid, wanted.there.existing());
+    let new = |path| PoseFile::new(path, grid, wanted.existing.at_writing());
     let mut poses = wanted.poses.as_ref().map(new).transpose()?;
     let progress = Progress::new(shard.poses(grid), wanted.quiet, charset);
     let report = |poses: u64| {
@@ -186,7 +186,7 @@ fn write(
 ) -> Result<(), CliError> {
     let atlas = match &wanted.atlas {
         Some(file) => {
-            let whole = file.prepare(result, wanted.there.existing(), &signals.stopped);
+            let whole = file.prepare(result, wanted.existing.at_writing(), &signals.stopped);
             if !signals.goes_on() {
                 return Err(signals.failure());
             }
@@ -226,7 +226,7 @@ fn kept(
     let Some(file) = wanted
         .atlas
         .as_ref()
-        .filter(|_| wanted.there == ShardFile::Resumed)
+        .filter(|_| wanted.existing == ShardFile::Resumed)
     else {
         return Ok(None);
     };

@@ -53,14 +53,14 @@ pub(crate) fn touch(
         let title = source.to_string();
         begun = Some(export.begin(&imprint, Some(&source), &title, pitch)?);
     }
-    if let Some(Saving { name, force }) = saving {
+    if let Some(Saving { name, existing }) = saving {
         let shape = StoredShape {
             name,
             sensor,
             imprint,
             source: Some(source),
         };
-        notes.push(format!("saved as {}", shelf.save(&shape, force)?));
+        notes.push(format!("saved as {}", shelf.save(&shape, existing)?));
     }
     let mut instead = None;
     // The file is complete; giving it its name hardly ever fails.

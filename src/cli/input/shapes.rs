@@ -18,7 +18,7 @@ use crate::formats::Content;
 use crate::formats::StoredShape;
 use crate::formats::name::folded;
 use crate::imprint::Imprint;
-use crate::storage::{Expected, Library, LibraryError};
+use crate::storage::{Existing, Expected, Library, LibraryError};
 
 /// The library, which is opened when it is first used: most commands never need it.
 #[derive(Clone, Debug)]
@@ -201,16 +201,16 @@ impl Shelf {
         Ok(*found().entry(own).or_insert(shape.imprint))
     }
 
-    /// Stores a shape and returns its name in the library, which may differ in case. With `force`, it replaces an own
-    /// shape of that name.
+    /// Stores a shape and returns its name in the library, which may differ in case. `existing` tells whether an own
+    /// shape of that name is replaced.
     ///
     /// # Errors
-    /// Returns [`CliError::Taken`] if there is such a shape and `force` is false; otherwise the errors of the
+    /// Returns [`CliError::Taken`] if there is such a shape and it is kept; otherwise the errors of the
     /// library.
-    pub(crate) fn save(&self, shape: &StoredShape, force: bool) -> Result<String, CliError> {
+    pub(crate) fn save(&self, shape: &StoredShape, existing: Existing) -> Result<String, CliError> {
         let library = self.library()?;
         let saved = match library.save(shape, Expected::Nothing) {
-            Err(LibraryError::Exists { stamp, .. }) if force => {
+            Err(LibraryError::Exists { stamp, .. }) if existing == Existing::Replaced => {
                 library.save(shape, Expected::Stamp(stamp))
             }
             Err(LibraryError::Exists { name, .. }) => return Err(CliError::Taken { name }),

@@ -47,7 +47,7 @@ pub(crate) struct TrainArguments {
     /// Where the model is written.
     pub(crate) to: ModelTarget,
     /// The action if a model of this name exists.
-    pub(crate) there: ShardFile,
+    pub(crate) existing: ShardFile,
     /// Whether the answer is a line of JSON.
     pub(crate) json: bool,
     /// Whether to leave out the chosen grid and the progress.
@@ -154,7 +154,7 @@ impl TrainArguments {
             memory: flags::memory_of(matches),
             allow_cut: matches.get_flag("allow-cut"),
             to,
-            there: ShardFile::of(matches),
+            existing: ShardFile::of(matches),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         })
