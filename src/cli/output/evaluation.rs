@@ -2,7 +2,7 @@
 //!
 //! The text of `taxel model confusion` consists of a summary, the matrix and the worst pair:
 //! ```text
-//! 5,400 touches of 3 shapes, 845 distinct
+//! 5,400 touches of 3 shapes, 845 distinct imprints up to shifts
 //! right                   5,312   98.4 %
 //! wrong                      88    1.6 %  the limit: no method does better
 //! …
@@ -131,6 +131,16 @@ impl NamedBy {
             Self::Classifier => "",
         }
     }
+
+    /// Returns what the method tells apart, with the number of it.
+    fn distinct(self, number: u64) -> String {
+        match self {
+            Self::Imprint | Self::Classifier => {
+                counted(number, "distinct imprint") + " up to shifts"
+            }
+            Self::Descriptors => counted(number, "distinct combination") + " of their values",
+        }
+    }
 }
 
 /// Returns the summary of an evaluation in lines: touches, error, certain, top two, information.
@@ -145,10 +155,10 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
         ..
     } = evaluation;
     let mut text = format!(
-        "{} of {}, {} distinct\n",
+        "{} of {}, {}\n",
         counted(*touches, "touch"),
         counted(evaluation.labels.len() as u64, "shape"),
-        grouped(evaluation.keys as u64)
+        named.distinct(evaluation.keys as u64)
     );
     let mut line = |name: &str, value: u128, note: &str| {
         // Cannot fail: the text is kept in memory.
