@@ -28,7 +28,7 @@
 //!
 //! # Coordinates and units
 //!
-//! All coordinates belong to one frame, whose unit is the side of a sensory cell:
+//! All coordinates belong to one frame, whose unit is the side of a cell:
 //! ```text
 //!   0   1   2   3 → x        The taxel in column i, row j (both from 0) covers
 //! 0 +---+---+---+            [i, i+1] × [j, j+1]; its coordinates are those of its

@@ -36,7 +36,7 @@ pub enum Parameter {
     Rows,
     /// The share of a cell that must be covered for its taxel to be active.
     Threshold,
-    /// The side of a sensory cell in mm.
+    /// The side of a cell in mm.
     Pitch,
 }
 
@@ -97,7 +97,7 @@ impl Parameter {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Unit {
-    /// Sides of a sensory cell.
+    /// Sides of a cell.
     Cells,
     /// Degrees of arc.
     Degrees,
@@ -349,7 +349,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         short: "pitch",
         unit: Unit::Millimetres,
         default: 1.0,
-        meaning: "side of a sensory cell",
+        meaning: "side of a cell",
         high: Bound::At(1000.0),
         decimals: Decimals::Fixed(3),
         ..LENGTH

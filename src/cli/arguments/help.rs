@@ -18,8 +18,8 @@ this and see the result as you type.";
 
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
-Lengths are in cells: 1 is the side of a sensory cell. x runs to the right, y
-down.
+Lengths are in cells: 1 is the side of a cell of the sensor. x runs to the
+right, y down.
 Exit status: 0 success, 1 wrong input, 2 wrong command line, 3 not the expected
 answer, 128 + n ended by signal n.
 

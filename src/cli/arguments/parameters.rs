@@ -73,7 +73,7 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         unit => format!("{}, ", unit.name()),
     };
     let also = match parameter {
-        Parameter::Pitch => "; tables and drawings are in mm too, JSON stays in cells",
+        Parameter::Pitch => "; tables and drawings then show mm, too, JSON does not",
         _ => "",
     };
     let range = Sensor::default().range(parameter);
