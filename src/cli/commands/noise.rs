@@ -301,11 +301,10 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
 /// tells whether the grid of the model is fine enough. Nothing is drawn at random: all such touches are counted.
 /// ```text
 /// touches half a step off the grid, in x0, y0 and angle
-/// not held by the model    36.741 %
-/// wrong, with these        48.000 %
-/// wrong, with the nearest  12.148 %
+/// not in the model                            36.741 %
+/// error, counting these as wrong              48.000 %
+/// error, naming these by the nearest imprint  12.148 %
 /// ```
-/// The second line counts a touch that the model does not hold as wrong; the third names it by the nearest imprint.
 ///
 /// # Errors
 /// Returns [`CliError::Stopped`] after a signal; [`CliError::Memory`]; an error if half a step has too many decimals.
@@ -345,9 +344,9 @@ pub(crate) fn half_step(
     }
     let text = format!(
         "touches half a step off the grid, in x0, y0 and angle\n\
-         not held by the model    {:>8}\n\
-         wrong, with these        {:>8}\n\
-         wrong, with the nearest  {:>8}\n",
+         not in the model                            {:>8}\n\
+         error, counting these as wrong              {:>8}\n\
+         error, naming these by the nearest imprint  {:>8}\n",
         percent_fine(result.missing()),
         percent_fine(result.error()),
         percent_fine(result.error_with_nearest())
