@@ -81,7 +81,9 @@ impl ParameterError {
         match self {
             Self::Number { text, .. } => format!("{name}: {text:?} is {}", complaint(text)),
             Self::Range { value, .. } => format!("{name}: {} {}", short(*value), self.complaint()),
-            Self::Missing { range, .. } => format!("{name}: missing, expected a number {range}"),
+            Self::Missing { range, .. } => {
+                format!("{name}: missing, expected a number (allowed: {range})")
+            }
             Self::Foreign {
                 owner, expected, ..
             } => format!(

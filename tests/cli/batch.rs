@@ -56,7 +56,8 @@ fn sizes_and_pose_have_no_defaults() {
     ];
     for (line, missing) in lines {
         let run = taxel("batch", line);
-        let answer = format!("{{\"error\":\"line 1: {missing}: missing, expected a number ");
+        let answer =
+            format!("{{\"error\":\"line 1: {missing}: missing, expected a number (allowed: ");
         assert!(run.stdout.starts_with(&answer), "{line}: {run:?}");
     }
     let solid = r#"{"figure":"hexagon","side":3,"x0":1,"y0":1,"angle":0}"#;
