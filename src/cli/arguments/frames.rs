@@ -179,7 +179,7 @@ pub(crate) fn processing() -> [Arg; 9] {
         option(
             "crop",
             "C,R,COLSxROWS",
-            "Keep the part that begins at column C, row R",
+            "Keep a part: COLS x ROWS cells from column C,\nrow R on, counted from 0",
         )
         .value_parser(parse_crop)
         // A negative column is then refused by the parser, not taken for a flag.
@@ -273,7 +273,7 @@ pub(crate) fn rules() -> [Arg; 6] {
         value(
             "deviations",
             "K",
-            "Active at K deviations of a cell's noise or more;\nneeds a tare",
+            "Active at K standard deviations of the cell's noise\nor more; needs a tare",
         )
         .requires("tare")
         .conflicts_with_all(others("deviations")),

@@ -12,9 +12,9 @@
 pub(crate) const ABOUT: &str = "\
 Which shapes can a robot recognise by touching them once?
 
-Presses flat shapes onto a tactile sensor, computes their exact imprints and
-describes them. Without a command, opens the screen, where you can do all of
-this and see the result as you type.";
+taxel simulates how a tactile sensor touches flat shapes, computes their exact
+imprints and describes them. Without a command, it opens the screen, where you
+can do all of this and see the result as you type.";
 
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
@@ -35,8 +35,8 @@ Examples:
 
 /// `taxel figure`: the sensor to which the ranges of the flags apply.
 pub(crate) const FIGURE_EXAMPLES: &str = "\
-The ranges are for a sensor of 16 x 16; for another sensor, replace 16 by its
-larger side. Without a flag, its default applies.
+The ranges are for a sensor of 16 x 16; for another sensor, replace 16 with its
+larger side. A flag that you leave out has its default.
 
 Examples:
   taxel figure ellipse --x0 1.99 --y0 1.47 --thickness 2
@@ -61,10 +61,10 @@ Examples:
 pub(crate) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text with one line per row, '#' for an active taxel and '.' for an
 inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image with two
-shades (PGM) or a numpy array (NPY); at most 64 x 64. Masks work, too: 0 and one
-other value, such as 255. The content decides, not the extension. A stored shape
-is a JSON file. If a stored shape and a file have the same name, taxel uses the
-shape.
+shades (PGM) or a numpy array (NPY); at most 64 x 64. Inactive taxels are 0, and
+active ones have one other value, such as 1 or 255. The content decides, not the
+extension. A stored shape is a JSON file. If a stored shape and a file have the
+same name, taxel uses the shape.
 
 Examples:
   taxel describe washer
@@ -240,9 +240,9 @@ A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
 Of a stored shape, only the taxels matter, not its pitch and threshold: a taxel
 is one cell. By default, every shape is touched at 100 x 100 positions inside
 one cell and at every whole degree. The sensor is the smallest that holds all
-shapes, at least 16 x 16; taxel prints its size. It refuses poses that the
-sensor cuts off, since a cut imprint depends on the rim. 'taxel merge' puts
-shards together.
+shapes, at least 16 x 16; taxel prints its size. Poses that the sensor would cut
+off are refused, since a cut imprint depends on the rim; --allow-cut takes them.
+'taxel merge' puts shards together.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -253,7 +253,8 @@ Examples:
 
 /// `taxel model show`: what a card says.
 pub(crate) const MODEL_SHOW_EXAMPLES: &str = "\
-Prints shapes, sensor and poses, and how well one touch tells shapes apart.
+Prints the shapes, the sensor and the poses of a model, and how often the best
+answer to one touch is wrong.
 
 Examples:
   taxel model show parts
@@ -278,19 +279,22 @@ Examples:
 pub(crate) const MODEL_CONFUSION_EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
 numbers count the touches of all poses. 'certain' counts touches that only one
-shape can leave. The descriptors are those that do not depend on the position of
-the imprint: na, nae, ce, p, f, roundness, area, diagonals, side_ratio, filling,
-cg_cd, cg_cd_direction. CG-CD at full precision is more of a fingerprint than a
-measurement: --round cg_cd=0.01 shows what it is worth when measured to a
-hundredth of a cell.
+shape can leave.
+
+--given, --greedy and --round take descriptors that do not depend on the
+position of the imprint: na, nae, ce, p, f, roundness, area, diagonals,
+side_ratio, filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of
+a fingerprint than a measurement: --round cg_cd=0.01 shows what it is worth when
+measured to a hundredth of a cell.
 
 --noise tests touches in random places on the sensor. Imprints that do not fit
 on a smaller --matrix are left out, and standard error says how many.
 
 Classifiers: z measures the distance to the mean of each shape in standard
-deviations; diagonal, lda and qda fit Gaussians, with a diagonal covariance, a
-common one, and one for each shape; knn takes the shape of the nearest touches,
-template that of the nearest imprints.
+deviations; diagonal, lda and qda fit a Gaussian to each shape, with independent
+features (diagonal), one covariance for all shapes (lda) or one for each (qda);
+knn takes the shape of the nearest touches, template that of the nearest
+imprints.
 
 Examples:
   taxel model confusion parts
@@ -323,9 +327,9 @@ Examples:
 /// `taxel model touches`: what is simulated.
 pub(crate) const MODEL_TOUCHES_EXAMPLES: &str = "\
 Touches each shape again and again in random poses and multiplies probabilities,
-until one shape is as probable as wanted. The mean number of touches comes with
-its standard error; the same seed gives the same numbers. A run ends after
-10,000 touches, and then its shape has no mean.
+until one shape has the probability of --until. Prints the mean number of
+touches with its standard error; the same seed gives the same numbers. A run
+ends after 10,000 touches, and then its shape has no mean.
 
 Examples:
   taxel model touches parts

@@ -97,7 +97,7 @@ pub(super) fn command() -> Command {
         )
         .args(sizes.map(|parameter| parameters::arg(parameter).help_heading("Figure")))
         .args(Axis::ALL.map(|axis| match axis {
-            Axis::X0 | Axis::Y0 => range(axis, "one cell that suits the shape"),
+            Axis::X0 | Axis::Y0 => range(axis, "one cell in which nothing is cut off"),
             _ => range(axis, ""),
         }))
         .arg(anchor())

@@ -111,7 +111,7 @@ pub(super) fn command() -> Command {
             option(
                 "round",
                 "KEY=STEP",
-                "Round a descriptor to steps: cg_cd=0.01",
+                "Round a descriptor to steps, such as cg_cd=0.01",
             )
             .action(ArgAction::Append)
             .value_parser(str::parse::<Rounding>)
@@ -134,7 +134,7 @@ fn questions() -> [Arg; 4] {
         option(
             "given",
             "KEY,...",
-            "Use only these descriptors: na,p",
+            "Use only these descriptors, such as na,p",
         )
         .value_parser(str::parse::<GivenDescriptors>),
         switch("greedy", "Choose descriptors one by one until none helps"),

@@ -50,7 +50,7 @@ pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 3] {
     let shape = option(
         "shape",
         "NAME=KIND...",
-        "A shape: 'disc=ellipse radius_x=3 radius_y=3'",
+        "A shape, such as\n'disc=ellipse radius_x=3 radius_y=3'",
     );
     let all = switch("library-all", "All shapes of the library");
     [what, shape.action(ArgAction::Append), all]
