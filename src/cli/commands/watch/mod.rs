@@ -324,6 +324,7 @@ impl Watcher<'_> {
     fn finish(mut self, acquired: Result<(), AcquireError>, stopped: bool) -> Result<(), CliError> {
         let mut failure = self.failure.take().or_else(|| self.release().err());
         let ended_well = acquired.is_ok() && !stopped;
+        let is_unreadable = matches!(acquired, Err(AcquireError::Io { .. }));
         let damage = acquired.err().map(|error| self.reports.damage(error));
         if let (Some(error), Some(recording)) =
             (failure.as_ref().or(damage.as_ref()), &mut self.recording)
@@ -334,8 +335,11 @@ impl Watcher<'_> {
             failure = failure.or_else(|| self.unfinished());
         }
         let recording = self.recording.take();
-        let recorded =
-            recording.map(|recording| recording.finish(failure.as_ref(), &mut self.reports));
+        let recorded = recording.map(|recording| {
+            // That no frame came is no news if the source cannot be read.
+            let explained = is_unreadable || matches!(failure, Some(CliError::Recorder(_)));
+            recording.finish(explained, &mut self.reports)
+        });
         let written = self.answers.finish(&mut self.reports);
         recorded.unwrap_or(Ok(()))?;
         written?;

@@ -84,11 +84,11 @@ impl<'a> WatchRecording<'a> {
         self.recorder.note_reason(&error.to_string());
     }
 
-    /// Ends the recording, and reports the frames that are not in it. `failure` is the error of the watch: if the file
-    /// could not be created, that is not for lack of frames.
+    /// Ends the recording, and reports the frames that are not in it. `explained` tells whether the error of the watch
+    /// explains a missing file: the file could not be created, or the source not be read.
     pub(super) fn finish(
         self,
-        failure: Option<&CliError>,
+        explained: bool,
         reports: &mut SourceReports<'_>,
     ) -> Result<(), CliError> {
         let left_out = self.recorder.left_out();
@@ -97,7 +97,7 @@ impl<'a> WatchRecording<'a> {
             reports.say(&format!("{frames} of another size not recorded"));
         }
         let frames = self.recorder.finish().map_err(CliError::Recorder)?;
-        if frames == 0 && !matches!(failure, Some(CliError::Recorder(_))) {
+        if frames == 0 && !explained {
             let path = self.path.display();
             reports.say(&format!("no frame came, so {path} was not written"));
         }
