@@ -14,8 +14,8 @@ use crate::acquire::pace::{MOMENT, Pace};
 use crate::acquire::recorder::metadata_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
-    ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingInput,
-    RecordingMetadata, RecordingNote, format_of, read_as, recognised_input,
+    ChannelInfo, EarlierLayout, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
+    RecordingInput, RecordingMetadata, RecordingNote, format_after, format_of, read_as,
 };
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
@@ -92,6 +92,8 @@ struct Round<'a> {
     order: Vec<usize>,
     /// The times of the frames.
     times: ArrivalClock,
+    /// The arrangement of the table in the file, in this round or before.
+    table: EarlierLayout,
     /// The growth of the file, if it is followed.
     growth: Option<&'a Growth>,
 }
@@ -191,8 +193,8 @@ impl Player<'_, '_> {
             round.times.rejoin();
             // The beginning of the new content may not be written yet.
             format = loop {
-                match File::open(path).and_then(recognised_input) {
-                    Ok(Some(format)) if format.is_appended_to() => break format,
+                match File::open(path).and_then(|file| format_after(file, format)) {
+                    Ok(Some(found)) if found.is_appended_to() => break found,
                     Ok(Some(other)) => return Err(replaced_by(other).into()),
                     Ok(None) | Err(_) if self.tick().is_break() => return Ok(()),
                     Ok(None) | Err(_) => std::thread::sleep(MOMENT),
@@ -266,7 +268,8 @@ impl Player<'_, '_> {
         let mut pace = Pace::new(self.options, round.growth);
         let mut flow = ControlFlow::Continue(());
         let mut renumbered = Frame::default();
-        let read = read_as(format, input, reading, &mut |event| {
+        let mut table = std::mem::take(&mut round.table);
+        let read = read_as(format, input, reading, &mut table, &mut |event| {
             flow = match event {
                 RecordingEvent::Channel(info) => {
                     let info = info.completed(self.metadata.as_ref());
@@ -303,6 +306,7 @@ impl Player<'_, '_> {
             };
             flow
         });
+        round.table = table;
         let read = match pace.unshaped() {
             Some(values) if read.is_ok() => Err(RecordingError::Shape { values }),
             _ => read.map(|()| flow),
@@ -498,6 +502,121 @@ mod tests {
             });
             assert!(result.is_ok());
             assert_eq!(values, [11.0, 22.0, 33.0, 77.0]);
+        }
+    }
+
+    /// Returns the first values of the frames of a file that holds one content, then another one, and how many frames
+    /// were dropped. Stops after `count` frames.
+    fn values_of_a_rewritten(
+        path: &Path,
+        [before, after]: [&[u8]; 2],
+        count: usize,
+    ) -> (Vec<f64>, u64) {
+        std::fs::write(path, before).expect("written");
+        let options = AcquireOptions {
+            size: path.ends_with("named").then(|| FrameSize::of(2, 2)),
+            ..AcquireOptions::default()
+        };
+        let (mut values, mut ticks, mut dropped) = (Vec::new(), 0, 0);
+        let result = run(path, &options, &AtomicBool::new(false), &mut |event| {
+            match event {
+                AcquireEvent::Frame { frame, .. } => values.push(frame.values()[0]),
+                AcquireEvent::Tick(counts) => {
+                    (ticks, dropped) = (ticks + 1, counts.dropped);
+                    if values.len() == 2
+                        && let Some(after) = after.take()
+                    {
+                        std::fs::write(path, after).expect("written");
+                    } else if values.len() == count || ticks == 100 {
+                        return ControlFlow::Break(());
+                    }
+                }
+                _ => {}
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(result.is_ok(), "{result:?}");
+        (values, dropped)
+    }
+
+    /// The content before each cut has two frames; the one after it has three, with the first values 3, 4 and 5.
+    #[test]
+    fn a_file_that_is_truncated_keeps_its_format_and_arrangement() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let named = "r0c0,r0c1,r1c0,r1c1\n1,0,0,0\n2,0,0,0\n";
+        let timed = "time_s,r0c0,r0c1,r1c0,r1c1\n0,1,0,0,0\n1,2,0,0,0\n";
+        let rows = "1 0\n0 0\n\n2 0\n0 0\n\n";
+        let json = "{\"frame\":[[1,0],[0,0]]}\n{\"frame\":[[2,0],[0,0]]}\n";
+        let more_json = json.replace("[[1", "[[4").replace("[[2", "[[5");
+        let json = |torn: &str| {
+            (
+                json,
+                format!("{torn}{{\"frame\":[[3,0],[0,0]]}}\n{more_json}"),
+            )
+        };
+        let echo = "data:\n- 1\n- 0\n- 0\n- 0\n---\ndata:\n- 2\n- 0\n- 0\n- 0\n---\n";
+        let table = |head: &str| (named, format!("{head}3,0,0,0\n4,0,0,0\n5,0,0,0\n"));
+        let clocked = |head: &str| (timed, format!("{head}3,3,0,0,0\n4,4,0,0,0\n5,5,0,0,0\n"));
+        let blocks = |head: &str| (rows, format!("{head}3 0\n0 0\n\n4 0\n0 0\n\n5 0\n0 0\n\n"));
+        for (name, (before, after), expected) in [
+            ("cut between lines", table(""), 0),
+            ("cut in a line", table("0,0\n"), 1),
+            ("behind zero bytes", table("\0\0\0"), 0),
+            ("behind a message", table("garbage here\n"), 1),
+            (
+                "behind two messages",
+                table("garbage here\ngarbage, there\n"),
+                2,
+            ),
+            (
+                "with its header",
+                (named, named.replace("1,0,0,0\n2", "3,0,0,0\n4,0,0,0\n5")),
+                0,
+            ),
+            ("times, cut between lines", clocked(""), 0),
+        let mut after = Some(after);
+            ("times, cut in a line", clocked("0,0,0\n"), 1),
+            ("rows, cut between frames", blocks(""), 0),
+            ("rows, cut between rows", blocks("0 0\n\n"), 1),
+            ("rows, cut in a row", blocks("9\n0 0\n\n"), 1),
+            ("rows, behind a message", blocks("garbage here\n\n"), 1),
+            ("rows, behind zero bytes", blocks("\0\0\0\0"), 0),
+            (
+                "another size",
+                (
+                    rows,
+                    "3 0 0\n0 0 0\n\n4 0 0\n0 0 0\n\n5 0 0\n0 0 0\n\n".to_owned(),
+                ),
+                0,
+            ),
+            (
+                "other names",
+                (
+                    named,
+                    "time,r0c0,r0c1,r0c2\n0,3,0,0\n1,4,0,0\n2,5,0,0\n".to_owned(),
+                ),
+                0,
+            ),
+            ("JSON, cut between lines", json(""), 0),
+            ("JSON, cut in a line", json("\": [[1,2],[3,4]]}\n"), 1),
+            ("JSON, behind zero bytes", json("\0\0\0"), 0),
+            ("another format", (named, json("").1), 0),
+            (
+                "named",
+                (
+                    echo,
+                    format!(
+                        "- 0\n- 0\n---\n{}data: [5, 0, 0, 0]\n---\n",
+                        echo.replace("- 1", "- 3").replace("- 2", "- 4")
+                    ),
+                ),
+                1,
+            ),
+        ] {
+            let contents = [before.as_bytes(), after.as_bytes()];
+            let (values, dropped) = values_of_a_rewritten(&folder.path().join(name), contents, 5);
+            assert_eq!(values, [1.0, 2.0, 3.0, 4.0, 5.0], "{name}");
+            assert_eq!(dropped, expected, "{name}");
         }
     }
 

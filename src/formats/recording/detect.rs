@@ -16,6 +16,7 @@ use crate::formats::recording::ros::echo;
 #[cfg(feature = "mcap")]
 use crate::formats::recording::ros::mcap;
 use crate::formats::recording::table::delimited;
+use crate::formats::recording::table::layout::EarlierLayout;
 use crate::formats::recording::text::lines::is_blank;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::recording::text::separator::{Separator, is_comment};
@@ -220,6 +221,43 @@ pub(crate) fn format_of(
     recognised_with(&start, options).ok_or_else(|| refused(&start))
 }
 
+/// Returns the format of a followed file after it was truncated or replaced, reading the input from its current
+/// position; before that, it had the format `before`. None if too little has been written yet.
+///
+/// The same program may go on in the middle of a frame, behind zero bytes, or with a message; a torn line of JSON may
+/// look like a table. So the format changes only if the content is clearly another recording.
+///
+/// # Errors
+/// Returns the system's error if the input cannot be read.
+#[cfg(all(feature = "acquire", unix))]
+pub(crate) fn format_after(
+    input: impl Read,
+    before: RecordingFormat,
+) -> io::Result<Option<RecordingFormat>> {
+    let start = start_of(input)?;
+    // The text after the last of them has no end yet.
+    let lines = start.split(|&byte| byte == b'\n').skip(1).count();
+    Ok(match recognised(&start) {
+        Some(own) if own == before || !own.is_text_of_frames() => Some(own),
+        _ if may_hold_frame(&start, before) => Some(before),
+        Some(own) => (lines > 1).then_some(own),
+        None => (lines > 0 || start.len() == LOOKED_AT).then_some(before),
+    })
+}
+
+/// Returns true if a frame in this format may begin somewhere in the content. Almost any text may hold a frame of a
+/// table, so that is not asked.
+#[cfg(all(feature = "acquire", unix))]
+fn may_hold_frame(content: &[u8], format: RecordingFormat) -> bool {
+    let mut lines = content.split(|&byte| byte == b'\n');
+    match format {
+        RecordingFormat::JsonLines => lines.any(|line| line.starts_with(b"{")),
+        RecordingFormat::Ros2 => lines.any(|line| line == b"---" || echo::begins_message(line)),
+        RecordingFormat::Flexitac => content.windows(2).any(|pair| pair == [0xaa, 0x55]),
+        _ => false,
+    }
+}
+
 fn start_of(input: impl Read) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     input.take(LOOKED_AT as u64).read_to_end(&mut start)?;
@@ -238,7 +276,8 @@ pub fn read(
 ) -> Result<RecordingFormat, RecordingError> {
     input.seek(SeekFrom::Start(0))?;
     let format = format_of(&mut input, options)?;
-    read_as(format, &mut input, options, consumer)?;
+    let mut earlier = EarlierLayout::default();
+    read_as(format, &mut input, options, &mut earlier, consumer)?;
     Ok(format)
 }
 
@@ -248,11 +287,13 @@ pub(crate) trait RecordingInput: Read + Seek {}
 
 impl<T: Read + Seek> RecordingInput for T {}
 
-/// Reads a recording whose format is known, like [`read`].
+/// Reads a recording whose format is known, like [`read`]. In a followed file, `earlier` is the arrangement of the
+/// table that it held before, and is replaced by the present one.
 pub(crate) fn read_as(
     format: RecordingFormat,
     input: &mut dyn RecordingInput,
     options: ReadOptions,
+    earlier: &mut EarlierLayout,
     consumer: &mut RecordingSink<'_>,
 ) -> Result<(), RecordingError> {
     input.seek(SeekFrom::Start(0))?;
@@ -267,7 +308,7 @@ pub(crate) fn read_as(
         RecordingFormat::JsonLines => json_lines::read(input, options, sink),
         RecordingFormat::Popu => popu::read(input, sink),
         RecordingFormat::Ros2 => echo::read(input, options, sink),
-        RecordingFormat::Csv => delimited::read(input, options, sink),
+        RecordingFormat::Csv => delimited::read(input, options, earlier, sink),
         RecordingFormat::Flexitac => flexitac::read(&mut input, options, sink),
         #[cfg(feature = "mcap")]
         RecordingFormat::Mcap => mcap::read(&mut input, options, sink),

@@ -85,6 +85,12 @@ impl RecordingFormat {
             Self::Csv | Self::JsonLines | Self::Ros2 | Self::Flexitac
         )
     }
+
+    /// Returns true if frames are appended to such a file as lines of text.
+    #[cfg(feature = "acquire")]
+    pub(crate) fn is_text_of_frames(self) -> bool {
+        self.is_appended_to() && self != Self::Flexitac
+    }
 }
 
 named!(RecordingFormat, "format", &RecordingFormat::ALL);

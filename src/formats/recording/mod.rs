@@ -78,10 +78,12 @@ pub(crate) use channel_choice::no_channel;
 #[cfg(feature = "tui")]
 pub(crate) use detect::may_be_recording;
 #[cfg(all(feature = "acquire", unix))]
-pub(crate) use detect::{RecordingInput, format_of, read_as};
+pub(crate) use detect::{RecordingInput, format_after, format_of, read_as};
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(feature = "cli")]
 pub(crate) use table::delimited::read_rows;
+#[cfg(all(feature = "acquire", unix))]
+pub(crate) use table::layout::EarlierLayout;

@@ -19,6 +19,9 @@
 //! A line of commas between two frames is a frame without cells, unless frames have a number or a time; elsewhere it
 //! is an empty line as spreadsheet programs write it.
 //!
+//! A followed file may go on without its header, with a torn line or with a message after it was truncated. If one of
+//! its first two frames is arranged as before, so is the rest; otherwise it counts as a new table.
+//!
 //! Errors, with line and field, are words in place of numbers, and lines or blocks of another length. Nothing is
 //! padded, since a missing value in the middle would shift all later ones. If wrong frames may be left out, that is a
 //! line, or all rows up to an empty line; without empty lines between frames, the next one cannot be found.
@@ -32,7 +35,9 @@ use crate::formats::recording::event::{RecordingSink, until_enough};
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
 use crate::formats::recording::table::clock::{TableClock, TimeText};
-use crate::formats::recording::table::layout::{FrameFields, LineLayout, TableLayout, layout};
+use crate::formats::recording::table::layout::{
+    EarlierLayout, FrameFields, LineLayout, TableLayout, layout, layout_with_header,
+};
 use crate::formats::recording::text::lines::{TextLines, is_blank};
 use crate::formats::recording::text::number::whole;
 use crate::formats::recording::text::row::{self, Field};
@@ -43,13 +48,18 @@ use crate::formats::recording::time::moment;
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
 
-/// Reads a recording.
+/// Reads a recording. Its arrangement is kept in `earlier`, for the next content of a followed file.
 pub(in crate::formats::recording) fn read(
     mut input: impl BufRead + Seek,
     options: ReadOptions,
+    earlier: &mut EarlierLayout,
     sink: &mut Sink<'_>,
 ) -> Result<(), EarlyEnd> {
-    let layout = layout(&mut input, options)?;
+    let layout = match &earlier.0 {
+        Some(earlier) => layout_after(&mut input, options, earlier.continued())?,
+        None => layout(&mut input, options)?,
+    };
+    let layout = &*earlier.0.insert(layout);
     input.rewind()?;
     let info = ChannelInfo {
         size: Some(layout.size),
@@ -61,13 +71,74 @@ pub(in crate::formats::recording) fn read(
     if let Some(note) = &layout.note {
         sink(RecordingEvent::Note(note))?;
     }
+    read_arranged(input, layout, options, sink)
+}
+
+/// Reads the frames of a table whose arrangement is known.
+fn read_arranged(
+    input: impl BufRead,
+    layout: &TableLayout,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     match &layout.lines {
         LineLayout::Row { parted } => {
             let block = RowBlock::new(layout.separator, layout.size, *parted);
             block.read(&mut lines, options, sink)
         }
-        LineLayout::Frame(fields) => frames(&mut lines, &layout, fields, options, sink),
+        LineLayout::Frame(fields) => frames(&mut lines, layout, fields, options, sink),
+    }
+}
+
+/// Finds the arrangement of a table in a file that held another one, arranged like `earlier`, before. What cannot be
+/// arranged otherwise continues the earlier table.
+///
+/// # Errors
+/// Returns the system's error if the input cannot be read.
+fn layout_after(
+    input: &mut (impl BufRead + Seek),
+    options: ReadOptions,
+    earlier: TableLayout,
+) -> Result<TableLayout, RecordingError> {
+    let fitting = first_fitting(input, &earlier)?;
+    input.rewind()?;
+    let own = match fitting {
+        Some(0) => return Ok(earlier),
+        // The line above is a header, or torn.
+        Some(_) => layout_with_header(input, options),
+        None => layout(input, options),
+    };
+    match own {
+        Err(RecordingError::Io(error)) => Err(error.into()),
+        own => Ok(own.unwrap_or(earlier)),
+    }
+}
+
+/// Returns the index of the first frame that is arranged like this, if it is one of the first two.
+///
+/// # Errors
+/// Returns the system's error if the input cannot be read.
+fn first_fitting(
+    input: &mut impl BufRead,
+    layout: &TableLayout,
+) -> Result<Option<usize>, RecordingError> {
+    let options = ReadOptions::default().leaving_out();
+    let (mut wrong, mut fitting) = (0, None);
+    let read = read_arranged(input, layout, options, &mut |event| {
+        match event {
+            RecordingEvent::Frame(_) => fitting = Some(wrong),
+            RecordingEvent::Damage { .. } => wrong += 1,
+            _ => {}
+        }
+        if fitting.is_some() || wrong == 2 {
+            return Err(EarlyEnd::Enough);
+        }
+        Ok(())
+    });
+    match read {
+        Err(EarlyEnd::Failed(RecordingError::Io(error))) => Err(error.into()),
+        _ => Ok(fitting),
     }
 }
 

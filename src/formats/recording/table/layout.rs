@@ -26,7 +26,7 @@ use crate::frame::{FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 use crate::parameter::number::{counted, grouped};
 
 /// The arrangement of a table.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct TableLayout {
     /// The separator between fields, in all lines.
     pub(super) separator: Separator,
@@ -43,7 +43,7 @@ pub(super) struct TableLayout {
 }
 
 /// The content of a line of a table.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum LineLayout {
     /// A frame.
     Frame(FrameFields),
@@ -55,7 +55,7 @@ pub(super) enum LineLayout {
 }
 
 /// The fields of a line that is a frame.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FrameFields {
     /// The number of fields in a line.
     pub(super) count: usize,
@@ -69,6 +69,23 @@ pub(super) struct FrameFields {
     pub(super) time: Option<TimeFields>,
 }
 
+/// The arrangement of the table that a followed file held before it was truncated or replaced; empty at first. The
+/// program that writes it may continue without a header, in the middle of a line.
+#[derive(Debug, Default)]
+pub(crate) struct EarlierLayout(pub(super) Option<TableLayout>);
+
+impl TableLayout {
+    /// Returns the arrangement of the lines that continue the table without a header.
+    pub(super) fn continued(&self) -> Self {
+        let mut continued = self.clone();
+        continued.note = None;
+        if let LineLayout::Frame(fields) = &mut continued.lines {
+            fields.header = None;
+        }
+        continued
+    }
+}
+
 /// Finds the arrangement of a table from its first lines.
 ///
 /// # Errors
@@ -77,6 +94,33 @@ pub(super) struct FrameFields {
 pub(super) fn layout(
     input: &mut (impl BufRead + Seek),
     options: ReadOptions,
+) -> Result<TableLayout, RecordingError> {
+    layout_or(input, options, |lines, separator, read| {
+        of_numbers(lines, separator, read, options)
+    })
+}
+
+/// Finds the arrangement of a table with a header.
+///
+/// # Errors
+/// Returns the errors of [`layout`], and [`RecordingError::Unknown`] if there is no header.
+pub(super) fn layout_with_header(
+    input: &mut (impl BufRead + Seek),
+    options: ReadOptions,
+) -> Result<TableLayout, RecordingError> {
+    layout_or(input, options, |_, _, _| Err(RecordingError::Unknown))
+}
+
+/// Finds the arrangement of a table from its header, or with `unnamed` if it has none: it gets the lines behind those
+/// that were read, the separator, and the number of the first line with the lines that were read.
+fn layout_or<R: BufRead + Seek>(
+    input: &mut R,
+    options: ReadOptions,
+    unnamed: impl FnOnce(
+        &mut TextLines<&mut R>,
+        Separator,
+        (u64, &[&[u8]]),
+    ) -> Result<TableLayout, RecordingError>,
 ) -> Result<TableLayout, RecordingError> {
     let mut lines = TextLines::new(&mut *input);
     let first = first_line(&mut lines)?;
@@ -106,7 +150,7 @@ pub(super) fn layout(
         first_line(&mut lines)?;
     }
     if !is_header {
-        return of_numbers(&mut lines, separator, (number, &[&first]), options);
+        return unnamed(&mut lines, separator, (number, &[&first]));
     }
     header.units = units_below(&mut lines, &header, separator)?;
     // If words stand below words, it is not a table.
@@ -115,7 +159,7 @@ pub(super) fn layout(
     }
     if has_words && header.units.is_none() && is_like_next(&header, separator, lines.line()) {
         let next = lines.line().to_owned();
-        return of_numbers(&mut lines, separator, (number, &[&first, &next]), options);
+        return unnamed(&mut lines, separator, (number, &[&first, &next]));
     }
     if let Some(field) = wrong_value(&header, separator) {
         return Err(row::wrong(

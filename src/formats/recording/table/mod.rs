@@ -17,6 +17,6 @@ mod unnamed_fields;
 
 mod header;
 
-mod layout;
+pub(super) mod layout;
 
 pub(super) mod delimited;

@@ -1,6 +1,7 @@
 //! The lines of a text of any length, read one at a time into the same memory.
 //!
-//! Lines end in LF or CR LF. A byte order mark at the beginning of the text is not part of a line.
+//! Lines end in LF or CR LF. A byte order mark at the beginning of the text is not part of a line, nor are zero bytes
+//! there: a file begins with them if it was truncated while a program kept its place in it.
 
 use std::io::{self, BufRead};
 
@@ -59,6 +60,11 @@ impl<R: BufRead> TextLines<R> {
                     return Ok(false);
                 }
                 break;
+            }
+            if self.number == 0 && self.line.is_empty() && bytes[0] == 0 {
+                let zeros = bytes.iter().take_while(|&&byte| byte == 0).count();
+                self.input.consume(zeros);
+                continue;
             }
             let end = bytes.iter().position(|&byte| byte == b'\n');
             let part = &bytes[..end.unwrap_or(bytes.len())];
