@@ -137,6 +137,8 @@ pub enum AcquireEvent<'a> {
         bytes_per_second: f64,
         /// The counts so far.
         counts: &'a StreamCounts,
+        /// Whether the source is a file that was moved or removed, so that no file has its name.
+        has_vanished: bool,
     },
     /// The source cannot be opened yet; opening it is tried again each second.
     Absent(&'a io::Error),
@@ -157,6 +159,19 @@ pub enum AcquireEvent<'a> {
 
 #[cfg(feature = "tui")]
 impl AcquireEvent<'_> {
+    /// Returns the words for [`Self::Silent`].
+    pub(crate) fn silence(
+        bytes_per_second: f64,
+        counts: &StreamCounts,
+        has_vanished: bool,
+    ) -> String {
+        let silence = counts.silence(bytes_per_second);
+        if has_vanished {
+            return format!("{silence}; its file was moved or removed");
+        }
+        silence
+    }
+
     /// Returns the words for [`Self::Lost`].
     pub(crate) fn lost(error: &io::Error) -> String {
         format!("lost: {}; trying again each second", system_reason(error))

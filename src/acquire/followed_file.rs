@@ -21,6 +21,8 @@ pub(super) struct Growth {
     file: File,
     /// The length of the file in bytes when it was opened.
     length: u64,
+    /// The number of bytes that were read; those that are read again count once.
+    bytes: Cell<u64>,
     has_grown: Cell<bool>,
     has_caught_up: Cell<bool>,
     /// Whether the content that the file had when it was opened is gone, so that all of its present content has arrived
@@ -29,6 +31,11 @@ pub(super) struct Growth {
 }
 
 impl Growth {
+    /// Returns the number of bytes that were read so far.
+    pub(super) fn bytes(&self) -> u64 {
+        self.bytes.get()
+    }
+
     /// Returns true if everything that was in the file has been read, so that frames now arrive as they are written.
     pub(super) fn has_caught_up(&self) -> bool {
         self.has_caught_up.get() || self.is_new.get()
@@ -75,6 +82,8 @@ pub(super) struct FollowedFile<'a> {
     end: Option<FollowEnd>,
     /// Whether the last byte that was read ends a line, or none was read.
     ended_line: bool,
+    /// The number of bytes from the start of the file to the next one.
+    offset: u64,
 }
 
 /// Opens a file. Also returns its growth.
@@ -85,6 +94,7 @@ pub(super) fn open(path: &Path) -> io::Result<(GrowingFile, Growth)> {
     let file = File::open(path)?;
     let growth = Growth {
         length: file.metadata()?.len(),
+        bytes: Cell::new(0),
         file: file.try_clone()?,
         has_grown: Cell::new(false),
         has_caught_up: Cell::new(false),
@@ -109,6 +119,7 @@ impl<'a> FollowedFile<'a> {
             growth,
             waiting,
             end: None,
+            offset: 0,
             ended_line: true,
         })
     }
@@ -135,6 +146,8 @@ impl Read for FollowedFile<'_> {
             }
             let count = self.file.read(bytes)?;
             if count > 0 {
+                self.offset += count as u64;
+                self.growth.bytes.update(|bytes| bytes + count as u64);
                 self.ended_line = bytes[count - 1] == b'\n';
                 return Ok(count);
             }
@@ -161,6 +174,8 @@ impl Seek for FollowedFile<'_> {
             return Err(ErrorKind::Unsupported.into());
         }
         // Bytes that are read again did not arrive just now.
+        let again = std::mem::take(&mut self.offset);
+        self.growth.bytes.update(|bytes| bytes - again);
         self.growth.has_caught_up.set(false);
         self.file.rewind().map(|()| 0)
     }

@@ -25,6 +25,8 @@ mod event;
 
 mod arrival_clock;
 
+mod silence;
+
 mod stream;
 
 mod pace;

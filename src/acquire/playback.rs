@@ -6,12 +6,15 @@ use std::fs::File;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::pace::{MOMENT, Pace};
 use crate::acquire::recorder::metadata_beside;
+use crate::acquire::silence::SilenceWatch;
+use crate::acquire::source::has_no_file;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
     ChannelInfo, EarlierLayout, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
@@ -46,6 +49,7 @@ pub(super) fn run(
         consumer: RefCell::new(consumer),
         ended: Cell::new(false),
         counts: RefCell::default(),
+        silence: RefCell::new(SilenceWatch::new(Instant::now())),
         damage: RefCell::default(),
     };
     let file = File::open(path).map_err(AcquireError::opening)?;
@@ -67,7 +71,9 @@ struct Player<'a, 'b> {
     consumer: RefCell<&'a mut Consumer<'b>>,
     /// Whether the consumer wants no more.
     ended: Cell<bool>,
-    /// The counts of wrong frames in a followed file.
+    /// The counts of a followed file: bytes, frames and wrong frames.
+    /// The wait for the next frame of a followed file.
+    silence: RefCell<SilenceWatch>,
     counts: RefCell<StreamCounts>,
     /// The error of the first of them.
     damage: RefCell<Option<RecordingError>>,
@@ -172,7 +178,7 @@ impl Player<'_, '_> {
             ..Round::default()
         };
         loop {
-            let waiting = &mut || self.tick();
+            let waiting = &mut || self.wait_for_more(path, &growth);
             let mut followed =
                 FollowedFile::new(file, &growth, waiting).map_err(AcquireError::opening)?;
             let (_, read) = self.round(format, &mut followed, &mut round);
@@ -196,7 +202,9 @@ impl Player<'_, '_> {
                 match File::open(path).and_then(|file| format_after(file, format)) {
                     Ok(Some(found)) if found.is_appended_to() => break found,
                     Ok(Some(other)) => return Err(replaced_by(other).into()),
-                    Ok(None) | Err(_) if self.tick().is_break() => return Ok(()),
+                    Ok(None) | Err(_) if self.wait_for_more(path, &growth).is_break() => {
+                        return Ok(());
+                    }
                     Ok(None) | Err(_) => std::thread::sleep(MOMENT),
                 }
             };
@@ -225,6 +233,24 @@ impl Player<'_, '_> {
     /// Drops and counts a wrong frame of a followed file if there were frames before it and more may come: a program
     /// that was interrupted continues after a torn line. Whether more comes may be known only later. Returns `Break` if
     /// the error ends the reading.
+    /// Reports a tick at the end of a followed file, and whether it is silent. A file that has not grown may be a complete
+    /// recording. Returns `Break` if no more is wanted.
+    fn wait_for_more(&self, path: &Path, growth: &Growth) -> ControlFlow<()> {
+        self.counts.borrow_mut().bytes = growth.bytes();
+        self.tick()?;
+        if !growth.has_grown() {
+            return ControlFlow::Continue(());
+        }
+        let looked = (self.silence.borrow_mut()).look(growth.bytes(), Instant::now());
+        looked.map_or(ControlFlow::Continue(()), |bytes_per_second| {
+            self.report(AcquireEvent::Silent {
+                bytes_per_second,
+                counts: &self.counts.borrow(),
+                has_vanished: has_no_file(path),
+            })
+        })
+    }
+
     fn leave_out(
         &self,
         error: &RecordingError,
@@ -286,6 +312,8 @@ impl Player<'_, '_> {
                     // The present content of a file has arrived at some other time.
                     let arrives = round.growth.is_some_and(Growth::has_caught_up);
                     let time = round.times.time(frame.time, arrives);
+                    self.counts.borrow_mut().frames += 1;
+                    self.silence.borrow_mut().note_frame(Instant::now());
                     let (channel, number) = round.place(frame);
                     if (channel, number) != (frame.channel, frame.number) {
                         renumbered.copy_from(frame);
@@ -636,6 +664,49 @@ mod tests {
             match event {
                 AcquireEvent::Frame { .. } => frames += 1,
                 AcquireEvent::Tick(_) => has_ended = frames == 3,
+    #[test]
+    fn a_file_that_no_longer_grows_is_silent() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let silence = |is_removed: bool| {
+            let path = folder.path().join(format!("{is_removed}.jsonl"));
+            let line = "{\"frame\":[[1,2]]}\n";
+            std::fs::write(&path, line).expect("written");
+            let (options, mut ticks, mut silence) = (AcquireOptions::default(), 0, None);
+            let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
+                match event {
+                    AcquireEvent::Tick(_) => ticks += 1,
+                    AcquireEvent::Silent {
+                        bytes_per_second,
+                        counts,
+                        has_vanished,
+                    } => silence = Some((bytes_per_second, counts.frames, has_vanished)),
+                    _ => {}
+                }
+                if ticks == 1 {
+                    let mut file = File::options().append(true).open(&path).expect("opened");
+                    file.write_all(line.as_bytes()).expect("written");
+                    if is_removed {
+                        std::fs::remove_file(&path).expect("removed");
+                    }
+                    ticks = 2;
+                }
+                if silence.is_some() || ticks == 200 {
+                    return ControlFlow::Break(());
+                }
+                ControlFlow::Continue(())
+            });
+            assert!(result.is_ok());
+            silence
+        };
+        std::thread::scope(|scope| {
+            for is_removed in [false, true] {
+                scope.spawn(move || {
+                    assert_eq!(silence(is_removed), Some((0.0, 2, is_removed)));
+                });
+            }
+        });
+    }
+
                 _ => {}
             }
             if has_ended {

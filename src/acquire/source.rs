@@ -168,12 +168,22 @@ pub(super) fn check_address(address: &str) -> io::Result<()> {
         )),
     }
 }
+    /// Returns true if the source is a file that was moved or removed: no file has its name.
+    pub(super) fn has_vanished(&self) -> bool {
+        matches!(self, Self::File(path) if has_no_file(path))
+    }
+
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
+/// Returns true if no file has that name.
+pub(super) fn has_no_file(path: &Path) -> bool {
+    !path.is_file()
+}
+
     fn a_serial_line_that_is_not_plugged_in_is_still_a_serial_line() {
         for (name, is_line) in [
             ("/dev/ttyUSB9999", true),

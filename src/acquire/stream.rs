@@ -9,20 +9,12 @@ use std::time::{Duration, Instant};
 use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::byte_input::{ByteInput, ReadOutcome};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
+use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSink};
 
 /// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
-
-/// The time without a frame after which a stream is reported as silent, unless its frames come more rarely.
-const SILENCE: Duration = Duration::from_secs(2);
-
-/// The number of intervals without a frame after which a stream is silent.
-const MISSED: u32 = 3;
-
-/// The longest time between two frames that counts as usual.
-const LONGEST_INTERVAL: Duration = Duration::from_secs(20);
 
 /// The time after which a lost source is tried again.
 const RETRY: Duration = Duration::from_secs(1);
@@ -31,78 +23,30 @@ const RETRY: Duration = Duration::from_secs(1);
 const TICK: Duration = Duration::from_millis(100);
 
 /// The times and counts that are measured while a stream is read.
-struct StreamClock {
+struct StreamClock<'a> {
+    source: &'a FrameSource,
     /// Whether frames arrive while they are read; false for a source that is read as fast as possible.
     is_live: bool,
     /// Whether a frame without a time of its own gets the time of its arrival.
     timed: bool,
-    /// When the last frame came, or the source was opened.
-    last_frame: Instant,
-    /// The time between the last two frames that did not arrive together; None before the first frame.
-    interval: Option<Duration>,
+    silence: SilenceWatch,
     last_tick: Instant,
-    /// Whether a frame has come since the last tick.
-    frame_came: bool,
-    /// The number of bytes up to the last frame or the last look at the silence.
-    bytes: u64,
-    /// The time of the last look at the silence.
-    looked: Option<Instant>,
-    /// Whether the silence was reported: without bytes, and with bytes that are no frame.
-    reported: [bool; 2],
     /// The times of frames.
     times: ArrivalClock,
 }
 
-impl StreamClock {
-    fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
+impl<'a> StreamClock<'a> {
+    fn new(source: &'a FrameSource, options: &AcquireOptions) -> Self {
         let now = Instant::now();
         Self {
             is_live: options.playback != Playback::Once,
+            source,
             // The present content of a file has arrived at some other time.
             timed: options.playback != Playback::Once && !matches!(source, FrameSource::File(_)),
-            last_frame: now,
-            interval: None,
+            silence: SilenceWatch::new(now),
             last_tick: now,
-            frame_came: false,
-            bytes: 0,
-            looked: None,
-            reported: [false; 2],
             times: ArrivalClock::default(),
         }
-    }
-
-    /// Notes that a frame has just arrived.
-    fn note_frame(&mut self, now: Instant) {
-        if !std::mem::replace(&mut self.frame_came, true) {
-            let since_last = now - self.last_frame;
-            let usual = since_last.min(LONGEST_INTERVAL);
-            self.interval = Some(self.interval.map_or(Duration::ZERO, |_| usual));
-        }
-        self.begin_silence(now);
-    }
-
-    /// Notes that the wait for the next frame begins now.
-    fn begin_silence(&mut self, now: Instant) {
-        (self.last_frame, self.looked, self.reported) = (now, None, [false; 2]);
-    }
-
-    /// Returns the bytes per second that arrived in a silence, if it must be reported: once without bytes, and once
-    /// with bytes. `bytes` is the number of bytes so far.
-    fn silence(&mut self, bytes: u64, now: Instant) -> Option<f64> {
-        let missed = |interval: Duration| (interval * MISSED).max(SILENCE);
-        let usual = self.interval.map_or(SILENCE, missed);
-        let since = self.looked.unwrap_or(self.last_frame);
-        if now - self.last_frame < usual || now - since < SILENCE {
-            return None;
-        }
-        let came = bytes - std::mem::replace(&mut self.bytes, bytes);
-        self.looked = Some(now);
-        if std::mem::replace(&mut self.reported[usize::from(came > 0)], true) {
-            return None;
-        }
-        #[expect(clippy::cast_precision_loss, reason = "a rate for a message")]
-        let bytes = came as f64;
-        Some(bytes / (now - since).as_secs_f64())
     }
 }
 
@@ -164,8 +108,8 @@ pub(super) fn run(
             None => return Ok(()),
         }
         clock.times.rejoin();
-        clock.begin_silence(Instant::now());
-        clock.bytes = decoder.counts().bytes;
+        let bytes = decoder.counts().bytes;
+        clock.silence.reopen(bytes, Instant::now());
     }
     finish(&mut decoder, &mut clock, consumer, stop);
     Ok(())
@@ -174,7 +118,7 @@ pub(super) fn run(
 /// Reports the frames that are still in the decoder, and the end, unless the acquisition was stopped before it.
 fn finish(
     decoder: &mut StreamDecoder,
-    clock: &mut StreamClock,
+    clock: &mut StreamClock<'_>,
     consumer: &mut Consumer<'_>,
     stop: &AtomicBool,
 ) {
@@ -228,7 +172,7 @@ fn first_input(
 fn step(
     decoder: &mut StreamDecoder,
     how: impl FnOnce(&mut StreamDecoder, &mut StreamSink<'_>),
-    clock: &mut StreamClock,
+    clock: &mut StreamClock<'_>,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
     let mut flow = ControlFlow::Continue(());
@@ -243,7 +187,7 @@ fn step(
 /// Reports or counts what came before a source failed. Returns the error.
 fn broken(
     decoder: &mut StreamDecoder,
-    clock: &mut StreamClock,
+    clock: &mut StreamClock<'_>,
     consumer: &mut Consumer<'_>,
     error: io::Error,
 ) -> AcquireError {
@@ -284,7 +228,7 @@ fn again(
 fn decode(
     decoder: &mut StreamDecoder,
     bytes: &[u8],
-    clock: &mut StreamClock,
+    clock: &mut StreamClock<'_>,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
     // If no bytes came, the content that was in a file has been read.
@@ -297,12 +241,12 @@ fn decode(
 /// Reports an event of the decoder. A frame without a time gets that of its arrival.
 fn report(
     event: StreamEvent<'_>,
-    clock: &mut StreamClock,
+    clock: &mut StreamClock<'_>,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
     match event {
         StreamEvent::Frame(frame) => {
-            clock.note_frame(Instant::now());
+            clock.silence.note_frame(Instant::now());
             let time = clock.times.time(frame.time, clock.timed);
             consumer(AcquireEvent::Frame { frame, time })
         }
@@ -316,7 +260,7 @@ fn report(
 /// Reports a tick if one is due, and whether the stream is silent.
 fn tick(
     decoder: &StreamDecoder,
-    clock: &mut StreamClock,
+    clock: &mut StreamClock<'_>,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
     let now = Instant::now();
@@ -326,13 +270,11 @@ fn tick(
     clock.last_tick = now;
     let counts = decoder.counts();
     consumer(AcquireEvent::Tick(counts))?;
-    if std::mem::take(&mut clock.frame_came) {
-        clock.bytes = counts.bytes;
-    }
-    match clock.silence(counts.bytes, now) {
+    match clock.silence.look(counts.bytes, now) {
         Some(bytes_per_second) => consumer(AcquireEvent::Silent {
             bytes_per_second,
             counts,
+            has_vanished: clock.source.has_vanished(),
         }),
         None => ControlFlow::Continue(()),
     }
@@ -346,64 +288,6 @@ mod tests {
     use super::*;
     use crate::formats::stream::StreamFormat;
     use crate::frame::FrameSize;
-
-    #[test]
-    fn silence_comes_with_the_rate_of_all_bytes_since_the_last_frame() {
-        let options = AcquireOptions::default();
-        let source = FrameSource::Standard;
-        let mut decoder = StreamDecoder::new(StreamOptions::default());
-        let mut clock = StreamClock::new(&source, &options);
-        let mut said = Vec::new();
-        // Junk, checked before two seconds have gone by and after.
-        for seconds in [1, 2] {
-            decoder.push(&[b'?'; 100], &mut |_| ());
-            let now = Instant::now();
-            let ago = |time| now.checked_sub(time).expect("later than that");
-            clock.last_tick = ago(TICK);
-            clock.last_frame = ago(Duration::from_secs(seconds));
-            let flow = tick(&decoder, &mut clock, &mut |event| {
-                if let AcquireEvent::Silent {
-                    bytes_per_second, ..
-                } = event
-                {
-                    said.push(bytes_per_second.round());
-                }
-                ControlFlow::Continue(())
-            });
-            assert!(flow.is_continue());
-        }
-        assert_eq!(said, [100.0]);
-    }
-
-    /// Returns the seconds at which a silence is reported while the source is looked at each second, with the bytes
-    /// per second. Frames come at the given seconds, and 10 bytes each second from `junk` on.
-    fn silences(frames: &[u64], junk: u64) -> Vec<(u64, f64)> {
-        let mut clock = StreamClock::new(&FrameSource::Standard, &AcquireOptions::default());
-        let begun = clock.last_frame;
-        let looks = 1..=60;
-        let found = looks.filter_map(|second| {
-            let now = begun + Duration::from_secs(second);
-            clock.frame_came = false;
-            if frames.contains(&second) {
-                clock.note_frame(now);
-            }
-            let bytes = 10 * second.saturating_sub(junk);
-            let rate = clock.silence(bytes, now)?;
-            Some((second, rate))
-        });
-        found.collect()
-    }
-
-    #[test]
-    fn a_silence_is_reported_once_and_only_if_it_is_unusual() {
-        assert_eq!(silences(&[], 60), [(2, 0.0)], "nothing comes");
-        let each_second: Vec<u64> = (1..=9).collect();
-        assert_eq!(silences(&each_second, 60), [(12, 0.0)]);
-        let slow: Vec<u64> = (1..=9).map(|n| 4 * n).collect();
-        // The time between two frames is not known yet.
-        assert_eq!(silences(&slow, 60), [(2, 0.0), (6, 0.0), (48, 0.0)]);
-        assert_eq!(silences(&[], 9), [(2, 0.0), (10, 5.0)], "then junk comes");
-    }
 
     /// Two connections: the first ends with the last byte of a frame, the second one byte later.
     #[test]

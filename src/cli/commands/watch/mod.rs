@@ -364,7 +364,8 @@ fn remark(event: AcquireEvent<'_>) -> Option<String> {
         AcquireEvent::Silent {
             bytes_per_second,
             counts,
-        } => counts.silence(bytes_per_second),
+            has_vanished,
+        } => AcquireEvent::silence(bytes_per_second, counts, has_vanished),
         AcquireEvent::Lost(error) => AcquireEvent::lost(error),
         AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
         AcquireEvent::Note(note) => format!("warning: {note}{}", note_advice(note)),

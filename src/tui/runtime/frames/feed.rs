@@ -212,9 +212,11 @@ impl FrameFeed {
                 counts,
             } => self.change(|pending| {
                 let source = source::named(&request.source);
-                let why = no_frame::silence(&source, counts, bytes_per_second);
+                let what = AcquireEvent::silence(bytes_per_second, counts, has_vanished);
+                let why = no_frame::silence(&source, counts, &what);
                 pending.status().state = SourceState::Silent(why);
             }),
+                has_vanished,
             AcquireEvent::Absent(error) => self.change(|pending| {
                 let name = request.source.to_string_lossy();
                 let reason = system_reason(error);

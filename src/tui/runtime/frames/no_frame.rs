@@ -21,13 +21,9 @@ pub(super) fn reason(error: &AcquireError) -> String {
     format!("{error}{hint}")
 }
 
-/// Returns the reason why no frame comes. It stays true while the silence lasts: a page on which nothing changes
+/// Returns the reason why no frame comes, given what is said of the silence. It stays true while the silence lasts: a page on which nothing changes
 /// sends nothing.
-pub(super) fn silence(
-    source: &FrameSource,
-    counts: &StreamCounts,
-    bytes_per_second: f64,
-) -> String {
+pub(super) fn silence(source: &FrameSource, counts: &StreamCounts, what: &str) -> String {
     let refusal = counts.refusal();
     // A file has no baud, and sends nothing.
     if let (FrameSource::File(_), None, 0, 1..) = (source, refusal, counts.frames, counts.bytes) {
@@ -35,7 +31,6 @@ pub(super) fn silence(
         return format!("no frame yet: none in {bytes}; rows, columns or format?");
     }
     let hint = refusal.map_or("", hint);
-    let what = counts.silence(bytes_per_second);
     format!("no frame for more than 2 s: {what}{hint}")
 }
 
@@ -76,7 +71,7 @@ mod tests {
         let said = "no frame yet: none in 272 bytes; rows, columns or format?";
         // The message stays the same when nothing more comes.
         for rate in [136.0, 0.0] {
-            assert_eq!(silence(&file, &counts, rate), said);
+            assert_eq!(silence(&file, &counts, &counts.silence(rate)), said);
         }
     }
 }
