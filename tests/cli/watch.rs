@@ -469,7 +469,7 @@ fn the_description_of_a_recording_is_read_with_it() {
         serde_json::json!({"at_least": 9, "from": "flag"})
     );
     assert_eq!(plain.get("tare"), None);
-    // A broken description is reported, one of another program is not.
+    // A description that is broken, of another version, empty or of another program is reported, and so is a missing one.
     for (text, told) in [
         (
             "{\"format\":\"taxel-touch/1\",\"rule\":{\"percent\":0}}",
@@ -479,7 +479,18 @@ fn the_description_of_a_recording_is_read_with_it() {
             "{\"format\":\"taxel-touch/1\",\"ru",
             "touch.json: line 1, column 29: the end ",
         ),
-        ("{\"format\":1}", ""),
+        (
+            "{\"format\":\"taxel-touch/2\"}",
+            "touch.json: format: \"taxel-touch/2\" is not known here, expected \"taxel-touch/1\"; its threshold",
+        ),
+        (
+            "",
+            "touch.json: does not belong to the recording; its threshold",
+        ),
+        (
+            "{\"format\":1}",
+            "touch.json: does not belong to the recording",
+        ),
     ] {
         fs::write(file.with_extension("json"), text).expect("written");
         warns_of(path, told);
@@ -487,7 +498,10 @@ fn the_description_of_a_recording_is_read_with_it() {
     // A description that links to itself cannot be read, either.
     let beside = file.with_extension("json");
     fs::remove_file(&beside).expect("removed");
-    warns_of(path, "");
+    warns_of(
+        path,
+        "touch.json: missing; its threshold and tare are unknown",
+    );
     std::os::unix::fs::symlink(&beside, &beside).expect("made");
     warns_of(path, "touch.json: cannot read: ");
 }

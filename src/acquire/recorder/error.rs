@@ -54,25 +54,40 @@ pub enum RecorderError {
     },
 }
 
-/// The error for metadata beside an array that cannot be read.
+/// The consequence of missing metadata.
+const UNKNOWN: &str = "its threshold and tare are unknown";
+
+/// The error for metadata beside an array that is missing or cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MetadataFileError {
     /// The system cannot read the file.
-    #[error("{}: cannot read: {}", path.display(), system_reason(error))]
+    #[error("{}: cannot read: {}; {UNKNOWN}", path.display(), system_reason(error))]
     Io {
         /// The file.
         path: PathBuf,
         /// The error that the system reports.
         error: io::Error,
     },
-    /// The metadata is damaged, or was changed.
-    #[error("{}: {error}", path.display())]
+    /// The metadata is damaged, of another version, or was changed.
+    #[error("{}: {error}; {UNKNOWN}", path.display())]
     Broken {
         /// The file.
         path: PathBuf,
         /// The error in the metadata.
         error: MetadataError,
+    },
+    /// The array was recorded by taxel, but has no metadata beside it.
+    #[error("{}: missing; {UNKNOWN}", path.display())]
+    Missing {
+        /// The path of the metadata.
+        path: PathBuf,
+    },
+    /// The array was recorded by taxel, but the file beside it is empty or something other than metadata.
+    #[error("{}: does not belong to the recording; {UNKNOWN}", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
     },
 }
 

@@ -5,6 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::acquire::recorder::error::{MetadataFileError, RecorderError, refused};
+use crate::acquire::recorder::record_array::{HEADER, is_own};
 use crate::formats::ending::has_ending;
 use crate::formats::recording::RecordingMetadata;
 use crate::storage::{Existing, FileId, FinishedFile, persist_beside};
@@ -104,15 +105,47 @@ pub(super) fn is_array(path: &Path) -> bool {
     has_ending(path, "npy")
 }
 
-/// Reads the metadata beside an array: `touch.json` for `touch.npy`. Returns None if there is no such file, or if
-/// it is not metadata.
+/// Reads the metadata beside an array: `touch.json` for `touch.npy`. Returns None if an array of another program has no
+/// metadata beside it.
 ///
 /// # Errors
-/// Returns an error if the metadata is damaged or cannot be read.
+/// Returns an error if the metadata is damaged, of another version or cannot be read; or if there is none although taxel
+/// has recorded the array.
 pub fn metadata_beside(path: &Path) -> Option<Result<RecordingMetadata, MetadataFileError>> {
     if !is_array(path) {
         return None;
     }
+    read_beside(path).or_else(|| {
+        if !is_recorded(path) {
+            return None;
+        }
+        let path = path.with_extension("json");
+        Some(Err(if path.exists() {
+            MetadataFileError::Foreign { path }
+        } else {
+            MetadataFileError::Missing { path }
+        }))
+    })
+}
+
+/// Returns true if taxel has recorded an array.
+fn is_recorded(path: &Path) -> bool {
+    let start = || {
+        let mut start = Vec::new();
+        // Opening a pipe would wait for its writer.
+        if path.metadata()?.is_file() {
+            File::open(path)?.take(HEADER).read_to_end(&mut start)?;
+        }
+        Ok::<_, io::Error>(start)
+    };
+    start().is_ok_and(|start| is_own(&start))
+}
+
+/// Reads the metadata beside an array. Returns None if there is no such file, or if it is not metadata.
+///
+/// # Errors
+/// Returns an error if the metadata is damaged, of another version or cannot be read.
+pub(super) fn read_beside(path: &Path) -> Option<Result<RecordingMetadata, MetadataFileError>> {
     let path = path.with_extension("json");
     let content = || {
         let mut bytes = Vec::new();

@@ -20,7 +20,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use error::refused;
-use metadata::{MetadataDraft, is_array, overwrite, prepared};
+use metadata::{MetadataDraft, is_array, overwrite, prepared, read_beside};
 use record_array::{RecordArray, empty};
 
 pub use error::{MetadataFileError, RecorderError};
@@ -106,7 +106,7 @@ impl FrameRecorder {
         }
         let beside = path.with_extension("json");
         let is_there = existing == Existing::Replaced && beside.symlink_metadata().is_ok();
-        if is_there && metadata_beside(path).is_none() {
+        if is_there && read_beside(path).is_none() {
             return Err(RecorderError::Foreign { path: beside });
         }
         let mut metadata = metadata.clone();

@@ -17,8 +17,11 @@ use crate::index::index;
 /// The number of bytes in the header's text; with the ten bytes before it, 256. The longest text has about 150.
 const HEADER_TEXT: u16 = 246;
 
+/// The beginning of that text, before the rows and columns of a frame.
+const DESCRIPTION: &str = "{'descr': [('time', '<f8'), ('number', '<u8'), ('values', '<f8', (";
+
 /// The number of bytes before the first record.
-const HEADER: u64 = 256;
+pub(super) const HEADER: u64 = 256;
 
 /// The number of bytes of time and number before the values of a record.
 const RECORD_HEAD: u64 = 16;
@@ -200,13 +203,19 @@ pub(super) fn empty() -> Vec<u8> {
     header(None, 0)
 }
 
+/// Returns true if a file begins like an array of records that taxel has written.
+pub(super) fn is_own(start: &[u8]) -> bool {
+    let own = start.strip_prefix(b"\x93NUMPY\x01\x00");
+    let text = own.and_then(|own| own.strip_prefix(&HEADER_TEXT.to_le_bytes()));
+    text.is_some_and(|text| text.starts_with(DESCRIPTION.as_bytes()))
+}
+
 /// Returns the header of an array of records.
 pub(super) fn header(size: Option<FrameSize>, records: u64) -> Vec<u8> {
     let size = size.unwrap_or(FrameSize::SMALLEST);
     let (rows, columns) = (size.rows(), size.columns());
     let text = format!(
-        "{{'descr': [('time', '<f8'), ('number', '<u8'), ('values', '<f8', ({rows}, {columns}))], \
-         'fortran_order': False, 'shape': ({records},), }}"
+        "{DESCRIPTION}{rows}, {columns}))], 'fortran_order': False, 'shape': ({records},), }}"
     );
     let mut header = b"\x93NUMPY\x01\x00".to_vec();
     header.extend(HEADER_TEXT.to_le_bytes());

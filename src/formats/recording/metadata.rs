@@ -15,6 +15,9 @@ use crate::quote::shortened_message;
 /// The name of the format.
 const FORMAT: &str = "taxel-touch/1";
 
+/// The beginning of its name in every version.
+const FAMILY: &str = "taxel-touch/";
+
 /// A frame that was marked while it was recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameMark {
@@ -139,7 +142,7 @@ pub enum MetadataError {
     /// The metadata has a rule or a tare that is not valid.
     #[error("{key}: {message}")]
     Value {
-        /// The key of the rule or the tare.
+        /// The key of the format, the rule or the tare.
         key: &'static str,
         /// A description of the error.
         message: String,
@@ -169,17 +172,24 @@ impl RecordingMetadata {
     /// torn, it is recognised by the name of its format.
     ///
     /// # Errors
-    /// Returns an error if the metadata is damaged; it names the line and column, or the key.
+    /// Returns an error if the metadata is damaged, or of another version; it names the line and column, or the key.
     pub fn read(bytes: &[u8]) -> Option<Result<Self, MetadataError>> {
         #[derive(Deserialize)]
         struct Format {
             format: String,
         }
         let is_own = match json_object::read::<Format>(bytes) {
+            Ok(own) if own.format != FORMAT && own.format.starts_with(FAMILY) => {
+                let found = shortened_message(&own.format);
+                return Some(Err(MetadataError::Value {
+                    key: "format",
+                    message: format!("{found:?} is not known here, expected {FORMAT:?}"),
+                }));
+            }
             Ok(own) => own.format == FORMAT,
             Err(_) => bytes
-                .windows(FORMAT.len())
-                .any(|text| text == FORMAT.as_bytes()),
+                .windows(FAMILY.len())
+                .any(|text| text == FAMILY.as_bytes()),
         };
         is_own.then(|| {
             let described = json_object::read::<Described>(bytes);
@@ -397,6 +407,12 @@ mod tests {
         assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
         assert!(
             wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("tare: row 2 has 2 values")
+        );
+        let newer = RecordingMetadata::read(b"{\"format\":\"taxel-touch/2\",\"tare\":7}");
+        let error = newer.expect("metadata").expect_err("another version");
+        assert_eq!(
+            error.to_string(),
+            "format: \"taxel-touch/2\" is not known here, expected \"taxel-touch/1\""
         );
         let unit = wrong("\"unit\":3");
         let expected = "line 1, column 34: found the number 3, expected a string";
