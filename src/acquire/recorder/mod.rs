@@ -131,6 +131,15 @@ impl FrameRecorder {
         })
     }
 
+    /// Creates a recorder with the same metadata for another file.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::create`].
+    #[cfg(feature = "tui")]
+    pub(crate) fn elsewhere(&self, path: &Path) -> Result<Self, RecorderError> {
+        Self::create(path, self.existing, &self.metadata)
+    }
+
     /// Writes the metadata beside the file anew.
     ///
     /// # Errors
@@ -187,8 +196,12 @@ impl FrameRecorder {
     }
 
     /// Takes metadata that is on the disk, to give it its name together with the array. If the array has its
-    /// name already, returns the metadata, which is to be given its name at once.
+    /// name already, returns the metadata, which is to be given its name at once. Drops metadata that was prepared for
+    /// the recorder of another file, which is [`elsewhere`](Self::elsewhere) by now.
     pub(crate) fn take_metadata(&mut self, file: FinishedFile) -> Option<PreparedMetadata> {
+        if file.path() != self.path.with_extension("json") {
+            return None;
+        }
         match &mut self.names {
             Names::Waiting(_, beside) => *beside = file.with_existing(self.existing),
             Names::Given(array) => {

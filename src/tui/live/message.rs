@@ -123,6 +123,9 @@ pub struct FeedStatus {
     pub overflowed: u64,
     /// The frames of the recording; None without a recording.
     pub recorded: Option<RecordedFrames>,
+    /// The file in which the last frame was recorded, if the program chose its name. It may be another one than at the
+    /// beginning, if another program took that name before the first frame came.
+    pub recorded_in: Option<String>,
     /// Why the recording ended early.
     pub record_error: Option<String>,
     /// The first oddity found in a recording that is played back.

@@ -297,6 +297,16 @@ impl Live {
         self.cursor.rate().or_else(stated)
     }
 
+    /// Notes that frames are recorded in another file than the one in which the recording began. Returns a sentence about
+    /// that.
+    pub(super) fn follow_recording(&mut self, status: &FeedStatus) -> Option<String> {
+        let before = self.recording.name()?.to_owned();
+        let name = status.recorded_in.clone().filter(|name| *name != before)?;
+        let sentence = format!("recording in {name}, because {before} exists by now");
+        self.recording.set(Some(name));
+        Some(sentence)
+    }
+
     /// Takes new frames, and the state of the source.
     pub fn take(&mut self, batch: &FrameBatch) {
         let had_channel = self.status.channel.is_some();

@@ -415,7 +415,13 @@ fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
         | LiveEvent::NotNamed(..)
         | LiveEvent::Recorded(..)
         | LiveEvent::NotFinished(_) => {}
-        LiveEvent::Arrived(batch) => page.take(batch),
+        LiveEvent::Arrived(batch) => {
+            let moved = page.follow_recording(&batch.status);
+            page.take(batch);
+            if let Some(text) = moved {
+                return inform(app, text);
+            }
+        }
         LiveEvent::Recording(name) => {
             page.set_recording(Some(name.clone()));
             return inform(app, format!("recording in {name}"));
@@ -441,7 +447,7 @@ mod tests {
     use super::*;
     use crate::frame::Frame;
     use crate::frame::FrameSize;
-    use crate::tui::live::message::FrameBatch;
+    use crate::tui::live::message::{FeedStatus, FrameBatch};
 
     #[test]
     fn sets_are_the_requested_one_the_built_in_ones_the_own_ones_and_none() {
@@ -462,6 +468,22 @@ mod tests {
             page.names.request().map(|naming| &naming.choice),
             Some(&asked)
         );
+    }
+
+    #[test]
+    fn a_recording_that_moves_to_another_file_says_so_once() {
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let status = FeedStatus {
+            recorded_in: Some("touch-2.npy".to_owned()),
+            ..FeedStatus::default()
+        };
+        assert_eq!(page.follow_recording(&status), None, "nothing is recorded");
+        page.set_recording(Some("touch-1.npy".to_owned()));
+        let moved = page.follow_recording(&status);
+        let said = "recording in touch-2.npy, because touch-1.npy exists by now";
+        assert_eq!(moved.as_deref(), Some(said));
+        assert_eq!(page.recording().name(), Some("touch-2.npy"));
+        assert_eq!(page.follow_recording(&status), None);
     }
 
     #[test]

@@ -59,6 +59,7 @@ impl FrameFeed {
     pub(in crate::tui::runtime) fn note_begun(&self) {
         let mut pending = locked(&self.pending);
         pending.status().record_error = None;
+        pending.status().recorded_in = None;
         pending.note_recorded(Ok(Some(RecordedFrames::default())));
     }
 
@@ -110,7 +111,7 @@ impl FrameFeed {
             ..RecordingMetadata::default()
         };
         source::named(&request.source)
-            .refuse_as_target(recording.path())
+            .refuse_as_target(&recording.path())
             .map_err(|error| error.to_string())?;
         recording.begin(existing, &metadata)?;
         self.note_begun();
@@ -179,10 +180,14 @@ impl FrameFeed {
         }
         // An error ends the recording; the frames are still shown.
         let recorded = self.recorded(|own| own.add(frame, time));
+        let name = self
+            .recording()
+            .and_then(|recording| recording.chosen_name());
         let mut own = frame.clone();
         own.time = time;
         self.change(|pending| {
             pending.note_recorded(recorded);
+            pending.status().recorded_in = name;
             pending.push(Arc::new(own), request.history_bytes);
         })
     }
@@ -210,13 +215,13 @@ impl FrameFeed {
             AcquireEvent::Silent {
                 bytes_per_second,
                 counts,
+                has_vanished,
             } => self.change(|pending| {
                 let source = source::named(&request.source);
                 let what = AcquireEvent::silence(bytes_per_second, counts, has_vanished);
                 let why = no_frame::silence(&source, counts, &what);
                 pending.status().state = SourceState::Silent(why);
             }),
-                has_vanished,
             AcquireEvent::Absent(error) => self.change(|pending| {
                 let name = request.source.to_string_lossy();
                 let reason = system_reason(error);

@@ -24,8 +24,10 @@ use crate::tui::runtime::lock::locked;
 /// A file that frames are recorded in, shared by the source's thread and the one that finishes it.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct Recording {
-    /// The path of the file.
-    path: PathBuf,
+    /// The path of the file. Locked only briefly.
+    path: Mutex<PathBuf>,
+    /// Whether the program chose the name, so that it may choose another one.
+    is_name_chosen: bool,
     /// Locked while the disk writes metadata, and before `recorder`: the later metadata stays.
     metadata: Mutex<()>,
     /// Locked while the disk writes frames.
@@ -46,15 +48,20 @@ enum RecorderState {
 impl Recording {
     /// Returns a recording whose file has not been created yet.
     pub(in crate::tui::runtime) fn new(path: PathBuf) -> Arc<Self> {
-        Arc::new(Self {
-            path,
+        Arc::new(Self::with_name(path, false))
+    }
+
+    fn with_name(path: PathBuf, is_name_chosen: bool) -> Self {
+        Self {
+            path: Mutex::new(path),
+            is_name_chosen,
             metadata: Mutex::default(),
             recorder: Mutex::new(RecorderState::New),
-        })
+        }
     }
 
     /// Begins a recording in the first file `touch-1.npy`, `touch-2.npy` … that does not exist yet. Returns its name,
-    /// too.
+    /// too. If another program has taken the name when the first frame comes, the next free one is used.
     ///
     /// # Errors
     /// Returns the reason why there is none, in a sentence.
@@ -62,21 +69,28 @@ impl Recording {
         access: &WriteAccess,
         metadata: &RecordingMetadata,
     ) -> Result<(String, Arc<Self>), String> {
-        for name in (1..10_000).map(|number| format!("touch-{number}.npy")) {
+        for name in chosen_names() {
             let path = access.path(&name, Existing::Kept)?;
-            if path.exists() || path.with_extension("json").exists() {
+            if !is_free(&path) {
                 continue;
             }
-            let recording = Self::new(path);
+            let recording = Self::with_name(path, true);
             recording.begin(Existing::Kept, metadata)?;
-            return Ok((name, recording));
+            return Ok((name, Arc::new(recording)));
         }
         Err("10,000 recordings are here already; move some elsewhere".to_owned())
     }
 
     /// Returns the path of the file.
-    pub(in crate::tui::runtime) fn path(&self) -> &Path {
-        &self.path
+    pub(in crate::tui::runtime) fn path(&self) -> PathBuf {
+        locked(&self.path).clone()
+    }
+
+    /// Returns the name of the file if the program chose it.
+    pub(in crate::tui::runtime) fn chosen_name(&self) -> Option<String> {
+        let path = locked(&self.path);
+        let name = path.file_name().filter(|_| self.is_name_chosen)?;
+        Some(name.to_string_lossy().into_owned())
     }
 
     /// Creates the file, unless the recording was finished before it could begin.
@@ -93,7 +107,7 @@ impl Recording {
             return Ok(());
         }
         *state = RecorderState::Closed;
-        let recorder = FrameRecorder::create(&self.path, existing, metadata);
+        let recorder = FrameRecorder::create(&self.path(), existing, metadata);
         let recorder = recorder.map_err(|error| error.to_string())?;
         *state = RecorderState::Open(Box::new(recorder));
         Ok(())
@@ -108,7 +122,35 @@ impl Recording {
         frame: &Frame,
         time: Option<f64>,
     ) -> Result<Option<RecordedFrames>, String> {
-        self.write(|recorder| recorder.add(frame, time))
+        self.write(|recorder| match recorder.add(frame, time) {
+            Err(RecorderError::Exists { .. }) if self.is_name_chosen => {
+                self.add_elsewhere(recorder, frame, time)
+            }
+            added => added,
+        })
+    }
+
+    /// Adds the first frame to the next free file, because another program has taken the name.
+    fn add_elsewhere(
+        &self,
+        recorder: &mut FrameRecorder,
+        frame: &Frame,
+        time: Option<f64>,
+    ) -> Result<(), RecorderError> {
+        let taken = self.path();
+        let paths = chosen_names().map(|name| taken.with_file_name(name));
+        for path in paths.filter(|path| is_free(path)) {
+            let mut next = recorder.elsewhere(&path)?;
+            match next.add(frame, time) {
+                Err(RecorderError::Exists { .. }) => {}
+                added => {
+                    *recorder = next;
+                    *locked(&self.path) = path;
+                    return added;
+                }
+            }
+        }
+        Err(RecorderError::Exists { path: taken })
     }
 
     /// Writes out the frames that have waited for long enough. Returns the number of recorded frames.
@@ -180,7 +222,7 @@ impl Recording {
     /// Finishes the recording. Returns None if nothing was recorded any more, which has been reported before.
     pub(in crate::tui::runtime) fn finish(&self) -> Option<LiveEvent> {
         Some(match self.close()? {
-            Ok(frames) => LiveEvent::Recorded(self.path.to_string_lossy().into_owned(), frames),
+            Ok(frames) => LiveEvent::Recorded(self.path().to_string_lossy().into_owned(), frames),
             Err(error) => LiveEvent::NotFinished(error.to_string()),
         })
     }
@@ -196,5 +238,44 @@ impl Recording {
         let left_out = recorder.left_out();
         let finished = recorder.finish();
         Some(finished.map(|frames| RecordedFrames { frames, left_out }))
+    }
+}
+
+/// Iterates over the names that the program chooses.
+fn chosen_names() -> impl Iterator<Item = String> {
+    (1..10_000).map(|number| format!("touch-{number}.npy"))
+}
+
+/// Returns true if neither an array nor metadata has the name.
+fn is_free(path: &Path) -> bool {
+    !path.exists() && !path.with_extension("json").exists()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chosen_name_that_another_program_has_taken_is_replaced_by_the_next_free_one() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let access = WriteAccess::below(folder.path().to_owned());
+        let metadata = RecordingMetadata::default();
+        let begun = || Recording::in_free_file(&access, &metadata).expect("a free name");
+        let recordings = [begun(), begun()];
+        let names = recordings.each_ref().map(|(name, _)| name.as_str());
+        assert_eq!(names, ["touch-1.npy"; 2]);
+        for (own, name) in recordings.iter().zip(["touch-1.npy", "touch-2.npy"]) {
+            let recorded = own.1.add(&Frame::default(), None).expect("recorded");
+            assert_eq!(recorded.map(|recorded| recorded.frames), Some(1));
+            assert_eq!(own.1.chosen_name().as_deref(), Some(name));
+            assert!(own.1.finish().is_some());
+            assert!(folder.path().join(name).exists());
+        }
+        // A name that the user gave is not changed.
+        let path = folder.path().join("own.npy");
+        let own = Recording::new(path.clone());
+        own.begin(Existing::Kept, &metadata).expect("begun");
+        std::fs::write(&path, "").expect("written");
+        assert!(own.add(&Frame::default(), None).is_err());
     }
 }
