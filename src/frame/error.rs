@@ -48,6 +48,13 @@ pub enum FrameError {
         /// The allowed range.
         allowed: &'static str,
     },
+    /// A value times the gain of its cell is beyond ±[`LARGEST_VALUE`](crate::frame::LARGEST_VALUE).
+    Product {
+        /// The value, after the tare.
+        value: f64,
+        /// The gain of its cell.
+        gain: f64,
+    },
     /// There are fewer frames than a tare needs.
     Tare {
         /// The number of frames so far.
@@ -116,6 +123,10 @@ impl fmt::Display for FrameError {
                 let found = short(*found);
                 write!(f, "{what}: {found} is out of range (allowed: {allowed})")
             }
+            Self::Product { value, gain } => write!(
+                f,
+                "the value {value:e} times its gain {gain:e} is too large, expected at most 1e300"
+            ),
             Self::Tare { frames, wanted } => {
                 write!(f, "frames for the tare: found {frames}, expected {wanted}")
             }

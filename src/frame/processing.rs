@@ -65,7 +65,8 @@ impl Processing {
     /// and gain; NaN where there is no cell.
     ///
     /// # Errors
-    /// Returns an error if the view, the tare or the gain does not fit the frame.
+    /// Returns an error if the view, the tare or the gain does not fit the frame, or if a product with the gain is too
+    /// large.
     pub fn values(&mut self, frame: &Frame) -> Result<[&Matrix<f64>; 2], FrameError> {
         self.view.apply_to(frame, &mut self.raw)?;
         self.tared.reset(self.raw.size(), 0.0);
@@ -82,7 +83,8 @@ impl Processing {
     /// Processes a frame.
     ///
     /// # Errors
-    /// Returns an error if the view, the tare, the gain or the rule does not fit the frame.
+    /// Returns an error if the view, the tare, the gain or the rule does not fit the frame, or if a product with the gain
+    /// is too large.
     pub fn run(&mut self, frame: &Frame) -> Result<Processed<'_>, FrameError> {
         self.values(frame)?;
         let (sum, max, cells) = summary(self.raw.values());
@@ -127,14 +129,17 @@ fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
     (sum, (cells > 0).then_some(max), cells)
 }
 
-/// Multiplies each value by the gain of its cell. A product that is too large becomes NaN.
+/// Multiplies each value by the gain of its cell. A product that is too large is an error, because as a missing value it
+/// would make the strongest cells inactive.
 fn multiply(values: &mut Matrix<f64>, gain: &Matrix<f64>) -> Result<(), FrameError> {
     check_size("gain", gain, values)?;
-    for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {
-        *value *= gain;
-        if value.abs() > LARGEST_VALUE {
-            *value = f64::NAN;
+    for (value, &gain) in values.values_mut().iter_mut().zip(gain.values()) {
+        let product = *value * gain;
+        if product.abs() > LARGEST_VALUE {
+            let value = *value;
+            return Err(FrameError::Product { value, gain });
         }
+        *value = product;
     }
     Ok(())
 }
@@ -245,19 +250,18 @@ mod tests {
     }
 
     #[test]
-    fn a_product_that_is_too_large_for_a_sum_counts_as_no_value() {
+    fn a_product_that_is_too_large_is_an_error() {
         let mut frame = Frame::new(FrameSize::of(3, 1));
-        frame.values_mut().copy_from_slice(&[1e299, -1e299, 2.0]);
+        frame.values_mut().copy_from_slice(&[2.0, -1e299, 1e299]);
         let mut gain = Matrix::filled(MatrixSize::of(3, 1), 100.0);
-        gain.set(2, 0, 1.0);
+        gain.set(1, 0, 1.0);
         let mut processing = Processing {
             gain: Some(gain),
             rule: Some(Rule::AtLeast(1.0)),
             ..Processing::default()
         };
-        let processed = processing.run(&frame).expect("it fits");
-        assert_eq!(processed.tared_sum, 2.0);
-        let imprint = processed.imprint.map(|imprint| imprint.to_string());
-        assert_eq!(imprint.as_deref(), Some("..#"));
+        let error = processing.run(&frame).expect_err("beyond 1e300");
+        let expected = "the value 1e299 times its gain 1e2 is too large, expected at most 1e300";
+        assert_eq!(error.to_string(), expected);
     }
 }
