@@ -12,6 +12,7 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::RecordError;
+use crate::formats::system_error::system_reason;
 use crate::formats::value::{counted, grouped};
 use crate::formats::{json, json_object};
 use crate::pose::{GridError, RangeError};
@@ -281,9 +282,9 @@ fn other_format(found: &str, expected: &str) -> String {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ArchiveError {
-    /// An error of the system.
-    #[error(transparent)]
-    Io(#[from] io::Error),
+    /// An error of the system. It is part of the message, so it is not the source of this error, too.
+    #[error("{}", system_reason(.0))]
+    Io(io::Error),
     /// Not a zip, or a broken one.
     #[error("not a readable archive of arrays: {0}")]
     Zip(String),
@@ -347,6 +348,12 @@ pub enum ArchiveError {
     Model(#[from] crate::recognition::ModelError),
 }
 
+impl From<io::Error> for ArchiveError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::error::Error;
@@ -362,6 +369,14 @@ mod tests {
             "not a readable archive of arrays: cut short, damaged, or a file of another kind"
         );
         assert!(broken.source().is_none());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn an_error_of_the_system_is_without_its_number() {
+        let full = ArchiveError::from(io::Error::from_raw_os_error(28));
+        assert_eq!(full.to_string(), "No space left on device");
+        assert!(full.source().is_none());
     }
 
     #[test]
