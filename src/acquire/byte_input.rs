@@ -90,7 +90,7 @@ impl ByteInput {
                 Self::File(File::open(path)?)
             }
             FrameSource::File(path) => {
-                let (file, growth) = followed_file::open(path)?;
+                let (file, growth) = followed_file::of(path, File::open(path)?)?;
                 Self::Growing(file, options.format.is_none().then_some(growth))
             }
         }))

@@ -86,16 +86,15 @@ pub(super) struct FollowedFile<'a> {
     offset: u64,
 }
 
-/// Opens a file. Also returns its growth.
+/// Follows an open file of that path, at its start. Also returns its growth.
 ///
 /// # Errors
 /// Returns the system's error.
-pub(super) fn open(path: &Path) -> io::Result<(GrowingFile, Growth)> {
-    let file = File::open(path)?;
+pub(super) fn of(path: &Path, file: File) -> io::Result<(GrowingFile, Growth)> {
     let growth = Growth {
         length: file.metadata()?.len(),
-        bytes: Cell::new(0),
         file: file.try_clone()?,
+        bytes: Cell::new(0),
         has_grown: Cell::new(false),
         has_caught_up: Cell::new(false),
         is_new: Cell::new(false),
@@ -119,8 +118,8 @@ impl<'a> FollowedFile<'a> {
             growth,
             waiting,
             end: None,
-            offset: 0,
             ended_line: true,
+            offset: 0,
         })
     }
 
@@ -146,9 +145,9 @@ impl Read for FollowedFile<'_> {
             }
             let count = self.file.read(bytes)?;
             if count > 0 {
+                self.ended_line = bytes[count - 1] == b'\n';
                 self.offset += count as u64;
                 self.growth.bytes.update(|bytes| bytes + count as u64);
-                self.ended_line = bytes[count - 1] == b'\n';
                 return Ok(count);
             }
             if !self.growth.may_go_on() {
@@ -174,9 +173,9 @@ impl Seek for FollowedFile<'_> {
             return Err(ErrorKind::Unsupported.into());
         }
         // Bytes that are read again did not arrive just now.
+        self.growth.has_caught_up.set(false);
         let again = std::mem::take(&mut self.offset);
         self.growth.bytes.update(|bytes| bytes - again);
-        self.growth.has_caught_up.set(false);
         self.file.rewind().map(|()| 0)
     }
 }

@@ -14,11 +14,11 @@ use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::pace::{MOMENT, Pace};
 use crate::acquire::recorder::metadata_beside;
 use crate::acquire::silence::SilenceWatch;
-use crate::acquire::source::has_no_file;
+use crate::acquire::source::{OpenRecording, has_no_file};
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
     ChannelInfo, EarlierLayout, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
-    RecordingInput, RecordingMetadata, RecordingNote, format_after, format_of, read_as,
+    RecordingInput, RecordingMetadata, RecordingNote, format_after, read_as,
 };
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
@@ -34,7 +34,7 @@ fn replaced_by(format: RecordingFormat) -> RecordingError {
 /// Plays a recording. If it grows meanwhile, it is followed: its present frames are reported at once, then each frame
 /// as it arrives.
 pub(super) fn run(
-    path: &Path,
+    OpenRecording { path, file, format }: OpenRecording<'_>,
     options: &AcquireOptions,
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
@@ -52,12 +52,11 @@ pub(super) fn run(
         silence: RefCell::new(SilenceWatch::new(Instant::now())),
         damage: RefCell::default(),
     };
-    let file = File::open(path).map_err(AcquireError::opening)?;
-    let format = format_of(file, ReadOptions::default())?;
+    let format = format?;
     if options.playback != Playback::Live || !format.is_appended_to() {
-        player.play(path, format)
+        player.play(file, format)
     } else {
-        player.follow(path, format)
+        player.follow(path, file, format)
     }
 }
 
@@ -72,9 +71,9 @@ struct Player<'a, 'b> {
     /// Whether the consumer wants no more.
     ended: Cell<bool>,
     /// The counts of a followed file: bytes, frames and wrong frames.
+    counts: RefCell<StreamCounts>,
     /// The wait for the next frame of a followed file.
     silence: RefCell<SilenceWatch>,
-    counts: RefCell<StreamCounts>,
     /// The error of the first of them.
     damage: RefCell<Option<RecordingError>>,
 }
@@ -152,8 +151,7 @@ impl Round<'_> {
 
 impl Player<'_, '_> {
     /// Plays a file, once or again and again.
-    fn play(&self, path: &Path, format: RecordingFormat) -> Result<(), AcquireError> {
-        let mut file = File::open(path).map_err(AcquireError::opening)?;
+    fn play(&self, mut file: File, format: RecordingFormat) -> Result<(), AcquireError> {
         let mut round = Round::default();
         let repeats = self.options.playback.repeats();
         loop {
@@ -171,8 +169,13 @@ impl Player<'_, '_> {
     }
 
     /// Plays a file, and follows what is written at its end.
-    fn follow(&self, path: &Path, mut format: RecordingFormat) -> Result<(), AcquireError> {
-        let (mut file, growth) = followed_file::open(path).map_err(AcquireError::opening)?;
+    fn follow(
+        &self,
+        path: &Path,
+        file: File,
+        mut format: RecordingFormat,
+    ) -> Result<(), AcquireError> {
+        let (mut file, growth) = followed_file::of(path, file).map_err(AcquireError::opening)?;
         let mut round = Round {
             growth: Some(&growth),
             ..Round::default()
@@ -230,9 +233,6 @@ impl Player<'_, '_> {
         self.report(AcquireEvent::Tick(&self.counts.borrow()))
     }
 
-    /// Drops and counts a wrong frame of a followed file if there were frames before it and more may come: a program
-    /// that was interrupted continues after a torn line. Whether more comes may be known only later. Returns `Break` if
-    /// the error ends the reading.
     /// Reports a tick at the end of a followed file, and whether it is silent. A file that has not grown may be a complete
     /// recording. Returns `Break` if no more is wanted.
     fn wait_for_more(&self, path: &Path, growth: &Growth) -> ControlFlow<()> {
@@ -251,6 +251,9 @@ impl Player<'_, '_> {
         })
     }
 
+    /// Drops and counts a wrong frame of a followed file if there were frames before it and more may come: a program
+    /// that was interrupted continues after a torn line. Whether more comes may be known only later. Returns `Break` if
+    /// the error ends the reading.
     fn leave_out(
         &self,
         error: &RecordingError,
@@ -309,11 +312,11 @@ impl Player<'_, '_> {
                 RecordingEvent::Frame(frame) if pace.has_no_shape(frame) => ControlFlow::Break(()),
                 RecordingEvent::Frame(mut frame) => {
                     let given_up = self.wait(&mut pace, frame).is_break();
+                    self.counts.borrow_mut().frames += 1;
+                    self.silence.borrow_mut().note_frame(Instant::now());
                     // The present content of a file has arrived at some other time.
                     let arrives = round.growth.is_some_and(Growth::has_caught_up);
                     let time = round.times.time(frame.time, arrives);
-                    self.counts.borrow_mut().frames += 1;
-                    self.silence.borrow_mut().note_frame(Instant::now());
                     let (channel, number) = round.place(frame);
                     if (channel, number) != (frame.channel, frame.number) {
                         renumbered.copy_from(frame);
@@ -366,8 +369,21 @@ mod tests {
     use std::time::{Duration, SystemTime};
 
     use super::*;
+    use crate::acquire::source::FrameSource;
     use crate::formats::seconds::to_nanoseconds;
     use crate::frame::FrameSize;
+
+    /// Plays the recording of that path.
+    fn run(
+        path: &Path,
+        options: &AcquireOptions,
+        stop: &AtomicBool,
+        consumer: &mut Consumer<'_>,
+    ) -> Result<(), AcquireError> {
+        let source = FrameSource::File(path.to_owned());
+        let opened = source.open_recording(options).expect("a file");
+        super::run(opened.expect("a recording"), options, stop, consumer)
+    }
 
     /// Returns the times of the five frames of a file and of the three that then take their place.
     fn times_of_a_rewritten(path: &Path, [before, after]: &[String; 2]) -> Vec<f64> {
@@ -546,6 +562,7 @@ mod tests {
             ..AcquireOptions::default()
         };
         let (mut values, mut ticks, mut dropped) = (Vec::new(), 0, 0);
+        let mut after = Some(after);
         let result = run(path, &options, &AtomicBool::new(false), &mut |event| {
             match event {
                 AcquireEvent::Frame { frame, .. } => values.push(frame.values()[0]),
@@ -602,7 +619,6 @@ mod tests {
                 0,
             ),
             ("times, cut between lines", clocked(""), 0),
-        let mut after = Some(after);
             ("times, cut in a line", clocked("0,0,0\n"), 1),
             ("rows, cut between frames", blocks(""), 0),
             ("rows, cut between rows", blocks("0 0\n\n"), 1),
@@ -649,22 +665,6 @@ mod tests {
     }
 
     #[test]
-    fn a_consumer_that_broke_off_while_more_was_waited_for_gets_no_more() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("r.bin");
-        // The end of the file confirms its last frame.
-        std::fs::write(&path, b"\xaa\x55\x01\x02".repeat(4)).expect("written");
-        let options = AcquireOptions {
-            size: Some(FrameSize::of(2, 1)),
-            ..AcquireOptions::default()
-        };
-        let (mut frames, mut has_ended) = (0, false);
-        let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
-            assert!(!has_ended, "{event:?}");
-            match event {
-                AcquireEvent::Frame { .. } => frames += 1,
-                AcquireEvent::Tick(_) => has_ended = frames == 3,
-    #[test]
     fn a_file_that_no_longer_grows_is_silent() {
         let folder = tempfile::tempdir().expect("a folder");
         let silence = |is_removed: bool| {
@@ -707,6 +707,22 @@ mod tests {
         });
     }
 
+    #[test]
+    fn a_consumer_that_broke_off_while_more_was_waited_for_gets_no_more() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("r.bin");
+        // The end of the file confirms its last frame.
+        std::fs::write(&path, b"\xaa\x55\x01\x02".repeat(4)).expect("written");
+        let options = AcquireOptions {
+            size: Some(FrameSize::of(2, 1)),
+            ..AcquireOptions::default()
+        };
+        let (mut frames, mut has_ended) = (0, false);
+        let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
+            assert!(!has_ended, "{event:?}");
+            match event {
+                AcquireEvent::Frame { .. } => frames += 1,
+                AcquireEvent::Tick(_) => has_ended = frames == 3,
                 _ => {}
             }
             if has_ended {

@@ -57,9 +57,9 @@ pub fn acquire(
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
-    let recording = source.recording(options);
+    let recording = source.open_recording(options);
     match recording.map_err(|error| source.not_opened(error))? {
-        Some(path) => playback::run(path, options, stop, consumer),
+        Some(recording) => playback::run(recording, options, stop, consumer),
         None => stream::run(source, options, stop, consumer),
     }
 }

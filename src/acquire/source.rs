@@ -8,9 +8,19 @@ use std::path::{Path, PathBuf};
 
 use crate::acquire::event::{AcquireError, AcquireOptions};
 use crate::acquire::recorder::RecorderError;
-use crate::formats::recording::{ReadOptions, RecordingError, format_of};
+use crate::formats::recording::{ReadOptions, RecordingError, RecordingFormat, format_of};
 use crate::formats::system_error::system_reason;
 use crate::storage::FileId;
+
+/// A file that is played as a recording.
+#[derive(Debug)]
+pub(super) struct OpenRecording<'a> {
+    pub(super) path: &'a Path,
+    /// The file in which the format was found, at any position: another one may have its name by now.
+    pub(super) file: File,
+    /// The format, or the reason why the file is refused.
+    pub(super) format: Result<RecordingFormat, RecordingError>,
+}
 
 /// A source of frames.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -55,12 +65,27 @@ impl FrameSource {
     /// # Errors
     /// Returns an error if the file cannot be read.
     pub fn recording(&self, options: &AcquireOptions) -> io::Result<Option<&Path>> {
+        let recording = self.open_recording(options)?;
+        Ok(recording.map(|recording| recording.path))
+    }
+
+    /// Opens the file that [`Self::recording`] returns.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read.
+    pub(super) fn open_recording(
+        &self,
+        options: &AcquireOptions,
+    ) -> io::Result<Option<OpenRecording<'_>>> {
         let (Self::File(path), None) = (self, options.format) else {
             return Ok(None);
         };
-        match format_of(File::open(path)?, ReadOptions::default()) {
-            Ok(_) | Err(RecordingError::Foreign { .. }) => Ok(Some(path)),
+        let file = File::open(path)?;
+        match format_of(&file, ReadOptions::default()) {
             Err(RecordingError::Io(error)) => Err(error),
+            format @ (Ok(_) | Err(RecordingError::Foreign { .. })) => {
+                Ok(Some(OpenRecording { path, file, format }))
+            }
             Err(_) => Ok(None),
         }
     }
@@ -143,10 +168,20 @@ impl FrameSource {
         Ok(())
     }
 
+    /// Returns true if the source is a file that was moved or removed: no file has its name.
+    pub(super) fn has_vanished(&self) -> bool {
+        matches!(self, Self::File(path) if has_no_file(path))
+    }
+
     /// Returns true if the source may come back after it was lost, so that taxel tries again.
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
     }
+}
+
+/// Returns true if no file has that name.
+pub(super) fn has_no_file(path: &Path) -> bool {
+    !path.is_file()
 }
 
 /// Returns true if a device may appear at a path when it is plugged in.
@@ -168,22 +203,12 @@ pub(super) fn check_address(address: &str) -> io::Result<()> {
         )),
     }
 }
-    /// Returns true if the source is a file that was moved or removed: no file has its name.
-    pub(super) fn has_vanished(&self) -> bool {
-        matches!(self, Self::File(path) if has_no_file(path))
-    }
-
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-/// Returns true if no file has that name.
-pub(super) fn has_no_file(path: &Path) -> bool {
-    !path.is_file()
-}
-
     fn a_serial_line_that_is_not_plugged_in_is_still_a_serial_line() {
         for (name, is_line) in [
             ("/dev/ttyUSB9999", true),
