@@ -199,14 +199,6 @@ pub(crate) fn may_be_recording(bytes: &[u8]) -> bool {
     }
 }
 
-/// Returns the format of a recording like [`recognised`], reading the input from its current position.
-///
-/// # Errors
-/// Returns the system's error if the input cannot be read.
-pub fn recognised_input(input: impl Read) -> io::Result<Option<RecordingFormat>> {
-    Ok(recognised(&start_of(input)?))
-}
-
 /// Returns the format of a recording, reading the input from its current position.
 ///
 /// # Errors

@@ -79,7 +79,7 @@ pub(crate) use channel_choice::no_channel;
 pub(crate) use detect::may_be_recording;
 #[cfg(all(feature = "acquire", unix))]
 pub(crate) use detect::{RecordingInput, format_after, format_of, read_as};
-pub use detect::{read, recognised, recognised_input};
+pub use detect::{read, recognised};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
