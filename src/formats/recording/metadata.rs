@@ -7,6 +7,8 @@ use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
 use crate::formats::framed::{FrameRows, RuleRecord, matrix};
+use crate::formats::recording::length::{LengthUnit, pitches_in_mm};
+use crate::formats::recording::time::unit::TimeUnit;
 use crate::formats::{json, json_object};
 use crate::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
 use crate::matrix::Matrix;
@@ -60,10 +62,10 @@ pub struct RecordingMetadata {
     pub source: String,
     /// The unit of the values.
     pub unit: Option<String>,
-    /// The distance between neighbouring cells in mm, along x and along y: above 0, up to 1e300. Other values are left
-    /// out of the text.
+    /// The distance between neighbouring cells in mm, along x and along y: 1e-9 to 1000. Other values are left out of
+    /// the text.
     pub pitch_mm: Option<[f64; 2]>,
-    /// The time from one frame to the next, in seconds: above 0, up to 1e300. Another value is left out of the text.
+    /// The time from one frame to the next, in seconds: 1e-9 to 1e9. Another value is left out of the text.
     pub seconds_per_frame: Option<f64>,
     /// The rule of the imprints on view at the end.
     pub rule: Option<SetRule>,
@@ -221,8 +223,9 @@ impl RecordingMetadata {
                 let spread = described.tare_spread.as_ref();
                 let spread = spread.map(|rows| matrix(rows)).transpose();
                 let spread = spread.map_err(MetadataError::of_key("tare_spread"))?;
-                let step = described.tare_step.filter(|&value| is_positive(value));
-                let tare = Tare::from_parts(baseline, spread, step, frames.unwrap_or(1));
+                let tare_step = described.tare_step;
+                let tare_step = tare_step.filter(|&step| step > 0.0 && step <= LARGEST_VALUE);
+                let tare = Tare::from_parts(baseline, spread, tare_step, frames.unwrap_or(1));
                 Some(tare.map_err(|error| match error {
                     FrameError::Rule {
                         what,
@@ -240,10 +243,8 @@ impl RecordingMetadata {
         Ok(Self {
             source: shortened_message(&described.source),
             unit: described.unit.as_deref().map(shortened_message),
-            pitch_mm: positive_pitch(described.pitch_mm),
-            seconds_per_frame: described
-                .seconds_per_frame
-                .filter(|&value| is_positive(value)),
+            pitch_mm: pitch(described.pitch_mm),
+            seconds_per_frame: step(described.seconds_per_frame),
             rule,
             tare,
             marks: described.marks,
@@ -262,8 +263,8 @@ impl RecordingMetadata {
             format: FORMAT.to_owned(),
             source: self.source.clone(),
             unit: self.unit.clone(),
-            pitch_mm: positive_pitch(self.pitch_mm),
-            seconds_per_frame: self.seconds_per_frame.filter(|&value| is_positive(value)),
+            pitch_mm: pitch(self.pitch_mm),
+            seconds_per_frame: step(self.seconds_per_frame),
             rule: self.rule.map(DescribedRule::Set),
             tare_frames: tare.map(Tare::frames),
             tare: tare.map(|tare| rows(tare.baseline())),
@@ -277,13 +278,14 @@ impl RecordingMetadata {
     }
 }
 
-fn is_positive(value: f64) -> bool {
-    value > 0.0 && value <= LARGEST_VALUE
+/// Returns the pitch unless a side is out of range. JSON has no number for NaN, so it could not be read again.
+fn pitch(pitch_mm: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    pitches_in_mm(pitch_mm?.map(Some), LengthUnit::Millimetres)
 }
 
-/// Returns the pitch unless a side is out of range. JSON has no number for NaN, so it could not be read again.
-fn positive_pitch(pitch_mm: Option<[f64; 2]>) -> Option<[f64; 2]> {
-    pitch_mm.filter(|pitch| pitch.iter().all(|&side| is_positive(side)))
+/// Returns the time from one frame to the next unless it is out of range.
+fn step(seconds: Option<f64>) -> Option<f64> {
+    TimeUnit::Seconds.step_in_seconds(seconds?)
 }
 
 fn rows(matrix: &Matrix<f64>) -> FrameRows {
@@ -357,7 +359,7 @@ mod tests {
 
     #[test]
     fn metadata_with_any_numbers_can_be_read_again() {
-        for number in [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e301] {
+        for number in [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e-13, 2e9, 1e301] {
             let metadata = RecordingMetadata {
                 pitch_mm: Some([number, 2.0]),
                 seconds_per_frame: Some(number),

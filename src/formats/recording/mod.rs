@@ -29,6 +29,7 @@
 //! channel_choice   one channel of several, by its name
 //! answer           a frame as a line of JSON
 //! side             numbers of rows and columns
+//! length           distances between cells, with their units
 //! stream_size      the rows and columns of a stream, which may change
 //! text             lines, fields and numbers
 //! time             the times of frames
@@ -52,6 +53,8 @@ mod channel_choice;
 mod answer;
 
 pub(super) mod side;
+
+mod length;
 
 pub(super) mod stream_size;
 

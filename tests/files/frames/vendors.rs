@@ -77,6 +77,77 @@ fn the_last_unit_of_tekscan_is_used_and_metres_are_converted() {
 }
 
 #[test]
+fn a_pitch_is_rounded_and_one_that_no_sensor_has_is_unknown() {
+    let tekscan = |pitch: &str, unit: &str| {
+        format!(
+            "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nROW_SPACING {pitch} {unit}\nCOL_SPACING {pitch} {unit}\n\
+             ASCII_DATA @@\nFrame 1\n1,2\n\n@@\n"
+        )
+    };
+    let zebris = |pitch: &str, unit: &str| {
+        let text = zebris(&["Data"]).replace("=8\n", &format!("={pitch}\n"));
+        text.replace("Distance=mm", &format!("Distance={unit}"))
+    };
+    let emed = |pitch: &str, unit: &str| {
+        let size = format!("{pitch}x{pitch} {unit}");
+        emed_header(1).replace("1.000x1.000 cm", &size) + LEFT
+    };
+    let xsensor = |pitch: &str, unit: &str| {
+        let text = xsensor(["08:21:17.9", "08:21:18.4"]).replace("(cm)", &format!("({unit})"));
+        text.replace(",0.25\n", &format!(",{pitch}\n"))
+    };
+    for (pitch, unit, expected) in [
+        ("0.57", "cm", Some([5.7, 5.7])),
+        ("0.05", "in", Some([1.27, 1.27])),
+        ("1000.1", "mm", None),
+        ("0.00", "cm", None),
+        ("0.0000000000001", "cm", None),
+    ] {
+        for text in [
+            tekscan(pitch, unit),
+            zebris(pitch, unit),
+            emed(pitch, unit),
+            xsensor(pitch, unit),
+        ] {
+            let found = recorded(text.as_bytes(), None);
+            assert_eq!(error(&found), None, "{text}");
+            assert_eq!(found.channels[0].pitch_mm, expected, "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_time_step_that_no_recording_has_is_unknown() {
+    let tekscan = |step: &str| {
+        format!(
+            "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nSECONDS_PER_FRAME {step}\nASCII_DATA @@\n\
+             Frame 1\n1,2\n\nFrame 2\n1,2\n\n@@\n"
+        )
+    };
+    let zebris = |step: &str| {
+        let text = zebris(&["Data4", "Data5"]).replace("UnitTime=ms", "UnitTime=s");
+        text.replace("TimeDiff=20", &format!("TimeDiff={step}"))
+    };
+    let emed = |step: &str| {
+        let page = |label| emed_header(label).replace("20.0 ms", &format!("{step} s")) + LEFT;
+        page(1) + &page(2)
+    };
+    for (step, expected) in [
+        ("0.02", Some(0.02)),
+        ("0.0200000000004", Some(0.02)),
+        ("0.0000000001", None),
+        ("10000000000", None),
+    ] {
+        for text in [tekscan(step), zebris(step), emed(step)] {
+            let found = recorded(text.as_bytes(), None);
+            assert_eq!(error(&found), None, "{text}");
+            assert_eq!(found.channels[0].seconds_per_frame, expected, "{text}");
+            assert_eq!(found.frames[1].time, expected, "{text}");
+        }
+    }
+}
+
+#[test]
 fn frames_that_are_left_out_are_gaps_in_time() {
     let tekscan = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nSECONDS_PER_FRAME 0.02\nASCII_DATA @@\n\
                    Frame 1\n1,2\n\nFrame 3\n1,2\n\nFrame 5\n1,2\n\n@@\n";

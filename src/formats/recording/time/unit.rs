@@ -2,6 +2,11 @@
 
 use std::ops::Range;
 
+use crate::formats::seconds::to_nanoseconds;
+
+/// The longest time from one frame to the next, in seconds: more than 30 years.
+const LONGEST_STEP: f64 = 1e9;
+
 /// A unit of time; smaller units come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::formats::recording) enum TimeUnit {
@@ -47,6 +52,13 @@ impl TimeUnit {
         }
     }
 
+    /// Converts the time from one frame to the next from this unit to seconds, rounded to the nanosecond. None unless
+    /// that is above 0 and at most [`LONGEST_STEP`].
+    pub(in crate::formats::recording) fn step_in_seconds(self, number: f64) -> Option<f64> {
+        let seconds = to_nanoseconds(self.seconds(number));
+        (seconds > 0.0 && seconds <= LONGEST_STEP).then_some(seconds)
+    }
+
     /// Guesses the unit of a time without one: milliseconds or smaller if that makes it a date between 2000 and 2100,
     /// otherwise seconds. A machine's clock may count in any unit since its start; no number shows which.
     pub(in crate::formats::recording) fn by_size(number: f64) -> Self {
@@ -61,6 +73,23 @@ impl TimeUnit {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_step_is_rounded_before_it_is_checked() {
+        for (number, unit, expected) in [
+            (16.7, TimeUnit::Milliseconds, Some(0.0167)),
+            (1e9, TimeUnit::Seconds, Some(1e9)),
+            (1.0, TimeUnit::Nanoseconds, Some(1e-9)),
+            (1e-10, TimeUnit::Milliseconds, None),
+            (1e-10, TimeUnit::Seconds, None),
+            (1e308, TimeUnit::Minutes, None),
+            (0.0, TimeUnit::Seconds, None),
+            (-0.1, TimeUnit::Seconds, None),
+            (f64::NAN, TimeUnit::Seconds, None),
+        ] {
+            assert_eq!(unit.step_in_seconds(number), expected, "{number} {unit:?}");
+        }
+    }
 
     #[test]
     fn only_a_present_day_date_has_a_smaller_unit_than_seconds() {

@@ -28,6 +28,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
 };
+use crate::formats::recording::length::{LengthUnit, pitches_in_mm};
 use crate::formats::recording::side::{frame_size, side};
 use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
@@ -313,13 +314,11 @@ fn after<'a>(line: &'a str, word: &str) -> Option<(f64, &'a str)> {
     Some((number::read(number.as_bytes())?, rest))
 }
 
-/// Returns the millimetres in the unit of length at the beginning of a text: centimetres, unless it says millimetres.
-fn millimetres(text: &str) -> f64 {
+/// Returns the unit of length at the beginning of a text; centimetres if it names none.
+fn length_unit(text: &str) -> LengthUnit {
     let mut words = text.trim_start().split(|end: char| !end.is_alphabetic());
-    match words.next() {
-        Some("mm") => 1.0,
-        _ => 10.0,
-    }
+    let named = words.next().and_then(LengthUnit::of_name);
+    named.unwrap_or(LengthUnit::Centimetres)
 }
 
 impl EmedState {
@@ -361,13 +360,13 @@ impl EmedState {
             self.area_cm2 = Some(area);
         }
         if let Some((time, unit)) = after(line, "Time/picture:") {
-            let seconds = time_unit(unit).unwrap_or(TimeUnit::Seconds).seconds(time);
-            self.seconds = Some(seconds).filter(|&seconds| seconds > 0.0);
+            let unit = time_unit(unit).unwrap_or(TimeUnit::Seconds);
+            self.seconds = unit.step_in_seconds(time);
         }
         if let Some((x, rest)) = after(line, "Sensor size:")
             && let Some((y, unit)) = after(rest, "x")
         {
-            self.pitch_mm = Some([x, y].map(|side| side * millimetres(unit)));
+            self.pitch_mm = pitches_in_mm([Some(x), Some(y)], length_unit(unit));
         }
         if let Some((label, _)) = after(line, "Pict-No.:") {
             #[expect(clippy::cast_possible_truncation, reason = "the number of a picture")]

@@ -29,14 +29,16 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
 };
+use crate::formats::recording::length::LengthUnit;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text::lines::{TextLines, is_blank, text, unpadded};
 use crate::formats::recording::text::number;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::Separator;
+use crate::formats::recording::time::unit::TimeUnit;
 use crate::formats::seconds::of_label;
 use crate::frame::{Frame, FrameSize};
-use crate::parameter::number::{counted, to_decimals};
+use crate::parameter::number::counted;
 use crate::quote::shortened;
 
 /// The largest difference between two sums that is not an error.
@@ -77,8 +79,9 @@ impl TekscanHeader {
                 self.column_spacing = spacing(value);
             }
             b"SECONDS_PER_FRAME" if self.info.seconds_per_frame.is_none() => {
-                let seconds = number::read(value).filter(|&seconds| seconds > 0.0);
-                self.info.seconds_per_frame = seconds;
+                let seconds = number::read(value);
+                self.info.seconds_per_frame =
+                    seconds.and_then(|seconds| TimeUnit::Seconds.step_in_seconds(seconds));
             }
             b"UNITS" => self.info.unit = Some(text(value)),
             b"TIME" if self.info.start.is_none() => self.info.start = Some(text(value)),
@@ -88,31 +91,23 @@ impl TekscanHeader {
     }
 }
 
-/// Reads a length with its unit, in mm: `1.27 mm`, `0.5 centimeters`, `1.27e-003 meters` or `0.05 in.`. None without
-/// a unit, since it may be any, so the pitch stays unknown.
+/// Reads a distance between cells with its unit, in mm: `1.27 mm`, `0.5 centimeters`, `1.27e-003 meters` or
+/// `0.05 in.`. None without a unit, since it may be any, so the pitch stays unknown.
 fn spacing(value: &[u8]) -> Option<f64> {
-    let value = text(value).trim().to_lowercase();
+    let value = text(value);
+    let value = value.trim();
     // The unit begins with the first letter that is not part of an exponent.
     let is_exponent = |at: usize| {
-        value[at..].starts_with('e') && value[at + 1..].starts_with(['+', '-', '0', '1', '2', '3'])
+        value[at..].starts_with(['e', 'E'])
+            && value[at + 1..].starts_with(['+', '-', '0', '1', '2', '3'])
     };
     let mut letters = value
         .char_indices()
         .filter(|(_, letter)| letter.is_alphabetic());
     let (end, _) = letters.find(|&(at, _)| !is_exponent(at))?;
     let (length, unit) = value.split_at(end);
-    let length = number::read(length.trim_end().as_bytes()).filter(|&length| length > 0.0)?;
-    match unit.trim_end_matches('.') {
-        "mm" | "millimeters" | "millimetres" => Some(length),
-        "cm" | "centimeters" | "centimetres" => Some(length * 10.0),
-        "m" | "meters" | "metres" => Some(to_decimals(length * 1000.0, 9)),
-        // Micrometres, with the micro sign or the Greek letter.
-        "um" | "\u{b5}m" | "\u{3bc}m" | "micrometers" | "micrometres" | "microns" => {
-            Some(to_decimals(length / 1000.0, 9))
-        }
-        "in" | "inch" | "inches" => Some(length * 25.4),
-        _ => None,
-    }
+    let length = number::read(length.trim_end().as_bytes())?;
+    LengthUnit::of_name(unit)?.pitch_in_mm(length)
 }
 
 /// Reads a recording.
@@ -282,6 +277,9 @@ mod tests {
             ("1.27e-003 meters", Some(1.27)),
             ("1.27E-3m", Some(1.27)),
             ("0.127 cm", Some(1.27)),
+            ("0.57 cm", Some(5.7)),
+            ("1e-13 m", None),
+            ("1e308 in", None),
             ("1.27", None),
             ("1.27 furlongs", None),
             ("-1 mm", None),

@@ -27,6 +27,7 @@ use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, EarlyEnd, RecordingEvent, Sink};
+use crate::formats::recording::length::LengthUnit;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
@@ -36,7 +37,7 @@ use crate::formats::recording::text::separator::{Separator, decimal};
 use crate::formats::recording::time::moment;
 use crate::formats::seconds::since;
 use crate::frame::{Frame, FrameSize};
-use crate::parameter::number::{counted, to_decimals};
+use crate::parameter::number::counted;
 
 /// The most sensors in a file; each has a name of its own.
 const MOST_SENSORS: usize = 64;
@@ -144,14 +145,9 @@ pub(in crate::formats::recording) fn is_export(start: &[u8]) -> bool {
     has("FRAME") && has("SENSELS")
 }
 
-/// Returns the millimetres in the unit after a key, as in `SENSEL WIDTH (CM)`; None for an unknown unit.
-fn millimetres(key: &str) -> Option<f64> {
-    match key.split_once('(')?.1.trim_end_matches(')') {
-        "MM" => Some(1.0),
-        "CM" => Some(10.0),
-        "IN" | "INCH" | "INCHES" => Some(25.4),
-        _ => None,
-    }
+/// Returns the unit of length after a key, as in `SENSEL WIDTH (CM)`; None for an unknown unit.
+fn length_unit(key: &str) -> Option<LengthUnit> {
+    LengthUnit::of_name(key.split_once('(')?.1.trim_end_matches(')'))
 }
 
 impl XsensorState {
@@ -164,10 +160,7 @@ impl XsensorState {
             Field::Value(value) => Some(value),
             _ => None,
         };
-        let length = || {
-            let length = number_of().filter(|&length| length > 0.0)?;
-            Some(to_decimals(length * millimetres(key)?, 9))
-        };
+        let length = || length_unit(key)?.pitch_in_mm(number_of()?);
         let side = || stated(key, ' ', value, number);
         match key {
             "UNITS" => self.unit = Some(value.to_owned()),

@@ -27,12 +27,15 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
 };
+use crate::formats::recording::length::{LengthUnit, pitches_in_mm};
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::Separator;
-use crate::formats::seconds::{of_label, to_nanoseconds};
+use crate::formats::recording::time::field_role::time_unit;
+use crate::formats::recording::time::unit::TimeUnit;
+use crate::formats::seconds::of_label;
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
 
@@ -47,8 +50,8 @@ struct ZebrisHeader {
     row_distance: Option<f64>,
     /// `LDistY`: the distance between the values of a line.
     column_distance: Option<f64>,
-    /// `UnitDistance`, in millimetres.
-    factor: Option<f64>,
+    /// `UnitDistance`.
+    distance_unit: Option<LengthUnit>,
     /// `UnitPressure`.
     unit: Option<String>,
     /// `Date`, as it is written.
@@ -57,8 +60,8 @@ struct ZebrisHeader {
     time: Option<String>,
     /// `TimeDiff`: the time from one picture to the next.
     time_difference: Option<f64>,
-    /// `UnitTime`, in seconds.
-    seconds: Option<f64>,
+    /// `UnitTime`.
+    time_unit: Option<TimeUnit>,
     /// `MinIdx`: the number of the first picture.
     first: Option<i64>,
     /// `MaxIdx`: the number of the last picture.
@@ -93,30 +96,18 @@ impl ZebrisHeader {
         };
         let value = value.trim();
         let side = || stated(key, '=', value, number);
-        let positive = || number::read(value.as_bytes()).filter(|&value| value > 0.0);
+        let read = || number::read(value.as_bytes());
         match key.trim() {
             "SensCountX" => self.rows = Some(side()?),
             "SensCountY" => self.columns = Some(side()?),
-            "LDistX" => self.row_distance = positive(),
-            "LDistY" => self.column_distance = positive(),
-            "UnitDistance" => {
-                self.factor = match value.to_ascii_lowercase().as_str() {
-                    "mm" => Some(1.0),
-                    "cm" => Some(10.0),
-                    _ => None,
-                };
-            }
+            "LDistX" => self.row_distance = read(),
+            "LDistY" => self.column_distance = read(),
+            "UnitDistance" => self.distance_unit = LengthUnit::of_name(value),
             "UnitPressure" => self.unit = Some(value.to_owned()),
             "Date" => self.date = Some(value.to_owned()),
             "Time" => self.time = Some(value.to_owned()),
-            "TimeDiff" => self.time_difference = positive(),
-            "UnitTime" => {
-                self.seconds = match value.to_ascii_lowercase().as_str() {
-                    "ms" => Some(1e-3),
-                    "s" => Some(1.0),
-                    _ => None,
-                };
-            }
+            "TimeDiff" => self.time_difference = read(),
+            "UnitTime" => self.time_unit = time_unit(&value.to_lowercase()),
             "MinIdx" => self.first = value.parse().ok(),
             "MaxIdx" => self.last = value.parse().ok(),
             _ => {}
@@ -126,7 +117,6 @@ impl ZebrisHeader {
 
     /// Returns the channel that the header describes; without a unit of length it has no pitch.
     fn info(&self) -> ChannelInfo {
-        let distances = self.column_distance.zip(self.row_distance);
         ChannelInfo {
             size: FrameSize::of_sides(self.columns, self.rows),
             unit: self.unit.clone(),
@@ -136,11 +126,11 @@ impl ZebrisHeader {
             },
             seconds_per_frame: self
                 .time_difference
-                .zip(self.seconds)
-                .map(|(step, factor)| to_nanoseconds(step * factor)),
-            pitch_mm: distances
-                .zip(self.factor)
-                .map(|((x, y), factor)| [x * factor, y * factor]),
+                .zip(self.time_unit)
+                .and_then(|(step, unit)| unit.step_in_seconds(step)),
+            pitch_mm: self
+                .distance_unit
+                .and_then(|unit| pitches_in_mm([self.column_distance, self.row_distance], unit)),
             ..ChannelInfo::default()
         }
     }
