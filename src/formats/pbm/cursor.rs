@@ -12,12 +12,12 @@ pub(super) struct Cursor<'a> {
 }
 
 impl Cursor<'_> {
-    /// Returns the line and column of the position.
-    pub(super) fn line_and_column(&self) -> (usize, usize) {
-        let before = &self.bytes[..self.at];
+    /// Returns the line and column of an offset, for an error: it counts the lines from the start of the file.
+    pub(super) fn line_and_column(&self, offset: usize) -> (usize, usize) {
+        let before = &self.bytes[..offset];
         let start = before.iter().rposition(|&byte| byte == b'\n');
         let line = before.split(|&byte| byte == b'\n').count();
-        (line, self.at - start.map_or(0, |start| start + 1) + 1)
+        (line, offset - start.map_or(0, |start| start + 1) + 1)
     }
 
     /// Skips spaces and comments, and returns the next byte.
@@ -41,30 +41,32 @@ impl Cursor<'_> {
         what: &'static str,
         size: impl Fn(u8) -> Result<MatrixSize, ParameterError>,
     ) -> Result<MatrixSize, PbmError> {
-        let (side, (line, column)) = self.number();
+        let (side, offset) = self.number();
         let side = side.and_then(|side| u8::try_from(side).ok());
-        side.and_then(|side| size(side).ok())
-            .ok_or(PbmError::Side { line, column, what })
+        side.and_then(|side| size(side).ok()).ok_or_else(|| {
+            let (line, column) = self.line_and_column(offset);
+            PbmError::Side { line, column, what }
+        })
     }
 
-    /// Reads a number that is separated from what is before and after it; returns it with its line and column.
-    pub(super) fn number(&mut self) -> (Option<u32>, (usize, usize)) {
-        let start = self.at;
+    /// Reads a number that is separated from what is before and after it; returns it and its offset.
+    pub(super) fn number(&mut self) -> (Option<u32>, usize) {
+        let before = self.at;
         let _ = self.next();
-        let place = self.line_and_column();
-        let digits = self.bytes[self.at..]
+        let start = self.at;
+        let digits = self.bytes[start..]
             .iter()
             .take_while(|byte| byte.is_ascii_digit())
             .count();
-        let text = str::from_utf8(&self.bytes[self.at..self.at + digits]).ok();
+        let text = str::from_utf8(&self.bytes[start..start + digits]).ok();
         let number = text.and_then(|text| text.parse().ok());
-        let stands_apart = self.at > start;
+        let stands_apart = start > before;
         self.at += digits;
         let ends = match self.bytes.get(self.at) {
             Some(byte) => byte.is_ascii_whitespace() || *byte == b'#',
             None => true,
         };
-        (number.filter(|_| stands_apart && ends), place)
+        (number.filter(|_| stands_apart && ends), start)
     }
 
     /// Reads a digit for each taxel; returns the offset after the last.
@@ -83,7 +85,7 @@ impl Cursor<'_> {
                     b'0' => false,
                     b'1' => true,
                     byte => {
-                        let (line, column) = self.line_and_column();
+                        let (line, column) = self.line_and_column(self.at);
                         return Err(PbmError::Digit { line, column, byte });
                     }
                 };
@@ -101,7 +103,7 @@ impl Cursor<'_> {
     pub(super) fn bits(&mut self, imprint: &mut Imprint) -> Result<usize, PbmError> {
         // Exactly one space separates the height from the bits, which may look like spaces.
         if self.bytes.get(self.at) == Some(&b'#') {
-            let (line, column) = self.line_and_column();
+            let (line, column) = self.line_and_column(self.at);
             return Err(PbmError::Space { line, column });
         }
         let start = (self.at + 1).min(self.bytes.len());

@@ -14,9 +14,12 @@ pub(super) fn shades(
     raw: bool,
     imprint: &mut Imprint,
 ) -> Result<usize, PbmError> {
-    let (brightest, (line, column)) = cursor.number();
+    let (brightest, offset) = cursor.number();
     let brightest = brightest.filter(|shade| (1..=65535).contains(shade));
-    let brightest = brightest.ok_or(PbmError::Maximum { line, column })?;
+    let brightest = brightest.ok_or_else(|| {
+        let (line, column) = cursor.line_and_column(offset);
+        PbmError::Maximum { line, column }
+    })?;
     let expected = usize::from(imprint.columns()) * usize::from(imprint.rows());
     let shades = if raw {
         raw_shades(cursor, brightest, expected)?
@@ -53,7 +56,7 @@ fn plain_shades(
 ) -> Result<Vec<u32>, PbmError> {
     let mut shades = Vec::with_capacity(expected);
     while shades.len() < expected {
-        let (shade, (line, column)) = cursor.number();
+        let (shade, offset) = cursor.number();
         match shade.filter(|&shade| shade <= brightest) {
             Some(shade) => shades.push(shade),
             None if cursor.at == cursor.bytes.len() && shade.is_none() => {
@@ -63,7 +66,10 @@ fn plain_shades(
                     unit: "taxels",
                 });
             }
-            None => return Err(PbmError::Shade { line, column }),
+            None => {
+                let (line, column) = cursor.line_and_column(offset);
+                return Err(PbmError::Shade { line, column });
+            }
         }
     }
     // Comments after the last number do not begin a second image.
@@ -82,7 +88,7 @@ fn raw_shades(
     taxels: usize,
 ) -> Result<Vec<u32>, PbmError> {
     // Exactly one space separates the brightest shade from the first one, which may look like a space.
-    let (line, column) = cursor.line_and_column();
+    let (line, column) = cursor.line_and_column(cursor.at);
     if cursor.bytes.get(cursor.at) == Some(&b'#') {
         return Err(PbmError::Space { line, column });
     }
