@@ -336,7 +336,7 @@ const SENSOR_KEYS: KnownKeys = KnownKeys {
 
 impl KnownKeys {
     /// Returns the message about an unknown key.
-    fn unknown(&self, key: &str) -> String {
+    pub(crate) fn unknown(&self, key: &str) -> String {
         let mut named = [self.named, self.others].concat();
         let parameters = self
             .parameters

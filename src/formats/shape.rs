@@ -9,7 +9,8 @@ use crate::formats::described::Rows;
 use crate::formats::json::{self, message};
 use crate::formats::name::Name;
 use crate::formats::record::{
-    ImprintRecord, KeyedObject, Record, RecordError, Values, keyed_object, no_names, value_of,
+    ImprintRecord, KeyedObject, KnownKeys, Record, RecordError, Text, Values, keyed_object,
+    no_names, once, value_of,
 };
 use crate::imprint::Imprint;
 use crate::quote::shortened;
@@ -113,9 +114,7 @@ impl StoredShape {
                 column: error.column().max(1),
                 message: message(&error),
             })?;
-        if !file.format {
-            return Err(ShapeError::Missing("format"));
-        }
+        let FormatRecord = file.format.ok_or(ShapeError::Missing("format"))?;
         let NameRecord(name) = file.name.ok_or(ShapeError::Missing("name"))?;
         let SensorRecord(sensor) = file.sensor.ok_or(ShapeError::Missing("sensor"))?;
         let ImprintRecord(imprint) = file.imprint.ok_or(ShapeError::Missing("imprint"))?;
@@ -152,6 +151,23 @@ impl Serialize for StoredShape {
     }
 }
 
+/// The format of a file, which is [`FORMAT`]; another one is refused at its place in the file.
+struct FormatRecord;
+
+impl<'de> Deserialize<'de> for FormatRecord {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let Text(format) = Text::deserialize(deserializer)?;
+        if format == FORMAT {
+            Ok(Self)
+        } else {
+            Err(D::Error::custom(format_args!(
+                "{:?} is not known here, expected {FORMAT:?}",
+                shortened(&format)
+            )))
+        }
+    }
+}
+
 /// The name in a file; an invalid one is refused at its place in the file.
 struct NameRecord(Name);
 
@@ -181,11 +197,11 @@ impl<'de> Deserialize<'de> for SensorRecord {
     }
 }
 
-/// The keys of a file.
+/// A file as it is parsed.
 #[derive(Default)]
 struct ShapeFile<'a> {
-    /// Whether the key `format` was given, with the value [`FORMAT`].
-    format: bool,
+    /// The format.
+    format: Option<FormatRecord>,
     /// The name.
     name: Option<NameRecord>,
     /// The sensor.
@@ -202,48 +218,43 @@ impl<'de: 'a, 'a> Deserialize<'de> for ShapeFile<'a> {
     }
 }
 
+/// The keys of a file.
+const SHAPE_KEYS: KnownKeys = KnownKeys {
+    named: &["format", "name", "sensor", "imprint", "source"],
+    others: &[],
+    parameters: false,
+};
+
 impl<'de> KeyedObject<'de> for ShapeFile<'de> {
     const EXPECTED: &'static str = "a stored shape";
 
     fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
-        let is_given = match key {
-            "format" => self.format,
-            "name" => self.name.is_some(),
-            "sensor" => self.sensor.is_some(),
-            "imprint" => self.imprint.is_some(),
-            "source" => self.source.is_some(),
-            _ => {
-                let keys = &["format", "name", "sensor", "imprint", "source"];
-                return Err(A::Error::unknown_field(&shortened(key), keys));
-            }
-        };
-        if is_given {
-            return Err(A::Error::custom(format_args!("key {key:?} is given twice")));
-        }
         match key {
-            "format" => {
-                let format: String = map.next_value()?;
-                if format != FORMAT {
-                    // Another format has other keys, so its name is reported before its keys are refused.
-                    return Err(A::Error::custom(format_args!(
-                        "format: {:?} is not known here, expected {FORMAT:?}",
-                        shortened(&format)
-                    )));
-                }
-                self.format = true;
-            }
-            "name" => self.name = Some(value_of("name", map)?),
-            "sensor" => self.sensor = Some(value_of("sensor", map)?),
-            "imprint" => self.imprint = Some(value_of("imprint", map)?),
-            _ => self.source = Some(value_of("source", map)?),
+            // Another format has other keys, so its name is reported before its keys are refused.
+            "format" => once("format", &mut self.format, value_of("format", map)?),
+            "name" => once("name", &mut self.name, value_of("name", map)?),
+            "sensor" => once("sensor", &mut self.sensor, value_of("sensor", map)?),
+            "imprint" => once("imprint", &mut self.imprint, value_of("imprint", map)?),
+            "source" => once("source", &mut self.source, value_of("source", map)?),
+            _ => Err(A::Error::custom(SHAPE_KEYS.unknown(key))),
         }
-        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_unknown_key_is_answered_with_the_key_that_was_probably_meant() {
+        let error = StoredShape::read(b"{\"fromat\":\"taxel-shape/1\"}").expect_err("unknown");
+        let message = error.to_string();
+        assert!(
+            message.contains("unknown key \"fromat\", expected format, name,"),
+            "{message}"
+        );
+        assert!(message.contains("did you mean"), "{message}");
+    }
 
     #[test]
     fn a_key_given_twice_is_refused() {
@@ -257,13 +268,9 @@ mod tests {
         for key in keys {
             let text = format!("{{{key},{key}}}");
             let error = StoredShape::read(text.as_bytes()).expect_err("twice");
-            let name = key.split(':').next().expect("a name");
-            assert!(
-                error
-                    .to_string()
-                    .ends_with(&format!("key {name} is given twice")),
-                "{error}"
-            );
+            let name = key.split('"').nth(1).expect("a name");
+            let message = format!(": {name}: given twice");
+            assert!(error.to_string().ends_with(&message), "{error}");
         }
     }
 }

@@ -181,7 +181,7 @@ fn a_bad_shape_is_reported_with_line_and_column() {
     bad(
         "\"name\"",
         "\"nom\"",
-        "line 4, column 7: unknown field `nom`, expected one of `format`, `name`, `sensor`, `imprint`, `source`",
+        "line 4, column 7: unknown key \"nom\", expected format, name, sensor, imprint or source",
     );
     bad(
         "#..",
@@ -245,8 +245,7 @@ fn a_file_that_cannot_be_read_is_named() {
 
 #[test]
 fn the_error_for_lines_of_another_command_names_that_command() {
-    let field =
-        "unknown field `figure`, expected one of `format`, `name`, `sensor`, `imprint`, `source`";
+    let field = "unknown key \"figure\", expected format, name, sensor, imprint or source";
     let pose = "{\"figure\":\"hexagon\",\"side\":3,\"x0\":2,\"y0\":2}\n";
     let told = |column: u32, what: &str, command: &str| {
         format!(

@@ -274,7 +274,7 @@ fn broken_files_are_listed_and_reported_without_affecting_others() {
         (
             "other",
             &good.replacen("\"name\"", "\"nom\"", 1),
-            "unknown field `nom`",
+            "unknown key \"nom\"",
         ),
         (
             "huge",
