@@ -2,6 +2,7 @@
 
 use std::io;
 
+use crate::formats::recording::event::RecordingFormat;
 use crate::formats::system_error::system_reason;
 use crate::parameter::number::counted;
 
@@ -13,10 +14,10 @@ pub enum RecordingError {
     #[error("cannot read: {}", system_reason(.0))]
     Io(io::Error),
     /// Not one of the known formats.
-    #[error("not a recording of a known format: expected {FORMS}")]
+    #[error("not a recording of a known format: expected {}", readable_formats())]
     Unknown,
     /// A file of another kind.
-    #[error("{kind}, expected {FORMS}")]
+    #[error("{kind}, expected {}", readable_formats())]
     Foreign {
         /// The kind of file, with its article: "a PNG image".
         kind: &'static str,
@@ -51,9 +52,14 @@ pub enum RecordingError {
     },
 }
 
-/// The known formats, for the message about any other file.
-const FORMS: &str = "Tekscan ASCII, XSENSOR CSV, emed .lst, zebris .apd, CSV, NPY, NPZ, JSON lines, PoPu JSON, MCAP, \
-                     ros2 topic echo";
+/// Returns the formats that this build reads, for the message about any other file.
+fn readable_formats() -> String {
+    let readable = RecordingFormat::ALL
+        .into_iter()
+        .filter(|format| format.is_readable());
+    let titles: Vec<&str> = readable.map(RecordingFormat::title).collect();
+    titles.join(", ")
+}
 
 /// Returns the place for a message, `line 3, column 2: `; empty in a file without lines.
 fn prefix(line: Option<u64>, column: Option<u64>) -> String {

@@ -76,6 +76,29 @@ impl RecordingFormat {
         }
     }
 
+    /// Returns the name of the format in messages that list the formats.
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::Tekscan => "Tekscan ASCII",
+            Self::Xsensor => "XSENSOR CSV",
+            Self::Emed => "emed .lst",
+            Self::Zebris => "zebris .apd",
+            Self::Csv => "CSV",
+            Self::Npy => "NPY",
+            Self::Npz => "NPZ",
+            Self::JsonLines => "JSON lines",
+            Self::Popu => "PoPu JSON",
+            Self::Ros2 => "ros2 topic echo",
+            Self::Mcap => "MCAP",
+            Self::Flexitac => "FlexiTac",
+        }
+    }
+
+    /// Returns true if this build reads the format.
+    pub(super) fn is_readable(self) -> bool {
+        self != Self::Mcap || cfg!(feature = "mcap")
+    }
+
     /// Returns true if frames are appended to such a file as they are measured, as in a live stream, and can be read as
     /// they arrive.
     #[cfg(feature = "acquire")]
