@@ -91,7 +91,7 @@ fn refused(start: &[u8]) -> RecordingError {
             kind: "text whose lines end in CR alone (save it with LF or CR LF)",
         },
         None if is_bitmap(start) => RecordingError::Foreign {
-            kind: "a PBM or PGM image (taxel describe reads PBM)",
+            kind: "a PBM or PGM image (taxel describe reads PBM, and PGM with two shades)",
         },
         None if is_column(start) => RecordingError::Shape { values: 1 },
         None => match numbers_below_text(start) {
