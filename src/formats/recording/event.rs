@@ -7,9 +7,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::metadata::{FrameMark, RecordingMetadata};
 use crate::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
 use crate::parameter::named;
-#[cfg(feature = "tui")]
-use crate::parameter::number::short;
-use crate::parameter::number::{counted, time_in_words};
+use crate::parameter::number::{counted, short, time_in_words, to_decimals};
 
 /// A format of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -344,6 +342,8 @@ impl fmt::Display for RecordingNote {
                 found,
             } => {
                 let label = label.map_or(String::new(), |label| format!(" (label {label})"));
+                // A sum of decimals has a rounding error in its last digits.
+                let [stated, found] = [*stated, to_decimals(*found, 9)].map(short);
                 write!(
                     f,
                     "frame {frame}{label}: {what} should be {stated}, but the values give {found}"
