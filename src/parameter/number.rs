@@ -43,11 +43,19 @@ pub(crate) fn share(part: u128, whole: u128) -> f64 {
 /// ```
 /// use taxel::parameter::number;
 /// assert_eq!([0.1 + 0.2, -1e-12, 1e300].map(|value| number::to_decimals(value, 9)), [0.3, 0.0, 1e300]);
+/// assert_eq!(number::to_decimals(969_838_786.727, 9), 969_838_786.727);
 /// ```
 pub fn to_decimals(value: f64, decimals: i32) -> f64 {
+    // From here on, floats are whole, so neighbours of `value` are at least one unit of the last decimal apart: `value`
+    // is the float nearest to the rounded number.
+    const WHOLE: f64 = 9_007_199_254_740_992.0;
     let parts = 10_f64.powi(decimals);
-    let rounded = (value * parts).round() / parts + 0.0;
-    if rounded.is_finite() { rounded } else { value }
+    let scaled = value * parts;
+    if scaled.abs() < WHOLE {
+        scaled.round() / parts + 0.0
+    } else {
+        value
+    }
 }
 
 /// Returns the message for text that is not a number. If a decimal comma is the reason, the message shows the right
