@@ -109,14 +109,18 @@ pub(in crate::formats::recording) fn read(
             sink(RecordingEvent::Note(note))?;
         }
     }
-    let mut noted = None;
+    let (mut noted, mut counted, mut times) = (None, None, Vec::new());
     for (channel, (array, layout)) in channels.iter().enumerate() {
-        let (times, note) = times(&mut archive, &arrays, layout.frames())?;
+        let frames = layout.frames();
         // Channels with as many frames have the same times.
-        if let Some(note) = note.as_ref().filter(|_| note != noted) {
-            sink(RecordingEvent::Note(note))?;
+        if counted != Some(frames) {
+            let (found, note) = self::times(&mut archive, &arrays, frames)?;
+            if let Some(note) = note.as_ref().filter(|_| note != noted) {
+                sink(RecordingEvent::Note(note))?;
+            }
+            noted = note.or(noted);
+            (counted, times) = (Some(frames), found);
         }
-        noted = note.or(noted);
         let mut file = archive.by_index(array.index).map_err(damaged)?;
         let named = |error| in_array(&array.name, error);
         array::header(&mut file).map_err(named)?;
