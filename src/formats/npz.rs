@@ -403,7 +403,7 @@ mod tests {
     #[cfg(feature = "recognition")]
     #[test]
     fn the_error_of_a_model_keeps_its_message() {
-        let shards = crate::recognition::ModelError::NoShards;
+        let shards = crate::recognition::ModelError::from(crate::sweep::ShardOrderError::Nothing);
         let wrapped = ArchiveError::from(shards.clone());
         assert_eq!(wrapped.to_string(), shards.to_string());
         assert!(wrapped.source().is_none());

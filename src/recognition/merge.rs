@@ -1,9 +1,7 @@
 //! Merges the shards of a training into one model.
 
-use std::cmp::Ordering;
-
 use crate::recognition::model::{Gathered, Model, ModelError, ModelHead, ShapeCount};
-use crate::sweep::Shard;
+use crate::sweep::{Shard, ShardOrderError};
 
 /// The shards of a training that were added so far. Memory holds only what is already merged and one shard.
 ///
@@ -34,20 +32,14 @@ impl ModelMerge {
     /// Returns an error if it is not the next one, or of another training than the first. The merge then stays
     /// unchanged.
     pub fn add(&mut self, model: &Model) -> Result<(), ModelError> {
-        let (shard, of) = (model.shard(), model.shard().of());
+        let shard = model.shard();
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
         if let Some(head) = &self.head
             && !model.head().same_training(head)
         {
             return Err(ModelError::Foreign { shard });
         }
-        let last = self.head.as_ref().map_or(0, |head| head.shard.number());
-        let number = last + 1;
-        match shard.number().cmp(&number) {
-            Ordering::Less => return Err(ModelError::Twice { shard }),
-            Ordering::Greater => return Err(ModelError::Missing { number, of }),
-            Ordering::Equal => {}
-        }
+        shard.check_after(self.head.as_ref().map(|head| head.shard))?;
         match &mut self.head {
             None => self.head = Some(model.head().clone()),
             Some(head) => {
@@ -73,12 +65,8 @@ impl ModelMerge {
     /// # Errors
     /// Returns an error if some or all are missing.
     pub fn finish(self) -> Result<Model, ModelError> {
-        let mut head = self.head.ok_or(ModelError::NoShards)?;
-        let (last, of) = (head.shard.number(), head.shard.of());
-        if last < of {
-            let number = last + 1;
-            return Err(ModelError::Missing { number, of });
-        }
+        let mut head = self.head.ok_or(ShardOrderError::Nothing)?;
+        head.shard.check_last()?;
         head.shard = Shard::WHOLE;
         let Gathered { keys, counts } = self.gathered;
         Model::of_table(head, &keys, |index| counts[index].iter().copied())

@@ -11,7 +11,7 @@ use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::scan::KeyIndex;
 use crate::sensor::{MatrixSize, Sensor};
 use crate::source::Source;
-use crate::sweep::Shard;
+use crate::sweep::{Shard, ShardOrderError};
 
 /// A shape and the name that answers use for it.
 #[derive(Clone, Debug, PartialEq)]
@@ -200,28 +200,14 @@ pub enum ModelError {
     /// Numbers that contradict each other.
     #[error("{0}")]
     Parts(&'static str),
-    /// No shard to merge.
-    #[error("no shard was given, expected all those of one training")]
-    NoShards,
+    /// Shards to merge that are missing, or given twice.
+    #[error(transparent)]
+    Shards(#[from] ShardOrderError),
     /// Models that are not parts of one training.
     #[error("shard {shard} belongs to another training")]
     Foreign {
         /// The shard that does not fit the first one.
         shard: Shard,
-    },
-    /// A shard that is given twice.
-    #[error("shard {shard} is given twice")]
-    Twice {
-        /// The shard.
-        shard: Shard,
-    },
-    /// A missing shard.
-    #[error("shard {number}/{of} is missing")]
-    Missing {
-        /// The number of the missing shard, from 1.
-        number: u32,
-        /// The number of shards.
-        of: u32,
     },
 }
 

@@ -3,11 +3,9 @@
 //! Shards are merged in the order of the grid, so first poses stay the first, and imprints have the same numbers as in
 //! a single sweep. Memory holds only what is already merged and one shard.
 
-use std::cmp::Ordering;
-
 use crate::atlas::{Atlas, Table, VarianceParts};
 use crate::pose::PoseGrid;
-use crate::sweep::plan::Shard;
+use crate::sweep::plan::{Shard, ShardOrderError};
 use crate::sweep::result::SweepResult;
 
 /// The shards of a sweep that were added so far.
@@ -33,10 +31,8 @@ pub struct SweepMerge(Option<Merged>);
 #[derive(Debug)]
 struct Merged {
     grid: PoseGrid,
-    /// The number of shards.
-    of: u32,
-    /// The number of the last shard that was added.
-    last: u32,
+    /// The last shard that was added.
+    last: Shard,
     atlas: Atlas,
     variance_parts: VarianceParts,
     poses: u64,
@@ -48,8 +44,7 @@ impl Merged {
     fn of(first: &SweepResult) -> Self {
         let (grid, sensor) = (first.grid.clone(), first.grid.sensor());
         Self {
-            of: first.shard.of(),
-            last: 0,
+            last: first.shard,
             atlas: Atlas::new(sensor.size()),
             variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
             grid,
@@ -66,10 +61,10 @@ impl SweepMerge {
     /// Returns an error if it is incomplete, not the next one, or of another grid than the first. The merge then
     /// stays unchanged.
     pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
-        let (shard, of) = (result.shard, result.shard.of());
+        let shard = result.shard;
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
         if let Some(merged) = &self.0 {
-            let difference = if of == merged.of {
+            let difference = if shard.of() == merged.last.of() {
                 difference(&result.grid, &merged.grid)
             } else {
                 Some("the number of shards")
@@ -78,17 +73,12 @@ impl SweepMerge {
                 return Err(MergeError::Foreign { shard, difference });
             }
         }
-        let number = self.0.as_ref().map_or(1, |merged| merged.last + 1);
-        match shard.number().cmp(&number) {
-            Ordering::Less => return Err(MergeError::Twice { shard }),
-            Ordering::Greater => return Err(MergeError::Missing { number, of }),
-            Ordering::Equal => {}
-        }
+        shard.check_after(self.0.as_ref().map(|merged| merged.last))?;
         if !result.complete() {
             return Err(MergeError::Incomplete { shard });
         }
         let merged = self.0.get_or_insert_with(|| Merged::of(&result));
-        merged.last = number;
+        merged.last = shard;
         merged.atlas.add_all(&result.atlas);
         merged.variance_parts.merge(result.variance_parts);
         merged.poses += result.poses;
@@ -103,17 +93,13 @@ impl SweepMerge {
     pub fn finish(self) -> Result<SweepResult, MergeError> {
         let Merged {
             grid,
-            of,
             last,
             atlas,
             variance_parts,
             poses,
             partly_off,
-        } = self.0.ok_or(MergeError::Nothing)?;
-        if last < of {
-            let number = last + 1;
-            return Err(MergeError::Missing { number, of });
-        }
+        } = self.0.ok_or(ShardOrderError::Nothing)?;
+        last.check_last()?;
         let mut table = Table::default();
         table.extend(atlas.summaries());
         let poses = (poses, partly_off);
@@ -146,9 +132,9 @@ fn difference(one: &PoseGrid, other: &PoseGrid) -> Option<&'static str> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
-    /// There are no shards.
-    #[error("no shards to merge")]
-    Nothing,
+    /// Shards that are missing, or given twice.
+    #[error(transparent)]
+    Order(#[from] ShardOrderError),
     /// A shard of another grid than the first one, or of another number of shards.
     #[error("shard {shard} differs from the first one in {difference}")]
     Foreign {
@@ -157,24 +143,10 @@ pub enum MergeError {
         /// The difference: "its shape", for example.
         difference: &'static str,
     },
-    /// A shard that is given twice.
-    #[error("shard {shard} is given twice")]
-    Twice {
-        /// The shard.
-        shard: Shard,
-    },
     /// A shard whose sweep was stopped early.
     #[error("shard {shard} was stopped early, run it again")]
     Incomplete {
         /// The shard.
         shard: Shard,
-    },
-    /// A missing shard.
-    #[error("shard {number}/{of} is missing")]
-    Missing {
-        /// The number of the missing shard, from 1.
-        number: u32,
-        /// The number of shards.
-        of: u32,
     },
 }

@@ -62,7 +62,7 @@ mod count;
 
 pub use count::{CountedImprints, PoseRun};
 pub use merge::{MergeError, SweepMerge};
-pub use plan::{Shard, ShardError};
+pub use plan::{Shard, ShardError, ShardOrderError};
 pub(crate) use result::Parts;
 pub use result::{PartsError, SweepResult};
 pub use run::{Sweep, TakeRow};

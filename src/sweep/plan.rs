@@ -4,6 +4,7 @@
 //! looks the same form a *group*, and only one of them is swept. A task is some rows of a group, together with the
 //! group at which the shape is its mirror image. The result does not depend on how the work is divided into tasks.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
@@ -66,6 +67,31 @@ impl Shard {
         cut(self.number - 1)..cut(self.number)
     }
 
+    /// Checks that a merge can take this shard after the one that it took last: the first, then the second, and so on.
+    ///
+    /// # Errors
+    /// Returns an error if the shard is not the next one.
+    pub(crate) fn check_after(self, last: Option<Self>) -> Result<(), ShardOrderError> {
+        let (number, of) = (last.map_or(1, |last| last.number + 1), self.of);
+        match self.number.cmp(&number) {
+            Ordering::Less => Err(ShardOrderError::Twice { shard: self }),
+            Ordering::Greater => Err(ShardOrderError::Missing { number, of }),
+            Ordering::Equal => Ok(()),
+        }
+    }
+
+    /// Checks that a merge that took this shard last is complete.
+    ///
+    /// # Errors
+    /// Returns an error if there are more shards.
+    pub(crate) fn check_last(self) -> Result<(), ShardOrderError> {
+        if self.number == self.of {
+            return Ok(());
+        }
+        let (number, of) = (self.number + 1, self.of);
+        Err(ShardOrderError::Missing { number, of })
+    }
+
     /// Returns the number of poses of this shard in a grid.
     pub fn poses(&self, grid: &PoseGrid) -> u64 {
         let rows = self.rows(grid.rows());
@@ -99,6 +125,29 @@ impl fmt::Display for Shard {
 pub struct ShardError {
     /// The text, shortened.
     pub text: String,
+}
+
+/// The error for shards that are not all of one grid, in their order.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShardOrderError {
+    /// There are no shards.
+    #[error("no shards to merge")]
+    Nothing,
+    /// A shard that is given twice.
+    #[error("shard {shard} is given twice")]
+    Twice {
+        /// The shard.
+        shard: Shard,
+    },
+    /// A missing shard.
+    #[error("shard {number}/{of} is missing")]
+    Missing {
+        /// The number of the missing shard, from 1.
+        number: u32,
+        /// The number of shards.
+        of: u32,
+    },
 }
 
 /// Some rows of a group of orientations, and of the group of their mirror images.

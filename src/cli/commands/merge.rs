@@ -30,7 +30,7 @@ use crate::recognition::{Evaluation, Model, ModelError, ModelMerge, TrainingErro
 use crate::storage::{
     ArchiveFileError, AtlasFile, load_atlas, load_model, open_archive, save_model,
 };
-use crate::sweep::{MergeError, Shard, SweepMerge, SweepResult};
+use crate::sweep::{MergeError, Shard, ShardOrderError, SweepMerge, SweepResult};
 
 /// Bytes that the program needs without any shard.
 const BYTES_OF_PROGRAM: u64 = 24 << 20;
@@ -215,7 +215,9 @@ fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError>
     for part in parts {
         let shard = load_atlas(&part.path)?;
         merge.add(shard).map_err(|error| match error {
-            MergeError::Foreign { .. } | MergeError::Twice { .. } => part.refused(&error),
+            MergeError::Foreign { .. } | MergeError::Order(ShardOrderError::Twice { .. }) => {
+                part.refused(&error)
+            }
             other => other.into(),
         })?;
         within(memory)?;
@@ -229,7 +231,9 @@ fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
     for part in parts {
         let model = load_model(&part.path)?;
         merge.add(&model).map_err(|error| match error {
-            ModelError::Foreign { .. } | ModelError::Twice { .. } => part.refused(&error),
+            ModelError::Foreign { .. } | ModelError::Shards(ShardOrderError::Twice { .. }) => {
+                part.refused(&error)
+            }
             other => TrainingError::from(other).into(),
         })?;
         within(memory)?;

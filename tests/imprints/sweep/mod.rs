@@ -20,7 +20,7 @@ use taxel::parameter::Parameter;
 use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::{MergeError, Shard, Sweep, SweepMerge, SweepResult};
+use taxel::sweep::{MergeError, Shard, ShardOrderError, Sweep, SweepMerge, SweepResult};
 
 fn sweep(grid: &PoseGrid) -> SweepResult {
     Sweep::new(grid).run()
@@ -221,19 +221,19 @@ fn shards_are_merged_only_if_all_are_there() {
             .run()
     };
     let merge = |results: Vec<SweepResult>| merge_all(results).map(|result| result.poses());
-    assert_eq!(merge(vec![]), Err(MergeError::Nothing));
+    assert_eq!(merge(vec![]), Err(ShardOrderError::Nothing.into()));
     assert_eq!(
         merge(vec![shard(&grid, 1, 3), shard(&grid, 2, 3)]),
-        Err(MergeError::Missing { number: 3, of: 3 })
+        Err(ShardOrderError::Missing { number: 3, of: 3 }.into())
     );
     assert_eq!(
         merge(vec![shard(&grid, 1, 3), shard(&grid, 3, 3)]),
-        Err(MergeError::Missing { number: 2, of: 3 })
+        Err(ShardOrderError::Missing { number: 2, of: 3 }.into())
     );
     let twice = Shard::new(1, 2).expect("a shard");
     assert_eq!(
         merge(vec![shard(&grid, 1, 2), shard(&grid, 1, 2)]),
-        Err(MergeError::Twice { shard: twice })
+        Err(ShardOrderError::Twice { shard: twice }.into())
     );
     // The original place of the shape does not matter.
     let moved = figure(FigureKind::Triangle, 6.0, 0.0, 0.0)
@@ -259,7 +259,7 @@ fn shards_are_merged_only_if_all_are_there() {
     );
     // A shard that is refused changes nothing, even if it comes first.
     let mut refused = SweepMerge::default();
-    let missing = |number, of| Err(MergeError::Missing { number, of });
+    let missing = |number, of| Err(ShardOrderError::Missing { number, of }.into());
     assert_eq!(refused.add(shard(&other, 2, 3)), missing(1, 3));
     assert_eq!(refused.add(shard(&grid, 1, 2)), Ok(()));
     assert_eq!(
@@ -271,7 +271,7 @@ fn shards_are_merged_only_if_all_are_there() {
     );
     assert_eq!(
         refused.add(shard(&grid, 1, 2)),
-        Err(MergeError::Twice { shard: twice })
+        Err(ShardOrderError::Twice { shard: twice }.into())
     );
     assert_eq!(refused.add(shard(&grid, 2, 2)), Ok(()));
     let merged = refused.finish().map(|result| told(&result));
