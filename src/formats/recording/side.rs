@@ -27,7 +27,7 @@ pub(in crate::formats) fn matrix_size(sizes: &[u32]) -> Option<FrameSize> {
 
 /// Returns the rows and columns of a message with this number of values: the `named` ones if they have that many
 /// cells, otherwise those that the message states. Many programs publish a layout of one row, or none.
-pub(in crate::formats) fn arranged(
+pub(super) fn arranged(
     values: usize,
     stated: Option<FrameSize>,
     named: Option<FrameSize>,

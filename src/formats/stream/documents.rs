@@ -5,7 +5,6 @@
 
 use crate::formats::recording::json::lines::{FrameLineError, JsonFrames};
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
-use crate::formats::recording::side::arranged;
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
@@ -149,7 +148,7 @@ impl RosDecoder {
     /// Ends a message: reports it as a frame, or drops it.
     fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let values = self.message.cells().len();
-        let size = arranged(values, self.message.size(), self.named).or(self.named);
+        let size = self.message.size_with(self.named);
         let begun = std::mem::replace(&mut self.begun, true);
         if std::mem::take(&mut self.cut) {
             counts.cut |= begun && !self.broken;

@@ -82,6 +82,12 @@ impl RosMessage {
         &self.values[self.offset.min(self.values.len())..]
     }
 
+    /// Returns the rows and columns of the message: the `named` ones if they have as many cells, otherwise its own. If it
+    /// has none, the `named` ones are returned even if they do not fit; None if there are no such, either.
+    pub(in crate::formats) fn size_with(&self, named: Option<FrameSize>) -> Option<FrameSize> {
+        arranged(self.cells().len(), self.size(), named).or(named)
+    }
+
     /// Reads the offset of the layout; a field that is not a number is ignored.
     fn offset_of(&mut self, field: &[u8]) {
         let offset = str::from_utf8(field.trim_ascii()).ok();
@@ -315,8 +321,7 @@ fn size(
     line: u64,
 ) -> Result<FrameSize, RecordingError> {
     let values = message.cells().len();
-    let size = arranged(values, message.size(), named).or(named);
-    let size = size.ok_or(RecordingError::Shape {
+    let size = message.size_with(named).ok_or(RecordingError::Shape {
         values: values as u64,
     })?;
     if values != size.cells() {
