@@ -12,9 +12,9 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, RecordingSink, until_enough};
 use crate::formats::recording::json::{lines as json_lines, popu};
 use crate::formats::recording::numpy::{archive, array};
-use crate::formats::recording::ros::echo;
 #[cfg(feature = "mcap")]
 use crate::formats::recording::ros::mcap;
+use crate::formats::recording::ros::{MCAP_MAGIC, echo};
 use crate::formats::recording::table::delimited;
 use crate::formats::recording::table::layout::EarlierLayout;
 use crate::formats::recording::text::lines::is_blank;
@@ -22,9 +22,7 @@ use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::recording::text::separator::{Separator, is_comment};
 use crate::formats::recording::time::moment;
 use crate::formats::recording::vendor::{emed, flexitac, tekscan, xsensor, zebris};
-
-/// The first bytes of an MCAP file.
-const MCAP: &[u8] = b"\x89MCAP0\r\n";
+use crate::formats::stream::FLEXITAC_MARKER;
 
 /// The number of bytes at the start of a file that decide its format.
 const LOOKED_AT: usize = 1 << 16;
@@ -54,12 +52,10 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
     // Comments may stand above a table.
     let is_row = |line: &&[u8]| !is_blank(line) && !is_comment(line);
     let row = lines.find(is_row).unwrap_or(first);
-    if start.starts_with(MCAP) {
-        return Some(RecordingFormat::Mcap);
-    }
     Some(match start {
         [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => RecordingFormat::Npy,
-        [0xaa, 0x55, ..] => RecordingFormat::Flexitac,
+        _ if start.starts_with(&MCAP_MAGIC) => RecordingFormat::Mcap,
+        _ if start.starts_with(&FLEXITAC_MARKER) => RecordingFormat::Flexitac,
         [b'P', b'K', 3 | 5, 4 | 6, ..] => RecordingFormat::Npz,
         _ if is_blank(trimmed) || start.contains(&0) => return None,
         _ if trimmed.starts_with(b"{") => {

@@ -12,6 +12,7 @@ use serde::de::IgnoredAny;
 
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::json::WithoutNan;
+use crate::formats::recording::text::lines::LONGEST_LINE;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
@@ -20,9 +21,6 @@ use crate::formats::stream::flexitac::FlexitacDecoder;
 use crate::formats::stream::format_search::{FormatSearch, is_numbers};
 use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
-
-/// The size limit of a line in bytes, more than 512 × 512 values take.
-const LONGEST_LINE: usize = 8 << 20;
 
 /// Decodes a stream, piece by piece.
 #[derive(Debug)]

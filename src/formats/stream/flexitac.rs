@@ -15,7 +15,7 @@ use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::{Frame, FrameSize};
 
 /// The bytes before each frame.
-pub(super) const MARKER: [u8; 2] = [0xaa, 0x55];
+pub(in crate::formats) const MARKER: [u8; 2] = [0xaa, 0x55];
 
 /// A decoder of frames after markers.
 #[derive(Debug)]

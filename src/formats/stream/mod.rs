@@ -42,3 +42,4 @@ pub use event::{
     NoFrameReason, StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal,
     StreamSink,
 };
+pub(in crate::formats) use flexitac::MARKER as FLEXITAC_MARKER;

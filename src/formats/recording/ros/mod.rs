@@ -8,6 +8,9 @@
 //! echo      messages as text
 //! ```
 
+/// The magic number of an MCAP file, at its start and at its end.
+pub(super) const MCAP_MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
+
 #[cfg(feature = "mcap")]
 mod cdr;
 

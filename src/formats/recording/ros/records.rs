@@ -14,11 +14,9 @@ use flate2::CrcReader;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::EarlyEnd;
+use crate::formats::recording::ros::MCAP_MAGIC;
 use crate::index::wide;
 use crate::quote::shortened_message;
-
-/// The magic number: at the start, where it has been recognised already, and at the end.
-const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 
 /// The size limit of a message with a frame, in bytes.
 const LARGEST_RECORD: u64 = 1 << 24;
@@ -127,7 +125,7 @@ pub(super) fn each_record(
         record: Vec::new(),
         each,
     };
-    let read = pass_over(&mut input, MAGIC.len() as u64)
+    let read = pass_over(&mut input, MCAP_MAGIC.len() as u64)
         .and_then(|()| reader.records(&mut input, Container::File));
     read.map_err(|error| match error {
         RecordsError::Torn => {
@@ -293,9 +291,9 @@ impl RecordReader<'_> {
             match kind {
                 FOOTER if within == Container::File => {
                     pass_over(input, length)?;
-                    let mut magic = [0; MAGIC.len()];
+                    let mut magic = [0; MCAP_MAGIC.len()];
                     whole(input, &mut magic)?;
-                    let is_whole = magic == MAGIC;
+                    let is_whole = magic == MCAP_MAGIC;
                     return is_whole.then_some(()).ok_or(RecordsError::Torn);
                 }
                 CHUNK if within == Container::File => self.chunk(input)?,

@@ -10,7 +10,7 @@ use crate::formats::recording::error::RecordingError;
 
 /// The size limit of a line in bytes, more than a frame of 512 × 512 values takes; thus one line cannot fill all
 /// memory.
-const LONGEST: usize = 8 << 20;
+pub(in crate::formats) const LONGEST_LINE: usize = 8 << 20;
 
 /// The lines of a text, counted from 1, without their ends and without a byte order mark.
 #[derive(Debug)]
@@ -68,7 +68,7 @@ impl<R: BufRead> TextLines<R> {
             }
             let end = bytes.iter().position(|&byte| byte == b'\n');
             let part = &bytes[..end.unwrap_or(bytes.len())];
-            if part.len() > LONGEST - self.line.len() {
+            if part.len() > LONGEST_LINE - self.line.len() {
                 let message = "longer than 8 MiB, the limit for a line of a recording";
                 return Err(RecordingError::in_line(self.number + 1, message));
             }
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_line_may_have_8_mib() {
-        let mut text = vec![b'1'; LONGEST];
+        let mut text = vec![b'1'; LONGEST_LINE];
         assert!(TextLines::new(&text[..]).advance().expect("8 MiB"));
         text.push(b'1');
         let error = TextLines::new(&text[..]).advance().expect_err("too long");

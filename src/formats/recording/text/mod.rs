@@ -9,7 +9,7 @@
 
 pub(super) mod number;
 
-pub(super) mod lines;
+pub(in crate::formats) mod lines;
 
 pub(in crate::formats) mod row;
 

@@ -11,7 +11,9 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
-use crate::formats::stream::{StreamDecoder, StreamEvent, StreamFormat, StreamOptions};
+use crate::formats::stream::{
+    FLEXITAC_MARKER, StreamDecoder, StreamEvent, StreamFormat, StreamOptions,
+};
 
 /// The most bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -28,7 +30,7 @@ pub(in crate::formats::recording) fn read(
     let Some(size) = options.size else {
         let mut start = Vec::new();
         input.take(CHUNK as u64).read_to_end(&mut start)?;
-        let marker = |at: &usize| start.get(*at..at + 2) == Some(&[0xaa, 0x55]);
+        let marker = |at: &usize| start[*at..].starts_with(&FLEXITAC_MARKER);
         let next = (3..start.len()).find(marker).unwrap_or(start.len());
         let values = next.saturating_sub(2) as u64;
         return Err(RecordingError::Shape { values }.into());
