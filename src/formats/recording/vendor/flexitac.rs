@@ -4,7 +4,6 @@
 //! and columns; if the caller does not either, the error says how many cells the first frame has. Torn frames are
 //! dropped and counted in a note, as no checksum could show what is wrong with them.
 
-use std::cell::RefCell;
 use std::io::{ErrorKind, Read};
 
 use crate::formats::recording::error::RecordingError;
@@ -45,15 +44,9 @@ pub(in crate::formats::recording) fn read(
         .with_size(size)
         .from_start();
     let mut decoder = StreamDecoder::new(stream);
-    let ended = RefCell::new(Ok(()));
-    let mut give = |event: StreamEvent<'_>| {
-        let mut ended = ended.borrow_mut();
-        if let (StreamEvent::Frame(frame), Ok(())) = (event, &*ended) {
-            *ended = sink(RecordingEvent::Frame(frame));
-        }
-    };
+    let mut ended = Ok(());
     let mut bytes = vec![0; CHUNK];
-    while ended.borrow().is_ok() {
+    while ended.is_ok() {
         // Read only the bytes that are there: a full read would wait for the end of a growing file.
         let length = match input.read(&mut bytes) {
             Ok(0) => break,
@@ -63,13 +56,22 @@ pub(in crate::formats::recording) fn read(
             Err(error) if error.kind() == ErrorKind::Interrupted => continue,
             Err(error) => return Err(error.into()),
         };
-        decoder.push(&bytes[..length], &mut give);
+        decoder.push(&bytes[..length], &mut |event| {
+            pass_on(event, &mut ended, sink);
+        });
     }
-    decoder.finish(&mut give);
-    ended.into_inner()?;
+    decoder.finish(&mut |event| pass_on(event, &mut ended, sink));
+    ended?;
     let frames = decoder.counts().dropped;
     if frames > 0 {
         sink(RecordingEvent::Note(&RecordingNote::Garbled { frames }))?;
     }
     Ok(())
+}
+
+/// Passes on a frame of the stream, unless the reading has ended already.
+fn pass_on(event: StreamEvent<'_>, ended: &mut Result<(), EarlyEnd>, sink: &mut Sink<'_>) {
+    if let (StreamEvent::Frame(frame), Ok(())) = (event, &*ended) {
+        *ended = sink(RecordingEvent::Frame(frame));
+    }
 }
