@@ -71,27 +71,20 @@ fn article(noun: &str) -> &'static str {
     }
 }
 
-/// The values of the parameters that were given.
+/// The values of the parameters that were given, in the order of [`PARAMETERS`], which is that of [`Parameter`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Values([Option<f64>; PARAMETERS.len()]);
 
 impl Values {
-    /// Returns the index of a parameter in the table.
-    fn index(parameter: Parameter) -> Option<usize> {
-        PARAMETERS.iter().position(|row| row.parameter == parameter)
-    }
-
     /// Returns the value of a parameter; None if it was not given.
     pub(crate) fn get(&self, parameter: Parameter) -> Option<f64> {
-        self.0[Self::index(parameter)?]
+        self.0[parameter as usize]
     }
 
     /// Sets the value of a parameter.
     #[cfg(feature = "recognition")]
     pub(crate) fn set(&mut self, parameter: Parameter, value: f64) {
-        if let Some(index) = Self::index(parameter) {
-            self.0[index] = Some(value);
-        }
+        self.0[parameter as usize] = Some(value);
     }
 
     /// Refuses the first value whose parameter is not an expected one.
