@@ -1,6 +1,6 @@
 //! Chooses the channel of a source to watch, while its channels appear one by one.
 
-use crate::formats::recording::event::{ChannelInfo, UNNAMED};
+use crate::formats::recording::event::{ChannelInfo, UNNAMED_CHANNEL};
 use crate::quote::did_you_mean;
 
 /// A choice of the requested channel, or else of the first one. If the stream has no channels, all frames are taken.
@@ -60,7 +60,7 @@ impl ChannelChoice {
 
 /// Returns the message that a recording has no channel of this name; it lists the others.
 pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
-    if names == [UNNAMED] {
+    if names == [UNNAMED_CHANNEL] {
         return format!(
             "no channel named {asked:?}: the recording has one channel, without a name; leave out --channel"
         );

@@ -165,7 +165,7 @@ impl ReadOptions {
 }
 
 /// The name of a channel without a name.
-pub(crate) const UNNAMED: &str = "unnamed";
+pub(crate) const UNNAMED_CHANNEL: &str = "unnamed";
 
 /// The most channels of a recording or a stream.
 pub(in crate::formats::recording) const MOST_CHANNELS: usize = 256;
@@ -205,7 +205,7 @@ pub struct ChannelInfo {
 impl ChannelInfo {
     /// Returns the name by which a channel is listed and chosen: `unnamed` if the recording gives it none.
     pub fn shown_name(&self) -> &str {
-        self.name.as_deref().unwrap_or(UNNAMED)
+        self.name.as_deref().unwrap_or(UNNAMED_CHANNEL)
     }
 
     /// Returns the channel, with missing fields taken from the metadata beside the recording, if there is one.
