@@ -241,7 +241,7 @@ impl Plane {
         let mut all = Matrix::filled(self.sensor.size(), 0.0);
         let width = usize::from(self.sensor.columns());
         let mut cover = |row: usize, column: usize, area: f64| {
-            all.values_mut()[row * width + column] = share(area);
+            all.values_mut()[row * width + column] = rounded_coverage(area);
         };
         for row in self.drawn.rows.clone() {
             for (column, area) in self.computed(row) {
@@ -345,7 +345,7 @@ pub(crate) fn least(threshold: f64) -> Double {
 
 /// Removes visible rounding errors from a share of a cell: the result is never below 0 or above 1, and exactly 0, ½
 /// or 1 if it is close to them.
-fn share(area: f64) -> f64 {
+fn rounded_coverage(area: f64) -> f64 {
     let near = (area * 2.0).round() / 2.0;
     let area = if (area - near).abs() < f64::TIE {
         near

@@ -10,13 +10,13 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::atlas::{AtlasEntry, feature_values, features};
 use crate::formats::described::{RegionRecord, Rows};
+use crate::parameter::number::share;
 use crate::pose::PoseGrid;
 use crate::sweep::SweepResult;
 
 /// Returns the share of all poses that leave this imprint: above 0, up to 1.
-#[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
-pub fn share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
-    entry.count as f64 / result.poses as f64
+pub fn pose_share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
+    share(entry.count.into(), result.poses.into())
 }
 
 /// Writes the table as CSV.
@@ -40,7 +40,7 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
         let pose = result.grid.pose(entry.first_pose);
         line.clear();
         line.extend([entry.id.to_string(), entry.count.to_string()]);
-        line.push(share(result, &entry).to_string());
+        line.push(pose_share(result, &entry).to_string());
         line.extend(result.grid.axes().map(|axis| pose[axis].to_string()));
         line.extend([entry.summary.pieces, entry.summary.holes].map(|count| count.to_string()));
         let first = line.len();
@@ -79,7 +79,7 @@ impl Serialize for AtlasLine<'_> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("id", &entry.id)?;
         map.serialize_entry("count", &entry.count)?;
-        map.serialize_entry("share", &share(result, entry))?;
+        map.serialize_entry("share", &pose_share(result, entry))?;
         map.serialize_entry("first", &First(&result.grid, entry.first_pose))?;
         map.serialize_entry("pieces", &entry.summary.pieces)?;
         map.serialize_entry("holes", &entry.summary.holes)?;

@@ -61,7 +61,7 @@ fn checked(
 
 impl Rule {
     /// Returns a percentage of a value, rounded like `percent / 100 * value` in other programs.
-    pub(crate) fn share(percent: f64, value: f64) -> f64 {
+    pub(crate) fn percent_of(percent: f64, value: f64) -> f64 {
         percent / 100.0 * value
     }
 
@@ -121,7 +121,7 @@ impl Rule {
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
                 if max > 0.0 {
-                    at_or_above(values, Self::share(percent, max))
+                    at_or_above(values, Self::percent_of(percent, max))
                 } else {
                     Imprint::empty(values.size())
                 }

@@ -117,7 +117,7 @@ impl Spread {
 /// Returns the mean of each class, over all its poses.
 fn means(model: &Model, table: &FeatureTable) -> Vec<DVector<f64>> {
     let mut means = vec![DVector::zeros(table.names.len()); model.shapes().len()];
-    for (key, shape, part) in shares(model) {
+    for (key, shape, part) in pose_shares(model) {
         means[shape].axpy(part, &vector(table.row(key)), 1.0);
     }
     means
@@ -131,13 +131,13 @@ fn each_deviation(
     means: &[DVector<f64>],
     mut add: impl FnMut(usize, f64, &DVector<f64>),
 ) {
-    for (key, shape, part) in shares(model) {
+    for (key, shape, part) in pose_shares(model) {
         add(shape, part, &(vector(table.row(key)) - &means[shape]));
     }
 }
 
 /// Iterates over the keys, the shapes that leave each, and the share of the shape's poses that do.
-fn shares(model: &Model) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+fn pose_shares(model: &Model) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
     let poses = u128::from(model.poses());
     (0..model.keys().len()).flat_map(move |key| {
         let counts = model.counts(key).iter();

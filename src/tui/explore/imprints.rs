@@ -300,7 +300,7 @@ fn row_text(theme: &Theme, results: &Results, list: &ImprintList, entry: &AtlasE
 
 /// Returns the share of an imprint's poses in percent.
 fn share(results: &Results, entry: &AtlasEntry) -> String {
-    percentage(crate::formats::atlas::share(results.sweep(), entry), 2)
+    percentage(crate::formats::atlas::pose_share(results.sweep(), entry), 2)
 }
 
 /// Returns the chosen descriptor's value of an imprint.

@@ -40,7 +40,9 @@ fn stepped(value: f64, step: f64, (least, most): (f64, f64)) -> f64 {
 /// Returns an error if the threshold is out of range then.
 pub(super) fn other_unit(rule: Option<Rule>, largest: f64) -> Result<Rule, FrameError> {
     match rule {
-        Some(Rule::Percent(percent)) => Rule::at_least(nine_digits(Rule::share(percent, largest))),
+        Some(Rule::Percent(percent)) => {
+            Rule::at_least(nine_digits(Rule::percent_of(percent, largest)))
+        }
         Some(Rule::AtLeast(threshold)) => {
             Rule::percent((100.0 * threshold / largest).round().clamp(1.0, 100.0))
         }
