@@ -9,7 +9,8 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::foreign;
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ReadOptions, RecordingFormat, RecordingSink, until_enough};
+use crate::formats::recording::event::{ReadOptions, RecordingSink, until_enough};
+use crate::formats::recording::format::RecordingFormat;
 use crate::formats::recording::json::{lines as json_lines, popu};
 use crate::formats::recording::numpy::{archive, array};
 #[cfg(feature = "mcap")]

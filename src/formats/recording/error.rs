@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::formats::recording::event::RecordingFormat;
+use crate::formats::recording::format::RecordingFormat;
 use crate::formats::system_error::system_reason;
 use crate::parameter::number::counted;
 

@@ -23,6 +23,7 @@
 //! ```
 //!
 //! ```text
+//! format           the formats, with their names
 //! error            why a recording cannot be read, and where
 //! event            what a reader reports: channels, frames, notes
 //! metadata         the file beside a recording of taxel's own
@@ -41,6 +42,8 @@
 //! detect           which of these a file is
 //! ```
 //! Each format uses the modules above it; formats do not use each other.
+
+mod format;
 
 mod error;
 
@@ -84,7 +87,8 @@ pub(crate) use detect::may_be_recording;
 pub(crate) use detect::{RecordingInput, format_after, format_of, read_as};
 pub use detect::{read, recognised};
 pub use error::RecordingError;
-pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
+pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingNote};
+pub use format::RecordingFormat;
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(feature = "cli")]
 pub(crate) use table::delimited::read_rows;

@@ -1,0 +1,110 @@
+//! The formats of recordings, with their names.
+
+use crate::parameter::named;
+
+/// A format of recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum RecordingFormat {
+    /// Tekscan's ASCII export.
+    Tekscan,
+    /// XSENSOR's CSV export.
+    Xsensor,
+    /// novel's emed `.lst` export.
+    Emed,
+    /// zebris `.apd` pictures.
+    Zebris,
+    /// Numbers separated by commas, semicolons, tabs or spaces: one frame per line, or one row per line.
+    Csv,
+    /// A numpy array.
+    Npy,
+    /// An archive of numpy arrays.
+    Npz,
+    /// JSON lines: one object per line.
+    JsonLines,
+    /// JSON of the `PoPu` data set.
+    Popu,
+    /// The output of `ros2 topic echo`.
+    Ros2,
+    /// An MCAP file.
+    Mcap,
+    /// The bytes of a `FlexiTac` board.
+    Flexitac,
+}
+
+impl RecordingFormat {
+    /// All formats.
+    pub const ALL: [Self; 12] = [
+        Self::Tekscan,
+        Self::Xsensor,
+        Self::Emed,
+        Self::Zebris,
+        Self::Csv,
+        Self::Npy,
+        Self::Npz,
+        Self::JsonLines,
+        Self::Popu,
+        Self::Ros2,
+        Self::Mcap,
+        Self::Flexitac,
+    ];
+
+    /// Returns the name of the format, as it is in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tekscan => "tekscan",
+            Self::Xsensor => "xsensor",
+            Self::Emed => "emed",
+            Self::Zebris => "zebris",
+            Self::Csv => "csv",
+            Self::Npy => "npy",
+            Self::Npz => "npz",
+            Self::JsonLines => "jsonl",
+            Self::Popu => "popu",
+            Self::Ros2 => "ros2",
+            Self::Mcap => "mcap",
+            Self::Flexitac => "flexitac",
+        }
+    }
+
+    /// Returns the name of the format in messages that list the formats.
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::Tekscan => "Tekscan ASCII",
+            Self::Xsensor => "XSENSOR CSV",
+            Self::Emed => "emed .lst",
+            Self::Zebris => "zebris .apd",
+            Self::Csv => "CSV",
+            Self::Npy => "NPY",
+            Self::Npz => "NPZ",
+            Self::JsonLines => "JSON lines",
+            Self::Popu => "PoPu JSON",
+            Self::Ros2 => "ros2 topic echo",
+            Self::Mcap => "MCAP",
+            Self::Flexitac => "FlexiTac",
+        }
+    }
+
+    /// Returns true if this build reads the format.
+    pub(super) fn is_readable(self) -> bool {
+        self != Self::Mcap || cfg!(feature = "mcap")
+    }
+
+    /// Returns true if frames are appended to such a file as they are measured, as in a live stream, and can be read as
+    /// they arrive.
+    #[cfg(feature = "acquire")]
+    pub(crate) fn is_appended_to(self) -> bool {
+        matches!(
+            self,
+            Self::Csv | Self::JsonLines | Self::Ros2 | Self::Flexitac
+        )
+    }
+
+    /// Returns true if frames are appended to such a file as lines of text.
+    #[cfg(feature = "acquire")]
+    pub(crate) fn is_text_of_frames(self) -> bool {
+        self.is_appended_to() && self != Self::Flexitac
+    }
+}
+
+named!(RecordingFormat, "format", &RecordingFormat::ALL);
