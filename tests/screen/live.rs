@@ -137,9 +137,10 @@ fn an_unreadable_source_or_a_missing_model_opens_no_page() {
 
 #[test]
 fn keys_raise_and_lower_the_threshold_and_change_its_unit() {
-    shows(&watched(6, "+"), &["threshold  5", "NA         91"]);
-    shows(&watched(6, "++"), &["threshold  6"]);
-    shows(&watched(6, "+-"), &["threshold  4"]);
+    // The first one is half of the range.
+    shows(&watched(6, "+"), &["threshold  50", "NA         37"]);
+    shows(&watched(6, "++"), &["threshold  51"]);
+    shows(&watched(6, "+-"), &["threshold  49"]);
     shows(&watched(6, "+%"), &["threshold  6 % of the peak"]);
     shows(&watched(6, "+%+"), &["threshold  11 % of the peak"]);
     // Back to exactly the same threshold, also from a peak below it.
@@ -153,6 +154,35 @@ fn keys_raise_and_lower_the_threshold_and_change_its_unit() {
     assert_eq!(threshold(&format!("{above}%%")), threshold(&above));
     assert!(threshold(&format!("{above}%")).contains("100 %"));
     assert_eq!(threshold("+%%%"), threshold("+%"));
+}
+
+#[test]
+fn a_command_sets_the_threshold() {
+    let mut page = watched(6, ":at-least 12.5<Enter>");
+    shows(
+        &page,
+        &["frame 5", "touch.csv: threshold 12.5", "threshold  12.5"],
+    );
+    // A command that acts on the matrix sets the page aside; the source stays open, and the threshold can be set
+    // from there as well.
+    then(&mut page, ":figure hexagon<Enter>", &["hexagon"]);
+    then(
+        &mut page,
+        ":at-least 20<Enter>",
+        &["touch.csv: threshold 20"],
+    );
+    then(&mut page, "w", &["frame 5", "threshold  20"]);
+    for (value, error) in [
+        (
+            "1e301",
+            "! at-least: 1e301 is out of range (allowed: -1e300 to 1e300)",
+        ),
+        ("x", "! at-least takes a number like 10, found \"x\""),
+    ] {
+        then(&mut page, &format!(":at-least {value}<Enter>"), &[error]);
+        then(&mut page, "<Esc>", &["threshold  20"]);
+    }
+    shows(":at-least 3<Enter>", &["! no source yet"]);
 }
 
 #[test]
@@ -721,12 +751,12 @@ fn a_recording_stores_the_threshold_and_tare_at_its_end() {
         (beside["rule"].clone(), beside["tare_frames"].clone())
     };
     assert!(beside().0.is_null() && beside().1.is_null());
-    then(&mut page, "+", &["threshold  5"]);
-    assert_eq!(beside().0["at_least"], 5);
-    then(&mut page, "+t", &["threshold  6", "tare       5 frames"]);
+    then(&mut page, "+", &["threshold  50"]);
+    assert_eq!(beside().0["at_least"], 50);
+    then(&mut page, "+t", &["threshold  51", "tare       5 frames"]);
     assert_eq!(
         (&beside().0["at_least"], &beside().1),
-        (&6.into(), &5.into())
+        (&51.into(), &5.into())
     );
     then(&mut page, "Tr", &["touch-1.npy: 3 frames recorded"]);
     assert!(beside().1.is_null());
@@ -922,13 +952,13 @@ fn values_far_below_1_have_shades_and_fine_steps() {
     let mut page = session(&format!(":watch {}<Enter>", path.display()));
     page.frames(1);
     shows(&page, &["frame 0", "0.005"]);
-    then(&mut page, "++", &["threshold  0.00055"]);
+    then(&mut page, "++", &["threshold  0.00255"]);
     // The smallest number with four decimals is still far too large for these values.
     std::fs::write(&path, "time,r0c0,r0c1\n0.0,0.000001,0.0000042\n").expect("written");
     let mut page = session(&format!(":watch {}<Enter>", path.display()));
     page.frames(1);
     shows(&page, &["5e-6", "peak       0.0000042 at 1, 0"]);
-    then(&mut page, "+", &["threshold  5e-7"]);
+    then(&mut page, "+", &["threshold  2.5e-6"]);
 }
 
 #[test]
@@ -1045,7 +1075,7 @@ fn the_range_and_the_first_threshold_depend_on_the_values_shown() {
     then(&mut page, "t", &["range      0 ░▒▓█ 1"]);
     page.frames(3);
     shows(&page, &["range      0 ░▒▓█ 50"]);
-    then(&mut page, "+", &["threshold  5\n", "NA         1"]);
+    then(&mut page, "+", &["threshold  25\n", "NA         1"]);
     then(&mut page, "vv", &["range      0 ░▒▓█ 5000"]);
     then(&mut page, "vT", &["range      0 ░▒▓█ 5000"]);
     // A masked cell is ignored, whatever it sends.
@@ -1058,7 +1088,7 @@ fn the_range_and_the_first_threshold_depend_on_the_values_shown() {
         request.processing.gain = Some(gain_of(2, 1, 0.01));
     });
     shows(&page, &["range      0 ░▒▓█ 50\n"]);
-    then(&mut page, "+", &["threshold  5\n"]);
+    then(&mut page, "+", &["threshold  25\n"]);
 }
 
 /// On a narrow panel a line says less, but no word and no number is cut off.
@@ -1078,7 +1108,7 @@ fn numbers_on_a_narrow_panel_are_not_cut_off() {
         &mut page,
         "#",
         &[
-            "regions    2; NA 72 in all\n",
+            "regions    2; NA 46 in all\n",
             "tare       3 frames\n",
             "size       16 × 16\n",
         ],

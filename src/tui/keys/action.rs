@@ -75,6 +75,8 @@ pub enum Arguments {
     Seed,
     /// A source of frames.
     FrameSource,
+    /// A threshold in the sensor's unit.
+    Threshold,
 }
 
 /// The purpose for which a file is named.
@@ -125,6 +127,7 @@ impl Arguments {
             Self::Sizes => "--scale 0.5:3:0.1 ...",
             Self::Seed => "NUMBER",
             Self::FrameSource => "SOURCE --baud 9600 ...",
+            Self::Threshold => "VALUE",
         }
     }
 
@@ -334,6 +337,7 @@ actions! {
     }
 
     with_arguments {
+        "at-least" Arguments::Threshold, "Watch: the threshold, in the sensor's unit";
         "compare" Arguments::Shape(Purpose::Compare), "compare with a stored shape, or with the step before";
         "cursor" Arguments::Taxel, "move the cursor, or put it on a taxel";
         "delete" Arguments::Shape(Purpose::Delete);

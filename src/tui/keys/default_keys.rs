@@ -395,6 +395,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
         [Char('n') => NEXT_MODEL] "name" "name the shape by the next model, or by none";
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
+        [Char(':') => COMMAND] "" "type a command, such as at-least 10 for the threshold";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "stop watching; w on the matrix watches again";

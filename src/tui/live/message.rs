@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::formats::recording::ChannelInfo;
 use crate::formats::stream::StreamCounts;
 use crate::formats::value::decimal;
-use crate::frame::Frame;
+use crate::frame::{Frame, Rule};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::named_source::NamedSource;
 use crate::tui::live::naming::NamedImprint;
@@ -26,6 +26,8 @@ pub enum LiveMessage {
     NoTare,
     /// Moves the threshold up or down.
     Threshold(i8),
+    /// Sets a threshold in the sensor's unit.
+    AtLeast(Rule),
     /// Converts the threshold to percent of the largest value, or to the sensor's unit.
     Percent,
     /// Freezes the shown frame, or follows the source again.

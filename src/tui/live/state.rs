@@ -403,20 +403,20 @@ impl Live {
         self.tare.mark().is_none() && self.processing.gain.is_none()
     }
 
-    /// Sets the rule that a key has produced, and reads the frame again. A rule out of range changes nothing.
-    fn choose(&mut self, rule: &Result<Rule, FrameError>) {
-        if let &Ok(rule) = rule {
-            let (least, from) = (self.processing.least, RuleOrigin::Key);
-            self.set_rule(Some(SetRule { rule, least, from }));
-            self.read();
-        }
+    /// Sets a rule that the user has chosen on the page, and reads the frame again.
+    pub fn choose(&mut self, rule: Rule) {
+        let (least, from) = (self.processing.least, RuleOrigin::Key);
+        self.set_rule(Some(SetRule { rule, least, from }));
+        self.read();
     }
 
     /// Moves the threshold up or down by a step that depends on the largest value so far. Without a threshold, one is
-    /// set.
+    /// set. A threshold out of range changes nothing.
     pub fn step_threshold(&mut self, direction: i8) {
         let rule = self.rule.map(|set| set.rule);
-        self.choose(&threshold::step(rule, direction, self.range.tared_top()));
+        if let Ok(rule) = threshold::step(rule, direction, self.range.tared_top()) {
+            self.choose(rule);
+        }
     }
 
     /// Converts the threshold from the sensor's unit to percent, or back, such that the imprint of the shown frame
@@ -432,7 +432,9 @@ impl Live {
             Some((_, former)) => Ok(former),
             None => threshold::other_unit(rule, largest),
         };
-        self.choose(&other);
+        if let Ok(other) = other {
+            self.choose(other);
+        }
         self.converted = other.ok().zip(rule);
     }
 

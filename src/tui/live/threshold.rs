@@ -1,11 +1,24 @@
-//! How keys change a threshold: by a step up or down, or to another unit.
+//! A threshold on the page: its text, and how keys change it, by a step up or down or to another unit.
 
+use crate::formats::value::{fitting, measured};
 use crate::frame::{FrameError, Rule};
 use crate::tui::live::reading::{nine_digits, round_up};
 
+/// Returns a threshold for display. `unit` is that of the values, with a space before it.
+pub(super) fn text(rule: Rule, unit: &str) -> String {
+    match rule {
+        Rule::AtLeast(threshold) => format!("{}{unit}", measured(threshold, 7)),
+        Rule::Percent(percent) => format!("{} % of the peak", fitting(percent, 5)),
+        Rule::Hysteresis { low, high } => {
+            format!("{} to {}{unit}", measured(low, 7), measured(high, 7))
+        }
+        Rule::Noise(deviations) => format!("{} × noise", fitting(deviations, 5)),
+    }
+}
+
 /// Moves the threshold up or down by a step: a hundredth of the top of the range, in round numbers. In percent the
-/// step is 5 %, in deviations of the noise it is 1. Without a threshold, it becomes a twentieth of the top of the
-/// range.
+/// step is 5 %, in deviations of the noise it is 1. Without a threshold, it becomes half of the top of the range: above
+/// the noise of most sensors, and below most touches.
 ///
 /// # Errors
 /// Returns an error if the threshold is out of range then.
@@ -13,7 +26,7 @@ pub(super) fn step(rule: Option<Rule>, direction: i8, top: f64) -> Result<Rule, 
     let by = f64::from(direction);
     let step = round_up(top / 100.0) * by;
     match rule {
-        None => Rule::at_least(round_up(top / 20.0)),
+        None => Rule::at_least(nine_digits(top / 2.0)),
         Some(Rule::Percent(percent)) => Rule::percent(stepped(percent, 5.0 * by, (5.0, 100.0))),
         Some(Rule::Hysteresis { low, high }) => {
             Rule::hysteresis(nine_digits(low + step), nine_digits(high + step))

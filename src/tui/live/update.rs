@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::value::{counted, grouped};
+use crate::frame::Rule;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::{Existing, ModelChoice};
@@ -26,8 +27,13 @@ use crate::tui::live::reading::HeatLayer;
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
+use crate::tui::live::threshold;
 use crate::tui::live::view;
+use crate::tui::prompt::state::CommandDialog;
 use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork};
+
+/// The refusal before the first source.
+const NO_SOURCE: &str = "no source yet: ':watch SOURCE' watches a sensor or plays a recording";
 
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
 /// is open.
@@ -36,7 +42,33 @@ pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> 
         LiveMessage::Watch(request) => Some(watch(app, request)),
         LiveMessage::Source(source) => Some(check_source(app, source)),
         LiveMessage::Open => open(app),
+        LiveMessage::AtLeast(rule) => {
+            set_threshold(app, *rule);
+            None
+        }
         _ => None,
+    }
+}
+
+/// Sets the threshold of the source that was watched last, whether its page is open or not.
+fn set_threshold(app: &mut App, rule: Rule) {
+    let Some(page) = page(app) else {
+        refuse(app, NO_SOURCE);
+        return;
+    };
+    page.choose(rule);
+    let value = threshold::text(rule, &page.unit());
+    let text = format!("{}: threshold {value}", page.request().name());
+    inform(app, text);
+}
+
+/// Sets the open page aside for a command that acts on the matrix. The source keeps running, as after Enter.
+pub(in crate::tui) fn set_aside(app: &mut App) {
+    if let Some(Dialog::Live(page)) = app
+        .dialogs
+        .pop_if(|dialog| matches!(dialog, Dialog::Live(_)))
+    {
+        app.live = Some(page);
     }
 }
 
@@ -83,10 +115,7 @@ fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
 /// it is.
 fn open(app: &mut App) -> Option<Effect> {
     let Some(mut page) = app.live.take() else {
-        refuse(
-            app,
-            "no source yet: ':watch SOURCE' watches a sensor or plays a recording",
-        );
+        refuse(app, NO_SOURCE);
         return None;
     };
     let mut effect = None;
@@ -126,6 +155,12 @@ pub(in crate::tui) fn in_live(
         Message::ScrollTo(Endpoint::Last) => page.to_newest(),
         Message::SwitchPage => page.display.only_panel ^= true,
         Message::Live(asked) => effect = adjust(app, &mut page, &asked),
+        Message::Command => {
+            let prompt = CommandDialog::new(&app.commands);
+            app.dialogs
+                .extend([Dialog::Live(page), Dialog::Command(prompt)]);
+            return None;
+        }
         _ => {}
     }
     app.dialogs.push(Dialog::Live(page));
@@ -217,7 +252,8 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             return Some(Effect::Library(LibraryRequest::Models));
         }
         LiveMessage::Source(source) => return Some(check_source(app, source)),
-        LiveMessage::Open | LiveMessage::Watch(_) => {}
+        // These are typed after `:`, and reach the page from there.
+        LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::AtLeast(_) => {}
     }
     None
 }

@@ -15,7 +15,7 @@ use ratatui::layout::{Position, Rect};
 use crate::description::{Descriptor, Value};
 use crate::formats::recording::FrameMark;
 use crate::formats::value::{self, counted, fitting, grouped, measured};
-use crate::frame::{Rule, RuleOrigin};
+use crate::frame::RuleOrigin;
 use crate::imprint::Imprint;
 use crate::recognition::AnswerState;
 use crate::tui::app::message::Message;
@@ -31,6 +31,7 @@ use crate::tui::live::naming::{NamedImprint, Naming};
 use crate::tui::live::reading::LiveReading;
 use crate::tui::live::state::Live;
 use crate::tui::live::tare::progress_text;
+use crate::tui::live::threshold;
 use crate::tui::live::title::{fitting_title, title};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -421,15 +422,7 @@ fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
             shorter,
         };
     };
-    let unit = live.unit();
-    let text = match set.rule {
-        Rule::AtLeast(threshold) => format!("{}{unit}", measured(threshold, 7)),
-        Rule::Percent(percent) => format!("{} % of the peak", fitting(percent, 5)),
-        Rule::Hysteresis { low, high } => {
-            format!("{} to {}{unit}", measured(low, 7), measured(high, 7))
-        }
-        Rule::Noise(deviations) => format!("{} × noise", fitting(deviations, 5)),
-    };
+    let text = threshold::text(set.rule, &live.unit());
     match set.from {
         RuleOrigin::File => PanelLine::up_to(label, format!("{text}, of the file"), ", of"),
         RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => {

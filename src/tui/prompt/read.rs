@@ -15,6 +15,7 @@
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
 use crate::formats::record::RecordError;
+use crate::frame::{FrameError, Rule};
 use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
 use crate::quote::{did_you_mean, joined, shortened};
@@ -112,6 +113,7 @@ fn with_arguments(
             let source = NamedSource::read(rest)?;
             Ok(Message::Live(LiveMessage::Source(source)))
         }
+        (Arguments::Threshold, _) => threshold(rest),
         (Arguments::Degrees, _) => degrees(rest),
         (Arguments::Taxel, [column, row]) => taxel(column, row, &app.shown().sensor),
         (Arguments::Distance, [dx, dy]) => distance(dx, dy).ok_or_else(unexpected),
@@ -129,6 +131,20 @@ fn seed(text: &str) -> Result<Message, String> {
         )
     })?;
     Ok(Message::Recognise(RecogniseMessage::Seed(seed)))
+}
+
+/// Reads a threshold in the unit of the watched sensor.
+fn threshold(text: &str) -> Result<Message, String> {
+    let found = shortened(text);
+    let value = number::read(text);
+    let value = value.ok_or_else(|| format!("at-least takes a number like 10, found {found:?}"))?;
+    let rule = Rule::at_least(value).map_err(|error| match error {
+        FrameError::Rule { allowed, .. } => {
+            format!("at-least: {found} is out of range (allowed: {allowed})")
+        }
+        error => error.to_string(),
+    })?;
+    Ok(Message::Live(LiveMessage::AtLeast(rule)))
 }
 
 /// Reads an angle in degrees: any number, also a negative one.

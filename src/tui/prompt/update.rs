@@ -12,6 +12,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::keys::action::Arguments;
 use crate::tui::keys::key::Arrow;
+use crate::tui::live;
 use crate::tui::matrix;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::prompt::read::read;
@@ -36,6 +37,12 @@ pub(in crate::tui) fn in_command(
                 Ok(message) => {
                     if app.commands.last() != Some(&line) {
                         app.commands.push(line);
+                    }
+                    if !matches!(
+                        message,
+                        Message::Live(_) | Message::Redraw | Message::Suspend
+                    ) {
+                        live::update::set_aside(app);
                     }
                     return match message {
                         Message::Redraw => Some(Effect::Terminal(TerminalEffect::Redraw)),
