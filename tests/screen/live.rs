@@ -66,7 +66,28 @@ fn a_source_is_shown_frame_by_frame() {
         &watched(6, ""),
         &["frame 5  0.5 s", "rate       10/s", "none; + sets one"],
     );
-    shows(&watched(20, ""), &["frame 7  0.7 s", "ended"]);
+    shows(
+        &watched(20, ""),
+        &["frame 7  0.7 s", "ended", "Home: the first one, w: again"],
+    );
+}
+
+#[test]
+fn a_recording_that_has_ended_stays_at_its_frame_and_plays_again_by_key() {
+    let mut page = watched(20, "+n<Left><Left>");
+    let chosen = ["frame 5  0.5 s", "frozen, 2 frames behind", "ended"];
+    shows(&page, &chosen);
+    then(&mut page, "<Enter>w", &chosen);
+    then(&mut page, "<Esc>w", &chosen);
+    hides(&page, &["…", "training or"]);
+    // Not twice in the same history.
+    then(&mut page, "w", &["no frame yet", "threshold  50"]);
+    page.frames(6);
+    then(&mut page, "<Home>", &["frame 0", "frozen, 5 frames behind"]);
+    // Also before its end.
+    then(&mut page, "w", &["no frame yet"]);
+    page.frames(2);
+    then(&mut page, "<Home>", &["frame 0", "frozen, 1 frame behind"]);
 }
 
 #[test]

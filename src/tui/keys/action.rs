@@ -314,6 +314,7 @@ actions! {
         LOWER_ERROR "lower-error" [] Recognise(RecogniseMessage::Want(-1));
         HIGHER_ERROR "higher-error" [] Recognise(RecogniseMessage::Want(1));
         WATCH "watch" [] Message::Live(LiveMessage::Open);
+        WATCH_AGAIN "watch-again" [] Message::Live(LiveMessage::Again);
         TARE "tare" [] Message::Live(LiveMessage::Tare);
         NO_TARE "no-tare" [] Message::Live(LiveMessage::NoTare);
         THRESHOLD_UP "threshold-up" [] Message::Live(LiveMessage::Threshold(1));

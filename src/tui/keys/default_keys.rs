@@ -392,13 +392,14 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('g') => OWN_RANGE] "" "shades cover this frame's values, or all so far";
         [Char('i') => PANEL] "" "only the numbers, or the taxels as well";
         [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
+        [Char('w') => WATCH_AGAIN] "again" "play a recording again; a stream after its end";
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
         [Char('n') => NEXT_MODEL] "name" "name the shape by the next model, or by none";
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
         [Char(':') => COMMAND] "" "type a command, such as at-least 10 for the threshold";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
-            "close" "stop watching; w on the matrix watches again";
+            "close" "stop watching; w on the matrix comes back";
     }
 
     /// Esc only leaves the search first, so that it does not close too much; the other keys close help at once.

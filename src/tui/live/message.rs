@@ -16,6 +16,8 @@ use crate::tui::live::request::WatchRequest;
 pub enum LiveMessage {
     /// Opens the page of the last source.
     Open,
+    /// Watches the source of the page again: a recording from its start, any other source after its end.
+    Again,
     /// Watches a source.
     Watch(Arc<WatchRequest>),
     /// Watches a source that was named at the prompt, if it can be read.

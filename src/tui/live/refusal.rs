@@ -21,6 +21,9 @@ pub enum LiveRefusal {
     /// No frame can come any more.
     #[error("the source has ended, so there is nothing to record")]
     SourceEnded,
+    /// The source is still watched.
+    #[error("the source has not ended yet")]
+    NotEnded,
     /// There is no threshold, so it is unknown which values are active.
     #[error("no threshold, so no imprint")]
     NoThreshold,

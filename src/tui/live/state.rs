@@ -15,7 +15,7 @@ use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::recording_state::RecordingState;
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
-use crate::tui::live::tare::{LiveTare, TareMark};
+use crate::tui::live::tare::LiveTare;
 use crate::tui::live::threshold;
 
 /// The maximum number of frames that a tare by key is made of.
@@ -502,6 +502,41 @@ impl Live {
     pub fn stop(&mut self) {
         self.stopped = true;
         self.recording.stop();
+    }
+
+    /// Returns true if the source has come to its end. There is nothing to watch any more then, only the history.
+    pub fn has_ended(&self) -> bool {
+        self.status.state == SourceState::Ended
+    }
+
+    /// Opens the page again after it was closed at the end of its source: it shows what it showed. Shapes are named by
+    /// the work of this number.
+    pub fn reopen(&mut self, number: u64) {
+        self.stopped = false;
+        self.names.restart(number);
+    }
+
+    /// Returns true if the source is a recording, whose frames come again when it is played again. A stream has no
+    /// channels.
+    fn is_recording(&self) -> bool {
+        self.status.channels > 0
+    }
+
+    /// Returns true if the source can be watched again: a recording at any time, any other source after its end.
+    pub fn can_begin_again(&self) -> bool {
+        self.is_recording() || self.status.state.is_final()
+    }
+
+    /// Takes frames again, from the work of this number. The history begins anew with a recording, because the same
+    /// frames come again.
+    pub fn watch_again(&mut self, number: u64) {
+        // The frames that come now do not belong to what was recorded of those before.
+        self.recording.stop();
+        if self.is_recording() {
+            self.cursor = FrameCursor::new(self.request.history_bytes);
+            self.not_drawn = 0;
+        }
+        self.restart(number);
     }
 
     /// Takes frames again, from the work of this number; history, threshold and tare stay. The source counts its

@@ -111,8 +111,8 @@ fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
 }
 
 /// Opens the page of the last source. A source that was left is watched again: its history and settings are still
-/// there; frames that came meanwhile are not. The recording that was requested at the start is finished, and stays as
-/// it is.
+/// there; frames that came meanwhile are not. One that has ended is not: the page shows the frame that it showed. The
+/// recording that was requested at the start is finished, and stays as it is.
 fn open(app: &mut App) -> Option<Effect> {
     let Some(mut page) = app.live.take() else {
         refuse(app, NO_SOURCE);
@@ -121,11 +121,27 @@ fn open(app: &mut App) -> Option<Effect> {
     let mut effect = None;
     if page.stopped() {
         app.works += 1;
-        page.restart(app.works);
-        effect = Some(watch_source(&page, None));
+        effect = Some(if page.has_ended() {
+            page.reopen(app.works);
+            name_by(&page)
+        } else {
+            page.restart(app.works);
+            watch_source(&page, None)
+        });
     }
     app.dialogs.push(Dialog::Live(page));
     effect
+}
+
+/// Watches the source of the open page again: a recording at any time, any other source after its end.
+fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
+    if !page.can_begin_again() {
+        refuse(app, LiveRefusal::NotEnded.to_string());
+        return None;
+    }
+    app.works += 1;
+    page.watch_again(app.works);
+    Some(watch_source(page, None))
 }
 
 /// Handles a message over the page. Closing ends the source and keeps the page; Enter keeps both, because users often
@@ -251,6 +267,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             page.names.awaits_models = true;
             return Some(Effect::Library(LibraryRequest::Models));
         }
+        LiveMessage::Again => return watch_again(app, page),
         LiveMessage::Source(source) => return Some(check_source(app, source)),
         // These are typed after `:`, and reach the page from there.
         LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::AtLeast(_) => {}

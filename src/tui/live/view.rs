@@ -65,6 +65,7 @@ impl Page for Live {
             Message::Live(LiveMessage::Record) => {
                 self.recording().name().is_some() || !self.status().state.is_final()
             }
+            Message::Live(LiveMessage::Again) => self.can_begin_again(),
             _ => true,
         }
     }
@@ -94,12 +95,13 @@ impl Page for Live {
         None
     }
 
-    fn remark(&self, _: &Keymap, _: Rect) -> Option<(String, Role)> {
+    fn remark(&self, keymap: &Keymap, _: Rect) -> Option<(String, Role)> {
         let error = self.error().map(ToString::to_string);
         let troubles: Vec<String> = error.into_iter().chain(self.trouble()).collect();
-        let text = match &troubles[..] {
-            [] => self.status().note.clone()?,
-            troubles => troubles.join("; "),
+        let text = match (&troubles[..], &self.status().note) {
+            ([], Some(note)) => note.clone(),
+            ([], None) => return self.has_ended().then(|| (at_end(keymap), Role::Quiet)),
+            (troubles, _) => troubles.join("; "),
         };
         Some((format!("! {text}"), Role::Error))
     }
@@ -111,6 +113,16 @@ impl Page for Live {
     fn alarm(&self) -> Option<String> {
         self.trouble()
     }
+}
+
+/// Returns what can be done after the end of the source.
+fn at_end(keymap: &Keymap) -> String {
+    let key = |action| keymap.label(Context::Live, action);
+    let (first, again) = (key(&action::FIRST), key(&action::WATCH_AGAIN));
+    let (earlier, close) = (key(&action::SCROLL_UP), key(&action::CANCEL));
+    format!(
+        "ended; {earlier}: earlier frames, {first}: the first one, {again}: again, {close}: close"
+    )
 }
 
 /// Returns the panes of the page.
