@@ -298,7 +298,7 @@ fn a_shape_is_moved_and_turned() {
         let stored = format!("lkey<Enter>{keys}");
         shows(
             &stored,
-            &["a stored imprint moves as a picture: p places it"],
+            &["a stored imprint has no position: press p to place it as a picture"],
         );
     }
     shows("lkey<Enter>c", &["a stored imprint has none; p places it"]);
@@ -954,7 +954,7 @@ fn help_on_a_page_of_explore_lists_the_keys_of_the_others() {
 
 #[test]
 fn a_drawing_says_how_it_can_be_moved() {
-    shows("g", &["! nothing to move: f places a figure"]);
+    shows("g", &["! nothing to move: press f for a figure"]);
     let how = "! a drawing cannot be moved: save it (s), then place it (p)";
     shows("<Space>g", &[how]);
     shows("<Space><S-Left>", &[how]);

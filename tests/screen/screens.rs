@@ -157,7 +157,7 @@ fn questions_and_notices_are_complete_on_narrow_screens() {
         ),
         (
             "g",
-            "! nothing to move: f places a figure, p a stored shape",
+            "! nothing to move: press f for a figure or p for a stored shape",
         ),
         (
             "<Space>s/",

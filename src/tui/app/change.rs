@@ -198,7 +198,9 @@ fn say_dropped(app: &mut App, dropped: u32) {
 fn refuse_to_move(app: &mut App) {
     if app.loaded_imprint().is_some() {
         let place = app.key_of(&action::PICTURE);
-        let text = format!("a stored imprint moves as a picture: {place} places it");
+        let text = format!(
+            "a stored imprint has no position: press {place} to place it as a picture, then move it"
+        );
         return refuse(app, text);
     }
     if !app.reading().imprint.is_empty() {
@@ -209,7 +211,7 @@ fn refuse_to_move(app: &mut App) {
     let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     refuse(
         app,
-        format!("nothing to move: {figure} places a figure, {picture} a stored shape"),
+        format!("nothing to move: press {figure} for a figure or {picture} for a stored shape"),
     );
 }
 

@@ -266,13 +266,7 @@ fn edit(app: &mut App, message: &Message) {
         Message::Region(by) => choose_region(app, by),
         Message::Display if app.history.present().source.is_none() => {
             app.display = Display::Imprint;
-            let (figure, place) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
-            let why = if app.loaded_imprint().is_some() {
-                format!("a stored imprint has none; {place} places it as a picture")
-            } else {
-                format!("what is drawn by hand has none; {figure} places a figure")
-            };
-            refuse(app, format!("no coverage to show: {why}"));
+            refuse(app, format!("no coverage to show: {}", has_none(app)));
         }
         Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
@@ -339,6 +333,18 @@ fn open_list(app: &mut App, purpose: Purpose) -> Effect {
     Effect::Library(LibraryRequest::List)
 }
 
+/// Says why what is on the matrix has neither outline nor coverage, and what has.
+fn has_none(app: &App) -> String {
+    let (figure, place) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
+    if app.loaded_imprint().is_some() {
+        format!("a stored imprint has none; {place} places it as a picture")
+    } else if app.history.present().edits.is_empty() {
+        format!("the matrix is empty; {figure} places a figure")
+    } else {
+        format!("a drawing has none; {figure} places a figure, which has")
+    }
+}
+
 /// Shows a layer or hides it. The notice names it, and says why if there is nothing to see. Whether a layer is shown
 /// by default depends on the size of taxels, so the switch inverts what is visible now.
 fn switch_layer(app: &mut App, layer: Layer) {
@@ -363,7 +369,7 @@ fn switch_layer(app: &mut App, layer: Layer) {
     let text = match (show, missing, layer) {
         (false, ..) => format!("without {name}"),
         (true, false, _) => format!("with {name}"),
-        (true, true, Layer::Outline) => "no outline: nothing touches the matrix".to_owned(),
+        (true, true, Layer::Outline) => format!("no outline to show: {}", has_none(app)),
         (true, true, Layer::Rectangle) => NO_REGION.to_owned(),
     };
     inform(app, text);
