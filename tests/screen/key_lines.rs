@@ -163,7 +163,7 @@ fn clicks_on_the_lines_of_keys_do_what_the_keys_do() {
     click(&mut session, "accept");
     shows(&session, &["Region 1 of 1", "n New"]);
     // The second of two keys, and four arrows, on which a click does nothing.
-    click(&mut session, "g grab");
+    click(&mut session, "g hold");
     click(&mut session, "arrows");
     click(&mut session, "+ -");
     shows(&session, &["held, step 0.1"]);

@@ -88,7 +88,7 @@ fn the_cursor_and_the_shape_are_moved_by_commands() {
         let session = session(&format!("f<Enter>:{line}<Enter>"));
         shows(&session, &[shown]);
     }
-    let session = session("f<Enter>:step larger<Enter>:nudge up<Enter>:grab<Enter>");
+    let session = session("f<Enter>:step larger<Enter>:nudge up<Enter>:hold<Enter>");
     shows(&session, &["at 4.00, 3.90", "held, step 0.1"]);
 }
 
@@ -167,13 +167,13 @@ fn candidates_fit_on_the_screen() {
 
 #[test]
 fn up_and_down_recall_earlier_lines() {
-    let mut session = session(":new<Enter>:grab<Enter>:new<Enter>:new<Enter>:z<Up>");
+    let mut session = session(":new<Enter>:hold<Enter>:new<Enter>:new<Enter>:z<Up>");
     for (keys, shown) in [
         ("", ":new"),
-        ("<Up>", ":grab"),
+        ("<Up>", ":hold"),
         ("<Up>", ":new"),
         ("<Up>", ":new"),
-        ("<Down>", ":grab"),
+        ("<Down>", ":hold"),
         ("<Down><Down>", ":z"),
         // Below the typed line are the offers.
         ("<Down>", ":zoom"),

@@ -215,7 +215,7 @@ actions! {
         COUNT_SEVEN "count-7" [] Message::Count(7);
         COUNT_EIGHT "count-8" [] Message::Count(8);
         COUNT_NINE "count-9" [] Message::Count(9);
-        GRAB "grab" [] Message::Grab;
+        HOLD "hold" [] Message::Grab;
         PUT_BACK "put-back" [] Message::PutBack;
         COMPARE "compare" [] Message::Compare;
         HISTORY "history" [] Message::History;

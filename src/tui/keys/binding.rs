@@ -73,7 +73,7 @@ contexts! {
     /// On the matrix.
     Matrix "matrix" "On the matrix" Ignored, EVERYWHERE;
     /// On the matrix, while a shape is held.
-    Grab "grab" "While a shape is held" Ignored, Some(Self::Matrix);
+    Grab "hold" "While a shape is held" Ignored, Some(Self::Matrix);
     /// In a form.
     Form "form" "In a form" Typed, LINE;
     /// In the list of shapes.

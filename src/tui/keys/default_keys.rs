@@ -69,7 +69,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('c') => COVERAGE] "coverage" "coverage in shades, in percent, the imprint again";
         [Char('o') => OUTLINE] "" "the true outline of the shape";
         [Char('b') => RECTANGLE] "" "the rectangle with CG (G), CD (D)";
-        [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
+        [Char('g') => HOLD] "hold" "hold the shape, to move it with the arrows";
         [Char('w') => WATCH] "" "Watch: back to the frames of the watched sensor";
         [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,
             ShiftArrow(Up) => NUDGE_UP, ShiftArrow(Down) => NUDGE_DOWN]
@@ -97,7 +97,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "move" "move the shape by a step";
         [Char('+') => LARGER_STEP, Char('=') => LARGER_STEP, Char('-') => SMALLER_STEP]
             "step" "a larger, a smaller step: 0.01, 0.1, 1";
-        [Char('g') => GRAB, Enter => GRAB] "let go" "let the shape go where it is";
+        [Char('g') => HOLD, Enter => HOLD] "let go" "let the shape go where it is";
         [Esc => PUT_BACK, Ctrl('g') => PUT_BACK, Ctrl('c') => PUT_BACK]
             "put back" "put it back where it was, and let go";
     }
