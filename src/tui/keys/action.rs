@@ -306,8 +306,8 @@ actions! {
         QUIZ "quiz" [] Recognise(RecogniseMessage::Touch);
         KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
         FORGET "forget" [] Recognise(RecogniseMessage::Forget), "forget the touches that were kept";
-        NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1)), "the next model";
-        PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1)), "the previous model";
+        NEXT_MODEL "next-model" [] Recognise(RecogniseMessage::NextSet(1)), "the next model";
+        PREVIOUS_MODEL "previous-model" [] Recognise(RecogniseMessage::NextSet(-1)), "the previous model";
         CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
         POSES "poses" [] Recognise(RecogniseMessage::Poses);
         SEPARATE "separate" [] Recognise(RecogniseMessage::Separate(SeparationFlags::NONE));
@@ -332,7 +332,7 @@ actions! {
         FOLLOW_CONTACT "follow-contact" [] Message::Live(LiveMessage::FollowContact);
         RECORD "record" [] Message::Live(LiveMessage::Record);
         MARK_FRAME "mark-frame" [] Message::Live(LiveMessage::Mark);
-        NEXT_MODEL "next-model" [] Message::Live(LiveMessage::NextModel);
+        NAME_SHAPE "name-shape" [] Message::Live(LiveMessage::NextModel);
         REDRAW "redraw" [] Message::Redraw;
         SUSPEND "suspend" [] Message::Suspend;
     }

@@ -321,7 +321,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('t') => QUIZ] "quiz" "quiz: name the shape that left a random touch";
         [Char('a') => KEEP, Char('x') => FORGET]
             "keep, forget" "keep this touch as one of several; forget them";
-        [Char('o') => NEXT_SET, Char('O') => PREVIOUS_SET]
+        [Char('o') => NEXT_MODEL, Char('O') => PREVIOUS_MODEL]
             "other model" "next, previous model";
         [Char('v') => CONFUSION] "confusion" "which shapes are confused with which";
         [Char('V') => SEPARATE] "" "the error against the size of the shapes";
@@ -394,7 +394,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
         [Char('w') => WATCH_AGAIN] "again" "play a recording again; a stream after its end";
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
-        [Char('n') => NEXT_MODEL] "name" "name the shape by the next model, or by none";
+        [Char('n') => NAME_SHAPE] "name" "name the shape by the next model, or by none";
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
         [Char(':') => COMMAND] "" "type a command, such as at-least 10 for the threshold";
         [Char('?') => HELP] "help" "these keys";
