@@ -1,7 +1,7 @@
 //! The imprints page: a list of the distinct imprints.
 //!
 //! ```text
-//!    #  ↓poses      %   x0   y0  p  h       na   >7      #12     headings, an arrow at the sort column
+//!    #  ↓poses      %   x0   y0 pc ho       na   >7      #12     headings, an arrow at the sort column
 //! >  7     366   0.47 5.00 5.00  1  0       36   ·▄▄·    ▄██▄    the selected row, thumbnails from it on
 //!  a12     360   0.46 5.05 5.00  1  1       34   ·▀▀·    ·▀▀·    a row marked by a letter
 //! imprint 7 at x0 5.00, y0 5.00; 1 piece, 0 holes, na 36         everything about the selected imprint
@@ -241,8 +241,8 @@ fn draw_headings(theme: &Theme, results: &Results, list: &ImprintList, buffer: &
             ListColumn::FirstPose => "#",
             ListColumn::Poses => "poses",
             ListColumn::Position(axis) => axis.parameter().row().short,
-            ListColumn::Pieces => "p",
-            ListColumn::Holes => "h",
+            ListColumn::Pieces => "pc",
+            ListColumn::Holes => "ho",
             ListColumn::Value => &key,
         };
         let arrow = (by == column).then(|| theme.sorted(descending));
