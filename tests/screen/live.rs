@@ -1056,13 +1056,13 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
 
 #[test]
 fn the_marks_on_taxels_are_explained() {
-    shows(&watched(6, "+"), &["marks      • edge of touch"]);
+    shows(&watched(6, "+"), &["marks      • edge of imprint"]);
     shows(&watched(6, "+#"), &["marks      • active taxel"]);
     hides(&watched(6, "+v"), &["marks"]);
     hides(&watched(6, ""), &["marks"]);
     let mut low = watched(6, "+");
     low.resize(80, 16);
-    shows(&low, &["marks      • around touch"]);
+    shows(&low, &["marks      • around imprint"]);
 }
 
 #[test]
