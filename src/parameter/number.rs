@@ -140,11 +140,11 @@ pub fn time_in_words(seconds: f64) -> String {
 ///
 /// ```
 /// use taxel::parameter::number::differing;
-/// assert_eq!([0_u8, 1, 2].map(differing), ["no taxel differs", "1 taxel differs", "2 taxels differ"]);
+/// assert_eq!([0_u8, 1, 2].map(differing), ["no taxels differ", "1 taxel differs", "2 taxels differ"]);
 /// ```
 pub fn differing(taxels: impl Into<u128>) -> String {
     match taxels.into() {
-        0 => "no taxel differs".to_owned(),
+        0 => "no taxels differ".to_owned(),
         1 => "1 taxel differs".to_owned(),
         taxels => format!("{} differ", counted(taxels, "taxel")),
     }

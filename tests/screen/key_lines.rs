@@ -45,13 +45,13 @@ fn the_menu_shows_the_keys_of_the_page() {
         (":", "Enter run   Esc cancel   F1 help", "Tab complete"),
         (
             "<Space>q",
-            "y yes   n no   s save first   Esc not now   ? help",
+            "y yes   n no   s save first   Esc cancel   ? help",
             "",
         ),
         // Nothing can be saved there.
         (
             "f<CR>:save mine<CR>:delete mine<CR>",
-            "y yes   n no   Esc not now   ? help",
+            "y yes   n no   Esc cancel   ? help",
             "",
         ),
         ("?", "q close", "Up Down scroll"),

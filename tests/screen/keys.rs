@@ -229,7 +229,7 @@ fn a_text_that_is_too_long_for_its_field_is_not_cut_without_a_word() {
 fn equal_imprints_are_compared_in_the_words_of_others() {
     shows(
         "lkey<Enter>:compare key<Enter>",
-        &["no taxel differs   A: key"],
+        &["no taxels differ   A: key"],
     );
     shows("lkey<Enter><Space>=", &["1 taxel differs   A: "]);
 }
@@ -301,7 +301,11 @@ fn a_shape_is_moved_and_turned() {
             &["a stored imprint has no position: press p to place it as a picture"],
         );
     }
-    shows("lkey<Enter>c", &["a stored imprint has none; p places it"]);
+    for key in ["c", "o"] {
+        let stored = format!("lkey<Enter>{key}");
+        shows(&stored, &["a stored imprint has none; p places it"]);
+        shows(&format!("<Space>{key}"), &["a drawing has none; f places"]);
+    }
     // A hundred steps of 0.01 are exactly 1.
     shows("f<Enter>g<100x:Right>", &["at 5.00, 4.00"]);
 }
@@ -618,7 +622,7 @@ fn wide_characters_in_a_number_are_seen() {
 
 #[test]
 fn recognise_names_the_shape_and_follows_the_matrix() {
-    shows("r", &["Recognise: model figures", "Nothing is touched"]);
+    shows("r", &["Recognise: model figures", "The matrix is empty"]);
     shows("f<Enter>r", &["certain: ellipse", "100.0 %", "any angle"]);
     shows("rf<Enter>", &["certain: ellipse"]);
     shows(
@@ -650,6 +654,7 @@ fn recognise_names_the_shape_and_follows_the_matrix() {
 fn recognise_steps_through_sets_and_accepts_a_name() {
     shows("ro", &["model figures-30"]);
     shows("roO", &["certain 100.0 %"]);
+    shows("r:next-model<Enter>", &["model figures-30"]);
     shows(":recognise figures-30<Enter>", &["model figures-30"]);
     shows(":reco<Tab>figures-<Tab><Enter>", &["model figures-30"]);
     // The current set is kept, with the kept touches and their answer.
@@ -731,15 +736,18 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
     );
     shows(
         &format!("{touch}<Down><Enter>"),
-        &["wrong: it was ellipse, not rectangle", "0 of 1 right"],
+        &[
+            "wrong: the shape is ellipse, you said rectangle",
+            "0 of 1 right",
+        ],
     );
     shows(
         &format!("{touch}o<Enter>"),
-        &["wrong: it was ellipse, not octagon"],
+        &["wrong: the shape is ellipse, you said octagon"],
     );
     shows(
         &format!("{touch}5"),
-        &["wrong: it was ellipse, not hexagon"],
+        &["wrong: the shape is ellipse, you said hexagon"],
     );
     for (key, refused) in [
         ("9", "no shape 9, expected 1 to 7"),
@@ -795,7 +803,7 @@ fn the_confusion_matrix_starts_at_the_worst_pair() {
     );
     shows(
         &format!("{open}<Enter>"),
-        &["likely: ellipse", "\nconfused imprint\n"],
+        &["likely: ellipse", "\nimprint of octagon, named ellipse\n"],
     );
     shows(&format!("{open}<Esc>"), &["Recognise:"]);
 }
@@ -945,8 +953,8 @@ fn help_on_a_page_of_explore_lists_the_keys_of_the_others() {
     // Enter opens the histogram from the statistics; on this page, it has another meaning.
     then(
         &mut help,
-        "/its histogram<Enter>",
-        &["Enter                   its"],
+        "/show its histogram<Enter>",
+        &["Enter                   show"],
     );
     hides(&help, &["! "]);
     shows("fr<Enter>:explore --x0 5 --y0 5<Enter>4?", &["On the map"]);

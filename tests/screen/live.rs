@@ -162,8 +162,8 @@ fn keys_raise_and_lower_the_threshold_and_change_its_unit() {
     shows(&watched(6, "+"), &["threshold  50", "NA         37"]);
     shows(&watched(6, "++"), &["threshold  51"]);
     shows(&watched(6, "+-"), &["threshold  49"]);
-    shows(&watched(6, "+%"), &["threshold  6 % of the peak"]);
-    shows(&watched(6, "+%+"), &["threshold  11 % of the peak"]);
+    shows(&watched(6, "+%"), &["threshold  63 % of the peak"]);
+    shows(&watched(6, "+%+"), &["threshold  68 % of the peak"]);
     // Back to exactly the same threshold, also from a peak below it.
     let threshold = |keys: &str| {
         let screen = watched(6, keys).screen();
@@ -1056,13 +1056,13 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
 
 #[test]
 fn the_marks_on_taxels_are_explained() {
-    shows(&watched(6, "+"), &["marks      • edge of imprint"]);
+    shows(&watched(6, "+"), &["marks      • imprint edge"]);
     shows(&watched(6, "+#"), &["marks      • active taxel"]);
     hides(&watched(6, "+v"), &["marks"]);
     hides(&watched(6, ""), &["marks"]);
     let mut low = watched(6, "+");
     low.resize(80, 16);
-    shows(&low, &["marks      • around imprint"]);
+    shows(&low, &["marks      • near imprint"]);
 }
 
 #[test]
@@ -1139,5 +1139,5 @@ fn numbers_on_a_narrow_panel_are_not_cut_off() {
     narrow.frames(3);
     then(&mut narrow, "t+", &[]);
     narrow.frames(3);
-    shows(&narrow, &["CG         9.04, 8.53\n", "regions    2\n"]);
+    shows(&narrow, &["CG         8.8, 8.43\n", "regions    2\n"]);
 }

@@ -138,7 +138,7 @@ fn a_stored_model_is_completed_used_and_remembered() {
     press(&mut session, "n<Space><Right><Right><Space>");
     shows(
         &session,
-        &["unknown: no shape of the model leaves this", "nearest: "],
+        &["unknown: no shape leaves this imprint", "nearest: "],
     );
     shows(&begin("r"), &["Recognise: model my parts"]);
     // When another model is chosen, that one is remembered.
@@ -187,10 +187,7 @@ fn the_pose_belongs_to_the_shape_that_all_touches_name() {
     press(&mut session, contradicts);
     shows(
         &session,
-        &[
-            "unknown: no shape of the model leaves all",
-            "triangle centre",
-        ],
+        &["unknown: no shape leaves all of these", "triangle centre"],
     );
 }
 

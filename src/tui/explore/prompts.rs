@@ -116,7 +116,7 @@ pub(in crate::tui) fn in_mark(
             let key = app.keymap().label(Context::Explore, &action::JUMP);
             inform(
                 app,
-                format!("marked as {letter}: {key} {letter} goes back to it"),
+                format!("marked as {letter}; press {key} then {letter} to return"),
             );
         }
         MarkPurpose::Jump => {

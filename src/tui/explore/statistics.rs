@@ -1,7 +1,7 @@
 //! The statistics page.
 //!
 //! ```text
-//! 175 distinct up to shifts, 105 up to turns and mirrors too
+//! 175 distinct up to shifts, 105 up to quarter turns and mirror images too
 //! poses partly off the sensor: 316  without imprint: 32
 //! 1 of 23              min   mean    max     sd        the number of the chosen descriptor, and columns
 //! > na                   1 22.405     29 7.3052        a row for each descriptor
@@ -126,7 +126,7 @@ impl StatisticsTable {
 /// Draws the page. Returns the position of the chosen descriptor.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let table = StatisticsTable::of(page, results);
-    for (index, total) in totals(results).iter().enumerate() {
+    for (index, total) in totals(results, page.width.into()).iter().enumerate() {
         let row = write::row(table.totals, index);
         write::line(buffer, row, theme, [(total.as_str(), Role::Text)]);
     }
@@ -193,17 +193,20 @@ fn head(table: &StatisticsTable, results: &Results) -> String {
     row + columns
 }
 
-/// Returns the lines with the numbers of imprints and poses.
-fn totals(results: &Results) -> [String; 2] {
+/// Returns the lines with the numbers of imprints and poses; a longer text if it fits into the width.
+fn totals(results: &Results, width: usize) -> [String; 2] {
     let findings = results.findings();
     let (result, (shifts, symmetry)) = (&findings.sweep, findings.classes);
     let many = |count: usize| grouped(count as u64);
-    [
+    let classes = ["quarter turns and mirror images", "turns and mirrors"].map(|symmetries| {
         format!(
-            "{} distinct up to shifts, {} up to turns and mirrors too",
+            "{} distinct up to shifts, {} up to {symmetries} too",
             many(shifts),
             many(symmetry)
-        ),
+        )
+    });
+    [
+        write::first_fitting(&[&classes[0], &classes[1]], width).to_owned(),
         format!(
             "poses partly off the sensor: {}  without imprint: {}",
             grouped(result.partly_off),

@@ -235,7 +235,7 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     let explore = app.key_of(&action::EXPLORE);
     inform(
         app,
-        format!("{number}on the matrix; {undo} takes it back, {explore} goes on exploring"),
+        format!("{number}on the matrix; {undo} takes it back, {explore} returns to Explore"),
     );
     app.results = Some(results);
     None

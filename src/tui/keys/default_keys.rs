@@ -47,7 +47,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('n') => NEW] "" "New: empty the matrix, to draw by hand";
         [Char('l') => LOAD] "" "Load: bring a stored shape onto the matrix";
         [Char('f') => FIGURE] "" "Figure: place one of the seven figures";
-        [Char('p') => PICTURE] "" "Picture: place a stored shape, or move the one here";
+        [Char('p') => PICTURE] "" "Picture: place a stored shape, or move the one placed";
         [Char('s') => SAVE] "" "Save: store what is on the matrix";
         [Char('d') => DELETE] "" "Delete: move a stored shape to the trash";
         [Char('q') => QUIT] "" "Quit: asks first if work would be lost";
@@ -65,7 +65,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Tab => REGION, BackTab => PREVIOUS_REGION]
             "region" "describe the next, the previous piece or hole";
         [Char('e') => EXPLORE] "explore" "Explore: all imprints of the shape, over all poses";
-        [Char('r') => RECOGNISE] "recognise" "Recognise: name the shape from its touch";
+        [Char('r') => RECOGNISE] "recognise" "Recognise: name the shape from its imprint";
         [Char('c') => COVERAGE] "coverage" "coverage in shades, in percent, the imprint again";
         [Char('o') => OUTLINE] "" "the true outline of the shape";
         [Char('b') => RECTANGLE] "" "the rectangle with CG (G), CD (D)";
@@ -118,9 +118,9 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// If a question has no answer "no", `n` only closes it. A key without a row leaves it open.
     Question {
         [Char('y') => ACCEPT] "yes" "yes";
-        [Char('n') => DECLINE] "no" "no; unsaved work from last time goes to the trash";
+        [Char('n') => DECLINE] "no" "no; at the start: move the unsaved work to the trash";
         [Char('s') => SAVE] "save first" "at the end: save first, then quit";
-        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "not now" "cancel, without an answer";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "cancel" "cancel, without an answer";
         [Char('?') => HELP] "help" "these keys";
     }
 
@@ -244,7 +244,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "first, last descriptor";
         [LEFT => COLUMNS_LEFT, RIGHT => COLUMNS_RIGHT]
             "columns" "columns further left, further right";
-        [Enter => HISTOGRAM] "histogram" "its histogram";
+        [Enter => HISTOGRAM] "histogram" "show its histogram";
     }
 
     Histogram {

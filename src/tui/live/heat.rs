@@ -59,8 +59,8 @@ impl<'a> HeatMap<'a> {
         let marked = match (self.layer, self.grid.form) {
             (_, CellForm::Number) => "active taxel",
             (HeatLayer::Imprint, _) => return None,
-            (_, CellForm::Wide(_)) => "edge of imprint",
-            (_, CellForm::Half) => "around imprint",
+            (_, CellForm::Wide(_)) => "imprint edge",
+            (_, CellForm::Half) => "near imprint",
         };
         let imprint = self.reading.imprint.as_ref()?;
         let any = !imprint.is_empty();

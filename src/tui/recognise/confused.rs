@@ -68,7 +68,7 @@ impl Example {
             format!("{name} in {}", counted(own.poses, "pose"))
         });
         let leaves: Vec<String> = leaves.collect();
-        format!("one imprint of it: {}", leaves.join(", "))
+        format!("an imprint left by {}", leaves.join(", "))
     }
 }
 
@@ -148,7 +148,7 @@ mod tests {
             assert_eq!(example.is_some(), touches > 0, "{cell:?}");
             if let Some(example) = example {
                 let text = example.in_words(cell, |shape| ["a", "b", "c"][shape]);
-                let shapes = text.trim_start_matches("one imprint of it: ").split(", ");
+                let shapes = text.trim_start_matches("an imprint left by ").split(", ");
                 let shapes: Vec<&str> = shapes.filter_map(|own| own.get(..1)).collect();
                 let (touching, naming) = (["a", "b", "c"][touched], ["a", "b", "c"][named]);
                 let mut pair = vec![touching, naming];

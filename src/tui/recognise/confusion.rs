@@ -65,6 +65,12 @@ impl Confusion {
         Some(onto(&imprint, sensor, *self.trained.model.sensor()))
     }
 
+    /// Says what the imprint of the cell is: "imprint of cross, named saltire".
+    pub fn of_cell(&self) -> String {
+        let [touched, named] = [self.cell.0, self.cell.1].map(|shape| self.trained.name(shape));
+        format!("imprint of {touched}, named {named}")
+    }
+
     /// Puts the cursor onto a cell, or onto the nearest one if there is no such cell.
     fn go_to(&mut self, (row, column): (usize, usize)) {
         let last = self.count() - 1;
@@ -191,7 +197,7 @@ impl Page for Confusion {
         let meanings = [
             "rows: the shape that touches; columns: its name; percent of the row",
             "rows: what touches; columns: its name; % of the row",
-            "row: what touches; column: its name; %",
+            "rows: true shape; columns: name given; %",
         ];
         let meaning = write::first_fitting(&meanings, area.width.into());
         write::line(buffer, write::row(area, 1), theme, [(meaning, Role::Quiet)]);

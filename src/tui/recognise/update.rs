@@ -13,6 +13,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
 use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::confusion::Confusion;
@@ -319,11 +320,11 @@ pub(in crate::tui) fn in_quiz(
 fn guess(app: &mut App, quiz: Quiz, named: bool) {
     let (shape, selected) = (quiz.shape(), quiz.selected());
     let (right, name) = (named && shape == selected, quiz.name(shape).to_owned());
-    let touch = action_key(app);
+    let touch = app.keymap().label(Context::Recognise, &action::QUIZ);
     let text = match (named, right) {
-        (true, true) => format!("right: {name}; {touch} touches another shape"),
+        (true, true) => format!("right: {name}; {touch} for another shape"),
         (true, false) => format!(
-            "wrong: it was {name}, not {}; {touch} touches another shape",
+            "wrong: the shape is {name}, you said {}; {touch} for another one",
             quiz.name(selected)
         ),
         (false, _) => {
@@ -342,12 +343,6 @@ fn guess(app: &mut App, quiz: Quiz, named: bool) {
     inform(app, text);
 }
 
-/// Returns the key that begins a quiz, for the notice at the end of one.
-fn action_key(app: &App) -> String {
-    let context = crate::tui::keys::binding::Context::Recognise;
-    app.keymap().label(context, &action::QUIZ)
-}
-
 /// Handles a message over the confusion matrix. Enter puts the imprint of the cell onto the matrix and closes the
 /// page; it is refused if the cell has no imprint.
 pub(in crate::tui) fn in_confusion(
@@ -358,7 +353,7 @@ pub(in crate::tui) fn in_confusion(
     if *message == Message::Accept {
         let sensor = app.history.present().sensor;
         if let Some((sensor, imprint)) = page.imprint_on(sensor) {
-            put(app, sensor, &imprint, "confused imprint");
+            put(app, sensor, &imprint, &page.of_cell());
             return None;
         }
         refuse(app, "there is no imprint in this cell");

@@ -207,7 +207,7 @@ impl Panel<'_> {
         self.text(limit, Role::Quiet);
         if let Some((unknown, tried)) = trained.unknown_between {
             let text = format!(
-                "between grid points, {} of {} random poses are not in the model",
+                "off the grid, {} of {} random poses leave unknown imprints",
                 percent_of(unknown.into(), tried.into()),
                 grouped(tried)
             );
@@ -226,8 +226,9 @@ impl Panel<'_> {
     fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
         let Some(answer) = page.answer() else {
             let touch = self.key(&action::QUIZ);
-            let text =
-                format!("Nothing is touched. {touch} touches at random; draw, or place a shape.");
+            let text = format!(
+                "The matrix is empty. Draw or place a shape, or press {touch} for a random touch."
+            );
             return self.text(&text, Role::Text);
         };
         let verdict = verdict(answer, page.touches().len(), trained);
@@ -334,7 +335,7 @@ impl Panel<'_> {
         let score = page.score;
         if score.asked > 0 {
             lines.push(format!(
-                "quiz: {} of {} right; the best answer: {}",
+                "quiz: you named {} of {} right, the model {}",
                 score.right, score.asked, score.best
             ));
         }
@@ -354,8 +355,12 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
             .collect(),
     };
     let what = if names.is_empty() {
-        let these = if touches > 1 { "all of these" } else { "this" };
-        format!(": no shape of the model leaves {these}")
+        let these = if touches > 1 {
+            "all of these"
+        } else {
+            "this imprint"
+        };
+        format!(": no shape leaves {these}")
     } else {
         format!(": {}", names.join(", "))
     };
