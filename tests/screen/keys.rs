@@ -652,7 +652,10 @@ fn recognise_names_the_shape_and_follows_the_matrix() {
 
 #[test]
 fn recognise_steps_through_sets_and_accepts_a_name() {
-    shows("ro", &["model figures-30"]);
+    shows(
+        "ro",
+        &["model figures-30", "with 'taxel model train' in a shell"],
+    );
     shows("roO", &["certain 100.0 %"]);
     shows("r:next-model<Enter>", &["model figures-30"]);
     shows(":recognise figures-30<Enter>", &["model figures-30"]);

@@ -245,7 +245,7 @@ fn nothing_is_cut_off_beside_a_large_sensor() {
         for text in [
             "grid: 0.01 cells, 1°; 25,200,000 touches",
             "best possible error 33.0 %, certain 38.3 %",
-            "answer: 1",
+            "the model 1",
         ] {
             assert!(panel.contains(text), "{size:?}: no {text:?}\n{screen}");
         }

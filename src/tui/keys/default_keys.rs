@@ -322,7 +322,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('a') => KEEP, Char('x') => FORGET]
             "keep, forget" "keep this touch as one of several; forget them";
         [Char('o') => NEXT_MODEL, Char('O') => PREVIOUS_MODEL]
-            "other model" "next, previous model";
+            "other model" "next, previous model: built in, then your own";
         [Char('v') => CONFUSION] "confusion" "which shapes are confused with which";
         [Char('V') => SEPARATE] "" "the error against the size of the shapes";
         [Char('i') => PANEL] "answer" "on a narrow screen: the answer or the matrix";

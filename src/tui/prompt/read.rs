@@ -37,6 +37,15 @@ use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
 
+/// Words for what the screen leaves to the shell, each with the command there.
+const IN_SHELL: [(&str, &str); 5] = [
+    ("batch", "taxel batch"),
+    ("config", "taxel config"),
+    ("frames", "taxel frames"),
+    ("model", "taxel model"),
+    ("train", "taxel model train"),
+];
+
 /// Reads a line and returns its message.
 ///
 /// # Errors
@@ -47,6 +56,9 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         .split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim()));
     let command = find(name).ok_or_else(|| {
+        if let Some((_, command)) = IN_SHELL.into_iter().find(|(word, _)| *word == name) {
+            return format!("{name} works in a shell: '{command}'");
+        }
         let complete = app.keymap().label(Context::Command, &action::NEXT);
         format!(
             "no command named {:?}; {complete} shows all{}",

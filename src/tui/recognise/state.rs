@@ -176,6 +176,11 @@ impl Recognition {
         other(all, &self.choice, self.unreadable.as_ref(), by)
     }
 
+    /// Returns true if the user has models besides the built-in ones.
+    pub fn has_own_models(&self) -> bool {
+        !self.stored.is_empty()
+    }
+
     /// Chooses a set, whose model is prepared by the work with this number. Kept touches stay, so that sets can be
     /// compared; with another set, the score begins anew. A stored model may be missing or damaged; then the earlier
     /// set returns. `opened`: whether the page was opened for this set. A search in progress is forgotten, because it

@@ -68,10 +68,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
     match asked {
         RecogniseMessage::Open => open(app, None),
         RecogniseMessage::Choose(choice) => open(app, Some(choice)),
-        RecogniseMessage::NextSet(by) => {
-            let choice = state(app)?.other(by);
-            open(app, Some(choice))
-        }
+        RecogniseMessage::NextSet(by) => next_model(app, by),
         RecogniseMessage::Touch => {
             touch(app);
             None
@@ -104,6 +101,18 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
         }
         RecogniseMessage::SelectCell(..) | RecogniseMessage::Want(_) => None,
     }
+}
+
+/// Opens the model that comes `by` further on. Says how models of the user's own come about, as long as there are none.
+fn next_model(app: &mut App, by: i8) -> Option<Effect> {
+    let page = state(app)?;
+    let (choice, has_own) = (page.other(by), page.has_own_models());
+    let effect = open(app, Some(choice));
+    if !has_own {
+        let text = "your own models: train them with 'taxel model train' in a shell";
+        inform(app, text);
+    }
+    effect
 }
 
 /// Opens the page, and has the model prepared if there is none, or if it is that of another set. A training may take
