@@ -658,6 +658,7 @@ fn an_imprint_of_cells_that_are_not_square_has_no_lengths_in_mm() {
 fn an_imprint_from_a_frame_is_unsaved_work() {
     let mut page = watched(6, "+<Enter>");
     then(&mut page, "q", &["The imprint is not saved. Quit anyway?"]);
+    then(&mut page, "<Esc>s", &["frame 5 of touch"]);
     then(&mut page, "<Esc>stouched<Enter>", &["saved as touched"]);
     then(&mut page, "q", &[]);
     hides(&page, &["not saved"]);

@@ -12,6 +12,8 @@ pub struct DocumentOrigin {
     /// The step that brought the document, in words: "washer loaded", "random touch"; None where the documents
     /// themselves tell. Saving under another name does not change it.
     pub brought_by: Option<String>,
+    /// A name to save the document under; None where the document itself tells.
+    pub proposed: Option<String>,
     /// The name that the document was loaded from or stored under.
     pub name: Option<StoredName>,
     /// The document that is not lost: as it was loaded, saved or begun. An empty one if all of it would be lost.
@@ -23,6 +25,7 @@ impl DocumentOrigin {
     pub fn of(document: &Document) -> Self {
         Self {
             brought_by: None,
+            proposed: None,
             name: None,
             saved: document.clone(),
         }
@@ -38,6 +41,15 @@ impl DocumentOrigin {
     pub fn called(self, brought_by: impl Into<String>) -> Self {
         Self {
             brought_by: Some(brought_by.into()),
+            ..self
+        }
+    }
+
+    /// Returns the same origin with a name to save the document under.
+    #[must_use]
+    pub fn proposing(self, name: impl Into<String>) -> Self {
+        Self {
+            proposed: Some(name.into()),
             ..self
         }
     }
@@ -134,6 +146,14 @@ impl History {
         self.origins
             .get(self.present.origin)
             .unwrap_or(&self.origins[0])
+    }
+
+    /// Returns true if a document of this name was loaded or saved since the start of the program.
+    pub fn knows(&self, name: &str) -> bool {
+        let names = self.origins.iter().filter_map(|own| own.name.as_ref());
+        names
+            .map(|own| folded(&own.name))
+            .any(|own| own == folded(name))
     }
 
     /// Returns the first document of the present origin: what was loaded, taken or begun, before any change of it.

@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::formats::Name;
 use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::value::{counted, grouped};
 use crate::frame::Rule;
@@ -205,7 +206,13 @@ fn take(app: &mut App, page: Box<Live>, document: Document) {
     app.live = Some(page);
     let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
     let brought_by = format!("imprint of {frame}, {source}");
-    let origin = DocumentOrigin::unsaved(&document).called(brought_by);
+    // Not every source has a name that a shape may have.
+    let stem = source.rsplit_once('.').map_or(&*source, |(stem, _)| stem);
+    let named = Name::new(&format!("{frame} of {stem}"));
+    let proposed = named.map_or_else(|_| frame.clone(), |name| name.to_string());
+    let origin = DocumentOrigin::unsaved(&document)
+        .called(brought_by)
+        .proposing(proposed);
     begin(app, origin, document);
     let back = app.key_of(&action::WATCH);
     let mut text = format!("the imprint of {frame}; {back} goes back to the source");

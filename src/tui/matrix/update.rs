@@ -190,9 +190,20 @@ fn save(app: &mut App) {
     app.dialogs.push(Dialog::Name(dialog));
 }
 
-/// Returns a name for a document that has no name of its own: the figure with its sizes, the picture or the shape
-/// that it comes from, or "drawing".
+/// Returns a name for a document that has no name of its own: the figure with its sizes, the picture, the shape or the
+/// frame that it comes from, or "drawing". A number follows if the name was used before: "drawing 2".
 fn proposed_name(app: &App) -> String {
+    let name = name_of_origin(app);
+    let (mut free, mut number) = (name.clone(), 2);
+    while app.history.knows(&free) {
+        free = format!("{name} {number}");
+        number += 1;
+    }
+    free
+}
+
+/// Returns a name that says where the document comes from.
+fn name_of_origin(app: &App) -> String {
     if let Some(stored) = app.stored() {
         return format!("{} copy", stored.name);
     }
@@ -209,7 +220,10 @@ fn proposed_name(app: &App) -> String {
         Some(Source::Picture(picture)) => picture
             .name()
             .map_or_else(|| "picture".to_owned(), |name| format!("{name} moved")),
-        None => "drawing".to_owned(),
+        None => {
+            let proposed = app.history.origin().proposed.as_deref();
+            proposed.unwrap_or("drawing").to_owned()
+        }
     }
 }
 

@@ -24,6 +24,13 @@ fn mouse(session: &mut Session, kind: MouseKind, column: u16, row: u16) {
 }
 
 #[test]
+fn the_proposed_name_of_a_second_drawing_is_free() {
+    let mut session = session("<Space>s<Enter>n<Right><Space>s");
+    shows(&session, &["Save as: drawing 2"]);
+    then(&mut session, "<Enter>", &["saved as drawing 2"]);
+}
+
+#[test]
 fn typing_replaces_the_name_of_a_saved_shape() {
     let mut session = session("f<Enter>smy ring<Enter>s");
     shows(&session, &["Save as: my ring"]);
