@@ -243,8 +243,7 @@ impl<'a> HeatMap<'a> {
                 self.theme.style(Role::Inactive)
             };
             let sign = self.theme.half(active(row), active(row + 1));
-            let ascii = self.theme.ascii && active(row + 1);
-            return put(buffer, area, at, if ascii { '#' } else { sign }, style);
+            return put(buffer, area, at, sign, style);
         }
         if marked {
             return put(buffer, area, at, heat::edge(self.theme), style);
@@ -275,7 +274,8 @@ impl<'a> HeatMap<'a> {
             measured(value, width)
         };
         let text = if text.chars().count() > width {
-            "9999".replace('9', if value > 0.0 { "^" } else { "v" })
+            let arrows = if value > 0.0 { "^^^^" } else { "vvvv" };
+            arrows.to_owned()
         } else {
             text
         };

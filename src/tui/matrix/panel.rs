@@ -13,7 +13,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::description::{DESCRIPTORS, Description, Descriptor};
+use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
 use crate::formats::value;
 use crate::tui::matrix::view::MatrixView;
 use crate::tui::widget::number::narrow;
@@ -80,7 +80,7 @@ fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     let even = cells.len().div_ceil(count);
     let width = usize::from(area.width) / count;
     let needed = |cells: &[PanelCell], symbol: usize| {
-        let values = cells.iter().map(|cell| write::width(&cell.value));
+        let values = cells.iter().map(|cell| write::width(&cell.text));
         symbol + values.fold(0, usize::max)
     };
     if count == 1 || needed(cells, SYMBOL) < width {
@@ -134,8 +134,10 @@ struct PanelCell<'a> {
     descriptor: &'static Descriptor,
     /// The description that the value is taken from; None if the matrix is empty.
     description: Option<&'a Description>,
+    /// The value.
+    measured: Value,
     /// The value as text.
-    value: String,
+    text: String,
 }
 
 impl<'a> PanelCell<'a> {
@@ -147,22 +149,22 @@ impl<'a> PanelCell<'a> {
     ) -> Self {
         let measured = description.map_or(descriptor.of_nothing, descriptor.measure);
         let text = value::text(measured, descriptor.dimension);
-        let value = text
+        let shown = text
             .as_deref()
             .map_or(theme.none().into(), |text| theme.text(text));
         Self {
             descriptor,
             description,
-            value: value.into_owned(),
+            measured,
+            text: shown.into_owned(),
         }
     }
 
     /// Draws the symbol, the value, and the value in millimetres or the descriptor's name, as far as there is room.
     fn draw(&self, theme: &Theme, pitch_mm: f64, symbols: usize, buffer: &mut Buffer, row: Rect) {
         let (descriptor, description) = (self.descriptor, self.description);
-        let measured = description.map_or(descriptor.of_nothing, descriptor.measure);
         // The value in millimetres if the user gave a pitch; a pitch of 1 would only repeat the value.
-        let scaled = value::in_millimetres(measured, descriptor.dimension, pitch_mm)
+        let scaled = value::in_millimetres(self.measured, descriptor.dimension, pitch_mm)
             .filter(|_| pitch_mm != 1.0);
         let symbol = format!("{:symbols$}", descriptor.symbol);
         let width = if theme.ascii { VALUE_IN_ASCII } else { VALUE };
@@ -177,15 +179,15 @@ impl<'a> PanelCell<'a> {
             // Where the column of remarks is too narrow, the remark ends at the edge.
             Some(scaled) => {
                 let end = rest.saturating_sub(write::width(scaled));
-                let fits = write::width(&self.value) + 2 <= end;
+                let fits = write::width(&self.text) + 2 <= end;
                 (if fits { scaled } else { "" }, width.min(end))
             }
             None if named && write::width(name) <= room => (name, width),
             None => ("", width),
         };
-        let value = format!("{:width$}", self.value);
+        let value = format!("{:width$}", self.text);
         // If the value needs more room, the remark is shortened.
-        let gap = if self.value.chars().count() < width {
+        let gap = if self.text.chars().count() < width {
             ""
         } else {
             "  "

@@ -339,13 +339,9 @@ impl Confusion {
 fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> String {
     let percent = percent(share(count, touches));
     let number = match count {
-        0 => theme.text("·").into_owned(),
-        _ => percent.trim_end_matches(" %").to_owned(),
-    };
-    let number = if count == 0 && theme.ascii {
-        ".".to_owned()
-    } else {
-        number
+        0 if theme.ascii => ".",
+        0 => "·",
+        _ => percent.trim_end_matches(" %"),
     };
     if diagonal {
         format!("{:>7}", format!("[{number}]"))

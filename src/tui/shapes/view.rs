@@ -13,7 +13,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::description::{RegionKind, regions};
+use crate::description::{Region, RegionKind, regions};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::library::Purpose;
 use crate::tui::app::message::Message;
@@ -219,11 +219,10 @@ fn draw_preview(
     match read {
         Ok(loaded) => {
             let imprint = &loaded.shape.imprint;
+            let regions = regions(imprint);
             let count = |wanted: RegionKind| {
-                regions(imprint)
-                    .iter()
-                    .filter(|region| region.kind() == wanted)
-                    .count()
+                let kinds = regions.iter().map(Region::kind);
+                kinds.filter(|&kind| kind == wanted).count()
             };
             let facts = format!(
                 "NA {}, pieces {}, holes {}",

@@ -260,12 +260,12 @@ impl Theme {
         }
     }
 
-    /// Returns the character for two taxels, one above the other; `upper` and `lower` say which are active. In ASCII
-    /// only the upper one is shown.
+    /// Returns the character for two taxels, one above the other; `upper` and `lower` say which are active. ASCII
+    /// does not tell which of the two is.
     pub fn half(&self, upper: bool, lower: bool) -> char {
         match (self.ascii, upper, lower) {
-            (true, true, _) => '#',
-            (true, false, _) => '.',
+            (true, false, false) => '.',
+            (true, ..) => '#',
             (false, true, true) => '█',
             (false, true, false) => '▀',
             (false, false, true) => '▄',
