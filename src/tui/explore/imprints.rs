@@ -26,7 +26,7 @@ use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::number::narrow;
-use crate::tui::widget::rows::moved;
+use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
@@ -56,12 +56,12 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     if let Some(column) = list.heading(at) {
         return Some(Message::Explore(ExploreMessage::Sort(column)));
     }
-    let row = list.row(at, results)?;
-    Some(if row == results.selected() {
-        Message::Accept
-    } else {
-        Message::Select(row)
-    })
+    let rows = ListRows {
+        area: list.rows,
+        first: list.first,
+        count: results.row_count(),
+    };
+    rows.click(at, results.selected())
 }
 
 /// Selects a row, or another heading.
@@ -179,12 +179,6 @@ impl ImprintList {
             rest = rest.saturating_sub(width);
             inside.then_some(column)
         })
-    }
-
-    /// Returns the row at a place of the screen.
-    pub fn row(&self, place: Position, results: &Results) -> Option<usize> {
-        let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
-        (self.rows.contains(place) && row < results.row_count()).then_some(row)
     }
 }
 

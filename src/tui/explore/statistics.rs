@@ -20,8 +20,9 @@ use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
+use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write::{self, below, first_of};
+use crate::tui::widget::write::{self, below};
 
 /// The statistics page.
 pub static PAGE: ResultsPage = ResultsPage {
@@ -33,7 +34,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     wheel: Wheel::Rows,
     draw,
     click: |results, page, at| {
-        let row = StatisticsTable::of(page, results).row(at)?;
+        let row = StatisticsTable::of(page, results).rows.at(at)?;
         Some(Message::Select(row))
     },
     update,
@@ -72,9 +73,7 @@ pub struct StatisticsTable {
     /// The headings.
     pub head: Rect,
     /// The rows.
-    pub rows: Rect,
-    /// The index of the first visible row.
-    pub first: usize,
+    pub rows: ListRows,
     /// The number of characters of a descriptor's name.
     pub name: usize,
     /// The number of characters of a column.
@@ -103,8 +102,7 @@ impl StatisticsTable {
                 height: table.height.min(1),
                 ..table
             },
-            first: first_of(rows.height, features().len(), results.feature_number()),
-            rows,
+            rows: ListRows::around(rows, features().len(), results.feature_number()),
             name,
             column,
             columns: (results.column().min(count - visible), visible),
@@ -114,12 +112,6 @@ impl StatisticsTable {
     /// Returns true if there are columns that do not fit.
     pub fn hides_columns(&self) -> bool {
         self.columns.1 < STATISTIC_COLUMNS.len()
-    }
-
-    /// Returns the row at a place of the screen.
-    pub fn row(&self, place: Position) -> Option<usize> {
-        let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
-        (self.rows.contains(place) && row < features().len()).then_some(row)
     }
 }
 
@@ -146,9 +138,11 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     );
     let mut cursor = None;
     let statistics = results.sweep().statistics.iter().enumerate();
-    let rows = statistics.skip(table.first).take(table.rows.height.into());
+    let rows = statistics
+        .skip(table.rows.first)
+        .take(table.rows.area.height.into());
     for (index, statistic) in rows {
-        let row = write::row(table.rows, index - table.first);
+        let row = write::row(table.rows.area, index - table.rows.first);
         let chosen = index == results.feature_number();
         let sign = if chosen { "> " } else { "  " };
         let key = format!("{:width$}", statistic.feature.key, width = name - 2);
@@ -179,7 +173,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
 fn head(table: &StatisticsTable, results: &Results) -> String {
     let (first, visible) = table.columns;
     let all = features().len();
-    let row = if usize::from(table.rows.height) < all {
+    let row = if usize::from(table.rows.area.height) < all {
         format!("{} of {all} ", results.feature_number() + 1)
     } else {
         String::new()

@@ -17,7 +17,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::widget::rows::moved;
+use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -163,11 +163,9 @@ fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
 /// The number of lines above the list; the last of them shows how many rows are out of sight.
 const HEAD: u16 = 3;
 
-/// Returns the area of the list, and the index of its first visible row.
-fn rows(quiz: &Quiz, area: Rect) -> (Rect, usize) {
-    let rows = write::below(area, HEAD);
-    let first = write::first_of(rows.height, quiz.count(), quiz.selected);
-    (rows, first)
+/// Returns the visible rows of the list.
+fn rows(quiz: &Quiz, area: Rect) -> ListRows {
+    ListRows::around(write::below(area, HEAD), quiz.count(), quiz.selected)
 }
 
 impl Page for Quiz {
@@ -204,7 +202,8 @@ impl Page for Quiz {
             theme,
             [(how.as_str(), Role::Quiet)],
         );
-        let (list, first) = rows(self, area);
+        let rows = rows(self, area);
+        let (list, first) = (rows.area, rows.first);
         let below = self
             .count()
             .saturating_sub(first + usize::from(list.height));
@@ -240,17 +239,7 @@ impl Page for Quiz {
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
-        let (list, first) = rows(self, area);
-        let shape = first + usize::from(at.y.checked_sub(list.y)?);
-        if !list.contains(at) || shape >= self.count() {
-            return None;
-        }
-        // As in other lists, a click selects a row, and a click on the selected row accepts it.
-        Some(if shape == self.selected {
-            Message::Accept
-        } else {
-            Message::Select(shape)
-        })
+        rows(self, area).click(at, self.selected)
     }
 
     fn wheel(&self) -> Wheel {

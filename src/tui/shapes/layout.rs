@@ -2,10 +2,11 @@
 //!
 //! The selected row stays as near to the middle of the list as its ends allow.
 
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::Rect;
 
 use crate::tui::shapes::state::ListDialog;
-use crate::tui::widget::write::first_of;
+use crate::tui::widget::rows::ListRows;
+use crate::tui::widget::write;
 
 /// The number of lines of a list above its first row.
 pub const LIST_HEAD: u16 = 2;
@@ -28,16 +29,8 @@ pub fn list(body: Rect) -> (Rect, Option<Rect>) {
     (left, Some(right))
 }
 
-/// Returns the index of the first visible row of a list.
-pub fn list_first(area: Rect, rows: usize, selected: usize) -> usize {
-    first_of(area.height.saturating_sub(LIST_HEAD), rows, selected)
-}
-
-/// Returns the index of the list's row at a position of the screen.
-pub fn list_row(body: Rect, dialog: &ListDialog, at: Position) -> Option<usize> {
-    let (area, _) = list(body);
-    let line = at.y.checked_sub(area.y + LIST_HEAD)?;
-    let rows = dialog.rows().len();
-    let index = list_first(area, rows, dialog.selected()) + usize::from(line);
-    (area.contains(at) && index < rows).then_some(index)
+/// Returns the visible rows of a list in its pane.
+pub fn list_rows(pane: Rect, dialog: &ListDialog) -> ListRows {
+    let area = write::below(pane, LIST_HEAD);
+    ListRows::around(area, dialog.rows().len(), dialog.selected())
 }

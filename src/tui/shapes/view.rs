@@ -21,7 +21,7 @@ use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::shapes::layout::{LIST_HEAD, list, list_first, list_row};
+use crate::tui::shapes::layout::{LIST_HEAD, list, list_rows};
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
@@ -58,12 +58,8 @@ impl Page for ListDialog {
 
     /// A click selects a row, a click on the selected row takes it.
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
-        let row = list_row(area, self, at)?;
-        Some(if row == self.selected() {
-            Message::Accept
-        } else {
-            Message::Select(row)
-        })
+        let (pane, _) = list(area);
+        list_rows(pane, self).click(at, self.selected())
     }
 
     /// Returns false for messages about rows if the list is empty. A list that is still being read may get rows.
@@ -111,7 +107,7 @@ fn draw(
         let place = write::below(area, LIST_HEAD);
         write::wrapped(buffer, place, theme, &reason, Role::Quiet);
     }
-    let first = list_first(area, dialog.rows().len(), dialog.selected());
+    let first = list_rows(area, dialog).first;
     let lines = usize::from(area.height.saturating_sub(LIST_HEAD));
     let below = dialog.rows().len().saturating_sub(first + lines);
     if first + below > 0 {

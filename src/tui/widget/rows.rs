@@ -1,6 +1,48 @@
-//! The selected row of a list.
+//! The rows of a list: which one is selected, and which one a click is on.
+
+use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::widget::write::first_of;
+
+/// The visible rows of a list, a line each.
+#[derive(Clone, Copy, Debug)]
+pub struct ListRows {
+    /// The area of the visible rows.
+    pub area: Rect,
+    /// The index of the first visible row.
+    pub first: usize,
+    /// The number of rows, visible or not.
+    pub count: usize,
+}
+
+impl ListRows {
+    /// Returns the rows that are visible in an area: the selected one is as near to its middle as the ends allow.
+    pub fn around(area: Rect, count: usize, selected: usize) -> Self {
+        Self {
+            area,
+            first: first_of(area.height, count, selected),
+            count,
+        }
+    }
+
+    /// Returns the index of the row at a position of the screen; None if there is none.
+    pub fn at(&self, position: Position) -> Option<usize> {
+        let row = self.first + usize::from(position.y.checked_sub(self.area.y)?);
+        (self.area.contains(position) && row < self.count).then_some(row)
+    }
+
+    /// Returns the message of a click: it selects a row, and a click on the selected row accepts it. None beside the
+    /// rows.
+    pub fn click(&self, position: Position, selected: usize) -> Option<Message> {
+        let row = self.at(position)?;
+        Some(if row == selected {
+            Message::Accept
+        } else {
+            Message::Select(row)
+        })
+    }
+}
 
 /// Returns the row that a message selects if `row` is selected now; None if it selects no row. The result may lie
 /// beyond the last row, since only the list knows how many rows there are.
