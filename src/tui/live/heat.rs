@@ -43,7 +43,7 @@ impl<'a> HeatMap<'a> {
         Self {
             theme,
             reading,
-            layer: live.layer(),
+            layer: live.layer,
             range: live.range(),
             grid: HeatGrid::of(area, size, live.display.numbers, looked_at(live, reading)),
         }

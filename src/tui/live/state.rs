@@ -41,19 +41,20 @@ pub struct Live {
     /// Whether the threshold or the tare has changed since they were last written into a recording.
     is_viewed_anew: bool,
     /// The frames, and the shown one.
-    cursor: FrameCursor,
+    pub(super) cursor: FrameCursor,
     status: FeedStatus,
     /// The gaps between frames that the user has already seen.
     seen_gaps: SourceGaps,
     /// Whether no more frames are taken from the source.
     stopped: bool,
-    layer: HeatLayer,
+    /// The layer of the frame that is shown.
+    pub(super) layer: HeatLayer,
     /// How a frame is laid out.
     pub display: LiveDisplay,
     /// The range of values that the shades cover.
     range: ShadeRange,
     /// How the tare was made, or is being made.
-    tare: LiveTare,
+    pub(super) tare: LiveTare,
     /// The number of frames that were never drawn, because others came before the screen was drawn again.
     not_drawn: u64,
     recording: RecordingState,
@@ -156,32 +157,6 @@ impl Live {
     /// Returns the threshold.
     pub fn rule(&self) -> Option<SetRule> {
         self.rule
-    }
-
-    /// Returns the layer of the frame that is shown.
-    pub fn layer(&self) -> HeatLayer {
-        self.layer
-    }
-
-    /// Returns true if the largest value of each cell is shown.
-    pub fn holds_peak(&self) -> bool {
-        self.cursor.holds_peak()
-    }
-
-    /// Returns the number of frames from the shown one to the newest; None if the page follows the source.
-    pub fn frozen(&self) -> Option<u64> {
-        self.cursor.frozen()
-    }
-
-    /// Returns how the tare was made; None without one.
-    pub fn tare(&self) -> Option<TareMark> {
-        self.tare.mark()
-    }
-
-    /// Returns how many frames have come for the tare that was requested at the start, and how many it needs; None if
-    /// no tare is being made.
-    pub fn tare_progress(&self) -> Option<(u64, u64)> {
-        self.tare.progress()
     }
 
     /// Returns the values that are subtracted from the cells; None without a tare.

@@ -57,7 +57,7 @@ fn of_frame(live: &Live) -> Vec<TitlePiece> {
 
 /// Returns the pieces about the state: whether the frame is frozen, which layer is shown, and everything unusual.
 fn of_state(live: &Live) -> Vec<TitlePiece> {
-    let frozen = live.frozen().map(|back| {
+    let frozen = live.cursor.frozen().map(|back| {
         if back == 0 {
             return TitlePiece::new(1, "frozen", Role::Focus);
         }
@@ -74,17 +74,17 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
         (SourceState::Ended, _) => say(3, "ended".to_owned(), Role::Quiet),
         _ => {}
     }
-    let layer = match live.layer() {
-        HeatLayer::Tared if live.tare().is_none() => HeatLayer::Raw,
+    let layer = match live.layer {
+        HeatLayer::Tared if live.tare.mark().is_none() => HeatLayer::Raw,
         layer => layer,
     };
     say(8, layer.name().to_owned(), Role::Quiet);
-    if let Some(progress) = live.tare_progress() {
+    if let Some(progress) = live.tare.progress() {
         say(4, format!("tare: {}", progress_text(progress)), Role::Focus);
     }
-    if live.holds_peak() {
+    if live.cursor.holds_peak() {
         // A frozen frame is shown as it came, without the held peak.
-        let rank = if live.frozen().is_none() { 1 } else { 4 };
+        let rank = if live.cursor.frozen().is_none() { 1 } else { 4 };
         say(rank, "peak held".to_owned(), Role::Focus);
     }
     if live.is_marked() {

@@ -447,10 +447,10 @@ fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
 /// frames; no age for a tare made after the shown frame. For a tare that is being made, returns how many of its
 /// frames have come.
 fn tare(live: &Live) -> String {
-    if let Some(progress) = live.tare_progress() {
+    if let Some(progress) = live.tare.progress() {
         return progress_text(progress);
     }
-    let Some(mark) = live.tare() else {
+    let Some(mark) = live.tare.mark() else {
         return "none".to_owned();
     };
     let frames = counted(mark.frames, "frame");
