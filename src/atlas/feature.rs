@@ -27,6 +27,11 @@ pub struct Feature {
 }
 
 impl Feature {
+    /// Returns key and name for display, such as "na: active taxels".
+    pub fn label(&self) -> String {
+        format!("{}: {}", self.key, self.descriptor.name)
+    }
+
     /// Returns the value of the feature; None if it does not exist. Only the feature's own descriptor is computed.
     pub fn value(&self, description: &Description) -> Option<f64> {
         let (mut index, mut found) = (0, None);

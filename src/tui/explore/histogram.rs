@@ -14,7 +14,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::atlas::Histogram;
 use crate::description::Dimension;
-use crate::formats::value::{counted, fitting, grouped, percentage};
+use crate::formats::value::{counted, grouped, percentage};
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
@@ -66,9 +66,7 @@ fn table(results: &Results, page: Rect) -> String {
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let (result, feature) = (results.sweep(), results.feature());
     let statistic = &result.statistics[results.feature_number()];
-    let number = |value: Option<f64>| {
-        value.map_or_else(|| theme.none().to_owned(), |value| fitting(value, NUMBER))
-    };
+    let number = |value| theme.number(value, NUMBER);
     let unit = match feature.descriptor.dimension {
         Dimension::Count => "",
         Dimension::Length => ", cells",
@@ -76,7 +74,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         Dimension::Direction => ", degrees",
         _ => ", ratio",
     };
-    let title = format!("{}: {}{unit}", feature.key, feature.descriptor.name);
+    let title = feature.label() + unit;
     write::line(buffer, page, theme, [(title.as_str(), Role::Title)]);
     let histogram = histogram(results, page);
     let facts = format!(

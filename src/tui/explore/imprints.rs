@@ -16,7 +16,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::atlas::AtlasEntry;
-use crate::formats::value::{counted, fitting, grouped, percentage};
+use crate::formats::value::{counted, grouped, percentage};
+use crate::index::wide;
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
@@ -299,12 +300,8 @@ fn share(results: &Results, entry: &AtlasEntry) -> String {
 
 /// Returns the chosen descriptor's value of an imprint.
 fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
-    let index = usize::try_from(entry.id).ok();
-    let value = index.and_then(|index| *results.values().get(index)?);
-    value.map_or_else(
-        || theme.none().to_owned(),
-        |value| fitting(value, VALUE - 1),
-    )
+    let value = results.values().get(wide(entry.id)).copied().flatten();
+    theme.number(value, VALUE - 1)
 }
 
 /// Describes an imprint in one line; the shorter form leaves out what its row says too.

@@ -14,8 +14,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::atlas::{AtlasEntry, features};
-use crate::formats::value::{counted, fitting};
+use crate::formats::value::counted;
 use crate::formats::{DrawingFormat, PointPlot, axis_ends};
+use crate::index::wide;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::imprints::no_row;
@@ -54,7 +55,7 @@ fn update(results: &mut Results, message: &Message, page: Rect) {
 
 /// Returns an imprint's values, horizontal and vertical; None if it lacks one.
 fn point(results: &Results, entry: &AtlasEntry) -> Option<(f64, f64)> {
-    let index = usize::try_from(entry.id).ok()?;
+    let index = wide(entry.id);
     let [x, y] = [results.x_values(), results.values()];
     Some(((*x.get(index)?)?, (*y.get(index)?)?))
 }
@@ -103,11 +104,9 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
 fn title(results: &Results, count: usize) -> String {
     let (x, y) = (&features()[results.x_feature()], results.feature());
     format!(
-        "{}: {} against {}: {}; {}",
-        y.key,
-        y.descriptor.name,
-        x.key,
-        x.descriptor.name,
+        "{} against {}; {}",
+        y.label(),
+        x.label(),
         counted(count as u64, "imprint")
     )
 }
@@ -152,10 +151,9 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
 
 /// Describes the selected imprint in one line.
 fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
-    let index = usize::try_from(entry.id).ok();
     let formatted = |values: &[Option<f64>]| {
-        let value = index.and_then(|index| *values.get(index)?);
-        value.map_or_else(|| theme.none().to_owned(), |value| fitting(value, VALUE))
+        let value = values.get(wide(entry.id)).copied().flatten();
+        theme.number(value, VALUE)
     };
     format!(
         "imprint {}: {} {}, {} {}; {}",
@@ -175,9 +173,7 @@ fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> 
         return Err(NOTHING_TO_DRAW.to_owned());
     }
     let (x, y) = (&features()[results.x_feature()], results.feature());
-    let label =
-        |feature: &crate::atlas::Feature| format!("{}: {}", feature.key, feature.descriptor.name);
-    let mut plot = PointPlot::new(&label(x), &label(y))
+    let mut plot = PointPlot::new(&x.label(), &y.label())
         .with_title(&results.summary(true))
         .with_points(&points);
     let selected = results.rows_from(results.selected()).next();

@@ -13,7 +13,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::atlas::{STATISTIC_COLUMNS, features};
-use crate::formats::value::{fitting, grouped};
+use crate::formats::value::grouped;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::message::ExploreMessage;
@@ -148,11 +148,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         let key = format!("{:width$}", statistic.feature.key, width = name - 2);
         let mut values = String::new();
         for column in columns() {
-            let value = (column.value)(statistic);
-            let text = value.map_or_else(
-                || theme.none().to_owned(),
-                |value| fitting(value, width - 1),
-            );
+            let text = theme.number((column.value)(statistic), width - 1);
             values += &format!("{text:>width$}");
         }
         let role = if chosen { Role::Focus } else { Role::Text };

@@ -14,6 +14,8 @@ use std::borrow::Cow;
 
 use ratatui::style::{Color, Modifier, Style};
 
+use crate::formats::value::fitting;
+
 /// The purpose of a piece of text on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
@@ -326,6 +328,11 @@ impl Theme {
     /// Returns the text for a value that does not exist.
     pub fn none(&self) -> &'static str {
         if self.ascii { "-" } else { "–" }
+    }
+
+    /// Returns a number in at most `width` characters, or the text for a value that does not exist.
+    pub fn number(&self, value: Option<f64>, width: usize) -> String {
+        value.map_or_else(|| self.none().to_owned(), |value| fitting(value, width))
     }
 
     /// Converts a text to the characters that the terminal has.

@@ -89,8 +89,7 @@ fn title(results: &Results, room: usize) -> String {
             }
         }
     }
-    let (key, name) = (&feature.key, feature.descriptor.name);
-    let titles = [format!("{key}: {name}{end}"), format!("{key}{end}")];
+    let titles = [feature.label(), feature.key.clone()].map(|title| title + &end);
     write::first_fitting(&titles.each_ref().map(String::as_str), room).to_owned()
 }
 
@@ -215,8 +214,8 @@ fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> 
         return Err(NOTHING_TO_DRAW.to_owned());
     }
     let feature = results.feature();
-    let label = format!("{}: {}", feature.key, feature.descriptor.name);
-    let mut plot = PointPlot::new("angle / °", &label).with_title(&results.summary(false));
+    let mut plot =
+        PointPlot::new("angle / °", &feature.label()).with_title(&results.summary(false));
     let names = ["smallest", "largest", "mean"];
     for ((of, dashed), name) in CURVES.into_iter().zip(names) {
         let points: Vec<(f64, f64)> = spread
