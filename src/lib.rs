@@ -46,6 +46,7 @@
 //! ```text
 //!  quote        shortens untrusted text for messages, and suggests names that are nearly right
 //!  index        checked conversions between whole numbers and indices
+//!  lock         mutexes that a panic of another thread does not close
 //!  geometry     the area of polygons and ellipses in each cell of a grid           plane, f64
 //!  parameter    the quantities that can be set: one table of keys, units, ranges, defaults
 //!  sensor       columns, rows, threshold, pitch
@@ -137,6 +138,9 @@ pub use glam;
 mod quote;
 
 mod index;
+
+#[cfg(any(feature = "library", feature = "sweep"))]
+mod lock;
 
 pub mod geometry;
 

@@ -6,10 +6,11 @@
 use std::collections::HashMap;
 use std::io::ErrorKind;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 use std::time::{Duration, SystemTime};
 
 use crate::formats::name::{Name, folded};
+use crate::lock::locked;
 use crate::storage::error::LibraryError;
 
 /// The age that a folder's last change must have for its list to be kept: a later change within one step of the file
@@ -48,7 +49,7 @@ impl NameIndex {
         }
         let changed = changed.ok();
         // A thread that panicked here left the old list or none.
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = locked(&self.kept);
         let folded_name = folded(name.as_str());
         if let Some(kept) = kept.as_ref().filter(|kept| Some(kept.changed) == changed) {
             return Ok(kept.names.get(&folded_name).cloned());

@@ -10,11 +10,12 @@ use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::{Builder, NamedTempFile, TempPath};
 
+use crate::lock::locked;
 use crate::storage::access::keep_access;
 
 /// The beginning of the name of a temporary file.
@@ -328,7 +329,7 @@ fn remove_left_over(folder: &Path) {
 /// Returns true if this program has searched a folder in the last minute; notes that it has from now on.
 fn was_searched(folder: &Path) -> bool {
     static SEARCHED: Mutex<BTreeMap<PathBuf, Instant>> = Mutex::new(BTreeMap::new());
-    let mut searched = SEARCHED.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut searched = locked(&SEARCHED);
     searched.retain(|_, at| at.elapsed() < FRESH);
     let is_new = !searched.contains_key(folder);
     if is_new {

@@ -8,7 +8,7 @@ use std::ffi::OsStr;
 use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::cli::error::CliError;
 use crate::cli::input::content;
@@ -18,6 +18,7 @@ use crate::formats::Content;
 use crate::formats::StoredShape;
 use crate::formats::name::folded;
 use crate::imprint::Imprint;
+use crate::lock::locked;
 use crate::storage::{Existing, Expected, Library, LibraryError};
 
 /// The library, which is opened when it is first used: most commands never need it.
@@ -189,8 +190,8 @@ impl Shelf {
     /// # Errors
     /// Returns an error if there is no such shape, or it cannot be read.
     pub(crate) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
-        // The map is never left half changed, so a panic of another thread does not matter.
-        let found = || self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        // The map is never left half changed.
+        let found = || locked(&self.found);
         // Upper and lower case are the same in names, and only shapes that exist are kept. So the map never outgrows
         // the library, whatever names the input contains.
         let own = folded(name);

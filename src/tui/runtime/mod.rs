@@ -8,7 +8,6 @@
 //! work        sweeps, models and exports, each on a thread of its own
 //! frames      a source of frames: watched, recorded
 //! slow_work   work that the user waits for, and when the screen says so
-//! lock        a mutex that can be locked even after a panic of another thread
 //! mailbox     messages from other threads, which wake the event loop
 //! ```
 
@@ -21,8 +20,6 @@ pub mod work;
 mod frames;
 
 mod slow_work;
-
-mod lock;
 
 pub mod mailbox;
 

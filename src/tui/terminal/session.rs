@@ -8,7 +8,7 @@
 //! restore it.
 
 use std::io::{self, Write};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 use std::time::Duration;
 
 use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
@@ -16,6 +16,7 @@ use crossterm::{Command, cursor};
 use rustix::io::Errno;
 use rustix::termios::{OptionalActions, QueueSelector, Termios, tcflush, tcgetattr, tcsetattr};
 
+use crate::lock::locked;
 use crate::tui::terminal::device::Device;
 use crate::tui::terminal::settings::TerminalSettings;
 
@@ -59,11 +60,6 @@ struct SavedTerminal {
 /// too.
 static SAVED: Mutex<Option<SavedTerminal>> = Mutex::new(None);
 
-/// Locks the original state of the terminal; a panic during an earlier lock does not matter.
-fn found() -> MutexGuard<'static, Option<SavedTerminal>> {
-    SAVED.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// Enters raw mode and the second screen, and turns mouse events on if `mouse`. If the program is inside already,
 /// everything is sent again: another program may have changed it while this one was stopped.
 pub(in crate::tui) fn enter(
@@ -71,7 +67,7 @@ pub(in crate::tui) fn enter(
     settings: &TerminalSettings,
     mouse: bool,
 ) -> io::Result<()> {
-    let mut held = found();
+    let mut held = locked(&SAVED);
     if held.is_none() {
         // Before anything is changed, so that everything is restored if the change fails half-way.
         *held = Some(SavedTerminal {
@@ -104,7 +100,7 @@ pub(in crate::tui) fn enter(
 /// Restores the terminal; outside of a session, does nothing. `is_asked`: whether an answer about the status may
 /// still come; the shell would take it for typed text.
 pub(in crate::tui) fn leave(is_asked: bool) -> io::Result<()> {
-    let Some(found) = found().take() else {
+    let Some(found) = locked(&SAVED).take() else {
         return Ok(());
     };
     let mut goodbye = String::new();
@@ -145,7 +141,7 @@ pub(in crate::tui) fn leave(is_asked: bool) -> io::Result<()> {
 /// Keeps a text to print to standard error on leaving. Returns true if the program has the terminal; otherwise
 /// nothing is kept.
 pub(in crate::tui) fn tell_later(text: &str) -> bool {
-    let mut found = found();
+    let mut found = locked(&SAVED);
     let ours = found.as_mut().map(|found| found.later += text);
     ours.is_some()
 }
@@ -164,7 +160,7 @@ fn eprint(text: &str) {
 
 /// Returns the sequence that starts or ends mouse events, and records which.
 pub(in crate::tui) fn set_mouse(on: bool) -> &'static str {
-    if let Some(found) = found().as_mut() {
+    if let Some(found) = locked(&SAVED).as_mut() {
         found.mouse = on;
     }
     if on { MOUSE_ON } else { MOUSE_OFF }

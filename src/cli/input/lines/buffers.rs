@@ -1,7 +1,9 @@
 //! Reuses memory. Otherwise each block's answers would get fresh memory from the system, which clears it page by
 //! page: with two threads, this takes a sixth of the time.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
+
+use crate::lock::locked;
 
 /// The largest buffer that is kept, in bytes, so that a single long answer does not keep its memory to the end.
 const LARGEST: usize = 1 << 20;
@@ -29,7 +31,7 @@ impl Buffers {
 
     /// Locks the buffers. No panic is possible while they are locked, so they are never damaged.
     fn unused(&self) -> MutexGuard<'_, Vec<Vec<u8>>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.0)
     }
 }
 

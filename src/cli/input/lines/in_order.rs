@@ -9,8 +9,10 @@
 use std::collections::BTreeMap;
 use std::panic::resume_unwind;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
+
+use crate::lock::locked;
 
 /// The items under way per worker: one in work, the others so that it need not wait when another worker is slow.
 const UNDER_WAY: usize = 4;
@@ -86,11 +88,6 @@ where
         sink(worker(item))?;
     }
     Ok(())
-}
-
-/// Locks a mutex. If a thread panicked while it was locked, [`PanicReport`] reports this.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Processes items until there are no more, on a thread of its own.

@@ -13,12 +13,12 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
+use crate::lock::locked;
 use crate::storage::Library;
 use crate::tui::app::library::{LibraryEvent, LibraryRequest};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest};
 use crate::tui::runtime::disk::write_access::WriteAccess;
-use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::slow_work::SlowWork;
 use crate::tui::runtime::work::progress::{WorkerEventSink, caught};
 

@@ -7,8 +7,8 @@
 use std::path::{Component, Path, PathBuf};
 use std::sync::Mutex;
 
+use crate::lock::locked;
 use crate::storage::{Existing, location};
-use crate::tui::runtime::lock::locked;
 
 /// The rule for where files may be written.
 #[derive(Debug, Default)]

@@ -14,6 +14,7 @@ use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquir
 use crate::formats::recording::RecordingMetadata;
 use crate::formats::system_error::system_reason;
 use crate::frame::Frame;
+use crate::lock::locked;
 use crate::storage::Existing;
 use crate::tui::live::message::{FrameBatch, ProvisionalChange, RecordedFrames, SourceState};
 use crate::tui::live::request::WatchRequest;
@@ -21,7 +22,6 @@ use crate::tui::runtime::frames::no_frame;
 use crate::tui::runtime::frames::pending::Pending;
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::frames::source;
-use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::work::progress::caught;
 
 /// The frames that have come and were not taken yet, and their recording.

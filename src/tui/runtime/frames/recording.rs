@@ -16,10 +16,10 @@ use std::sync::{Arc, Mutex};
 use crate::acquire::{FrameRecorder, PreparedMetadata, RecorderError};
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::frame::Frame;
+use crate::lock::locked;
 use crate::storage::Existing;
 use crate::tui::live::message::{LiveEvent, RecordedFrames};
 use crate::tui::runtime::disk::write_access::WriteAccess;
-use crate::tui::runtime::lock::locked;
 
 /// A file that frames are recorded in, shared by the source's thread and the one that finishes it.
 #[derive(Debug)]

@@ -16,6 +16,7 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 use crate::formats::Name;
+use crate::lock::locked;
 use crate::memory::MemoryGuard;
 use crate::quote::shortened;
 use crate::recognition::{Model, TrainingError};
@@ -26,7 +27,6 @@ use crate::storage::{ModelChoice, unknown_set};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{Prepared, RecognitionEvent};
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::slow_work::SlowWork;
 use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::progress::{ProgressReporter, guarded, on_a_thread, proceed};

@@ -166,8 +166,8 @@ mod tests {
     use std::sync::Mutex;
 
     use super::*;
+    use crate::lock::locked;
     use crate::storage::ModelChoice;
-    use crate::tui::runtime::lock::locked;
 
     #[test]
     fn a_training_that_is_given_up_sends_no_event() {
