@@ -354,7 +354,7 @@ actions! {
         "save" Arguments::Name;
         "seed" Arguments::Seed, "set the seed of the quiz's random touches";
         "sensor" Arguments::Sensor;
-        "separate" Arguments::Sizes, "the error against the size of the shapes";
+        "separate" Arguments::Sizes, "the error against the size of shapes";
         "turn" Arguments::Degrees, "turn the shape right; negative degrees: left";
         "watch" Arguments::FrameSource, "Watch: frames, live or recorded";
         "write" Arguments::File(FilePurpose::Write), "write an imprint, shape or drawing, by file extension";
