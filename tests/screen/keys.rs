@@ -537,6 +537,36 @@ fn putting_back_overwrites_no_step_but_that_of_the_last_move() {
     shows(&format!("{drawn}u"), &["at 4.01, 4.00", "by hand"]);
 }
 
+/// What was undone before the shape was taken can still be redone, whether Esc or the arrows put it back.
+#[test]
+fn a_shape_that_is_put_back_leaves_what_can_be_redone() {
+    for back in ["<Right><Esc>", "<Right><Left>g", "<Right><Left><Esc>"] {
+        let redone = format!("f<Enter><Space>ug{back}U");
+        shows(&redone, &["redone: taxel", "+ 1 by hand"]);
+    }
+}
+
+/// The list of steps leaves out a move that came to nothing; a further move is a step of its own.
+#[test]
+fn moves_after_a_move_that_came_to_nothing_can_be_undone() {
+    let moved = "f<Enter>g<Right><Left>H<Esc><Right>";
+    shows(moved, &["at 4.01, 4.00"]);
+    shows(&format!("{moved}u"), &["at 4.00, 4.00"]);
+}
+
+/// The held shape is of the document that undo leaves: put back there, it would be stored under the other's name.
+#[test]
+fn undo_redo_and_the_history_let_the_shape_go() {
+    let ring = "f<Enter>sring1<Enter>";
+    for back in ["u", "H<Up><Enter>"] {
+        let moved = format!("{ring}f<2x:Right><Enter>g{back}");
+        shows(&moved, &["ring1", "ellipse"]);
+        hides(&moved, &["held"]);
+        shows(&format!("{moved}<Esc>"), &["ring1", "ellipse"]);
+    }
+    hides("f<Enter><Space>ugU", &["held"]);
+}
+
 #[test]
 fn a_figure_that_a_smaller_sensor_does_not_allow_becomes_a_drawing() {
     let smaller = ":figure rectangle --length 10<Enter>:sensor --columns 4 --rows 4<Enter>";

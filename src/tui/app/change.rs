@@ -1,7 +1,9 @@
 //! Changes of the document: touching, moving, turning, zooming, undo and redo.
 //!
-//! Each change calls `change`, `begin` or `travel`, which bring everything that depends on the document back into
-//! range: the chosen region, the mode. The cursor stays where it was put; [`App::cursor`] keeps it on the sensor.
+//! Each change calls `change`, `begin`, `resume`, `travel` or `go_to`, which bring everything that depends on the
+//! document back into range, such as the chosen region. All but `change` let a held shape go and end a drag: both
+//! belong to the document that they began on. The cursor stays where it was put; [`App::cursor`] keeps it on the
+//! sensor.
 
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
@@ -11,7 +13,7 @@ use crate::source::Source;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, History};
-use crate::tui::app::state::{App, Mode, MoveKind, Notice};
+use crate::tui::app::state::{App, MoveKind, Notice};
 use crate::tui::compare::page::{Comparison, heading};
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
@@ -44,7 +46,25 @@ pub(in crate::tui) fn change(app: &mut App, document: Document) {
 /// Puts a document from elsewhere onto the matrix.
 pub(in crate::tui) fn begin(app: &mut App, origin: DocumentOrigin, document: Document) {
     app.history.begin(document, origin);
-    app.mode = Mode::Draw;
+    settle_elsewhere(app);
+}
+
+/// Puts a document from an earlier run onto the matrix.
+pub(in crate::tui) fn resume(app: &mut App, origin: DocumentOrigin, document: Document) {
+    app.history.resume(document, origin);
+    settle_elsewhere(app);
+}
+
+/// Goes back or forward to the state after that many steps.
+pub(in crate::tui) fn go_to(app: &mut App, step: usize) {
+    app.history.go_to(step);
+    settle_elsewhere(app);
+}
+
+/// Settles on a document that does not go on from the one before.
+fn settle_elsewhere(app: &mut App) {
+    let_go(app);
+    app.paint = None;
     settle(app);
 }
 
@@ -53,7 +73,7 @@ pub(in crate::tui) fn settle(app: &mut App) {
     app.removed.clear();
     app.moves = None;
     if app.history.present().source.is_none() {
-        app.mode = Mode::Draw;
+        let_go(app);
     }
     app.read();
     let regions = app.reading().regions.len();
@@ -71,7 +91,7 @@ pub(in crate::tui) fn travel(
 ) {
     match step(&mut app.history) {
         Some(what) => {
-            settle(app);
+            settle_elsewhere(app);
             inform(app, format!("{done}: {what}"));
         }
         None => inform(app, otherwise),
@@ -81,27 +101,23 @@ pub(in crate::tui) fn travel(
 /// Takes hold of the shape.
 pub(in crate::tui) fn hold(app: &mut App) {
     if movable(app).is_some() {
-        app.mode = Mode::Grab;
         app.held = Some(Box::new(app.history.present().clone()));
     }
 }
 
 /// Lets the shape go where it is.
 pub(in crate::tui) fn let_go(app: &mut App) {
-    app.mode = Mode::Draw;
     app.held = None;
 }
 
 /// Puts the shape back to where it was taken, and lets it go.
 pub(in crate::tui) fn put_back(app: &mut App) {
-    if app.mode != Mode::Grab {
+    let Some(before) = app.held.take() else {
         return refuse(app, "nothing is held");
-    }
-    let before = app.held.take();
-    app.mode = Mode::Draw;
-    let Some(before) = before.filter(|before| **before != *app.history.present()) else {
-        return;
     };
+    if *before == *app.history.present() {
+        return;
+    }
     inform(app, "put back");
     // If the shape was only moved, no trace is left. Other changes made meanwhile can still be undone.
     let only_moved = app.moves.take() == Some(MoveKind::Held);
@@ -109,10 +125,15 @@ pub(in crate::tui) fn put_back(app: &mut App) {
         app.history.amend(*before);
         settle(app);
     } else {
-        let dropped = dropped(app, &before);
-        change(app, *before);
-        say_dropped(app, dropped);
+        change_shape(app, *before);
     }
+}
+
+/// Changes the document, and says how many taxels set by hand were dropped.
+fn change_shape(app: &mut App, document: Document) {
+    let dropped = dropped(app, &document);
+    change(app, document);
+    say_dropped(app, dropped);
 }
 
 /// Returns true if a document shows something other than the document with the present name: a figure of another
@@ -131,8 +152,10 @@ pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
 }
 
 /// Replaces the document with one from a form or a command. A figure of another kind, or a picture of another shape,
-/// is a new document, and the name stays with the old one. A notice says how many taxels set by hand were dropped.
+/// is a new document, and the name stays with the old one. A notice says how many taxels set by hand were dropped. A
+/// held shape is let go.
 pub(in crate::tui) fn replace(app: &mut App, document: Document) {
+    let_go(app);
     let present = app.history.present();
     if *present == document {
         return;
@@ -145,8 +168,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     let lost = lost.map(Source::kind_name);
     if is_other(app, &document) {
         let origin = DocumentOrigin::unsaved(&document);
-        app.history.begin(document, origin);
-        settle(app);
+        begin(app, origin, document);
     } else {
         change(app, document);
     }
@@ -323,7 +345,7 @@ fn set(app: &mut App, source: Source, way: MoveKind, values: &[(Parameter, f64)]
         Ok(source) if app.history.present().source.as_ref() == Some(&source) => {}
         Ok(source) => {
             let document = Document::touched(sensor, source);
-            let way = if app.mode == Mode::Grab {
+            let way = if app.held.is_some() {
                 MoveKind::Held
             } else {
                 way
@@ -332,7 +354,7 @@ fn set(app: &mut App, source: Source, way: MoveKind, values: &[(Parameter, f64)]
                 app.history.amend(document);
                 settle(app);
             } else {
-                replace(app, document);
+                change_shape(app, document);
             }
             app.moves = Some(way);
         }

@@ -102,6 +102,9 @@ pub struct History {
     present: Revision,
     /// States that were undone, the next one last.
     future: Vec<Revision>,
+    /// While the last change can go on: the states that could be redone before it. They can be redone again if the
+    /// change comes to nothing.
+    future_before: Option<Vec<Revision>>,
     /// All origins; revisions refer to them by index.
     origins: Vec<DocumentOrigin>,
     /// The origins of deleted shapes as they were before, each with its index: the shape may be restored.
@@ -120,6 +123,7 @@ impl History {
                 chosen: None,
             },
             future: Vec::new(),
+            future_before: None,
             origins,
             gone: Vec::new(),
         }
@@ -251,13 +255,19 @@ impl History {
         })
     }
 
-    /// Drops the last step if amendments have undone it: such a step is no change, and leaves no trace.
+    /// Drops the last step if amendments have undone it: such a step is no change, and leaves no trace. What could be
+    /// redone before it can be redone again.
     fn drop_empty_step(&mut self) {
         let Revision {
             document, origin, ..
         } = &self.present;
-        self.past
-            .pop_if(|past| past.document == *document && past.origin == *origin);
+        let is_same = |past: &mut Revision| past.document == *document && past.origin == *origin;
+        if let Some(future) = self
+            .future_before
+            .take_if(|_| self.past.pop_if(is_same).is_some())
+        {
+            self.future = future;
+        }
     }
 
     /// Makes a document the present one and the former one the last of the past.
@@ -270,13 +280,16 @@ impl History {
             chosen,
         };
         self.past.push(std::mem::replace(&mut self.present, state));
-        self.future.clear();
+        self.future_before = Some(std::mem::take(&mut self.future));
     }
 
-    /// Continues the last change, which stays one change.
+    /// Continues the last change, which stays one change. If it came to nothing and was dropped, or after undo and
+    /// redo, this is a new change.
     pub fn amend(&mut self, document: Document) {
-        self.present.document = document;
-        self.future.clear();
+        match self.future_before {
+            Some(_) => self.present.document = document,
+            None => self.push(document),
+        }
     }
 
     /// Goes back by one change. Returns the change in words, None if there is none.
@@ -291,6 +304,7 @@ impl History {
 
     /// Goes forward again by one change. Returns the change in words, None if there is none.
     pub fn redo(&mut self) -> Option<String> {
+        self.drop_empty_step();
         let later = self.future.pop()?;
         let redone = self.step(&self.present, &later);
         let left = self.travel(later);
@@ -301,6 +315,7 @@ impl History {
     /// Makes an earlier or a later state the present one, and returns the one that is left. The region that was chosen
     /// there is chosen again; if none was, the choice stays.
     fn travel(&mut self, mut state: Revision) -> Revision {
+        self.future_before = None;
         state.chosen = state.chosen.or(self.present.chosen);
         std::mem::replace(&mut self.present, state)
     }

@@ -137,3 +137,31 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     let whole = grid.columns.is_whole() && grid.rows.is_whole();
     Some(Target::Taxel(column, row, whole))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tui::app::library::LibraryEvent;
+    use crate::tui::app::state::Options;
+    use crate::tui::app::update::update;
+
+    /// An answer of the library comes whenever it is ready.
+    #[test]
+    fn a_drag_ends_when_another_document_comes() {
+        let mut app = App::new(&Options::plain(true));
+        let places = (0..24).flat_map(|row| (0..80).map(move |column| (column, row)));
+        let is_taxel =
+            |&(column, row): &(u16, u16)| matches!(at(&app, column, row), Some(Target::Taxel(..)));
+        let taxels: Vec<(u16, u16)> = places.filter(is_taxel).collect();
+        let (first, last) = (taxels[0], taxels[taxels.len() - 1]);
+        let mouse = |kind, (column, row)| Message::Mouse(Mouse { kind, column, row });
+        update(&mut app, mouse(MouseKind::Press, first));
+        let drawn = app.unsaved_work().expect("something is drawn");
+        update(&mut app, mouse(MouseKind::Drag, last));
+        assert!(app.reading().imprint.count() > drawn.imprint.count());
+        let brought_back = LibraryEvent::Recovered(Box::new(drawn.clone()));
+        update(&mut app, Message::Library(brought_back));
+        update(&mut app, mouse(MouseKind::Drag, first));
+        assert_eq!(app.reading().imprint, drawn.imprint);
+    }
+}

@@ -57,15 +57,6 @@ impl Options {
     }
 }
 
-/// The mode of the matrix, which decides what the arrow keys do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// The arrow keys move the cursor.
-    Draw,
-    /// The arrow keys move the shape.
-    Grab,
-}
-
 /// A way of moving the shape. Moves of the same kind, one after the other, are one step of the history; so are all
 /// moves while the shape is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -200,8 +191,6 @@ pub struct App {
     pub(in crate::tui) cursor: (u8, u8),
     /// The part of a large matrix that its window follows.
     pub(in crate::tui) followed: Followed,
-    /// The mode, which decides what the arrow keys do.
-    pub(in crate::tui) mode: Mode,
     /// The way of showing the taxels.
     pub(in crate::tui) display: Display,
     /// The layers over the taxels.
@@ -244,7 +233,7 @@ pub struct App {
     pub(in crate::tui) forms: FormMemory,
     /// Whether the mouse sets taxels; otherwise the terminal selects text with it.
     pub(in crate::tui) mouse: bool,
-    /// The document at the moment when the shape was grabbed.
+    /// While the shape is held, so that the arrow keys move it and not the cursor: the document when it was taken.
     pub(in crate::tui) held: Option<Box<Document>>,
     /// The kind of move that the last message made, if any: the next move of that kind is part of the same step of
     /// the history.
@@ -275,7 +264,6 @@ impl App {
             shown: ReadDocument::new(document.clone()),
             history: History::new(document),
             followed: Followed::Cursor,
-            mode: Mode::Draw,
             display: Display::Imprint,
             layers: Layers::default(),
             page: NarrowPage::Matrix,
@@ -351,11 +339,11 @@ impl App {
 
     /// Returns the context with this page on top; None for the matrix without pages.
     pub(in crate::tui) fn context_on(&self, page: Option<&dyn Page>) -> Context {
-        match (page, self.mode) {
-            (Some(page), Mode::Grab) if page.leaves_matrix() => Context::Grab,
+        match (page, self.held.is_some()) {
+            (Some(page), true) if page.leaves_matrix() => Context::Grab,
             (Some(page), _) => page.context(),
-            (None, Mode::Grab) => Context::Grab,
-            (None, Mode::Draw) => Context::Matrix,
+            (None, true) => Context::Grab,
+            (None, false) => Context::Matrix,
         }
     }
 

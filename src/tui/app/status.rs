@@ -20,7 +20,7 @@ use crate::tui::app::layout::Panes;
 use crate::tui::app::menu;
 use crate::tui::app::notice;
 use crate::tui::app::page::{Page, Slot};
-use crate::tui::app::state::{App, Mode};
+use crate::tui::app::state::App;
 use crate::tui::app::title::name;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -139,10 +139,10 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     let coverage = seen.coverage(column, row);
     let all = format!("NA {} in all", seen.imprint.count());
     // The step of moving and zooming, if there is a shape to move.
-    let step = match (&app.shown().source, app.mode) {
+    let step = match (&app.shown().source, app.held.is_some()) {
         (None, _) => String::new(),
-        (Some(_), Mode::Draw) => format!("step {}", app.step.length()),
-        (Some(_), Mode::Grab) => format!("held, step {}", app.step.length()),
+        (Some(_), false) => format!("step {}", app.step.length()),
+        (Some(_), true) => format!("held, step {}", app.step.length()),
     };
     let width = usize::from(panes.taxel.width);
     if width >= if step.is_empty() { 60 } else { 80 } {

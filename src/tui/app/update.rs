@@ -8,7 +8,7 @@ use crate::tui::app::change::{from_prompt, give_prompt, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::{FileEvent, Message};
 use crate::tui::app::mouse;
-use crate::tui::app::state::{App, Mode, Notice, RunState};
+use crate::tui::app::state::{App, Notice, RunState};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::help::page::Help;
 use crate::tui::keys::action;
@@ -192,7 +192,7 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
         app.quits_when_saved = false;
     }
     // While the shape is held, its moves stay one step, even if help or another page is opened meanwhile.
-    if !message.moves_shape() && app.mode != Mode::Grab {
+    if !message.moves_shape() && app.held.is_none() {
         app.moves = None;
     }
     if matches!(message, Message::Paste(_)) && !has_field(app.context()) {

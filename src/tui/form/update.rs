@@ -5,7 +5,7 @@
 
 use crate::figure::FigureKind;
 use crate::quote::quoted_character;
-use crate::tui::app::change::{inform, let_go, refuse, replace};
+use crate::tui::app::change::{inform, refuse, replace};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -25,7 +25,6 @@ pub(in crate::tui) fn update(
                 if let Some(figure) = dialog.made_figure() {
                     app.forms.note_figure(figure, &dialog.shown().sensor);
                 }
-                let_go(app);
                 replace(app, dialog.shown().clone());
                 return None;
             }

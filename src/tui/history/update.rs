@@ -1,6 +1,6 @@
 //! The effects of messages over the list of steps.
 
-use crate::tui::app::change::{compare_with, refuse, settle};
+use crate::tui::app::change::{compare_with, go_to, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
@@ -46,8 +46,7 @@ pub(in crate::tui) fn in_history(
         Message::Cancel => list.search.end(),
         Message::Quit => return None,
         Message::Accept => {
-            app.history.go_to(list.selected());
-            settle(app);
+            go_to(app, list.selected());
             return None;
         }
         _ => {

@@ -20,7 +20,7 @@ use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::library::{LibraryRequest, Purpose};
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
 use crate::tui::app::quit::quit;
-use crate::tui::app::state::{App, Display, Followed, Mode, NarrowPage, RunState, UnfinishedSave};
+use crate::tui::app::state::{App, Display, Followed, NarrowPage, RunState, UnfinishedSave};
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::page::Help;
 use crate::tui::history::page::HistoryDialog;
@@ -52,10 +52,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
                 begin(app, DocumentOrigin::of(&empty), empty);
             }
         }
-        Message::Become(document) => {
-            app.mode = Mode::Draw;
-            replace(app, *document);
-        }
+        Message::Become(document) => replace(app, *document),
         Message::Compare => match app
             .history
             .before()
@@ -293,7 +290,7 @@ fn edit(app: &mut App, message: &Message) {
                 NarrowPage::Panel => NarrowPage::Matrix,
             };
         }
-        Message::Grab if app.mode == Mode::Grab => let_go(app),
+        Message::Grab if app.held.is_some() => let_go(app),
         Message::Grab => hold(app),
         Message::PutBack => put_back(app),
         Message::Nudge(arrow) => nudge(app, arrow),

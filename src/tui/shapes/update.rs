@@ -7,14 +7,14 @@ use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
 use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse, settle};
+use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse, resume};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, StoredName};
 use crate::tui::app::library::{Leftover, LibraryEvent, LibraryRequest, Purpose};
 use crate::tui::app::message::Message;
 use crate::tui::app::quit::quit;
-use crate::tui::app::state::{App, Mode};
+use crate::tui::app::state::App;
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::live;
@@ -147,9 +147,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         LibraryEvent::Recovered(shape) => {
             let document = Document::of_shape(&shape);
             let origin = DocumentOrigin::unsaved(&document).called("unsaved work brought back");
-            app.history.resume(document, origin);
-            app.mode = Mode::Draw;
-            settle(app);
+            resume(app, origin, document);
             let save = app.key_of(&action::SAVE);
             inform(app, format!("brought back; {save} saves it"));
         }
