@@ -411,28 +411,24 @@ fn quitting_asks_if_work_would_be_lost() {
         "nothing is left to lose"
     );
     // A drawing that was left for something else would be lost, too: only undo has it.
+    let earlier = "An earlier drawing is not saved; the history (H) has it.";
     for left in ["<Space>nq", "<Space><Right><Space>lwasher<Enter>q"] {
-        shows(
-            left,
-            &["An earlier drawing is not saved. Quit anyway? (y: lose it, n: stay)"],
-        );
+        shows(left, &[earlier, "Quit anyway?"]);
     }
+    let rectangle = "An earlier rectangle is not saved; the history (H) has it.";
+    shows("fr<Enter>lgear<Enter>q", &[rectangle, "n: stay)"]);
     // Both may be unsaved, and saving one does not discard the other.
     let both = "<Space>n<Right><Space>q";
     shows(
         both,
         &[
-            "The imprint and an earlier one are not saved. Quit anyway? (y: lose them, n:\n",
-            "stay, s: save first)",
+            "The imprint and an earlier drawing are not saved; the history (H) has the",
+            "s: save first)",
         ],
     );
     let saved = session(&format!("{both}sa name<Enter>"));
     assert!(!saved.app().ended());
-    let screen = saved.screen();
-    assert!(
-        screen.contains("An earlier drawing is not saved. Quit anyway? (y: lose it, n:\nstay)"),
-        "{screen}"
-    );
+    shows(&saved, &[earlier]);
     assert!(session("<Space>qsa name<Enter>").app().ended());
     // A figure that is too thin to leave an imprint may be missed, but cannot be saved.
     shows(

@@ -663,7 +663,10 @@ fn an_imprint_from_a_frame_is_unsaved_work() {
     then(&mut page, "q", &[]);
     hides(&page, &["not saved"]);
     let mut page = watched(6, "+<Enter>nq");
-    shows(&page, &["An earlier drawing is not saved. Quit anyway?"]);
+    shows(
+        &page,
+        &["An earlier drawing is not saved; the history (H) has it."],
+    );
     // Back on the page, nothing has been taken yet.
     then(&mut page, "<Esc>uq", &["not saved"]);
     then(&mut page, "<Esc>uq", &[]);

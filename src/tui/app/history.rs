@@ -184,7 +184,7 @@ impl History {
     /// lost by that: undo would go back to them, and quitting there without a question would lose the document.
     pub fn resume(&mut self, document: Document, origin: DocumentOrigin) {
         self.begin(document, origin);
-        if !self.left_unsaved() {
+        if self.left_unsaved().is_none() {
             self.past.clear();
         }
     }
@@ -244,15 +244,16 @@ impl History {
         }
     }
 
-    /// Returns true if something was drawn and then left for another document without being saved: only undo would
-    /// bring it back.
-    pub fn left_unsaved(&self) -> bool {
-        let states = || self.past.iter().chain([&self.present]);
-        states().zip(states().skip(1)).any(|(state, next)| {
+    /// Returns the last document that was left for another one without being saved, so that only undo would bring it
+    /// back; None if there is none.
+    pub fn left_unsaved(&self) -> Option<&Document> {
+        let later = self.past.iter().skip(1).chain([&self.present]);
+        let left = self.past.iter().zip(later).filter(|(state, next)| {
             state.origin != next.origin
                 && (self.origins.get(state.origin))
                     .is_some_and(|origin| origin.would_lose(&state.document))
-        })
+        });
+        left.last().map(|(state, _)| &state.document)
     }
 
     /// Drops the last step if amendments have undone it: such a step is no change, and leaves no trace. What could be

@@ -1,22 +1,39 @@
 //! Quitting the program: at once, or after a question if work would be lost.
 
+use crate::source::Source;
 use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, RunState};
+use crate::tui::keys::action;
 use crate::tui::live::update::recording;
 
 /// Quits, after a question if work would be lost.
-/// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
-/// is no key for it. A shape that is being saved needs no question: the end waits for it, and reports a failure.
+/// The imprint on the matrix can be saved from the question; an earlier shape must be brought back first, so there is
+/// no key for it, and the question names the key of the history. A shape that is being saved needs no question: the
+/// end waits for it, and reports a failure.
 pub(in crate::tui) fn quit(app: &mut App) {
-    let (what, lost) = match (
-        app.unsaved() && !app.is_being_saved(),
-        app.history.left_unsaved(),
-    ) {
-        (true, true) => ("The imprint and an earlier one are", "lose them"),
-        (true, false) => ("The imprint is", "lose it"),
-        (false, true) => ("An earlier drawing is", "lose it"),
-        (false, false) => {
+    let kind = |document: &Document| {
+        document
+            .source
+            .as_ref()
+            .map_or("drawing", Source::kind_name)
+    };
+    let earlier = app.history.left_unsaved().map(kind);
+    let history = app.key_of(&action::HISTORY);
+    let (what, lost) = match (app.unsaved() && !app.is_being_saved(), earlier) {
+        (true, Some(kind)) => (
+            format!(
+                "The imprint and an earlier {kind} are not saved; the history ({history}) has the {kind}"
+            ),
+            "lose them",
+        ),
+        (true, None) => ("The imprint is not saved".to_owned(), "lose it"),
+        (false, Some(kind)) => (
+            format!("An earlier {kind} is not saved; the history ({history}) has it"),
+            "lose it",
+        ),
+        (false, None) => {
             app.run_state = RunState::Quit;
             return;
         }
@@ -24,7 +41,7 @@ pub(in crate::tui) fn quit(app: &mut App) {
     let ends = recording(app).map_or(String::new(), |name| {
         format!("; the recording in {name} ends")
     });
-    let about = format!("{what} not saved{ends}.");
+    let about = format!("{what}{ends}.");
     let question = Question {
         saves_first: can_save_first(app),
         meanings: Some([lost, "stay"]),

@@ -65,7 +65,10 @@ fn unsaved_work_is_offered_back_once() {
         &["unsaved 1 loaded", "NA 1 in all"],
     );
     press(&mut later, "un<Space>smine<Enter>q");
-    shows(&later, &["An earlier drawing is not saved."]);
+    shows(
+        &later,
+        &["An earlier ellipse is not saved; the history (H) has it."],
+    );
     press(&mut later, "y");
     assert!(later.app().ended());
     drop(later);
@@ -87,7 +90,11 @@ fn restored_work_is_not_lost_by_undo() {
     // It is still kept if the program ends without an answer.
     drop(later);
     let mut again = session_on(folder.path(), "yn");
-    then(&mut again, "q", &["An earlier drawing is not saved."]);
+    then(
+        &mut again,
+        "q",
+        &["An earlier ellipse is not saved; the history (H) has it."],
+    );
 }
 
 /// Waits until unsaved work is on the disk.
