@@ -330,16 +330,15 @@ fn guess(app: &mut App, quiz: Quiz, named: bool) {
     let (shape, selected) = (quiz.shape(), quiz.selected());
     let (right, name) = (named && shape == selected, quiz.name(shape).to_owned());
     let touch = app.keymap().label(Context::Recognise, &action::QUIZ);
+    let undo = app.key_of(&action::UNDO);
+    let further = format!("{touch} for another, {undo} undoes the touch");
     let text = match (named, right) {
-        (true, true) => format!("right: {name}; {touch} for another shape"),
+        (true, true) => format!("right: {name}; {further}"),
         (true, false) => format!(
-            "wrong: the shape is {name}, you said {}; {touch} for another one",
+            "wrong: the shape is {name}, not {}; {further}",
             quiz.name(selected)
         ),
-        (false, _) => {
-            let undo = app.key_of(&action::UNDO);
-            format!("it was the {name}; {undo} brings back what was there before")
-        }
+        (false, _) => format!("it was the {name}; {undo} brings back what was there before"),
     };
     if let Some(page) = state(app) {
         page.set_touches(quiz.into_touches());
