@@ -56,14 +56,31 @@ pub struct CommandDialog {
     pub candidates: Vec<String>,
     /// The typed line when names for the last word were asked for.
     asked: Option<String>,
-    /// The index of the earlier line that is shown, counted from the last one; None if no earlier line is shown.
-    recalled: Option<usize>,
-    /// The line that was being typed before an earlier one was recalled.
-    draft: String,
-    /// The earlier lines.
+    /// The earlier lines, the last one last.
     given: Vec<String>,
-    /// The index of the offered line that is shown, and the line that was typed before it.
-    picked: Option<(usize, String)>,
+    /// The origin of the line in the field.
+    shown: ShownLine,
+}
+
+/// The origin of the line in the field. A line that is edited or completed counts as typed.
+#[derive(Clone, Debug)]
+enum ShownLine {
+    /// It was typed.
+    Typed,
+    /// It is an earlier line.
+    Earlier {
+        /// Its index, counted from the last one.
+        index: usize,
+        /// The line that was typed before.
+        typed: String,
+    },
+    /// It is an offered line.
+    Offered {
+        /// Its index.
+        index: usize,
+        /// The line that was typed before.
+        typed: String,
+    },
 }
 
 impl CommandDialog {
@@ -71,20 +88,18 @@ impl CommandDialog {
     pub fn new(given: &[String]) -> Self {
         Self {
             given: given.to_vec(),
-            picked: None,
+            shown: ShownLine::Typed,
             field: TextField::new("", LONGEST_COMMAND),
             candidates: Vec::new(),
             asked: None,
-            recalled: None,
-            draft: String::new(),
         }
     }
 
     /// Returns the offered lines, and the index of the picked one.
     pub fn offers(&self) -> (Vec<Offer>, Option<usize>) {
-        let (picked, typed) = match &self.picked {
-            Some((picked, typed)) => (Some(*picked), typed.as_str()),
-            None => (None, self.field.text()),
+        let (picked, typed) = match &self.shown {
+            ShownLine::Offered { index, typed } => (Some(*index), typed.as_str()),
+            ShownLine::Typed | ShownLine::Earlier { .. } => (None, self.field.text()),
         };
         (offers(typed, &self.given), picked)
     }
@@ -93,9 +108,9 @@ impl CommandDialog {
     /// Returns false if there is none before.
     pub fn pick(&mut self, down: bool) -> bool {
         let (offers, picked) = self.offers();
-        let typed = match self.picked.take() {
-            Some((_, typed)) => typed,
-            None => self.field.text().to_owned(),
+        let typed = match &self.shown {
+            ShownLine::Offered { typed, .. } => typed.clone(),
+            ShownLine::Typed | ShownLine::Earlier { .. } => self.field.text().to_owned(),
         };
         // The usage of a command whose arguments are being typed comes last, and would replace them.
         let begun = typed.trim_start();
@@ -110,35 +125,37 @@ impl CommandDialog {
         };
         self.candidates.clear();
         match next {
-            None => self.field.set(typed),
+            None => {
+                self.field.set(typed);
+                self.shown = ShownLine::Typed;
+            }
             Some(next) => {
-                let next = next.min(lines.len().saturating_sub(1));
-                if let Some(line) = lines.get(next) {
+                let index = next.min(lines.len().saturating_sub(1));
+                if let Some(line) = lines.get(index) {
                     self.field.set(line.clone());
-                    self.picked = Some((next, typed));
+                    self.shown = ShownLine::Offered { index, typed };
                 }
             }
         }
         true
     }
 
-    /// Returns true if an earlier line is shown.
-    pub fn recalls(&self) -> bool {
-        self.recalled.is_some()
+    /// Sets the earlier lines, for a prompt that may open again after its line was given.
+    pub fn set_given(&mut self, given: &[String]) {
+        given.clone_into(&mut self.given);
     }
 
     /// Types, moves or deletes in the field.
     pub fn edit(&mut self, message: &Message) {
         self.candidates.clear();
         if self.field.take(message) {
-            self.recalled = None;
-            self.picked = None;
+            self.shown = ShownLine::Typed;
         }
     }
 
     /// Completes the last word, or the name at the end of the line, of which `names` are all that there are.
     pub fn complete(&mut self, names: &[String]) {
-        self.picked = None;
+        self.shown = ShownLine::Typed;
         let (line, candidates) = complete(self.field.text(), names);
         self.field.set(line);
         self.candidates = candidates;
@@ -160,29 +177,33 @@ impl CommandDialog {
     }
 
     /// Shows the earlier line before the one that is shown. Does nothing at the first one.
-    pub fn earlier(&mut self, lines: &[String]) {
-        let next = self.recalled.map_or(0, |recalled| recalled + 1);
-        if next < lines.len() {
-            if self.recalled.is_none() {
-                self.field.text().clone_into(&mut self.draft);
-            }
-            self.show(Some(next), lines);
+    pub fn earlier(&mut self) {
+        let (index, typed) = match &self.shown {
+            ShownLine::Earlier { index, typed } => (index + 1, typed.clone()),
+            ShownLine::Typed | ShownLine::Offered { .. } => (0, self.field.text().to_owned()),
+        };
+        if let Some(line) = self.given.iter().rev().nth(index) {
+            self.candidates.clear();
+            self.field.set(line.clone());
+            self.shown = ShownLine::Earlier { index, typed };
         }
     }
 
-    /// Shows the line after the one that is shown; after the last one, the line that was being typed.
-    pub fn later(&mut self, lines: &[String]) {
-        if let Some(recalled) = self.recalled {
-            self.show(recalled.checked_sub(1), lines);
-        }
-    }
-
-    /// Shows an earlier line, or the line that was being typed.
-    fn show(&mut self, recalled: Option<usize>, lines: &[String]) {
-        self.recalled = recalled;
+    /// Shows the line after the earlier one that is shown; after the last one, the line that was being typed. Returns
+    /// false if no earlier line is shown.
+    pub fn later(&mut self) -> bool {
+        let ShownLine::Earlier { index, typed } = &self.shown else {
+            return false;
+        };
+        let (typed, next) = (typed.clone(), index.checked_sub(1));
+        let line = next.and_then(|index| self.given.iter().rev().nth(index));
         self.candidates.clear();
-        let line = recalled.and_then(|recalled| lines.iter().rev().nth(recalled));
-        self.field.set(line.unwrap_or(&self.draft).clone());
+        self.field.set(line.unwrap_or(&typed).clone());
+        self.shown = match next {
+            Some(index) => ShownLine::Earlier { index, typed },
+            None => ShownLine::Typed,
+        };
+        true
     }
 }
 
@@ -212,14 +233,14 @@ mod tests {
     #[test]
     fn earlier_lines_are_recalled_one_by_one() {
         let lines = ["new", "grab", "new"].map(str::to_owned);
-        let mut dialog = CommandDialog::new(&[]);
+        let mut dialog = CommandDialog::new(&lines);
         dialog.edit(&Message::Type('z'));
         let mut shown = Vec::new();
         for earlier in [true, true, true, true, false, false, false, false] {
             if earlier {
-                dialog.earlier(&lines);
+                dialog.earlier();
             } else {
-                dialog.later(&lines);
+                dialog.later();
             }
             shown.push(dialog.field.text().to_owned());
         }
@@ -227,5 +248,18 @@ mod tests {
             shown,
             ["new", "grab", "new", "new", "grab", "new", "z", "z"]
         );
+    }
+
+    #[test]
+    fn an_earlier_line_that_is_completed_counts_as_typed() {
+        let mut dialog = CommandDialog::new(&["load wash".to_owned()]);
+        dialog.earlier();
+        dialog.complete(&["washer".to_owned()]);
+        assert_eq!(dialog.field.text(), "load washer");
+        assert!(!dialog.later(), "it is no earlier line");
+        dialog.earlier();
+        assert_eq!(dialog.field.text(), "load wash");
+        assert!(dialog.later());
+        assert_eq!(dialog.field.text(), "load washer");
     }
 }

@@ -37,6 +37,7 @@ pub(in crate::tui) fn in_command(
                 Ok(message) => {
                     if app.commands.last() != Some(&line) {
                         app.commands.push(line);
+                        dialog.set_given(&app.commands);
                     }
                     if !matches!(
                         message,
@@ -56,13 +57,14 @@ pub(in crate::tui) fn in_command(
             }
         }
         Message::Field(_) => return complete(app, dialog),
-        Message::Choose(Arrow::Down) if dialog.recalls() => dialog.later(&app.commands),
         Message::Choose(Arrow::Down) => {
-            dialog.pick(true);
+            if !dialog.later() {
+                dialog.pick(true);
+            }
         }
         Message::Choose(Arrow::Up) => {
             if !dialog.pick(false) {
-                dialog.earlier(&app.commands);
+                dialog.earlier();
             }
         }
         other => {
