@@ -204,6 +204,14 @@ fn a_plot_of_angles_that_fails_shows_the_error() {
 }
 
 #[test]
+fn errors_in_the_form_of_ranges_name_the_label_of_the_field() {
+    let zoom = "larrow<Enter>p<Enter>e<3x:Tab><C-u>";
+    for (text, error) in [("0", "! Zoom x: 0 is not above 0"), ("a", "! Zoom x: ")] {
+        shows(&format!("{zoom}{text}<Enter>"), &[error]);
+    }
+}
+
+#[test]
 fn the_expected_time_is_shown_while_ranges_are_typed() {
     let mut program = Beside::new("fh<Enter>e");
     shows(&program.session, &["3,600,000 poses"]);

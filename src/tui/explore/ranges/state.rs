@@ -300,7 +300,7 @@ impl RangesForm {
         let range: DecimalRange = match field.text().parse() {
             Ok(range) => range,
             Err(error) => {
-                let full = format!("{}: {error}", field.parameter().row().key);
+                let full = format!("{}: {error}", field.parameter().row().label);
                 return Some(wrong(error.expected(), full));
             }
         };
@@ -309,7 +309,7 @@ impl RangesForm {
             let checked = self.sensor.check(field.parameter(), value);
             checked.err()
         });
-        error.map(|error| wrong(error.expected(), error.to_string()))
+        error.map(|error| wrong(error.expected(), error.labelled()))
     }
 
     /// Returns the grid of the fields.
