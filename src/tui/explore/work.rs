@@ -161,7 +161,7 @@ pub(in crate::tui) fn in_ranges(
     message: Message,
 ) -> Option<Effect> {
     match message {
-        Message::Accept => match form.grid() {
+        Message::Accept => match form.grid().cloned().map_err(Clone::clone) {
             Ok(grid) => {
                 app.forms.note_ranges(form.remembered());
                 return Some(start(app, grid));

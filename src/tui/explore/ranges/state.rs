@@ -83,6 +83,8 @@ pub struct RangesForm {
     focus: Option<usize>,
     /// The number of taxels that were set by hand, which the sweep ignores.
     by_hand: u32,
+    /// The grid of the fields, or their first error.
+    grid: Result<PoseGrid, RangesError>,
     /// The last measured grid, the number of its poses that are cut off, and its time.
     measured: Option<Measured>,
 }
@@ -133,15 +135,17 @@ impl RangesForm {
         let typed: Vec<Axis> = Axis::of(&source)
             .filter(|&axis| known(axis).is_some())
             .collect();
+        let anchor = match (earlier, last) {
+            (Some(grid), _) => grid.anchor(),
+            (None, Some(last)) => last.anchor,
+            (None, None) => Anchor::default(),
+        };
         let mut form = Self {
+            grid: grid_of(&fields, &source, sensor, anchor),
             fields,
             source,
             sensor,
-            anchor: match (earlier, last) {
-                (Some(grid), _) => grid.anchor(),
-                (None, Some(last)) => last.anchor,
-                (None, None) => Anchor::default(),
-            },
+            anchor,
             focus: None,
             by_hand,
             measured: None,
@@ -152,10 +156,16 @@ impl RangesForm {
                 let proposed = proposed && typed.iter().all(|axis| *axis != field.axis);
                 field.proposed = proposed.then(|| field.input.text().to_owned());
             }
-            form.propose();
+            form.follow();
         }
         form.set_focus(Some(0));
         form
+    }
+
+    /// Brings the proposals and the grid up to date after a change of a field or of the anchor.
+    fn follow(&mut self) {
+        self.propose();
+        self.grid = grid_of(&self.fields, &self.source, self.sensor, self.anchor);
     }
 
     /// Proposes ranges for x0 and y0 that fit the shape at the angles and zooms of the other fields, unless other
@@ -258,16 +268,16 @@ impl RangesForm {
     /// Returns the known facts about the grid of the fields.
     fn known(&self) -> Option<&Measured> {
         let measured = self.measured.as_ref();
-        measured.filter(|known| self.grid().as_ref() == Ok(&known.grid))
+        measured.filter(|known| self.grid.as_ref() == Ok(&known.grid))
     }
 
     /// Returns the grid of the fields if it was not measured before. It counts as measured afterwards.
     pub fn unmeasured(&mut self) -> Option<PoseGrid> {
-        let grid = self.grid().ok()?;
+        let grid = self.grid.as_ref().ok()?;
         if self
             .measured
             .as_ref()
-            .is_some_and(|known| known.grid == grid)
+            .is_some_and(|known| known.grid == *grid)
         {
             return None;
         }
@@ -278,7 +288,7 @@ impl RangesForm {
             time: None,
             grid: grid.clone(),
         });
-        Some(grid)
+        Some(grid.clone())
     }
 
     /// Takes the estimated time of a grid. An estimate for another grid is ignored.
@@ -291,54 +301,15 @@ impl RangesForm {
 
     /// Returns the error in a field; None if there is none.
     pub fn trouble(&self, index: usize) -> Option<RangesError> {
-        let field = self.fields.get(index)?;
-        let wrong = |brief: String, full: String| RangesError {
-            field: Some(index),
-            brief,
-            full,
-        };
-        let range: DecimalRange = match field.text().parse() {
-            Ok(range) => range,
-            Err(error) => {
-                let full = format!("{}: {error}", field.parameter().row().label);
-                return Some(wrong(error.expected(), full));
-            }
-        };
-        let ends = [range.value(0), range.last()];
-        let error = ends.into_iter().find_map(|value| {
-            let checked = self.sensor.check(field.parameter(), value);
-            checked.err()
-        });
-        error.map(|error| wrong(error.expected(), error.labelled()))
+        trouble(&self.fields, index, &self.sensor)
     }
 
     /// Returns the grid of the fields.
     ///
     /// # Errors
     /// Returns the first error in the fields.
-    pub fn grid(&self) -> Result<PoseGrid, RangesError> {
-        if let Some(trouble) = (0..self.fields.len()).find_map(|index| self.trouble(index)) {
-            return Err(trouble);
-        }
-        let mut ranges = Ranges::default();
-        for field in &self.fields {
-            if let Ok(range) = field.text().parse() {
-                ranges[field.axis] = range;
-            }
-        }
-        let grid = PoseGrid::new(self.source.clone(), self.sensor, self.anchor, ranges);
-        grid.map_err(|error: GridError| RangesError {
-            field: None,
-            brief: match &error {
-                GridError::Poses { poses } => {
-                    let poses = u64::try_from(*poses).unwrap_or(u64::MAX);
-                    let most = grouped(MAX_POSES);
-                    format!("{}\nexpected at most {most}", counted(poses, "pose"))
-                }
-                _ => error.to_string(),
-            },
-            full: error.to_string(),
-        })
+    pub fn grid(&self) -> Result<&PoseGrid, &RangesError> {
+        self.grid.as_ref()
     }
 
     /// Moves the focus to a field; None moves it to the anchor.
@@ -385,7 +356,7 @@ impl RangesForm {
                     let before = field.text().to_owned();
                     field.input.take(message);
                     if field.text() != before {
-                        self.propose();
+                        self.follow();
                     }
                 }
                 None if matches!(message, Message::Choose(_) | Message::Type(' ')) => {
@@ -402,6 +373,62 @@ impl RangesForm {
             Anchor::Corner => Anchor::Centre,
             Anchor::Centre => Anchor::Corner,
         };
-        self.propose();
+        self.follow();
     }
+}
+
+/// Returns the error in a field; None if there is none.
+fn trouble(fields: &[RangeField], index: usize, sensor: &Sensor) -> Option<RangesError> {
+    let field = fields.get(index)?;
+    let wrong = |brief: String, full: String| RangesError {
+        field: Some(index),
+        brief,
+        full,
+    };
+    let range: DecimalRange = match field.text().parse() {
+        Ok(range) => range,
+        Err(error) => {
+            let full = format!("{}: {error}", field.parameter().row().label);
+            return Some(wrong(error.expected(), full));
+        }
+    };
+    let ends = [range.value(0), range.last()];
+    let error = ends
+        .into_iter()
+        .find_map(|value| sensor.check(field.parameter(), value).err());
+    error.map(|error| wrong(error.expected(), error.labelled()))
+}
+
+/// Returns the grid of the fields.
+///
+/// # Errors
+/// Returns the first error in the fields.
+fn grid_of(
+    fields: &[RangeField],
+    source: &Source,
+    sensor: Sensor,
+    anchor: Anchor,
+) -> Result<PoseGrid, RangesError> {
+    if let Some(trouble) = (0..fields.len()).find_map(|index| trouble(fields, index, &sensor)) {
+        return Err(trouble);
+    }
+    let mut ranges = Ranges::default();
+    for field in fields {
+        if let Ok(range) = field.text().parse() {
+            ranges[field.axis] = range;
+        }
+    }
+    let grid = PoseGrid::new(source.clone(), sensor, anchor, ranges);
+    grid.map_err(|error: GridError| RangesError {
+        field: None,
+        brief: match &error {
+            GridError::Poses { poses } => {
+                let poses = u64::try_from(*poses).unwrap_or(u64::MAX);
+                let most = grouped(MAX_POSES);
+                format!("{}\nexpected at most {most}", counted(poses, "pose"))
+            }
+            _ => error.to_string(),
+        },
+        full: error.to_string(),
+    })
 }
