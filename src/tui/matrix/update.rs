@@ -17,7 +17,7 @@ use crate::tui::app::change::{
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
-use crate::tui::app::library::{LibraryRequest, Purpose};
+use crate::tui::app::library::LibraryRequest;
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
 use crate::tui::app::quit::quit;
 use crate::tui::app::state::{App, Display, Followed, NarrowPage, RunState, UnfinishedSave};
@@ -30,7 +30,7 @@ use crate::tui::matrix::files;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect};
-use crate::tui::shapes::state::ListDialog;
+use crate::tui::shapes::state::{ListDialog, ListPurpose};
 use crate::tui::widget::number::around;
 use crate::tui::{explore, live, recognise};
 
@@ -101,10 +101,10 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
 /// there is a picture or a stored shape on the matrix, otherwise the list to choose one from.
 fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
     match message {
-        Message::Load => return Some(open_list(app, Purpose::Load)),
-        Message::Delete => return Some(open_list(app, Purpose::Delete)),
+        Message::Load => return Some(open_list(app, ListPurpose::Load)),
+        Message::Delete => return Some(open_list(app, ListPurpose::Delete)),
         Message::Picture if !edit_picture(app) => {
-            return Some(open_list(app, Purpose::Picture));
+            return Some(open_list(app, ListPurpose::Picture));
         }
         Message::Picture => {}
         Message::Figure => {
@@ -339,7 +339,7 @@ fn open_form(app: &mut App, form: FormDialog) {
 }
 
 /// Opens the list of shapes, empty until the library answers.
-fn open_list(app: &mut App, purpose: Purpose) -> Effect {
+fn open_list(app: &mut App, purpose: ListPurpose) -> Effect {
     app.dialogs.push(Dialog::List(ListDialog::new(purpose)));
     Effect::Library(LibraryRequest::List)
 }

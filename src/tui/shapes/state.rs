@@ -7,18 +7,28 @@ use std::collections::{HashMap, HashSet};
 
 use crate::formats::name::{LONGEST, folded};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::library::Purpose;
 use crate::tui::app::message::Message;
 use crate::tui::widget::text_field::TextField;
 
 /// The number of shapes that are read at once before and after the selected one: more than any screen shows.
 const AHEAD: usize = 64;
 
+/// The purpose for which a shape of the list is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ListPurpose {
+    /// The shape is put onto the matrix.
+    Load,
+    /// The shape is deleted.
+    Delete,
+    /// The shape is placed as a picture.
+    Picture,
+}
+
 /// The page with the list of shapes.
 #[derive(Clone, Debug)]
 pub struct ListDialog {
     /// The purpose for which a shape is chosen.
-    purpose: Purpose,
+    purpose: ListPurpose,
     /// All shapes of the list.
     entries: Vec<LibraryEntry>,
     /// The names of the shapes that are left out because they cannot be deleted.
@@ -41,7 +51,7 @@ pub struct ListDialog {
 
 impl ListDialog {
     /// Returns a list that waits for the library.
-    pub fn new(purpose: Purpose) -> Self {
+    pub fn new(purpose: ListPurpose) -> Self {
         Self {
             purpose,
             entries: Vec::new(),
@@ -62,7 +72,7 @@ impl ListDialog {
         if self.listed {
             return;
         }
-        if self.purpose == Purpose::Delete {
+        if self.purpose == ListPurpose::Delete {
             let shipped = entries.extract_if(.., |entry| entry.origin != ShapeOrigin::Own);
             self.undeletable = shipped.map(|entry| entry.name).collect();
         }
@@ -87,7 +97,7 @@ impl ListDialog {
     }
 
     /// Returns the purpose for which a shape is chosen.
-    pub fn purpose(&self) -> Purpose {
+    pub fn purpose(&self) -> ListPurpose {
         self.purpose
     }
 

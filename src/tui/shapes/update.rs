@@ -20,7 +20,7 @@ use crate::tui::keys::action::{self, Arguments};
 use crate::tui::live;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::runtime::effect::Effect;
-use crate::tui::shapes::state::ListDialog;
+use crate::tui::shapes::state::{ListDialog, ListPurpose};
 use crate::tui::widget::rows::moved;
 
 /// Handles a message. The list goes back onto the stack unless a shape is taken.
@@ -267,17 +267,17 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
                 refuse(app, "there is no shape to choose");
             }
         }
-        (Some((name, _)), Purpose::Delete) => {
+        (Some((name, _)), ListPurpose::Delete) => {
             let request = Effect::Library(LibraryRequest::Deletable(name));
             return from_prompt(app, Dialog::List(list), |_| Some(request));
         }
-        (Some((_, Some(Ok(loaded)))), Purpose::Load) => {
+        (Some((_, Some(Ok(loaded)))), ListPurpose::Load) => {
             if let Err(text) = put_on_matrix(app, &loaded) {
                 app.dialogs.push(Dialog::List(list));
                 refuse(app, text);
             }
         }
-        (Some((name, Some(Ok(loaded)))), Purpose::Picture) => {
+        (Some((name, Some(Ok(loaded)))), ListPurpose::Picture) => {
             open_picture(app, &loaded.shape.imprint, name);
         }
         (Some((_, None)), _) => {
@@ -287,9 +287,6 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
         (Some((name, Some(Err(reason)))), _) => {
             app.dialogs.push(Dialog::List(list));
             refuse(app, format!("{name}: {reason}"));
-        }
-        (Some((name, Some(Ok(loaded)))), Purpose::Compare) => {
-            compare_with(app, &name, &loaded.shape.imprint);
         }
     }
     None

@@ -15,14 +15,13 @@ use ratatui::layout::{Position, Rect};
 
 use crate::description::{Region, RegionKind, regions};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::library::Purpose;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::shapes::layout::{LIST_HEAD, list, list_rows};
-use crate::tui::shapes::state::ListDialog;
+use crate::tui::shapes::state::{ListDialog, ListPurpose};
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
@@ -87,10 +86,9 @@ fn draw(
     write::clear(buffer, body);
     let (area, preview) = list(body);
     let title = match dialog.purpose() {
-        Purpose::Load => "Load",
-        Purpose::Delete => "Delete",
-        Purpose::Picture => "Picture",
-        Purpose::Compare => "Compare",
+        ListPurpose::Load => "Load",
+        ListPurpose::Delete => "Delete",
+        ListPurpose::Picture => "Picture",
     };
     let label = "  filter: ";
     let room = usize::from(area.width).saturating_sub(write::width(title) + write::width(label));
@@ -134,7 +132,7 @@ fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
         match (dialog.undeletable(), dialog.total(), dialog.purpose()) {
             _ if !dialog.is_listed() => "the library is being read".to_owned(),
             (Some(name), ..) => format!("{name} is shipped with taxel and cannot be deleted"),
-            (_, 0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
+            (_, 0, ListPurpose::Delete) => "there are no shapes of your own".to_owned(),
             (_, 0, _) => "the library is empty".to_owned(),
             _ => {
                 let key = keymap.label(Context::List, &action::ERASE_BEFORE);
