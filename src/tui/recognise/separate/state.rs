@@ -35,6 +35,20 @@ pub struct SizeWork {
     pub stopping: bool,
 }
 
+/// The state of the work: the sizes that are still without results, and the search for the smallest size that reaches
+/// the wanted error.
+#[derive(Clone, Debug)]
+enum Search {
+    /// It is to begin.
+    Waiting,
+    /// It is in progress.
+    Running(SizeWork),
+    /// It was stopped, or failed: then it continues only on request.
+    Stopped,
+    /// It is done: the smallest size; None if no size reaches the wanted error.
+    Done(Option<SmallestSize>),
+}
+
 /// The page of sizes.
 #[derive(Clone, Debug)]
 pub struct Separate {
@@ -42,14 +56,8 @@ pub struct Separate {
     request: Arc<SeparationRequest>,
     /// The results, the smallest size first.
     found: Vec<SizeFound>,
-    /// The smallest size that reaches the wanted error; None if there is none, or before the search.
-    smallest: Option<SmallestSize>,
-    /// Whether that size was searched for.
-    searched: bool,
-    /// Whether the work was stopped, or failed: then it continues only on request.
-    stopped: bool,
-    /// The work in progress.
-    work: Option<SizeWork>,
+    /// The state of the work.
+    search: Search,
     /// The row of the table under the cursor.
     cursor: usize,
     /// Whether the user has moved the cursor; until then it goes to the wanted size.
@@ -62,10 +70,7 @@ impl Separate {
         Self {
             request: Arc::new(request),
             found: Vec::new(),
-            smallest: None,
-            searched: false,
-            stopped: false,
-            work: None,
+            search: Search::Waiting,
             cursor: 0,
             moved: false,
         }
@@ -94,23 +99,37 @@ impl Separate {
     /// Returns the smallest size that reaches the wanted error, or None inside if there is none; None if it was not
     /// searched for.
     pub fn smallest(&self) -> Option<Option<&SmallestSize>> {
-        self.searched.then_some(self.smallest.as_ref())
+        match &self.search {
+            Search::Done(smallest) => Some(smallest.as_ref()),
+            _ => None,
+        }
     }
 
     /// Returns the work in progress.
     pub fn work(&self) -> Option<&SizeWork> {
-        self.work.as_ref()
+        match &self.search {
+            Search::Running(work) => Some(work),
+            _ => None,
+        }
+    }
+
+    /// Returns the work in progress, to change it.
+    fn running(&mut self) -> Option<&mut SizeWork> {
+        match &mut self.search {
+            Search::Running(work) => Some(work),
+            _ => None,
+        }
     }
 
     /// Begins the remaining work under a number: the sizes without results, and the search. Returns the request and
     /// the known points; None while work is in progress, after it was stopped, or if there is nothing to do.
     pub fn begin(&mut self, number: u64) -> Option<(Arc<SeparationRequest>, Vec<SeparationPoint>)> {
-        if self.work.is_some() || self.searched || self.stopped {
+        if !matches!(self.search, Search::Waiting) {
             return None;
         }
         let [before, all] = [self.found.len(), self.request.values().len()];
         let touches = self.request.separation().map_or(0, |set| set.touches());
-        self.work = Some(SizeWork {
+        self.search = Search::Running(SizeWork {
             number,
             touches,
             before: touches * before as u64,
@@ -129,50 +148,52 @@ impl Separate {
 
     /// Records the progress of the work with this number.
     pub fn take_progress(&mut self, number: u64, done: u64) {
-        if let Some(work) = self.work.as_mut().filter(|work| work.number == number) {
+        if let Some(work) = self.running().filter(|work| work.number == number) {
             work.done = work.before + done;
         }
     }
 
     /// Allows stopped work to continue; returns false if none was stopped.
     pub fn go_on(&mut self) -> bool {
-        std::mem::take(&mut self.stopped)
+        let stopped = matches!(self.search, Search::Stopped);
+        if stopped {
+            self.search = Search::Waiting;
+        }
+        stopped
     }
 
     /// Requests that the work stops; returns false if there is none, or if a stop was requested already.
     pub fn stop(&mut self) -> bool {
-        let work = self.work.as_mut();
+        let work = self.running();
         work.is_some_and(|work| !std::mem::replace(&mut work.stopping, true))
     }
 
     /// Gives up the work in progress, for when the page closes: its further results are dropped.
     pub fn leave(&mut self) {
-        self.stopped |= self.work.take().is_some();
+        if self.work().is_some() {
+            self.search = Search::Stopped;
+        }
     }
 
     /// Takes over results. Returns the reason if the work ended early.
     pub fn take_found(&mut self, found: SizesFound) -> Option<String> {
-        let work = self.work.filter(|work| work.number == found.number)?;
-        self.found.extend(found.sizes);
+        let sizes = self.found.len() + found.sizes.len();
+        let work = self.running().filter(|work| work.number == found.number)?;
         // Progress is reported now and then, results at once.
-        if let Some(work) = &mut self.work {
-            work.done = work.done.max(work.touches * self.found.len() as u64);
-        }
-        let end = found.end?;
-        self.work = None;
-        match end {
-            Ok(smallest) => {
-                self.smallest = smallest;
-                // Another error may have been chosen meanwhile.
-                self.searched = work.wanted == self.request.wanted;
-                self.go_to_wanted();
-                None
-            }
+        work.done = work.done.max(work.touches * sizes as u64);
+        let wanted = work.wanted;
+        self.found.extend(found.sizes);
+        match found.end? {
+            // Another error may have been chosen meanwhile.
+            Ok(_) if wanted != self.request.wanted => self.search = Search::Waiting,
+            Ok(smallest) => self.search = Search::Done(smallest),
             Err(reason) => {
-                self.stopped = true;
-                Some(reason)
+                self.search = Search::Stopped;
+                return Some(reason);
             }
         }
+        self.go_to_wanted();
+        None
     }
 
     /// Puts the cursor onto the first size that reaches the wanted error, or else onto the last size, unless the user
@@ -204,8 +225,9 @@ impl Separate {
     /// Takes over the wanted error from a request for the same sizes.
     pub fn want_as(&mut self, request: SeparationRequest) {
         if self.request.wanted != request.wanted {
-            self.searched = false;
-            self.stopped = false;
+            if self.work().is_none() {
+                self.search = Search::Waiting;
+            }
             self.moved = false;
         }
         self.request = Arc::new(request);
@@ -229,7 +251,7 @@ impl Separate {
         let curves = [SeparationCurve {
             threshold: request.threshold,
             points: self.points(),
-            smallest: self.smallest.clone(),
+            smallest: self.smallest().flatten().cloned(),
         }];
         if has_ending(name, "csv") {
             return Ok(csv(request.axis, &curves).into_bytes());
