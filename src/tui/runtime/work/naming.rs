@@ -125,19 +125,18 @@ impl ShapeNamer {
         Some(WorkerEvent::Live(self.number, event))
     }
 
-    /// Stops naming. Returns the thread, which ends by itself.
-    pub(in crate::tui::runtime) fn leave(&mut self) -> Option<JoinHandle<()>> {
-        let thread = self.thread.take();
-        self.end();
-        thread
-    }
-
     /// Stops naming. The thread ends by itself: an answer under way is not waited for.
     pub(in crate::tui::runtime) fn end(&mut self) {
         self.stop.stop();
         self.imprints = None;
         self.here = None;
-        self.thread = None;
+    }
+
+    /// Stops for good. Returns the thread that was begun last, also if it was stopped before: it may still write the
+    /// model.
+    pub(in crate::tui::runtime) fn leave(&mut self) -> Option<JoinHandle<()>> {
+        self.end();
+        self.thread.take()
     }
 }
 
@@ -183,6 +182,7 @@ mod tests {
         let store = ModelStore::default();
         let figures = naming(1, ModelChoice::Figures);
         namer.begin(7, store.clone(), figures, &threads);
+        namer.end();
         let given_up = namer.leave().expect("a thread");
         let missing = ModelChoice::File("no/such.taxel".into());
         namer.begin(7, store, naming(2, missing), &threads);
