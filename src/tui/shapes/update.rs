@@ -3,6 +3,7 @@
 //! Requests to the library are effects ([`LibraryRequest`]); its answers come back as messages, perhaps after the
 //! page that asked was closed. An answer for a closed page changes nothing.
 
+use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
@@ -50,48 +51,84 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
                 .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
             refuse(app, reason);
         }
-        LibraryEvent::Models(names) => match app.dialogs.last_mut() {
-            Some(Dialog::Command(command)) => {
-                let sets = ModelChoice::BUILT_IN.map(|set| set.name().to_owned());
-                command.complete_asked(&[&sets[..], &names].concat());
-            }
-            Some(Dialog::Live(_)) => return live::update::name_by_next(app, &names),
-            _ => {}
-        },
-        LibraryEvent::Trash(Ok(names)) => {
-            if names.is_empty() {
-                inform(app, "nothing has been deleted");
-            }
-            if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
-                command.complete_asked(&names);
-            }
-        }
+        LibraryEvent::Models(names) => return on_models(app, &names),
+        LibraryEvent::Trash(Ok(names)) => on_trash(app, &names),
         LibraryEvent::Read(read) => {
             if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
                 list.take(read);
             }
             return choose_accepted(app);
         }
-        LibraryEvent::Named(Purpose::Picture, Ok(loaded)) => {
-            let name = loaded.shape.name.to_string();
-            open_picture(app, &loaded.shape.imprint, name);
-        }
-        LibraryEvent::Named(Purpose::Compare, Ok(loaded)) => {
-            compare_with(app, loaded.shape.name.as_str(), &loaded.shape.imprint);
-        }
-        LibraryEvent::Named(_, Ok(loaded)) => {
-            if let Err(reason) = put_on_matrix(app, &loaded) {
-                refuse(app, reason);
-            }
-        }
+        LibraryEvent::Named(purpose, Ok(loaded)) => on_named(app, purpose, &loaded),
         LibraryEvent::Deletable(Ok(name)) => ask_removal(app, name),
+        LibraryEvent::Stored(name, stamp) => on_stored(app, name, stamp),
+        LibraryEvent::NotStored(reason) => {
+            app.saving.pop_front();
+            refuse(app, reason);
+        }
+        LibraryEvent::Differs(shape, stamp, text) => {
+            app.saving.pop_front();
+            let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
+            let about = format!("{text}.");
+            let question = Question::new(about, "Replace it?", Message::Request(store));
+            app.dialogs.push(Dialog::Question(question));
+        }
+        LibraryEvent::Removed(name) => on_removed(app, name),
+        LibraryEvent::Restored(name) => {
+            app.removed.retain(|removed| *removed != name);
+            app.history.restored(&name);
+            inform(app, format!("{name} is back"));
+        }
+        LibraryEvent::Found(left) => offer(app, &left),
+        LibraryEvent::Recovered(shape) => on_recovered(app, &shape),
+        LibraryEvent::GivenUp(name, left) => on_given_up(app, &name, left),
+        LibraryEvent::NotGivenUp(reason) => {
+            let text = "the unsaved work cannot be moved to the trash, and is offered again at the next start";
+            refuse(app, format!("{text}: {reason}"));
+        }
         LibraryEvent::Named(_, Err(reason))
         | LibraryEvent::Deletable(Err(reason))
         | LibraryEvent::Trash(Err(reason))
         | LibraryEvent::Failed(reason) => refuse(app, reason),
-        change => on_change(app, change),
     }
     None
+}
+
+/// Handles the names of stored models: for completion in the `:` prompt, or for the Live page.
+fn on_models(app: &mut App, names: &[String]) -> Option<Effect> {
+    match app.dialogs.last_mut() {
+        Some(Dialog::Command(command)) => {
+            let sets = ModelChoice::BUILT_IN.map(|set| set.name().to_owned());
+            command.complete_asked(&[&sets[..], names].concat());
+            None
+        }
+        Some(Dialog::Live(_)) => live::update::name_by_next(app, names),
+        _ => None,
+    }
+}
+
+/// Handles the names of deleted shapes, for completion in the `:` prompt.
+fn on_trash(app: &mut App, names: &[String]) {
+    if names.is_empty() {
+        inform(app, "nothing has been deleted");
+    }
+    if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+        command.complete_asked(names);
+    }
+}
+
+/// Handles a shape that a command has named.
+fn on_named(app: &mut App, purpose: Purpose, loaded: &LoadedShape) {
+    let shape = &loaded.shape;
+    match purpose {
+        Purpose::Picture => open_picture(app, &shape.imprint, shape.name.to_string()),
+        Purpose::Compare => compare_with(app, shape.name.as_str(), &shape.imprint),
+        Purpose::Load | Purpose::Delete => {
+            if let Err(reason) = put_on_matrix(app, loaded) {
+                refuse(app, reason);
+            }
+        }
+    }
 }
 
 /// Handles the list of shapes: for the page of that name, or for completion in the `:` prompt.
@@ -115,64 +152,34 @@ fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
     }
 }
 
-/// Handles changes of the library, and unsaved work.
-/// A removed or restored shape also concerns the history, where earlier states bear its name.
-fn on_change(app: &mut App, change: LibraryEvent) {
-    match change {
-        LibraryEvent::Stored(name, stamp) => on_stored(app, name, stamp),
-        LibraryEvent::NotStored(reason) => {
-            app.saving.pop_front();
-            refuse(app, reason);
-        }
-        LibraryEvent::Differs(shape, stamp, text) => {
-            app.saving.pop_front();
-            let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
-            let about = format!("{text}.");
-            let question = Question::new(about, "Replace it?", Message::Request(store));
-            app.dialogs.push(Dialog::Question(question));
-        }
-        LibraryEvent::Removed(name) => {
-            // The matrix may show the only copy that is left.
-            app.history.removed(&name);
-            let how = how_to_restore(app, &name);
-            inform(app, format!("{name} deleted; {how}"));
-            app.removed.push(name);
-        }
-        LibraryEvent::Restored(name) => {
-            app.removed.retain(|removed| *removed != name);
-            app.history.restored(&name);
-            inform(app, format!("{name} is back"));
-        }
-        LibraryEvent::Found(left) => offer(app, &left),
-        LibraryEvent::Recovered(shape) => {
-            let document = Document::of_shape(&shape);
-            let origin = DocumentOrigin::unsaved(&document).called("unsaved work brought back");
-            resume(app, origin, document);
-            let save = app.key_of(&action::SAVE);
-            inform(app, format!("brought back; {save} saves it"));
-        }
-        LibraryEvent::GivenUp(name, left) => {
-            app.removed.push(name.clone());
-            if let Some(left) = left {
-                inform(app, format!("{name} is in the trash"));
-                offer(app, &left);
-            } else {
-                let how = how_to_restore(app, &name);
-                let text = "the unsaved work is in the trash as";
-                inform(app, format!("{text} {name}; {how}"));
-            }
-        }
-        LibraryEvent::NotGivenUp(reason) => {
-            let text = "the unsaved work cannot be moved to the trash, and is offered again at the next start";
-            refuse(app, format!("{text}: {reason}"));
-        }
-        LibraryEvent::List(_)
-        | LibraryEvent::Trash(_)
-        | LibraryEvent::Models(_)
-        | LibraryEvent::Read(_)
-        | LibraryEvent::Named(..)
-        | LibraryEvent::Deletable(_)
-        | LibraryEvent::Failed(_) => {}
+/// Handles the deletion of a shape. Earlier states in the history may bear its name.
+fn on_removed(app: &mut App, name: String) {
+    // The matrix may show the only copy that is left.
+    app.history.removed(&name);
+    let how = how_to_restore(app, &name);
+    inform(app, format!("{name} deleted; {how}"));
+    app.removed.push(name);
+}
+
+/// Puts unsaved work of an earlier run onto the matrix.
+fn on_recovered(app: &mut App, shape: &StoredShape) {
+    let document = Document::of_shape(shape);
+    let origin = DocumentOrigin::unsaved(&document).called("unsaved work brought back");
+    resume(app, origin, document);
+    let save = app.key_of(&action::SAVE);
+    inform(app, format!("brought back; {save} saves it"));
+}
+
+/// Handles unsaved work that was moved to the trash, and offers what is left.
+fn on_given_up(app: &mut App, name: &str, left: Option<Leftover>) {
+    app.removed.push(name.to_owned());
+    if let Some(left) = left {
+        inform(app, format!("{name} is in the trash"));
+        offer(app, &left);
+    } else {
+        let how = how_to_restore(app, name);
+        let text = "the unsaved work is in the trash as";
+        inform(app, format!("{text} {name}; {how}"));
     }
 }
 
