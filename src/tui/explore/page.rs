@@ -7,7 +7,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::DrawingFormat;
-use crate::formats::ending::has_ending;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::results::Results;
@@ -43,14 +42,6 @@ pub struct ResultsPage {
     pub click: fn(&Results, Rect, Position) -> Option<Message>,
     /// Handles the messages whose meaning differs between pages: to scroll, to select a row, to move a cursor.
     pub update: fn(&mut Results, &Message, Rect),
-}
-
-impl ResultsPage {
-    /// Returns true if a file of this name holds what this page shows: a drawing on any page, which may be refused,
-    /// or its table.
-    pub fn is_own_file(&self, name: &str) -> bool {
-        DrawingFormat::of_path(name).is_some() || (self.table.is_some() && has_ending(name, "csv"))
-    }
 }
 
 /// Handles a message on a page whose rows are descriptors.

@@ -4,7 +4,6 @@
 //! Messages that mean the same on all pages are handled here: the page, the descriptor, the order, the map's angle and
 //! zoom. Scrolling and selecting are left to the page's own row in [`crate::tui::explore::pages`].
 
-use crate::formats::DrawingFormat;
 use crate::formats::value::{counted, grouped};
 use crate::pose::Axis;
 use crate::storage::{Existing, is_poses};
@@ -21,11 +20,11 @@ use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
 use crate::tui::explore::pages;
 use crate::tui::explore::prompts::mark_dialog;
 use crate::tui::explore::results::Results;
-use crate::tui::explore::work::{act, is_own_file, page_area};
+use crate::tui::explore::work::{act, page_area};
 use crate::tui::keys::action;
 use crate::tui::recognise;
 use crate::tui::recognise::message::RecogniseMessage;
-use crate::tui::runtime::effect::Effect;
+use crate::tui::runtime::effect::{Effect, FileRequest};
 
 /// Handles a message over the results. The page was taken off the stack: an arm that opens another page puts it back
 /// first, below that one. Closed results are kept, and Explore opens them again for the same shape.
@@ -255,16 +254,7 @@ pub(in crate::tui) fn in_export(
                     recognise::update::act(app, RecogniseMessage::WriteSizes(name))
                 });
             }
-            Ok(name) => match missing(app, &name) {
-                // The export of a sweep shows its progress, and opens this prompt again itself.
-                None if is_own_file(app, &name) => {
-                    return from_prompt(app, Dialog::Export(dialog), |app| {
-                        act(app, ExploreMessage::Write(name, Existing::Kept))
-                    });
-                }
-                None => return act(app, ExploreMessage::Write(name, Existing::Kept)),
-                Some(missing) => refuse(app, missing),
-            },
+            Ok(name) => return export(app, dialog, name),
             Err(error) => refuse(app, error),
         }
     } else {
@@ -274,23 +264,32 @@ pub(in crate::tui) fn in_export(
     None
 }
 
-/// Returns why a file cannot be written: the present page is a table and has no drawing, or not all poses were swept.
-fn missing(app: &App, name: &str) -> Option<String> {
+/// Exports results to a file. The export of a sweep shows its progress, and opens the prompt again itself.
+fn export(app: &mut App, dialog: ExportDialog, name: String) -> Option<Effect> {
     let results = app.results_below()?;
-    let result = results.sweep();
-    if let Some(format) = DrawingFormat::of_path(name) {
-        let rows = ExplorePage::ALL.into_iter().map(pages::row);
-        let drawn = rows.filter(|row| row.drawing.is_some());
-        let titles: Vec<&str> = drawn.map(|row| row.title).collect();
-        let reason = format!(
-            "this page has no drawing for .{format}; {} have one",
-            titles.join(", ")
-        );
-        return pages::row(results.page())
-            .drawing
-            .is_none()
-            .then_some(reason);
+    if let Some(file) = pages::file(results, &name, page_area(app, results)) {
+        return from_prompt(app, Dialog::Export(dialog), |app| match file {
+            Ok(content) => {
+                let request = FileRequest::Write(name, content, Existing::Kept);
+                Some(Effect::File(request))
+            }
+            Err(reason) => {
+                refuse(app, reason);
+                None
+            }
+        });
     }
+    if let Some(missing) = missing_poses(results, &name) {
+        refuse(app, missing);
+        app.dialogs.push(Dialog::Export(dialog));
+        return None;
+    }
+    act(app, ExploreMessage::Write(name, Existing::Kept))
+}
+
+/// Returns why a file of poses cannot be written; None if all poses were swept, or if the file holds something else.
+fn missing_poses(results: &Results, name: &str) -> Option<String> {
+    let result = results.sweep();
     (is_poses(name) && !result.complete()).then(|| {
         format!(
             ".npy needs all poses: only {} of {} were swept",

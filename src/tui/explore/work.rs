@@ -3,7 +3,7 @@
 //! ```text
 //! Open -> form of ranges -> Start -> Running -> Swept -> results        Stop: the results so far
 //! results -> name of a file -> Running -> Written                       Stop: no file
-//! results -> name of a drawing or of the page's table -> a request about files
+//! results -> name of a drawing or of the page's table -> a request about files   explore::update
 //! ```
 //! Each piece of work has a number, and its events carry it. Events of work that is no longer awaited are dropped.
 
@@ -26,12 +26,11 @@ use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
-use crate::tui::explore::pages;
 use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Running, WorkKind};
 use crate::tui::explore::view::ResultPanes;
-use crate::tui::runtime::effect::{Effect, FileRequest, Work};
+use crate::tui::runtime::effect::{Effect, Work};
 
 /// Handles a request by a key, a command or an answered question.
 pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
@@ -39,23 +38,6 @@ pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect
         ExploreMessage::Open => open(app),
         ExploreMessage::Ranges => open_ranges(app),
         ExploreMessage::Start(grid) => Some(start(app, *grid)),
-        ExploreMessage::Write(name, existing) if DrawingFormat::of_path(&name).is_some() => {
-            let format = DrawingFormat::of_path(&name)?;
-            let results = app.results_below()?;
-            match (pages::row(results.page()).drawing?)(results, format) {
-                Ok(content) => Some(Effect::File(FileRequest::Write(name, content, existing))),
-                Err(reason) => {
-                    refuse(app, reason);
-                    None
-                }
-            }
-        }
-        ExploreMessage::Write(name, existing) if is_own_file(app, &name) => {
-            let results = app.results_below()?;
-            let table = pages::row(results.page()).table?;
-            let content = table(results, page_area(app, results)).into_bytes();
-            Some(Effect::File(FileRequest::Write(name, content, existing)))
-        }
         ExploreMessage::Write(name, existing) => {
             let found = Arc::clone(app.results_below()?.findings());
             let poses = is_poses(&name).then(|| found.sweep.grid.poses());
@@ -70,12 +52,6 @@ pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect
 pub(super) fn page_area(app: &App, results: &Results) -> Rect {
     let area = app.panes().map(|panes| panes.area(results.slot()));
     area.map_or(Rect::default(), |area| ResultPanes::of(area).page)
-}
-
-/// Returns true if a file of that name holds what the open page shows, rather than all imprints.
-pub(super) fn is_own_file(app: &App, name: &str) -> bool {
-    let results = app.results_below();
-    results.is_some_and(|results| pages::row(results.page()).is_own_file(name))
 }
 
 /// Opens the last results if they belong to the shape on the matrix, otherwise the form. Results of another shape are
