@@ -437,6 +437,70 @@ fn an_xsensor_export_that_ends_inside_a_frame_is_reported_as_damaged() {
 }
 
 #[test]
+fn a_row_more_than_rows_says_is_an_error_and_its_frame_is_not_reported() {
+    let text = xsensor(["08:21:17.9", "08:21:18.4"]);
+    let row = "1.5,101\n";
+    let last = text.rfind(row).expect("the last frame");
+    // Below the first sensor of the second frame, and below the last one, where nothing else follows.
+    for (end, whole) in [(text.find(row).expect("a frame"), 2), (last, 3)] {
+        let (above, below) = text.split_at(end + row.len());
+        for padding in ["", ",,\n"] {
+            let found = recorded(format!("{above}{padding}7,8,,\n{below}").as_bytes(), None);
+            let line = above.lines().count() + padding.lines().count() + 1;
+            let expected = format!("line {line}: more values, expected 1 row of them as Rows says");
+            assert_eq!((error(&found), found.frames.len()), (Some(expected), whole));
+        }
+    }
+}
+
+/// Returns an export of XSENSOR with one sensor and two groups in each of two frames.
+fn xsensor_with_groups() -> String {
+    let mut text = String::new();
+    for label in [7, 8] {
+        let sensor = "SENSOR,left\nRows,1\nColumns,2\nSENSELS\n1.5,2\n";
+        let groups =
+            "GROUP,1\nName,heel\nCells,3\nSENSELS\n1,2,,\n3,,\nGROUP,2\nCells,1\nSENSELS\n4\n";
+        write!(text, "FRAME,{label}\n{sensor}{groups}").expect("a text");
+    }
+    text
+}
+
+#[test]
+fn an_xsensor_export_that_ends_inside_a_group_is_reported_as_damaged() {
+    let text = xsensor_with_groups();
+    let whole = recorded(text.as_bytes(), None);
+    assert_eq!((error(&whole), whole.frames.len()), (None, 2));
+    let last = |part: &str| text.rfind(part).expect("it occurs");
+    for (end, expected) in [
+        (
+            last("3,,"),
+            "ends inside a GROUP block, found 2 values, expected 3 as Cells says",
+        ),
+        (
+            last("4\n"),
+            "ends inside a GROUP block, found 0 values, expected 1 as Cells says",
+        ),
+        (
+            last("SENSELS"),
+            "ends inside a GROUP block, expected Cells and SENSELS",
+        ),
+        (last("GROUP,2"), "ends inside a FRAME, expected GROUP"),
+        (last("GROUP,1"), "ends inside a FRAME, expected GROUP"),
+    ] {
+        let found = recorded(&text.as_bytes()[..end], None);
+        assert_eq!(found.frames.len(), 2, "{expected}");
+        let message = error(&found).expect("an error");
+        assert!(message.ends_with(expected), "{message}");
+    }
+    // Groups without lists may be those of another version.
+    let shorter = text
+        .replace("SENSELS\n1,2,,\n3,,\n", "")
+        .replace("SENSELS\n4\n", "");
+    let found = recorded(shorter.as_bytes(), None);
+    assert_eq!((error(&found), found.frames.len()), (None, 2));
+}
+
+#[test]
 fn both_sheets_of_popu_are_channels() {
     let text = "{\"id\":\"4\",\"tactilus_columns\":2,\"tactilus_rows\":1,\"sensomatt_columns\":1,\"sensomatt_rows\":3,\
                 \"snapshots\":{\"0\":{\"tactilus_readings\":[1,2],\"sensomatt_readings\":[3,4,5]},\

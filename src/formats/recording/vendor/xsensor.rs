@@ -62,7 +62,23 @@ enum XsensorBlock {
     /// A sensor, with its name.
     Sensor(Option<String>),
     /// A part of a sensor.
-    Group,
+    Group(XsensorGroup),
+}
+
+/// A list of the cells of a part of a sensor. Its values are only counted: where they stop short, the file was cut.
+#[derive(Clone, Copy, Default)]
+struct XsensorGroup {
+    /// `Cells`: the number of values below `SENSELS`.
+    cells: Option<usize>,
+    /// The number of values so far; None before `SENSELS`.
+    found: Option<usize>,
+}
+
+impl XsensorGroup {
+    /// Returns true if the block lists all of its cells.
+    fn is_whole(self) -> bool {
+        matches!((self.cells, self.found), (Some(cells), Some(found)) if found >= cells)
+    }
 }
 
 /// The state of the reader: the values of the current frame and sensor.
@@ -76,8 +92,12 @@ struct XsensorState {
     label: Option<i64>,
     /// The number of sensors read in the current frame.
     sensors: usize,
-    /// The number of sensors in the previous frame.
-    expected: usize,
+    /// The number of groups begun in the current frame.
+    groups: usize,
+    /// The numbers of sensors and groups in the previous frame.
+    expected: (usize, usize),
+    /// True if a group of the file listed all of its cells, so that each group should.
+    groups_list_cells: bool,
     /// `Date` of the frame, such as `2022 Aug 16`.
     date: Option<String>,
     /// `Time` of the frame, such as `08:21:17.982`, or `1.25` in seconds.
@@ -99,6 +119,11 @@ struct XsensorState {
 }
 
 /// Reads a recording.
+///
+/// # Errors
+/// Returns an error if a sensor has fewer or more rows than `Rows` says, or if the file was cut: inside a sensor, inside a
+/// group that states its number of cells, or before all sensors and groups of a frame. A cut between two frames cannot
+/// be told from the end.
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
@@ -106,26 +131,40 @@ pub(in crate::formats::recording) fn read(
     let mut lines = TextLines::new(input);
     let mut state = XsensorState::default();
     let mut frame = Frame::default();
-    while lines.advance_to_content()? {
+    let mut more = lines.advance_to_content()?;
+    while more {
         let (key, value) = pair(lines.line());
-        match key.as_str() {
-            "SENSELS" => {
-                let XsensorBlock::Sensor(name) = std::mem::take(&mut state.block) else {
-                    continue;
-                };
-                state.matrix(&mut lines, &mut frame)?;
-                state.give(name, &mut frame, sink, lines.number())?;
+        if key == "SENSELS" && state.begin_cells() {
+            let rows = state.matrix(&mut lines, &mut frame)?;
+            let end = lines.number();
+            // A row too many shows that `Rows` is wrong, so the frame is not reported before the line below it is read.
+            let next = lines.advance_to_content();
+            if matches!(next, Ok(true)) && is_value(&pair(lines.line()).0) {
+                let rows = counted(rows, "row");
+                let message = format!("more values, expected {rows} of them as Rows says");
+                return Err(RecordingError::in_line(lines.number(), message).into());
             }
-            _ => state.line(&key, &value, lines.number())?,
+            let name = state.end_sensor();
+            state.give(name, &mut frame, sink, end)?;
+            more = next?;
+        } else {
+            if is_value(&key) {
+                state.count_in_group(lines.line());
+            } else {
+                state.line(&key, &value, lines.number())?;
+            }
+            more = lines.advance_to_content()?;
         }
     }
-    // Only the cells end the block, so if a sensor is still open, its cells are missing.
-    let message = match state.block {
-        XsensorBlock::Sensor(_) => "ends inside a SENSOR block, expected SENSELS",
-        _ if state.sensors < state.expected => "ends inside a FRAME, expected SENSOR",
-        _ => return Ok(()),
-    };
-    Err(RecordingError::in_line(lines.number() + 1, message).into())
+    match state.missing() {
+        Some(message) => Err(RecordingError::in_line(lines.number() + 1, message).into()),
+        None => Ok(()),
+    }
+}
+
+/// Returns true if the first field of a line is the value of a cell rather than a key.
+fn is_value(field: &str) -> bool {
+    matches!(decimal(field.as_bytes()), Field::Value(_))
 }
 
 /// Returns the key of a line in capital letters, without the colon after it, and its value.
@@ -167,18 +206,29 @@ impl XsensorState {
             "THRESHOLD" => self.threshold = number_of(),
             "FRAME" => {
                 self.label = value.parse().ok();
-                (self.expected, self.sensors) = (self.sensors.max(1), 0);
-                self.block = XsensorBlock::Other;
+                self.end_group();
+                self.expected = (self.sensors.max(1), self.groups);
+                (self.sensors, self.groups) = (0, 0);
             }
             "DATE" => self.date = Some(value.to_owned()),
             "TIME" => self.clock = Some(value.to_owned()),
             "SENSOR" => {
+                self.end_group();
                 self.block = XsensorBlock::Sensor(Some(value.to_owned()));
                 (self.rows, self.columns) = (None, None);
                 (self.width_mm, self.height_mm) = (None, None);
             }
-            "GROUP" => self.block = XsensorBlock::Group,
-            "ROWS" | "COLUMNS" if matches!(self.block, XsensorBlock::Group) => {}
+            "GROUP" => {
+                self.end_group();
+                self.block = XsensorBlock::Group(XsensorGroup::default());
+                self.groups += 1;
+            }
+            "CELLS" => {
+                if let XsensorBlock::Group(group) = &mut self.block {
+                    group.cells = value.parse().ok();
+                }
+            }
+            "ROWS" | "COLUMNS" if matches!(self.block, XsensorBlock::Group(_)) => {}
             "ROWS" | "COLUMNS" => {
                 if matches!(self.block, XsensorBlock::Other) {
                     self.block = XsensorBlock::Sensor(None);
@@ -197,12 +247,73 @@ impl XsensorState {
         Ok(())
     }
 
+    /// Begins the cells below `SENSELS`. Returns true if they are the matrix of a sensor, and false if they are the list of
+    /// a group.
+    fn begin_cells(&mut self) -> bool {
+        if let XsensorBlock::Group(group) = &mut self.block {
+            group.found = Some(0);
+        }
+        matches!(self.block, XsensorBlock::Sensor(_))
+    }
+
+    /// Ends the block of a sensor below its cells, and returns its name.
+    fn end_sensor(&mut self) -> Option<String> {
+        match std::mem::take(&mut self.block) {
+            XsensorBlock::Sensor(name) => name,
+            XsensorBlock::Group(_) | XsensorBlock::Other => None,
+        }
+    }
+
+    /// Counts the values of a line if it is part of the list of a group.
+    fn count_in_group(&mut self, line: &[u8]) {
+        if let XsensorBlock::Group(XsensorGroup {
+            found: Some(found), ..
+        }) = &mut self.block
+        {
+            let fields = Separator::Byte(b',').split(line);
+            *found += fields.filter(|field| !field.is_empty()).count();
+        }
+    }
+
+    /// Ends the block that is being read, which may be a group.
+    fn end_group(&mut self) {
+        if let XsensorBlock::Group(group) = std::mem::take(&mut self.block) {
+            self.groups_list_cells |= group.is_whole();
+        }
+    }
+
+    /// Returns the error if the file ends here, though something must follow; None if this may be its end.
+    ///
+    /// A group must list all its cells only if another one did, since not all versions need have these lists.
+    fn missing(&self) -> Option<String> {
+        let (sensors, groups) = self.expected;
+        let message = match &self.block {
+            // Only the cells end this block, so they are missing.
+            XsensorBlock::Sensor(_) => "ends inside a SENSOR block, expected SENSELS",
+            XsensorBlock::Group(group) if self.groups_list_cells && !group.is_whole() => {
+                return Some(match (group.cells, group.found) {
+                    (Some(cells), Some(found)) => {
+                        let found = counted(found as u64, "value");
+                        format!(
+                            "ends inside a GROUP block, found {found}, expected {cells} as Cells says"
+                        )
+                    }
+                    _ => "ends inside a GROUP block, expected Cells and SENSELS".to_owned(),
+                });
+            }
+            _ if self.sensors < sensors => "ends inside a FRAME, expected SENSOR",
+            _ if self.groups < groups => "ends inside a FRAME, expected GROUP",
+            _ => return None,
+        };
+        Some(message.to_owned())
+    }
+
     /// Returns the size of this sensor's frames; None before both its lines were read.
     fn size(&self) -> Option<FrameSize> {
         FrameSize::of_sides(self.columns, self.rows)
     }
 
-    /// Reads the rows below `SENSELS`.
+    /// Reads the rows below `SENSELS`, and returns their number.
     ///
     /// # Errors
     /// Returns an error if rows or columns were not given before, or if the rows end too early or have another
@@ -211,7 +322,7 @@ impl XsensorState {
         &self,
         lines: &mut TextLines<impl BufRead>,
         frame: &mut Frame,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<u16, RecordingError> {
         let Some(size) = self.size() else {
             let message = "SENSELS of a sensor without Rows and Columns";
             return Err(RecordingError::in_line(lines.number(), message));
@@ -226,7 +337,7 @@ impl XsensorState {
             let fields = Separator::Byte(b',').split(lines.line());
             row::fill(row, fields, lines.number(), decimal)?;
         }
-        Ok(())
+        Ok(size.rows())
     }
 
     /// Reports the frame, and before its first one the channel.
