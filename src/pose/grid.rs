@@ -10,6 +10,9 @@ use crate::pose::range::DecimalRange;
 use crate::sensor::Sensor;
 use crate::source::Source;
 
+/// The largest number of decimals of an angle in a range.
+const ANGLE_DECIMALS: i32 = 12;
+
 /// The largest number of poses of a grid.
 pub const MAX_POSES: u64 = 1_000_000_000_000;
 
@@ -52,6 +55,33 @@ impl PoseGrid {
         anchor: Anchor,
         ranges: Ranges,
     ) -> Result<Self, GridError> {
+        Self::checked(source, sensor, anchor, ranges, true)
+    }
+
+    /// Creates a grid as [`Self::new`] does, but x0, y0 and the angle need only begin within their range. An angle of
+    /// 360° or more is a further turn; and a shape may lie anywhere, though forms and files do not allow it.
+    ///
+    /// # Errors
+    /// Returns an error if the first value of a range exceeds that of its parameter, and the errors of [`Self::new`]
+    /// for zooms and the number of poses.
+    #[cfg(feature = "recognition")]
+    pub(crate) fn going_beyond(
+        source: Source,
+        sensor: Sensor,
+        anchor: Anchor,
+        ranges: Ranges,
+    ) -> Result<Self, GridError> {
+        Self::checked(source, sensor, anchor, ranges, false)
+    }
+
+    /// Creates a grid, and checks the ends of the ranges of x0, y0 and the angle if `to_the_end` is true.
+    fn checked(
+        source: Source,
+        sensor: Sensor,
+        anchor: Anchor,
+        ranges: Ranges,
+        to_the_end: bool,
+    ) -> Result<Self, GridError> {
         let (mut source, mut poses) = (source, 1_u128);
         for (axis, &range) in ranges.iter() {
             if axis.is_zoom() && source.kind().is_some() {
@@ -62,7 +92,9 @@ impl PoseGrid {
                 }
                 continue;
             }
-            sensor.check(axis.parameter(), range.last())?;
+            if to_the_end || axis.is_zoom() {
+                sensor.check(axis.parameter(), range.last())?;
+            }
             source = source.with(axis.parameter(), range.value(0), &sensor)?;
             poses *= u128::from(range.count());
         }
@@ -175,8 +207,8 @@ impl PoseGrid {
         self.placed_in(self.pose(number))
     }
 
-    /// Returns the shape in a pose, which may lie between those of the grid. A centre may lie anywhere; any other value
-    /// beyond the range of its parameter is ignored.
+    /// Returns the shape in a pose, which may lie between those of the grid. A centre may lie anywhere, and an angle may be
+    /// of any size; any other value beyond the range of its parameter is ignored.
     pub(crate) fn placed_in(&self, pose: Pose) -> Placed {
         match self.anchor {
             Anchor::Corner => Placed::at_corner(self.source_in(pose)),
@@ -191,9 +223,11 @@ impl PoseGrid {
         }
     }
 
-    /// Returns the shape with the values of a pose, except those beyond the range of their parameter.
+    /// Returns the shape with the values of a pose, except those beyond the range of their parameter. An angle is
+    /// reduced to less than a turn.
     fn source_in(&self, pose: Pose) -> Source {
         let mut source = self.source.clone();
+        let pose = pose.with(Axis::Angle, within_a_turn(pose[Axis::Angle]));
         for axis in self.axes() {
             let _ = source.set(axis.parameter(), pose[axis], &self.sensor);
         }
@@ -317,6 +351,15 @@ impl PoseGrid {
             anchor.y * T::decimal(pose[Axis::ZoomY]),
         )
     }
+}
+
+/// Returns the same angle, from 0° to below 360°. The difference is rounded, since that of two numbers that are nearest to
+/// decimals is not always nearest to a decimal.
+fn within_a_turn(angle: f64) -> f64 {
+    if (0.0..360.0).contains(&angle) {
+        return angle;
+    }
+    to_decimals(angle.rem_euclid(360.0), ANGLE_DECIMALS)
 }
 
 /// The error for a grid that cannot be created.

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::imprint::Imprint;
 use crate::parameter::number::share;
-use crate::pose::Axis;
+use crate::pose::{Axis, PoseGrid};
 use crate::recognition::model::{Model, ShapeCount};
 use crate::recognition::training::{Training, TrainingError};
 use crate::sensor::MatrixSize;
@@ -58,6 +58,9 @@ impl HalfStep {
 impl Model {
     /// Touches every shape half a step beyond each pose of the model, and names the imprints. Of a shard, only its own
     /// poses count.
+    ///
+    /// Angles are directions, so 375° is 15°. Half a step beyond the largest x0 and y0 may exceed their range, which
+    /// only forms and files have; what the sensor cuts off there leaves an imprint of its own, or an empty one.
     ///
     /// It takes about as long as the training, and more where many imprints are new. `progress` is called from time to
     /// time, from any thread, with the work that is done; it stops the test by returning false.
@@ -129,7 +132,9 @@ impl Model {
             ranges[axis] = shifted.ok_or(TrainingError::Steps)?;
         }
         let shapes = self.shapes().to_vec();
-        let training = Training::new(shapes, *self.sensor(), self.anchor(), ranges)?;
+        let training = Training::of_poses(shapes, |source| {
+            PoseGrid::going_beyond(source, *self.sensor(), self.anchor(), ranges)
+        })?;
         let training = training.shard(self.shard()).allow_cut(true);
         training.progress(progress).run()
     }
@@ -158,7 +163,9 @@ mod tests {
     use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
     use super::*;
+    use crate::pose::{Anchor, Ranges};
     use crate::recognition::sets::{GridSteps, equal_figures};
+    use crate::sensor::Sensor;
     use crate::sweep::Shard;
 
     #[test]
@@ -210,6 +217,59 @@ mod tests {
             touches(training.clone().shard(shard))
         });
         assert_eq!(shards.iter().sum::<u128>(), touches(training));
+    }
+
+    /// Trains the equal figures on a sensor of 16 × 16, at an angle of 0 unless `axis` is the angle.
+    fn trained(axis: Axis, range: &str) -> Model {
+        let ranges = [
+            (Axis::X0, "5"),
+            (Axis::Y0, "5"),
+            (Axis::Angle, "0"),
+            (axis, range),
+        ];
+        let ranges = ranges
+            .into_iter()
+            .fold(Ranges::default(), |ranges, (axis, range)| {
+                ranges.with(axis, range.parse().expect("a range"))
+            });
+        let training = Training::new(equal_figures(), Sensor::default(), Anchor::Corner, ranges);
+        let training = training.expect("in range").allow_cut(true);
+        training.run().expect("not stopped")
+    }
+
+    #[test]
+    fn half_a_step_beyond_the_last_pose_may_leave_a_range() {
+        for (axis, range, parts) in [
+            // 375° is 15°.
+            (Axis::Angle, "0:350:50", ["25:325:50", "15"]),
+            (Axis::Angle, "0.6:352:50.2", ["25.7:326.9:50.2", "17.1"]),
+            // At 16, as at 16.5, a figure has just left the sensor.
+            (Axis::X0, "13:16:1", ["13.5:15.5:1", "16"]),
+            (Axis::Y0, "13:16:1", ["13.5:15.5:1", "16"]),
+        ] {
+            let model = trained(axis, range);
+            let (mut touches, mut held, mut right) = (0, 0, 0);
+            for part in parts {
+                let between = trained(axis, part);
+                for key in 0..between.keys().len() {
+                    let known = model.keys().find_ref(between.keys().get(key));
+                    for &count in between.counts(key) {
+                        let own = between.weighted(count);
+                        touches += own;
+                        held += if known.is_some() { own } else { 0 };
+                        let named = known.map(|known| model.most_frequent(known).0);
+                        right += if named == Some(count.shape.into()) {
+                            own
+                        } else {
+                            0
+                        };
+                    }
+                }
+            }
+            let result = model.half_step(&|_| true).expect("not stopped");
+            let found = (result.touches, result.held, result.right);
+            assert_eq!(found, (touches, held, right), "{axis:?} {range}");
+        }
     }
 
     #[test]

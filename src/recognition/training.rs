@@ -11,6 +11,7 @@ use crate::recognition::model::{
     Gathered, Model, ModelError, ModelHead, NamedShape, ShapeCount, check_shapes,
 };
 use crate::sensor::Sensor;
+use crate::source::Source;
 use crate::sweep::{CountedImprints, Shard, Sweep};
 
 /// The smallest side of a sensor that a training chooses by itself: the side of the paper's sensor.
@@ -114,14 +115,24 @@ impl<'a> Training<'a> {
         anchor: Anchor,
         ranges: Ranges,
     ) -> Result<Self, TrainingError> {
-        let shapes: Vec<NamedShape> = shapes.into_iter().collect();
+        Self::of_poses(shapes.into_iter().collect(), |source| {
+            PoseGrid::new(source, sensor, anchor, ranges)
+        })
+    }
+
+    /// Creates a training of shapes, each over the grid that `grid_of` returns for it; all have the same poses.
+    ///
+    /// # Errors
+    /// Returns [`TrainingError::Set`] for an invalid set, or [`TrainingError::Grid`] with the first error of a grid.
+    pub(super) fn of_poses(
+        shapes: Vec<NamedShape>,
+        grid_of: impl Fn(Source) -> Result<PoseGrid, GridError>,
+    ) -> Result<Self, TrainingError> {
         check_shapes(&shapes)?;
         let grid = |shape: &NamedShape| {
-            PoseGrid::new(shape.source.clone(), sensor, anchor, ranges).map_err(|error| {
-                TrainingError::Grid {
-                    name: shape.name.clone(),
-                    error,
-                }
+            grid_of(shape.source.clone()).map_err(|error| TrainingError::Grid {
+                name: shape.name.clone(),
+                error,
             })
         };
         let grids = shapes.iter().map(grid).collect::<Result<_, _>>()?;
