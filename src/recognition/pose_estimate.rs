@@ -260,6 +260,8 @@ struct PoseMoments {
     origin: Option<[f64; 2]>,
     position: [f64; 2],
     squares: [f64; 2],
+    /// The first angle, as a part of a full turn. The others are measured from it, for the same reason.
+    first_part: Option<f64>,
     cosine: f64,
     sine: f64,
 }
@@ -286,7 +288,8 @@ impl PoseMoments {
 
     /// Adds an angle, given as a part of a full turn.
     fn add_direction(&mut self, weight: u64, part: f64) {
-        let (sine, cosine) = libm::sincos(part * std::f64::consts::TAU);
+        let first = *self.first_part.get_or_insert(part);
+        let (sine, cosine) = libm::sincos((part - first) * std::f64::consts::TAU);
         self.cosine += float(weight) * cosine;
         self.sine += float(weight) * sine;
     }
@@ -302,7 +305,8 @@ impl PoseMoments {
         let angle = angles.map(|(period, degrees)| {
             let length = libm::hypot(self.cosine, self.sine) / all;
             let directed = length > 1e-9;
-            let mean = libm::atan2(self.sine, self.cosine) / std::f64::consts::TAU;
+            let from_first = libm::atan2(self.sine, self.cosine) / std::f64::consts::TAU;
+            let mean = self.first_part.unwrap_or_default() + from_first;
             let deviation =
                 (-2.0 * libm::log(length.min(1.0))).max(0.0).sqrt() / std::f64::consts::TAU;
             AngleEstimate {
@@ -490,6 +494,18 @@ mod tests {
         let estimate = sums.finish(None).expect("poses");
         assert_eq!(estimate.position, [53.6, 50.2]);
         assert_eq!(estimate.standard_deviation, [0.0, 0.0]);
+        // The sine of 0.875 of a turn is rounded, so sums of it are, too.
+        let mut sums = PoseMoments::default();
+        for weight in [7, 1, 3] {
+            sums.add(weight, (1.0, 1.0), 1, 1.0);
+            sums.add_direction(weight, 0.875);
+        }
+        let estimate = sums.finish(Some((120.0, vec![0; 120]))).expect("poses");
+        let angle = estimate.angle.expect("an angle");
+        assert_eq!(
+            (angle.mean, angle.standard_deviation),
+            (Some(105.0), Some(0.0))
+        );
         assert_eq!(within_period(-1e-17, 45.0), 0.0);
         assert_eq!(within_period(50.0, 45.0), 5.0);
     }
