@@ -1,7 +1,9 @@
 //! A frame of a real sensor as a line of JSON, with the rule for its imprint:
 //! `{"frame":[[0,12],[null,30]],"at_least":10}`.
 
-use serde::Deserialize;
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 
 use crate::frame::{Frame, FrameError, LARGEST_VALUE, Processing, Rule};
 use crate::imprint::Imprint;
@@ -16,7 +18,7 @@ pub(crate) const RULE_KEYS: [&str; 5] = ["at_least", "percent", "low", "high", "
 pub(crate) type FrameRows = Vec<Vec<Option<f64>>>;
 
 /// The rule for active values, as the keys of a line give it.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
 pub(crate) struct RuleRecord {
     /// The least active value.
     pub(crate) at_least: Option<f64>,
@@ -27,7 +29,43 @@ pub(crate) struct RuleRecord {
     /// The least value that is active in any case; given together with `low`.
     pub(crate) high: Option<f64>,
     /// The fewest taxels of a piece; smaller pieces are dropped.
-    pub(crate) least: Option<u32>,
+    pub(crate) least: Option<LeastTaxels>,
+}
+
+/// The fewest taxels of a piece, 1 to the number of taxels of the largest imprint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LeastTaxels(u32);
+
+impl LeastTaxels {
+    /// Returns the number of taxels.
+    pub(crate) fn get(self) -> u32 {
+        self.0
+    }
+}
+
+impl<'de> Deserialize<'de> for LeastTaxels {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_u64(LeastTaxelsVisitor)
+    }
+}
+
+/// The visitor of [`LeastTaxels`].
+struct LeastTaxelsVisitor;
+
+impl Visitor<'_> for LeastTaxelsVisitor {
+    type Value = LeastTaxels;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a whole number from 1 to {MOST_TAXELS}")
+    }
+
+    fn visit_u64<E: Error>(self, taxels: u64) -> Result<LeastTaxels, E> {
+        let fitting = u32::try_from(taxels).ok();
+        fitting
+            .filter(|taxels| (1..=MOST_TAXELS).contains(taxels))
+            .map(LeastTaxels)
+            .ok_or_else(|| E::invalid_value(Unexpected::Unsigned(taxels), &self))
+    }
 }
 
 impl RuleRecord {
@@ -53,13 +91,7 @@ impl RuleRecord {
     pub(crate) fn imprint(&self, rows: &[Vec<Option<f64>>]) -> Result<Imprint, String> {
         let mut processing = Processing::default();
         processing.rule = Some(self.rule()?);
-        if let Some(least) = self
-            .least
-            .filter(|least| !(1..=MOST_TAXELS).contains(least))
-        {
-            return Err(format!("least: {least}, expected 1 to {MOST_TAXELS}"));
-        }
-        processing.least = self.least.unwrap_or_default();
+        processing.least = self.least.map_or(0, LeastTaxels::get);
         let wrong = |error: String| format!("frame: {error}");
         let values = matrix(rows).map_err(wrong)?;
         let mut frame = Frame::new(values.size().into());

@@ -107,9 +107,7 @@ fn bad_lines_are_answered_in_their_places() {
         error("11: column 20: imprint: row 2 has 1 character, expected 2 as in the first row"),
         error("12: column 33: imprint: given twice"),
         error("13: side: 1e300 is above 16 (allowed: above 0, up to 16)"),
-        error(
-            "14: column 25: least: found the number -1, expected a whole number from 0 to 4294967295",
-        ),
+        error("14: column 25: least: found the number -1, expected a whole number from 1 to 4096"),
         error(
             "15: column 19: imprint: found the string \\\"washer\\\", expected rows of '#' and '.'",
         ),
@@ -243,6 +241,9 @@ fn a_frame_with_a_threshold_is_described() {
         "{\"imprint\":[\"#\"],\"least\":2}\n",
         "{\"frame\":[[0,30]],\"at_least\":30,\"sensor\":{\"columns\":2,\"rows\":1}}\n",
         "{\"frame\":[[0,30]],\"deviations\":1}\n",
+        "{\"frame\":[[0,30]],\"at_least\":30,\"least\":0}\n",
+        "{\"frame\":[[0,30]],\"at_least\":30,\"least\":1.5}\n",
+        "{\"frame\":[[0,30]],\"at_least\":30,\"least\":4096}\n",
     );
     let run = taxel("batch", input);
     let lines: Vec<&str> = run.stdout.lines().collect();
@@ -270,6 +271,16 @@ fn a_frame_with_a_threshold_is_described() {
         lines[5].contains("at_least, percent, low, high, least or a parameter"),
         "{}",
         lines[5]
+    );
+    for (line, found) in [(6, "0"), (7, "1.5")] {
+        let expected =
+            format!("least: found the number {found}, expected a whole number from 1 to 4096\"}}");
+        assert!(lines[line].ends_with(&expected), "{}", lines[line]);
+    }
+    assert!(
+        lines[8].starts_with("{\"imprint\":[\"..\"],\"na\":0,"),
+        "{}",
+        lines[8]
     );
 }
 

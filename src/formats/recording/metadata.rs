@@ -6,7 +6,7 @@ use std::io;
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
-use crate::formats::framed::{FrameRows, RuleRecord, matrix};
+use crate::formats::framed::{FrameRows, LeastTaxels, RuleRecord, matrix};
 use crate::formats::recording::length::{LengthUnit, pitches_in_mm};
 use crate::formats::recording::time::unit::TimeUnit;
 use crate::formats::{json, json_object};
@@ -212,7 +212,7 @@ impl RecordingMetadata {
             }),
             Some(DescribedRule::Other(record)) => Some(SetRule {
                 rule: record.rule().map_err(MetadataError::of_key("rule"))?,
-                least: record.least.unwrap_or_default(),
+                least: record.least.map_or(0, LeastTaxels::get),
                 from: RuleOrigin::File,
             }),
         };
