@@ -339,7 +339,9 @@ impl Player<'_, '_> {
         });
         round.table = table;
         let read = match pace.unshaped() {
-            Some(values) if read.is_ok() => Err(RecordingError::Shape { values }),
+            Some(values) if read.is_ok() => {
+                Err(RecordingError::unshaped(values, self.options.size))
+            }
             _ => read.map(|()| flow),
         };
         (pace, read)

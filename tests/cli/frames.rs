@@ -196,6 +196,17 @@ fn the_rule_comes_from_flags_or_from_the_recording() {
     );
 }
 
+/// The number of values is known, so the message does not ask for what was given.
+#[test]
+fn rows_and_columns_that_do_not_fit_a_frame_are_named() {
+    let arguments = "--all --channel /state#tip --at-least 1 --rows 7 --columns 11";
+    refused(
+        "topics.mcap",
+        arguments,
+        "found 3 values a frame, expected 77: 7 rows of 11\n",
+    );
+}
+
 #[test]
 fn one_of_several_channels_must_be_named() {
     refused(

@@ -250,8 +250,8 @@ impl Selection {
         (channel, listed): (usize, &ListedChannel),
     ) -> Result<(Self, Processing), CliError> {
         if listed.info.size.is_none() {
-            let values = listed.values;
-            return Err(recording.damaged(RecordingError::Shape { values }));
+            let given = asked.processing.size;
+            return Err(recording.damaged(RecordingError::unshaped(listed.values, given)));
         }
         let rule = processing::rule(recording, &asked.processing, &listed.info)?;
         processing.rule = Some(rule.rule);

@@ -4,6 +4,7 @@ use std::io;
 
 use crate::formats::recording::format::RecordingFormat;
 use crate::formats::system_error::system_reason;
+use crate::frame::FrameSize;
 use crate::parameter::number::counted;
 
 /// The error for a recording that cannot be read, or not to its end.
@@ -81,6 +82,21 @@ impl RecordingError {
     /// Returns true if giving rows and columns would help.
     pub fn is_of_size(&self) -> bool {
         matches!(self, Self::Shape { .. } | Self::Columns { .. })
+    }
+
+    /// Returns the error for frames of this number of values whose rows and columns are unknown, though some may be
+    /// given: then they do not fit.
+    #[cfg(feature = "acquire")]
+    pub(crate) fn unshaped(values: u64, given: Option<FrameSize>) -> Self {
+        match given {
+            None => Self::Shape { values },
+            Some(size) => Self::damaged(format!(
+                "found {} a frame, expected {}: {}",
+                counted(values, "value"),
+                size.cells(),
+                size.in_words()
+            )),
+        }
     }
 
     /// Returns an error with the same message, and the same hint at rows and columns.
