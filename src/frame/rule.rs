@@ -32,8 +32,9 @@ pub enum Rule {
         high: f64,
     },
     /// A taxel is active if its value exceeds the tare by at least this number of standard deviations of the cell's own
-    /// noise, and by at least one step of the values ([`Tare::step`]). The standard deviation is estimated as 1.4826
-    /// times the median absolute deviation of the frames of the tare, as for a normal distribution.
+    /// noise, and by at least one step of the values ([`Tare::step`], which is 1 if the tare shows none). The standard
+    /// deviation is estimated as 1.4826 times the median absolute deviation of the frames of the tare, as for a normal
+    /// distribution.
     #[non_exhaustive]
     Noise(f64),
 }

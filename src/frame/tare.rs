@@ -228,6 +228,33 @@ impl Tare {
         self.step
     }
 
+    /// Returns true if nothing shows the step of the values: all cells rest at the same value, and none varies.
+    /// [`Self::step`] is 1 then, in the sensor's unit, which is too coarse if the sensor sends fractions.
+    ///
+    /// ```
+    /// use taxel::frame::Tare;
+    /// use taxel::prelude::*;
+    ///
+    /// let tare = |second| -> Result<Tare, Box<dyn std::error::Error>> {
+    ///     let mut rest = Matrix::filled(MatrixSize::of(2, 1), 0.0);
+    ///     rest.values_mut()[1] = second;
+    ///     Ok(Tare::from_parts(rest, None, None, 3)?)
+    /// };
+    /// assert!(tare(0.0)?.is_without_step());
+    /// assert!(!tare(0.25)?.is_without_step());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn is_without_step(&self) -> bool {
+        let present = |matrix: &Matrix<f64>| -> Vec<f64> {
+            let values = matrix.values().iter().copied();
+            values.filter(|value| !value.is_nan()).collect()
+        };
+        let rest = present(&self.baseline);
+        self.step == 1.0
+            && rest.windows(2).all(|pair| pair[0] == pair[1])
+            && present(&self.deviation).iter().all(|&value| value == 0.0)
+    }
+
     /// Returns the number of frames from which the tare was made.
     pub fn frames(&self) -> u64 {
         self.frames
@@ -279,6 +306,19 @@ mod tests {
         let mut values = Matrix::filled(MatrixSize::of(2, 1), 10.0);
         tare.subtract_from(&mut values).expect("of its size");
         assert_eq!(values.values(), [6.5, 2.0]);
+    }
+
+    #[test]
+    fn a_step_needs_two_different_values() {
+        let rest = |frames: &[[f64; 2]]| {
+            let tare = tare(frames).expect("all frames");
+            (tare.step(), tare.is_without_step())
+        };
+        assert_eq!(rest(&[[7.25, 7.25], [7.25, f64::NAN]]), (1.0, true));
+        assert_eq!(rest(&[[7.25, 7.5], [7.25, 7.5]]), (0.25, false));
+        assert_eq!(rest(&[[7.0, 7.0], [8.0, 8.0]]), (1.0, false));
+        // The single other value is not seen in the medians, but in the step.
+        assert_eq!(rest(&[[7.0, 7.0], [7.0, 7.0], [7.5, 7.0]]), (0.5, false));
     }
 
     #[test]

@@ -682,6 +682,39 @@ fn an_endless_input_is_refused_at_once() {
     }
 }
 
+/// A sensor that is tared by its driver rests at exactly 0, so its step is unknown.
+#[test]
+fn deviations_without_noise_or_a_step_are_warned_about() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("rest.jsonl");
+    let path = file.to_str().expect("ASCII");
+    let equal = "all values of the tare are equal, so their step is unknown; a cell counts as active if it exceeds its tare \
+                 by 1 in the sensor's unit\n";
+    let warning = format!("warning: {path}: {equal}");
+    let watch_warning = format!("standard input: warning: {equal}");
+    for (second, last, na, stderr) in [
+        ("0", "0.9", 0, &*warning),
+        ("0", "1", 1, &warning),
+        ("0.5", "0.9", 1, ""),
+    ] {
+        let rest = format!("{{\"frame\":[[0,{second}]]}}\n");
+        let lines = rest.repeat(3) + &format!("{{\"frame\":[[{last},{second}]]}}\n");
+        std::fs::write(&file, &lines).expect("written");
+        let flags = "--tare 3 --deviations 2 --json";
+        let run = taxel(&format!("frames {path} --frame 3 {flags}"), "");
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), stderr));
+        let answer: Value = serde_json::from_str(&run.stdout).expect("an answer");
+        assert_eq!(answer["na"], na, "{last}");
+        let watched = taxel(&format!("watch - --once {flags}"), lines);
+        let expected = if stderr.is_empty() {
+            ""
+        } else {
+            &watch_warning
+        };
+        assert_eq!((watched.status, &*watched.stderr), (Some(0), expected));
+    }
+}
+
 /// Flags that would change nothing in a listing are refused.
 #[test]
 fn a_listing_accepts_no_threshold_and_no_tare() {

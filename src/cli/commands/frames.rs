@@ -130,6 +130,9 @@ pub(crate) fn frames(
         // If frames are missing, the damage is the reason.
         Err(error) => return Err(damage.unwrap_or(error)),
     };
+    if let Some(unknown) = processing::unknown_step(&processing) {
+        (output.notes)(&format!("warning: {}: {unknown}", recording.name()));
+    }
     let answered = if choice == FrameChoice::NoiseReport {
         report_noise(&mut recording, channel, &mut processing, &mut output)?
     } else {

@@ -7,7 +7,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::recording::{RecordingFile, dead_cells};
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingError, RecordingEvent};
-use crate::frame::{FrameError, Peak, Processing, SetRule, TareFrames, View};
+use crate::frame::{FrameError, Peak, Processing, Rule, SetRule, TareFrames, View};
 use crate::matrix::Matrix;
 use crate::sensor::MatrixSize;
 
@@ -110,6 +110,20 @@ pub(crate) fn unused_tare(
         baseline.columns(),
         baseline.rows()
     ))
+}
+
+/// Returns the warning that the threshold is one of noise, but the tare shows neither noise nor a step of the values, so
+/// that 1 is used; None otherwise.
+pub(crate) fn unknown_step(processing: &Processing) -> Option<&'static str> {
+    let tare = processing
+        .tare
+        .as_ref()
+        .filter(|tare| tare.is_without_step());
+    let is_noise = matches!(processing.rule, Some(Rule::Noise(_)));
+    tare.filter(|_| is_noise).map(|_| {
+        "all values of the tare are equal, so their step is unknown; a cell counts as active if it exceeds its tare by 1 \
+         in the sensor's unit"
+    })
 }
 
 /// Computes the tare from the channel's first frames. The median of each cell over these frames is its value at rest,

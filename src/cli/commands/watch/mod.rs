@@ -296,6 +296,9 @@ impl Watcher<'_> {
             recording.describe(|metadata| metadata.tare = Some(tare.clone()))?;
         }
         self.processing.tare = Some(tare);
+        if let Some(unknown) = processing::unknown_step(&self.processing) {
+            self.reports.say(&format!("warning: {unknown}"));
+        }
         waiting.iter().try_for_each(|frame| self.answer(frame))
     }
 
