@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use crate::acquire::growing_file::ReadAnew;
-use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
+use crate::formats::recording::{ChannelInfo, RecordingError, RecordingFormat, RecordingNote};
 use crate::formats::stream::{StreamCounts, StreamFormat};
 use crate::formats::system_error::system_reason;
 #[cfg(feature = "tui")]
@@ -198,6 +198,12 @@ pub enum AcquireError {
     /// The recording is damaged.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// Standard input or a FIFO holds a recording, which only a file can be.
+    #[error("a recording ({}), not a stream", format.name())]
+    NotStream {
+        /// The format of the recording.
+        format: RecordingFormat,
+    },
 }
 
 impl AcquireError {

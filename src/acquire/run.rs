@@ -49,8 +49,8 @@ use crate::acquire::{playback, stream};
 /// ```
 ///
 /// # Errors
-/// Returns an error if the source cannot be opened at first, cannot be read on and does not come back, or is a
-/// damaged recording.
+/// Returns an error if the source cannot be opened at first, cannot be read on and does not come back, is a damaged
+/// recording, or is standard input or a FIFO with a recording that is not a stream, such as NPY.
 pub fn acquire(
     source: &FrameSource,
     options: &AcquireOptions,

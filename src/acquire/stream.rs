@@ -11,6 +11,7 @@ use crate::acquire::byte_input::{ByteInput, ReadOutcome};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
+use crate::formats::recording::{RecordingFormat, recognised};
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSink};
 
 /// The number of bytes read at a time.
@@ -60,12 +61,7 @@ pub(super) fn run(
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
-    let stream = StreamOptions {
-        format: options.format.or(options.stream_format),
-        size: options.size.or(options.stream_size),
-        from_start: !source.comes_back(),
-    };
-    let mut decoder = StreamDecoder::new(stream);
+    let mut decoder = decoder_for(source, options);
     let once = options.playback == Playback::Once;
     let open: &Open<'_> = &|waiting| ByteInput::open(source, options, waiting);
     let opened = first_input(source, options, open, stop, &decoder, consumer)?;
@@ -77,6 +73,7 @@ pub(super) fn run(
     while !stop.load(Ordering::Relaxed) {
         let lost = match input.read(&mut bytes) {
             Ok(ReadOutcome::Bytes(count)) => {
+                check_start(source, options, &decoder, &bytes[..count])?;
                 match decode(&mut decoder, &bytes[..count], &mut clock, consumer) {
                     ControlFlow::Continue(()) => continue,
                     ControlFlow::Break(()) => return Ok(()),
@@ -113,6 +110,46 @@ pub(super) fn run(
     }
     finish(&mut decoder, &mut clock, consumer, stop);
     Ok(())
+}
+
+/// Creates the decoder for a source.
+fn decoder_for(source: &FrameSource, options: &AcquireOptions) -> StreamDecoder {
+    StreamDecoder::new(StreamOptions {
+        format: options.format.or(options.stream_format),
+        size: options.size.or(options.stream_size),
+        from_start: !source.comes_back(),
+    })
+}
+
+/// Checks that the first bytes of standard input or a FIFO do not begin a recording that only a file can be. Tables,
+/// JSON lines, echoes and the bytes of boards can be streams, too; on other sources, the bytes may begin anywhere. A
+/// format that the user names is not doubted.
+///
+/// # Errors
+/// Returns [`AcquireError::NotStream`].
+fn check_start(
+    source: &FrameSource,
+    options: &AcquireOptions,
+    decoder: &StreamDecoder,
+    bytes: &[u8],
+) -> Result<(), AcquireError> {
+    let begins = matches!(source, FrameSource::Standard | FrameSource::Fifo(_));
+    if !begins || decoder.counts().bytes > 0 || options.format.is_some() {
+        return Ok(());
+    }
+    match recognised(bytes) {
+        Some(
+            format @ (RecordingFormat::Tekscan
+            | RecordingFormat::Xsensor
+            | RecordingFormat::Emed
+            | RecordingFormat::Zebris
+            | RecordingFormat::Npy
+            | RecordingFormat::Npz
+            | RecordingFormat::Popu
+            | RecordingFormat::Mcap),
+        ) => Err(AcquireError::NotStream { format }),
+        _ => Ok(()),
+    }
 }
 
 /// Reports the frames that are still in the decoder, and the end, unless the acquisition was stopped before it.

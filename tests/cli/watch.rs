@@ -98,6 +98,25 @@ fn a_stream_is_a_filter_in_a_pipeline() {
     let run = taxel("watch -", "1 2\n3\n\n");
     let numbers = "7 bytes but no frame; check --rows, --columns and --format";
     assert!(run.stderr.contains(numbers), "{}", run.stderr);
+    // Recordings are not streams, except those that programs and boards also send.
+    for (name, format) in [
+        ("u2.npy", "npy"),
+        ("xsensor.csv", "xsensor"),
+        ("tekscan.asf", "tekscan"),
+    ] {
+        let bytes = fs::read(sample(name)).expect("a sample");
+        for flags in ["--once", "", "--rows 4 --columns 5"] {
+            let run = taxel(&format!("watch - {flags}"), bytes.as_slice());
+            let expected = format!(
+                "error: standard input: a recording ({format}), not a stream; read it with taxel frames -\n"
+            );
+            assert_eq!(
+                (run.status, run.stderr),
+                (Some(1), expected),
+                "{name} {flags}"
+            );
+        }
+    }
     misused("watch - --once --speed 2", "the argument '--once'");
     misused("watch - --write touch.txt", "invalid value 'touch.txt'");
 }

@@ -58,6 +58,12 @@ impl<'a> SourceReports<'a> {
     pub(super) fn damage(&self, error: AcquireError) -> CliError {
         match error {
             AcquireError::Recording(error) => self.damaged(error),
+            AcquireError::NotStream { .. } if *self.source == FrameSource::Standard => {
+                self.refused(&format!("{error}; read it with taxel frames -"))
+            }
+            AcquireError::NotStream { .. } => {
+                self.refused(&format!("{error}; read it with taxel frames"))
+            }
             error => self.refused(&error),
         }
     }
