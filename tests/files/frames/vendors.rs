@@ -60,6 +60,19 @@ fn the_numbered_pictures_of_zebris_are_frames_but_their_maximum_is_not() {
     let found = recorded(&text.as_bytes()[..text.len() - 6], None);
     assert_eq!(found.frames.len(), 2);
     assert!(error(&found).is_some_and(|error| error.ends_with("expected 2 lines of values")));
+    // Which of two sections [Data] is a frame, nobody knows; the numbered ones above are frames.
+    let second = "a second section [Data], expected a numbered one such as [Data12]";
+    for (sections, whole, notes_before) in [
+        (&["Data", "Data", "Data4"][..], 1, 0),
+        (&["Data", "Data4", "Data", "Data5"], 1, 1),
+    ] {
+        let found = recorded(zebris(sections).as_bytes(), None);
+        assert_eq!(
+            (found.frames.len(), notes(&found).len()),
+            (whole, notes_before)
+        );
+        assert!(error(&found).is_some_and(|error| error.ends_with(second)));
+    }
 }
 
 #[test]

@@ -167,8 +167,8 @@ impl ZebrisSection {
 /// Reads a recording.
 ///
 /// # Errors
-/// Returns an error if a picture has fewer or more lines of values than `SensCountX` says; if it has more, the
-/// picture is reported before the error.
+/// Returns an error if a picture has fewer or more lines of values than `SensCountX` says, or if there are two sections
+/// `[Data]`; then the picture above is reported before the error.
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
@@ -182,12 +182,20 @@ pub(in crate::formats::recording) fn read(
     };
     sink(RecordingEvent::Channel(&info))?;
     let mut frame = Frame::new(size);
-    let mut first = None;
+    let (mut first, mut has_maximum) = (None, false);
     loop {
         values(&mut lines, &mut frame)?;
-        let next = next_section(&mut lines, size.rows());
+        let is_data = matches!(section, ZebrisSection::Data);
+        let next = match next_section(&mut lines, size.rows()) {
+            Ok(Some(ZebrisSection::Data)) if is_data || has_maximum => {
+                let message = "a second section [Data], expected a numbered one such as [Data12]";
+                Err(RecordingError::in_line(lines.number(), message))
+            }
+            next => next,
+        };
         let is_only = frame.number == 0 && !matches!(next, Ok(Some(_)));
-        if matches!(section, ZebrisSection::Data) && !is_only {
+        if is_data && !is_only {
+            has_maximum = true;
             sink(RecordingEvent::Note(&RecordingNote::Maximum))?;
         } else {
             frame.label = Some(1);
