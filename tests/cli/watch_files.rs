@@ -754,11 +754,11 @@ fn a_shortened_echo_without_dimensions_is_refused_with_the_missing_flag() {
 #[test]
 fn the_message_says_why_lines_of_json_are_not_frames() {
     let line = "watch - --once --at-least 9";
-    let text = "{\"t\":0.1,\"frame\":[[0,30],[40,50]],\"label\":\"L1\"}\n";
+    let text = "{\"t\":0.1,\"frame\":[[0,30],[40,50]],\"label\":1.5}\n";
     for (input, reason) in [
         (
             text.repeat(3),
-            "found the string \"L1\", expected a whole number",
+            "found the number 1.5, expected a whole number",
         ),
         (
             format!("{text}{{\"frame\":[[1,2],[3]]}}\n"),

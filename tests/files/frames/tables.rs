@@ -648,3 +648,35 @@ fn json_lines_have_at_most_256_channels() {
     let found = recorded(lines(257).as_bytes(), None);
     assert_eq!(error(&found), "line 257: more than 256 channels");
 }
+
+#[test]
+fn a_label_of_json_lines_is_a_whole_number_and_the_name_of_a_class_is_not_one() {
+    let labelled = |label: &str| {
+        recorded(
+            format!("{{\"label\":{label},\"frame\":[[1]]}}\n").as_bytes(),
+            None,
+        )
+    };
+    for (label, expected) in [
+        ("7", Some(7)),
+        ("-7", Some(-7)),
+        ("null", None),
+        ("\"cup\"", None),
+        ("\"7\"", None),
+    ] {
+        let found = labelled(label);
+        assert!(found.error.is_none(), "{label}");
+        assert_eq!(found.frames[0].label, expected, "{label}");
+    }
+    for (label, found) in [
+        ("1.5", "the number 1.5"),
+        ("9223372036854775808", "the number 9223372036854775808"),
+        ("[7]", "a list"),
+    ] {
+        let message = error(&labelled(label));
+        assert!(
+            message.ends_with(&format!("found {found}, expected a whole number")),
+            "{message}"
+        );
+    }
+}

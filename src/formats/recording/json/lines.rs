@@ -7,8 +7,8 @@
 //! ```
 //! A frame is a list of rows, or a list of cells if rows and columns are given by the caller. `t` or `time` is in
 //! seconds and counts from the first one; without either, another key may give the time, see
-//! [`clock`](super::clock). `label` is a whole number; `channel` is the name or the number of one of several
-//! sensors; other keys are ignored. All frames of a channel have the same size.
+//! [`clock`](super::clock). `label` is a whole number; text, as for the name of a class, is ignored. `channel` is the
+//! name or the number of one of several sensors; other keys are ignored. All frames of a channel have the same size.
 //! These are errors, with line and column: rows of different lengths, lists within cells, infinite values, and two
 //! frames, times or labels in one line. If wrong lines may be left out, so is a frame of another size, unless three
 //! in succession have it.
@@ -19,7 +19,7 @@ use std::io::BufRead;
 
 use serde_json::Value;
 
-use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Unexpected, Visitor};
 
 use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
@@ -348,7 +348,7 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
                 }
                 "label" => {
                     once(&mut label, "label")?;
-                    line.label = map.next_value()?;
+                    line.label = map.next_value_seed(LabelSeed)?;
                 }
                 "channel" => {
                     once(&mut channel, "channel")?;
@@ -367,6 +367,42 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
             return Err(A::Error::custom("no key \"frame\" with rows of values"));
         }
         Ok(())
+    }
+}
+
+/// Reads the label of a frame, a whole number; None for null, and for text, which is the name of a class in data sets.
+struct LabelSeed;
+
+impl<'de> DeserializeSeed<'de> for LabelSeed {
+    type Value = Option<i64>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Option<i64>, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl Visitor<'_> for LabelSeed {
+    type Value = Option<i64>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("i64")
+    }
+
+    fn visit_i64<E: Error>(self, label: i64) -> Result<Option<i64>, E> {
+        Ok(Some(label))
+    }
+
+    fn visit_u64<E: Error>(self, label: u64) -> Result<Option<i64>, E> {
+        let wrong = |_| E::invalid_value(Unexpected::Unsigned(label), &self);
+        i64::try_from(label).map(Some).map_err(wrong)
+    }
+
+    fn visit_str<E: Error>(self, _: &str) -> Result<Option<i64>, E> {
+        Ok(None)
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<Option<i64>, E> {
+        Ok(None)
     }
 }
 
