@@ -121,18 +121,23 @@ impl Round<'_> {
         known.is_none()
     }
 
-    /// Returns the channel and the number, over all rounds, of a frame of this round.
-    fn place(&mut self, frame: &Frame) -> (usize, u64) {
-        let own = (frame.channel, frame.number);
+    /// Returns a frame of this round with its channel and number over all rounds. `renumbered` is its memory, if these
+    /// are others.
+    fn placed<'f>(&mut self, frame: &'f Frame, renumbered: &'f mut Frame) -> &'f Frame {
         let Some(&index) = self.order.get(frame.channel) else {
-            return own;
+            return frame;
         };
         let Some(channel) = self.channels.get_mut(index) else {
-            return own;
+            return frame;
         };
         let number = channel.first + frame.number;
         channel.next = number + 1;
-        (index, number)
+        if (index, number) == (frame.channel, frame.number) {
+            return frame;
+        }
+        renumbered.copy_from(frame);
+        (renumbered.channel, renumbered.number) = (index, number);
+        renumbered
     }
 
     /// Returns true if any round had a frame.
@@ -310,19 +315,14 @@ impl Player<'_, '_> {
                     }
                 }
                 RecordingEvent::Frame(frame) if pace.has_no_shape(frame) => ControlFlow::Break(()),
-                RecordingEvent::Frame(mut frame) => {
+                RecordingEvent::Frame(frame) => {
                     let given_up = self.wait(&mut pace, frame).is_break();
                     self.counts.borrow_mut().frames += 1;
                     self.silence.borrow_mut().note_frame(Instant::now());
                     // The present content of a file has arrived at some other time.
                     let arrives = round.growth.is_some_and(Growth::has_caught_up);
                     let time = round.times.time(frame.time, arrives);
-                    let (channel, number) = round.place(frame);
-                    if (channel, number) != (frame.channel, frame.number) {
-                        renumbered.copy_from(frame);
-                        (renumbered.channel, renumbered.number) = (channel, number);
-                        frame = &renumbered;
-                    }
+                    let frame = round.placed(frame, &mut renumbered);
                     if given_up || self.stop.load(Ordering::Relaxed) {
                         ControlFlow::Break(())
                     } else {

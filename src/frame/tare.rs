@@ -149,15 +149,14 @@ fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// Returns the smallest difference between two values that are not equal; 1 if all are equal.
-fn step(mut values: Vec<f64>) -> f64 {
+/// Returns the smallest difference between two values that are not equal; None if all are equal.
+fn step(mut values: Vec<f64>) -> Option<f64> {
     values.retain(|value| !value.is_nan());
     values.sort_unstable_by(f64::total_cmp);
     let differences = values.windows(2).map(|pair| pair[1] - pair[0]);
-    let least = differences
+    differences
         .filter(|&difference| difference > 0.0)
-        .fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 1.0 }
+        .min_by(f64::total_cmp)
 }
 
 /// The values that are subtracted from the cells, and their noise.
@@ -166,8 +165,8 @@ pub struct Tare {
     baseline: Matrix<f64>,
     /// The median absolute deviation of each cell.
     deviation: Matrix<f64>,
-    /// The smallest difference between two values.
-    step: f64,
+    /// The smallest difference between two values; None if all are equal.
+    step: Option<f64>,
     frames: u64,
 }
 
@@ -192,7 +191,6 @@ impl Tare {
     ) -> Result<Self, FrameError> {
         let deviation = deviation.unwrap_or_else(|| Matrix::filled(baseline.size(), 0.0));
         check_size("tare", &deviation, &baseline)?;
-        let step = step.unwrap_or(1.0);
         let check = |what, values: &[f64], fits: fn(f64) -> bool, allowed| {
             let wrong = values.iter().find(|&&value| !fits(value));
             wrong.map_or(Ok(()), |&found| {
@@ -208,7 +206,7 @@ impl Tare {
         let fits = |value: f64| value.is_nan() || (0.0..f64::INFINITY).contains(&value);
         check("tare_spread", deviation.values(), fits, "0 or more")?;
         let fits = |value: f64| value > 0.0 && value < f64::INFINITY;
-        check("tare_step", &[step], fits, "above 0")?;
+        check("tare_step", step.as_slice(), fits, "above 0")?;
         Ok(Self {
             baseline,
             deviation,
@@ -222,37 +220,25 @@ impl Tare {
         &self.deviation
     }
 
-    /// Returns the step of the values, in the sensor's unit: the smallest difference between two of them; 1 if all are
-    /// equal.
-    pub fn step(&self) -> f64 {
-        self.step
-    }
-
-    /// Returns true if nothing shows the step of the values: all cells rest at the same value, and none varies.
-    /// [`Self::step`] is 1 then, in the sensor's unit, which is too coarse if the sensor sends fractions.
+    /// Returns the step of the values, in the sensor's unit: the smallest difference between two of them. None if all are
+    /// equal, so that nothing shows it; then it counts as 1, which is too coarse if the sensor sends fractions.
     ///
     /// ```
-    /// use taxel::frame::Tare;
     /// use taxel::prelude::*;
+    /// use taxel::frame::TareFrames;
     ///
-    /// let tare = |second| -> Result<Tare, Box<dyn std::error::Error>> {
-    ///     let mut rest = Matrix::filled(MatrixSize::of(2, 1), 0.0);
-    ///     rest.values_mut()[1] = second;
-    ///     Ok(Tare::from_parts(rest, None, None, 3)?)
+    /// let step = |frames: [f64; 2]| {
+    ///     let mut tare = TareFrames::new(2);
+    ///     for value in frames {
+    ///         tare.add(&Matrix::filled(MatrixSize::new(2, 1)?, value))?;
+    ///     }
+    ///     Ok::<_, Box<dyn std::error::Error>>(tare.finish()?.step())
     /// };
-    /// assert!(tare(0.0)?.is_without_step());
-    /// assert!(!tare(0.25)?.is_without_step());
+    /// assert_eq!((step([7.0, 7.25])?, step([7.0, 7.0])?), (Some(0.25), None));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn is_without_step(&self) -> bool {
-        let present = |matrix: &Matrix<f64>| -> Vec<f64> {
-            let values = matrix.values().iter().copied();
-            values.filter(|value| !value.is_nan()).collect()
-        };
-        let rest = present(&self.baseline);
-        self.step == 1.0
-            && rest.windows(2).all(|pair| pair[0] == pair[1])
-            && present(&self.deviation).iter().all(|&value| value == 0.0)
+    pub fn step(&self) -> Option<f64> {
+        self.step
     }
 
     /// Returns the number of frames from which the tare was made.
@@ -264,7 +250,7 @@ impl Tare {
     /// estimated from the median absolute deviation, but at least one step of the values.
     pub(crate) fn margin(&self, index: usize, k: f64) -> f64 {
         let deviation = self.deviation.values()[index];
-        (k * MAD_TO_DEVIATION * deviation).max(self.step)
+        (k * MAD_TO_DEVIATION * deviation).max(self.step.unwrap_or(1.0))
     }
 
     /// Subtracts the tare from the values.
@@ -310,15 +296,12 @@ mod tests {
 
     #[test]
     fn a_step_needs_two_different_values() {
-        let rest = |frames: &[[f64; 2]]| {
-            let tare = tare(frames).expect("all frames");
-            (tare.step(), tare.is_without_step())
-        };
-        assert_eq!(rest(&[[7.25, 7.25], [7.25, f64::NAN]]), (1.0, true));
-        assert_eq!(rest(&[[7.25, 7.5], [7.25, 7.5]]), (0.25, false));
-        assert_eq!(rest(&[[7.0, 7.0], [8.0, 8.0]]), (1.0, false));
-        // The single other value is not seen in the medians, but in the step.
-        assert_eq!(rest(&[[7.0, 7.0], [7.0, 7.0], [7.5, 7.0]]), (0.5, false));
+        let rest = |frames: &[[f64; 2]]| tare(frames).expect("all frames").step();
+        assert_eq!(rest(&[[7.25, 7.25], [7.25, f64::NAN]]), None);
+        assert_eq!(rest(&[[7.25, 7.5], [7.25, 7.5]]), Some(0.25));
+        assert_eq!(rest(&[[7.0, 7.0], [8.0, 8.0]]), Some(1.0));
+        // The medians do not show the single other value.
+        assert_eq!(rest(&[[7.0, 7.0], [7.0, 7.0], [7.5, 7.0]]), Some(0.5));
     }
 
     #[test]
@@ -388,6 +371,6 @@ mod tests {
     #[test]
     fn one_step_of_equal_values_is_1() {
         let tare = tare(&[[7.0, f64::NAN], [7.0, 7.0]]).expect("two frames");
-        assert_eq!((tare.step(), tare.margin(0, 3.0)), (1.0, 1.0));
+        assert_eq!((tare.step(), tare.margin(0, 3.0)), (None, 1.0));
     }
 }

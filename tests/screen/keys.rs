@@ -765,18 +765,15 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
     );
     shows(
         &format!("{touch}<Down><Enter>"),
-        &[
-            "wrong: the shape is ellipse, you said rectangle",
-            "0 of 1 right",
-        ],
+        &["wrong: the shape is ellipse, not rectangle", "0 of 1 right"],
     );
     shows(
         &format!("{touch}o<Enter>"),
-        &["wrong: the shape is ellipse, you said octagon"],
+        &["wrong: the shape is ellipse, not octagon"],
     );
     shows(
         &format!("{touch}5"),
-        &["wrong: the shape is ellipse, you said hexagon"],
+        &["wrong: the shape is ellipse, not hexagon"],
     );
     for (key, refused) in [
         ("9", "no shape 9, expected 1 to 7"),

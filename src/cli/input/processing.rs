@@ -115,12 +115,10 @@ pub(crate) fn unused_tare(
 /// Returns the warning that the threshold is one of noise, but the tare shows neither noise nor a step of the values, so
 /// that 1 is used; None otherwise.
 pub(crate) fn unknown_step(processing: &Processing) -> Option<&'static str> {
-    let tare = processing
-        .tare
-        .as_ref()
-        .filter(|tare| tare.is_without_step());
+    let tare = processing.tare.as_ref();
     let is_noise = matches!(processing.rule, Some(Rule::Noise(_)));
-    tare.filter(|_| is_noise).map(|_| {
+    tare.filter(|tare| is_noise && tare.step().is_none())
+        .map(|_| {
         "all values of the tare are equal, so their step is unknown; a cell counts as active if it exceeds its tare by 1 \
          in the sensor's unit"
     })

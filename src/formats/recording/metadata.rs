@@ -269,7 +269,7 @@ impl RecordingMetadata {
             tare_frames: tare.map(Tare::frames),
             tare: tare.map(|tare| rows(tare.baseline())),
             tare_spread: tare.map(|tare| rows(tare.median_absolute_deviation())),
-            tare_step: tare.map(Tare::step),
+            tare_step: tare.and_then(Tare::step),
             marks: self.marks.clone(),
             ended: self.ended,
             ended_by: self.ended_by.clone(),
