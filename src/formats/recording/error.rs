@@ -4,6 +4,7 @@ use std::io;
 
 use crate::formats::recording::format::RecordingFormat;
 use crate::formats::system_error::system_reason;
+#[cfg(feature = "acquire")]
 use crate::frame::FrameSize;
 use crate::parameter::number::counted;
 
