@@ -226,6 +226,7 @@ impl Tare {
     /// ```
     /// use taxel::prelude::*;
     /// use taxel::frame::TareFrames;
+    /// use taxel::matrix::Matrix;
     ///
     /// let step = |frames: [f64; 2]| {
     ///     let mut tare = TareFrames::new(2);
