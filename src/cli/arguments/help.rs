@@ -281,7 +281,7 @@ A row is a true shape, a column the name that the best classifier gives it; the
 numbers count the touches of all poses. 'certain' counts touches that only one
 shape can leave.
 
---given, --greedy and --round take descriptors that do not depend on the
+--given, --greedy and --round use descriptors that do not depend on the
 position of the imprint: na, nae, ce, p, f, roundness, area, diagonals,
 side_ratio, filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of
 a fingerprint than a measurement: --round cg_cd=0.01 shows what it is worth when
