@@ -10,6 +10,7 @@ use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::parameter::number::to_decimals;
 use crate::source::Source;
+use crate::storage::Existing;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, History};
@@ -17,7 +18,7 @@ use crate::tui::app::state::{App, MoveKind, Notice};
 use crate::tui::compare::page::{Comparison, heading};
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
-use crate::tui::runtime::effect::Effect;
+use crate::tui::runtime::effect::{Effect, FileRequest};
 
 /// Shows a notice.
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
@@ -296,6 +297,25 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
         values.extend([(Parameter::X0, rounded(x0)), (Parameter::Y0, rounded(y0))]);
     }
     set(app, source, MoveKind::Zoom, &values);
+}
+
+/// Returns the request to write a new file. Shows a notice and returns None if its content cannot be made.
+pub(in crate::tui) fn write_file(
+    app: &mut App,
+    name: String,
+    content: Result<Vec<u8>, String>,
+) -> Option<Effect> {
+    match content {
+        Ok(content) => Some(Effect::File(FileRequest::Write(
+            name,
+            content,
+            Existing::Kept,
+        ))),
+        Err(reason) => {
+            refuse(app, reason);
+            None
+        }
+    }
 }
 
 /// Carries out the request of a prompt. The prompt stays open if the request is refused and no other page opens. If

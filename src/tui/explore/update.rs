@@ -8,7 +8,9 @@ use crate::formats::value::{counted, grouped};
 use crate::pose::Axis;
 use crate::storage::{Existing, is_poses};
 use crate::touch::Plane;
-use crate::tui::app::change::{change, compare_with, from_prompt, inform, let_go, refuse};
+use crate::tui::app::change::{
+    change, compare_with, from_prompt, inform, let_go, refuse, write_file,
+};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
@@ -24,7 +26,7 @@ use crate::tui::explore::work::{act, page_area};
 use crate::tui::keys::action;
 use crate::tui::recognise;
 use crate::tui::recognise::message::RecogniseMessage;
-use crate::tui::runtime::effect::{Effect, FileRequest};
+use crate::tui::runtime::effect::Effect;
 
 /// Handles a message over the results. The page was taken off the stack: an arm that opens another page puts it back
 /// first, below that one. Closed results are kept, and Explore opens them again for the same shape.
@@ -268,15 +270,8 @@ pub(in crate::tui) fn in_export(
 fn export(app: &mut App, dialog: ExportDialog, name: String) -> Option<Effect> {
     let results = app.results_below()?;
     if let Some(file) = pages::file(results, &name, page_area(app, results)) {
-        return from_prompt(app, Dialog::Export(dialog), |app| match file {
-            Ok(content) => {
-                let request = FileRequest::Write(name, content, Existing::Kept);
-                Some(Effect::File(request))
-            }
-            Err(reason) => {
-                refuse(app, reason);
-                None
-            }
+        return from_prompt(app, Dialog::Export(dialog), |app| {
+            write_file(app, name, file)
         });
     }
     if let Some(missing) = missing_poses(results, &name) {

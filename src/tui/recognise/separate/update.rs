@@ -1,8 +1,7 @@
 //! The effects of messages on the page of sizes.
 
 use crate::formats::separation::size_label;
-use crate::storage::Existing;
-use crate::tui::app::change::{inform, refuse};
+use crate::tui::app::change::{inform, refuse, write_file};
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -13,7 +12,7 @@ use crate::tui::recognise::quiz::onto;
 use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::recognise::separate::state::Separate;
-use crate::tui::runtime::effect::{Effect, FileRequest, Work};
+use crate::tui::runtime::effect::{Effect, Work};
 
 /// Opens the page. It still has its earlier results if the sizes are the same.
 pub(in crate::tui::recognise) fn open(app: &mut App, request: SeparationRequest) {
@@ -145,14 +144,6 @@ pub(in crate::tui::recognise) fn on_progress(app: &mut App, number: u64, done: u
 
 /// Writes the sizes into a file, unless a file with this name exists.
 pub(in crate::tui::recognise) fn write(app: &mut App, name: String) -> Option<Effect> {
-    match page(app)?.file(&name) {
-        Ok(content) => {
-            let request = FileRequest::Write(name, content, Existing::Kept);
-            Some(Effect::File(request))
-        }
-        Err(reason) => {
-            refuse(app, reason);
-            None
-        }
-    }
+    let content = page(app)?.file(&name);
+    write_file(app, name, content)
 }
