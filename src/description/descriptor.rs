@@ -173,7 +173,7 @@ impl Description {
     pub fn cg_cd_direction(&self) -> Option<f64> {
         let way = self.cd() - self.cg();
         // Upwards is counter-clockwise. 0 − y, not −y: that would make a zero negative, and atan2 return −180.
-        (way.length() >= 1e-9).then(|| libm::atan2(0.0 - way.y, way.x).to_degrees())
+        (way.length_squared() >= 1e-18).then(|| libm::atan2(0.0 - way.y, way.x).to_degrees())
     }
 }
 
