@@ -4,6 +4,9 @@ mod checksums;
 
 mod echoes;
 
+#[cfg(feature = "acquire")]
+mod playback;
+
 mod reference;
 
 mod samples;
