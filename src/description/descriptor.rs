@@ -177,9 +177,9 @@ impl Description {
     }
 }
 
-/// Returns the direction of the rising diagonal of a rectangle of this width and height, in degrees. There are few
-/// rectangles of whole taxels, and an arc tangent takes longer than all other descriptors, so it is computed once for
-/// each of them.
+/// Returns the direction of the rising diagonal of a rectangle of this width and height, in degrees. An arc
+/// tangent takes as long as several other descriptors and there are few rectangles of whole taxels, so it is computed
+/// once for each of them.
 fn rising_diagonal([width, height]: [i32; 2]) -> f64 {
     const LARGEST: usize = MAX_SIDE as usize;
     /// The bits of each direction; 0 before it is computed, since no direction is 0.

@@ -159,7 +159,7 @@ fn the_answer_about_pitches_says_coarser_and_finer() {
     let text = place.done(&format!("{line} --want 0.9"));
     assert!(
         text.contains("with an error of at most 0.9 is 1 mm: ")
-            && text.contains("no coarser pitch was tried; it may reach the error as well"),
+            && text.contains("no coarser pitch was tried; one may reach the error as well"),
         "{text}"
     );
 }

@@ -123,7 +123,7 @@ fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: 
     } else {
         let _ = writeln!(
             text,
-            "  no {smaller} {noun} was tried; it may reach the error as well"
+            "  no {smaller} {noun} was tried; one may reach the error as well"
         );
     }
     let _ = match smallest.missed_again {

@@ -85,7 +85,7 @@ impl<'a> WatchRecording<'a> {
     }
 
     /// Ends the recording, and reports the frames that are not in it. `explained` tells whether the error of the watch
-    /// explains a missing file: the file could not be created, or the source not be read.
+    /// explains a missing file: the file could not be created, or the source could not be read.
     pub(super) fn finish(
         self,
         explained: bool,

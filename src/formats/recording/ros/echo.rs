@@ -83,7 +83,7 @@ impl RosMessage {
     }
 
     /// Returns the rows and columns of the message: the `named` ones if they have as many cells, otherwise its own. If it
-    /// has none, the `named` ones are returned even if they do not fit; None if there are no such, either.
+    /// has none, the `named` ones are returned even if they do not fit. None if both are missing.
     pub(in crate::formats) fn size_with(&self, named: Option<FrameSize>) -> Option<FrameSize> {
         arranged(self.cells().len(), self.size(), named).or(named)
     }

@@ -284,7 +284,7 @@ impl XsensorState {
 
     /// Returns the error if the file ends here, though something must follow; None if this may be its end.
     ///
-    /// A group must list all its cells only if another one did, since not all versions need have these lists.
+    /// A group must list all its cells only if another one did, since some versions may not write these lists.
     fn missing(&self) -> Option<String> {
         let (sensors, groups) = self.expected;
         let message = match &self.block {
