@@ -127,7 +127,7 @@ pub struct ShardError {
     pub text: String,
 }
 
-/// The error for shards that are not all of one grid, in their order.
+/// The error for shards that are not all those of one sweep or training, in their order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShardOrderError {

@@ -15,7 +15,7 @@ fn every_action_has_a_command_word() {
         .iter()
         .flat_map(|command| command.words.iter().map(|(_, action)| *action))
         .collect();
-    let places = [Context::Matrix, Context::Grab, Context::Everywhere];
+    let places = [Context::Matrix, Context::Hold, Context::Everywhere];
     let bound = DEFAULT_KEYS
         .iter()
         .filter(|binding| places.contains(&binding.context))

@@ -98,7 +98,7 @@ pub fn draw(theme: &Theme, buffer: &mut Buffer, items: &[Item<'_>]) {
 pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     let (context, keymap) = (app.context(), app.keymap());
     let gap = if area.width < WIDE { 2 } else { 3 };
-    let options = matches!(context, Context::Matrix | Context::Grab);
+    let options = matches!(context, Context::Matrix | Context::Hold);
     let rows: Vec<(&Binding, &str)> = if options {
         let all = keymap.rows().iter().take(MENU).chain(help(keymap));
         all.map(|row| (row, option(row))).collect()

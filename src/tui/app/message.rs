@@ -66,7 +66,7 @@ pub enum Message {
     /// Change between the matrix and the descriptors where there is no room for both.
     SwitchPage,
     /// Hold the shape, so that the arrows move it, or let it go.
-    Grab,
+    Hold,
     /// Put the held shape back to where it was taken.
     PutBack,
     /// Compare the imprint on the matrix with the one that is selected, or with the state before the last step.

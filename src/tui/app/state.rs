@@ -340,9 +340,9 @@ impl App {
     /// Returns the context with this page on top; None for the matrix without pages.
     pub(in crate::tui) fn context_on(&self, page: Option<&dyn Page>) -> Context {
         match (page, self.held.is_some()) {
-            (Some(page), true) if page.leaves_matrix() => Context::Grab,
+            (Some(page), true) if page.leaves_matrix() => Context::Hold,
             (Some(page), _) => page.context(),
-            (None, true) => Context::Grab,
+            (None, true) => Context::Hold,
             (None, false) => Context::Matrix,
         }
     }

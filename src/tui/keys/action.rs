@@ -215,7 +215,7 @@ actions! {
         COUNT_SEVEN "count-7" [] Message::Count(7);
         COUNT_EIGHT "count-8" [] Message::Count(8);
         COUNT_NINE "count-9" [] Message::Count(9);
-        HOLD "hold" [] Message::Grab;
+        HOLD "hold" [] Message::Hold;
         PUT_BACK "put-back" [] Message::PutBack;
         COMPARE "compare" [] Message::Compare;
         HISTORY "history" [] Message::History;
@@ -306,8 +306,8 @@ actions! {
         QUIZ "quiz" [] Recognise(RecogniseMessage::Touch);
         KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
         FORGET "forget" [] Recognise(RecogniseMessage::Forget), "forget the touches that were kept";
-        NEXT_MODEL "next-model" [] Recognise(RecogniseMessage::NextSet(1)), "the next model";
-        PREVIOUS_MODEL "previous-model" [] Recognise(RecogniseMessage::NextSet(-1)), "the previous model";
+        NEXT_MODEL "next-model" [] Recognise(RecogniseMessage::NextModel(1)), "the next model";
+        PREVIOUS_MODEL "previous-model" [] Recognise(RecogniseMessage::NextModel(-1)), "the previous model";
         CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
         POSES "poses" [] Recognise(RecogniseMessage::Poses);
         SEPARATE "separate" [] Recognise(RecogniseMessage::Separate(SeparationFlags::NONE));
@@ -332,7 +332,7 @@ actions! {
         FOLLOW_CONTACT "follow-contact" [] Message::Live(LiveMessage::FollowContact);
         RECORD "record" [] Message::Live(LiveMessage::Record);
         MARK_FRAME "mark-frame" [] Message::Live(LiveMessage::Mark);
-        NAME_SHAPE "name-shape" [] Message::Live(LiveMessage::NextModel);
+        NAME_SHAPE "name-shape" [] Message::Live(LiveMessage::NameShape);
         REDRAW "redraw" [] Message::Redraw;
         SUSPEND "suspend" [] Message::Suspend;
     }

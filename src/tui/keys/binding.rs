@@ -73,7 +73,7 @@ contexts! {
     /// On the matrix.
     Matrix "matrix" "On the matrix" Ignored, EVERYWHERE;
     /// On the matrix, while a shape is held.
-    Grab "hold" "While a shape is held" Ignored, Some(Self::Matrix);
+    Hold "hold" "While a shape is held" Ignored, Some(Self::Matrix);
     /// In a form.
     Form "form" "In a form" Typed, LINE;
     /// In the list of shapes.
@@ -137,7 +137,7 @@ impl Context {
     pub fn screen(self) -> Option<Self> {
         let pages = [Self::Explore, Self::Matrix];
         let own = self.outer().filter(|outer| pages.contains(outer));
-        own.filter(|_| self != Self::Grab)
+        own.filter(|_| self != Self::Hold)
     }
 
     /// Returns the other pages of the same screen; none if the screen has no pages.

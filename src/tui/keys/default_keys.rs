@@ -92,7 +92,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     }
 
     /// Only the differences from the matrix: any other key does what it does there.
-    Grab {
+    Hold {
         [LEFT => NUDGE_LEFT, RIGHT => NUDGE_RIGHT, UP => NUDGE_UP, DOWN => NUDGE_DOWN]
             "move" "move the shape by a step";
         [Char('+') => LARGER_STEP, Char('=') => LARGER_STEP, Char('-') => SMALLER_STEP]

@@ -346,7 +346,7 @@ mod tests {
 
     #[test]
     fn keys_can_be_added_freed_and_swapped() {
-        use Context::{Form, Grab, Matrix};
+        use Context::{Form, Hold, Matrix};
         let keymap = Keymap::with(&[
             change(Matrix, "x", "toggle"),
             change(Matrix, "u", "redo"),
@@ -364,7 +364,7 @@ mod tests {
         );
         assert_eq!(matrix('d'), None);
         // While a shape is held, keys without a binding are looked up on the matrix.
-        assert_eq!(keymap.lookup(Grab, Key::Char('x')), Some(Message::Toggle));
+        assert_eq!(keymap.lookup(Hold, Key::Char('x')), Some(Message::Toggle));
         assert_eq!(keymap.lookup(Form, Key::Ctrl('n')), Some(Message::Field(1)));
         assert_eq!(keymap.label(Matrix, &action::TOGGLE), "x");
         assert_eq!(keymap.label(Matrix, &action::DELETE), ":delete");

@@ -50,8 +50,8 @@ pub enum LiveMessage {
     Record,
     /// Marks the shown frame, or removes its mark.
     Mark,
-    /// Names imprints by the next set of shapes, or by none.
-    NextModel,
+    /// Names imprints by the next model, or by none.
+    NameShape,
 }
 
 /// A report from the source, from its recording or from the work that names imprints.

@@ -270,7 +270,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         },
         LiveMessage::Mark => mark(app, page),
         // The next one may be a model of the user.
-        LiveMessage::NextModel => {
+        LiveMessage::NameShape => {
             page.names.awaits_models = true;
             return Some(Effect::Library(LibraryRequest::Models));
         }

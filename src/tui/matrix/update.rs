@@ -290,8 +290,8 @@ fn edit(app: &mut App, message: &Message) {
                 NarrowPage::Panel => NarrowPage::Matrix,
             };
         }
-        Message::Grab if app.held.is_some() => let_go(app),
-        Message::Grab => hold(app),
+        Message::Hold if app.held.is_some() => let_go(app),
+        Message::Hold => hold(app),
         Message::PutBack => put_back(app),
         Message::Nudge(arrow) => nudge(app, arrow),
         Message::Move(dx, dy) => shift(app, dx, dy),

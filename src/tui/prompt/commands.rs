@@ -56,7 +56,7 @@ pub fn actions() -> impl Iterator<Item = &'static Action> {
 
 /// Finds the actions that work on the matrix.
 fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
-    let places = [Context::Matrix, Context::Grab, Context::Everywhere];
+    let places = [Context::Matrix, Context::Hold, Context::Everywhere];
     let bound = |action: &Action, places: &[Context]| {
         let mut rows = DEFAULT_KEYS
             .iter()

@@ -15,10 +15,10 @@ use crate::tui::recognise::trained::TrainedModel;
 pub enum RecogniseMessage {
     /// Opens the page.
     Open,
-    /// Opens the page with a set.
+    /// Opens the page with a model.
     Choose(ModelChoice),
-    /// Chooses the set this many places after the present one.
-    NextSet(i8),
+    /// Chooses the model this many places after the present one.
+    NextModel(i8),
     /// Touches the matrix with a random shape of the set.
     Touch,
     /// Keeps the touch on the matrix as one of several of the same shape.

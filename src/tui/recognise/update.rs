@@ -31,12 +31,12 @@ use crate::tui::runtime::effect::{Effect, Work};
 fn open_for(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
     let choice = match &asked {
         RecogniseMessage::Choose(choice) => Some(choice.clone()),
-        RecogniseMessage::NextSet(by) => app.recognition.as_ref().map(|page| page.other(*by)),
+        RecogniseMessage::NextModel(by) => app.recognition.as_ref().map(|page| page.other(*by)),
         _ => None,
     };
     let effect = open(app, choice);
     match asked {
-        RecogniseMessage::Open | RecogniseMessage::Choose(_) | RecogniseMessage::NextSet(_) => {
+        RecogniseMessage::Open | RecogniseMessage::Choose(_) | RecogniseMessage::NextModel(_) => {
             effect
         }
         RecogniseMessage::Keep | RecogniseMessage::Forget => act(app, asked).or(effect),
@@ -68,7 +68,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
     match asked {
         RecogniseMessage::Open => open(app, None),
         RecogniseMessage::Choose(choice) => open(app, Some(choice)),
-        RecogniseMessage::NextSet(by) => next_model(app, by),
+        RecogniseMessage::NextModel(by) => next_model(app, by),
         RecogniseMessage::Touch => {
             touch(app);
             None
