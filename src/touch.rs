@@ -171,9 +171,12 @@ impl Plane {
         let doubt = DOUBTFUL.max(ROUNDINGS * grid.magnitude());
         let unused = u64::BITS as usize - drawn.columns.len();
         let words = &mut self.imprint.words_mut()[drawn.rows.clone()];
-        let kept = self.areas.chunks_exact_mut(drawn.columns.len());
+        let mut rest = &mut self.areas[..];
         let mut nearest = f64::MAX;
-        for ((areas, kept), words) in grid.take_pairs(&drawn).zip(kept).zip(words.chunks_mut(2)) {
+        for (areas, words) in grid.take_pairs(&drawn).zip(words.chunks_mut(2)) {
+            let Some(kept) = rest.split_off_mut(..drawn.columns.len()) else {
+                break;
+            };
             let (short, near) = compare(areas, self.sensor.threshold(), kept);
             for (word, short) in words.iter_mut().zip(short) {
                 *word = (!short >> unused) << drawn.columns.start;

@@ -150,8 +150,11 @@ impl<T: Real> CellGrid<T> {
         let Drawn { rows, columns } = drawn;
         let stride = self.stride;
         let take = |entry: &mut CellSums<T>| mem::replace(entry, CellSums::EMPTY);
-        let pairs = self.entries[rows.start * stride..].chunks_exact_mut(2 * stride);
-        pairs.take(rows.len().div_ceil(2)).map(move |pair| {
+        // Not `chunks_exact_mut`: its division takes as long as three cells.
+        let mut rest = &mut self.entries[rows.start * stride..];
+        let pairs =
+            (0..rows.len().div_ceil(2)).map_while(move |_| rest.split_off_mut(..2 * stride));
+        pairs.map(move |pair| {
             let (upper, lower) = pair.split_at_mut(stride);
             // What lies behind the last column counts nowhere.
             upper[stride - 1] = CellSums::EMPTY;

@@ -93,17 +93,17 @@ impl<T: Real> Overlap<T> {
             (top, -T::ONE, stride.wrapping_neg())
         };
         let mut start = self.grid.start(first) + 1;
-        let (mut height, full) = (edge.sign * (line - from.y), edge.sign * step);
+        let mut entered = from.y;
         let (mut here, mut cell) = (from.x, from.x.cell());
         for _ in 0..first.abs_diff(last) {
             // Clamped between the ends, because the slope of an edge that is horizontal up to a rounding error is
             // meaningless.
             let next = edge.x_at(line).max(from.x).min(to.x);
+            let height = edge.sign * (line - entered);
             cell = self.slice(start, edge, (here, cell), next, height);
-            (here, line, height) = (next, line + step, full);
+            (here, entered, line) = (next, line, line + step);
             start = start.wrapping_add(next_row);
         }
-        let entered = if first == last { from.y } else { line - step };
         let height = edge.sign * (to.y - entered);
         self.slice(start, edge, (here, cell), to.x, height);
     }
