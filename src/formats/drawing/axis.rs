@@ -8,12 +8,13 @@ const STEPS: f64 = 8.0;
 pub(super) struct Ticks(pub(super) Vec<(f64, String)>);
 
 impl Ticks {
-    /// Makes marks from 0 to `length`, at steps of 1, 2 or 5 times a power of ten, none smaller than `least`.
-    pub(super) fn new(length: f64, least: f64) -> Self {
-        Self::between((0.0, length), least, STEPS)
+    /// Makes marks from one number to another, at steps of 1, 2 or 5 times a power of ten, none smaller than
+    /// `least`; at most about eight steps.
+    pub(super) fn new(ends: (f64, f64), least: f64) -> Self {
+        Self::between(ends, least, STEPS)
     }
 
-    /// Makes such marks from one number to another, at most about `steps` of them.
+    /// Makes such marks, at most about `steps` of them.
     pub(super) fn between((low, high): (f64, f64), least: f64, steps: f64) -> Self {
         let smallest = ((high - low) / steps).max(least);
         let power = libm::pow(10.0, libm::log10(smallest).floor());
@@ -104,7 +105,7 @@ mod tests {
     }
 
     fn labels(length: f64, least: f64) -> Vec<String> {
-        let Ticks(marks) = Ticks::new(length, least);
+        let Ticks(marks) = Ticks::new((0.0, length), least);
         marks.into_iter().map(|(_, label)| label).collect()
     }
 

@@ -3,9 +3,9 @@
 //! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. The numbers
 //! are there for readers who cannot tell the shades apart.
 
-use crate::formats::drawing::page::{CELLS, DrawingPage, MARGIN, TEXT, cut, upright_title, width};
 use crate::formats::drawing::scene::{
-    Element, Position, Stroke, TextAnchor, label, path_of, rectangle,
+    CELLS, DrawingPage, Element, MARGIN, Position, Stroke, TEXT, TextAnchor, cut, label, path_of,
+    rectangle, upright_title, width,
 };
 use crate::formats::value::percent;
 use crate::parameter::number::share;

@@ -1,11 +1,7 @@
 //! Curves over one axis, such as an error against a size. Both axes begin at 0.
 
-use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
-use crate::formats::drawing::plane::axes;
-use crate::formats::drawing::scene::{
-    Position, Segment, Stroke, TextAnchor, circle, label, path_of,
-};
+use crate::formats::drawing::plane::PlotLayout;
+use crate::formats::drawing::scene::{DrawingPage, Position, Stroke, circle};
 
 /// The width and height of the plane, in points.
 const PLANE: Position = (324.0, 200.0);
@@ -60,60 +56,32 @@ impl LinePlot {
         self
     }
 
-    /// Returns the largest number on each axis, above 0.
-    fn ends(&self) -> Position {
+    /// Returns the ends of an axis: 0 and the largest number, or 1 if that is 0.
+    fn ends(&self, number: fn(&Position) -> f64) -> (f64, f64) {
         let points = self.curves.iter().flat_map(|(_, points)| points);
-        let ends = points.fold((0.0_f64, 0.0_f64), |end, point| {
-            (end.0.max(point.0), end.1.max(point.1))
-        });
+        let end = points.map(number).fold(0.0, f64::max);
         // Marks less than a billionth apart cannot be labelled.
-        let end = |end: f64| if end > 1e-9 { end } else { 1.0 };
-        (end(ends.0), end(ends.1))
+        (0.0, if end > 1e-9 { end } else { 1.0 })
     }
 
     /// Lays out axes, grid, curves and legend.
     pub(super) fn page(&self) -> DrawingPage {
-        let (end_x, end_y) = self.ends();
-        let (across, upwards) = (Ticks::new(end_x, 0.0), Ticks::new(end_y, 0.0));
-        let corner = (
-            MARGIN + TEXT * 2.0 + width(upwards.width()) + 6.0,
-            MARGIN + TEXT,
-        );
-        let end = (corner.0 + PLANE.0, corner.1 + PLANE.1);
+        let ends = [self.ends(|point| point.0), self.ends(|point| point.1)];
+        let titles = self.labels.each_ref().map(String::as_str);
         // A twentieth of the plane stays free beyond the last point.
-        let scale = (PLANE.0 / (end_x * 1.05), PLANE.1 / (end_y * 1.05));
-        let place = |(x, y): Position| (corner.0 + x * scale.0, end.1 - y * scale.1);
-        let labels = [&self.labels[0], &self.labels[1]].map(String::as_str);
-        let mut marks = axes(labels, (&across, &upwards), (corner, end), &place);
-        let (mut right, mut last) = (end.0, end.1 + TEXT * 2.0 + 6.0);
-        for (index, (name, points)) in (0_u8..).zip(&self.curves) {
+        let mut plot = PlotLayout::new(None, titles, ends, (PLANE, 1.05));
+        for ((name, points), dash) in self.curves.iter().zip(DASHES.iter().cycle()) {
             let line = Stroke {
-                dash: DASHES[usize::from(index) % DASHES.len()],
+                dash: *dash,
                 ..Stroke::black(1.1)
             };
-            let points: Vec<Position> = points.iter().map(|&point| place(point)).collect();
-            let rest = points.iter().skip(1).map(|&to| Segment::Line(to));
-            let path = points.first().map(|&from| Segment::Move(from));
-            let path: Vec<Segment> = path.into_iter().chain(rest).collect();
-            marks.push(path_of("curve", path, line));
-            let dots = points.iter().flat_map(|&point| circle(point, 1.2));
-            marks.push(path_of("points", dots.collect(), Stroke::black(0.8)));
-            let y = end.1 + TEXT * 4.0 + ROW * f64::from(index);
-            last = y;
-            let sample = [
-                Segment::Move((corner.0, y)),
-                Segment::Line((corner.0 + 24.0, y)),
-            ];
-            marks.push(path_of("legend", sample.to_vec(), line));
-            let at = (corner.0 + 30.0, y + TEXT * 0.35);
-            marks.push(label(name, at, TextAnchor::Start));
-            right = right.max(at.0 + width(name.chars().count()));
+            plot.curve(points, line);
+            let dots = points
+                .iter()
+                .flat_map(|&point| circle(plot.place(point), 1.2));
+            plot.draw("points", dots.collect(), Stroke::black(0.8));
+            plot.legend(name, line);
         }
-        DrawingPage {
-            size: (right + MARGIN, last + TEXT * 0.5 + MARGIN),
-            plane: (corner, end),
-            title: format!("{} against {}", self.labels[1], self.labels[0]),
-            marks,
-        }
+        plot.page()
     }
 }

@@ -62,10 +62,10 @@ pub use confusion_map::ConfusionMap;
 pub use format::DrawingFormat;
 use format::written;
 pub use line_plot::LinePlot;
-use page::{DrawingPage, Subject, cut};
+use page::Subject;
 pub use point_plot::PointPlot;
 pub use pose_map::PoseMap;
-use scene::Segment;
+use scene::{DrawingPage, Segment, cut};
 
 written!(Drawing, ConfusionMap, LinePlot, PointPlot, PoseMap);
 

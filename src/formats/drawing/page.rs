@@ -14,27 +14,19 @@
 use crate::description::{Description, RegionKind, Value};
 use crate::formats::drawing::axis::Ticks;
 use crate::formats::drawing::heat;
+use crate::formats::drawing::plane::{AxisMarks, axes, left_of};
 use crate::formats::drawing::scene::{
-    Element, Position, Segment, Stroke, TextAnchor, circle, label, path_of, rectangle,
+    CELLS, DrawingPage, Element, MARGIN, Position, ROW, Segment, Stroke, TEXT, TextAnchor, circle,
+    label, path_of, rectangle, width,
 };
 use crate::formats::value;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
-/// The size of all text, in points.
-pub(super) const TEXT: f64 = 8.0;
-/// The width of a character in a monospaced font, as a share of its size.
-const ADVANCE: f64 = 0.6;
 /// The larger side of the plane, unless its cells would become too large.
 const PLANE: f64 = 288.0;
 /// The largest side of a cell, for small matrices.
 const LARGEST_CELL: f64 = 24.0;
-/// The margin on all sides.
-pub(super) const MARGIN: f64 = 8.0;
-/// The height of a line of the title or the legend.
-pub(super) const ROW: f64 = 13.0;
-/// The most characters of a title; more would make the page wider than paper.
-const LONGEST: usize = 100;
 /// The width of a sign in the legend.
 const SWATCH: f64 = 16.0;
 
@@ -42,12 +34,6 @@ const SWATCH: f64 = 16.0;
 const DESCRIBED: u8 = 168;
 /// The grey of taxels of other regions.
 const OTHER: u8 = 220;
-/// The lines between cells.
-pub(super) const CELLS: Stroke = Stroke {
-    width: 0.4,
-    grey: 150,
-    dash: None,
-};
 /// The hatching of taxels of other regions: a shade alone is lost on a bad printer.
 const HATCH: Stroke = Stroke {
     width: 0.5,
@@ -83,18 +69,6 @@ pub(super) struct Subject<'a> {
     pub(super) heat: Option<&'a Matrix<f64>>,
 }
 
-/// A page: its size in points, the place of the plane, and the marks.
-pub(super) struct DrawingPage {
-    /// The width and the height.
-    pub(super) size: Position,
-    /// The top left and the bottom right corner of the sensory plane.
-    pub(super) plane: (Position, Position),
-    /// The name of the drawing for those who cannot see it, as read by screen readers.
-    pub(super) title: String,
-    /// The marks, in drawing order.
-    pub(super) marks: Vec<Element>,
-}
-
 /// A page while it is being laid out.
 struct PageLayout<'a> {
     /// The content of the page.
@@ -116,13 +90,10 @@ impl DrawingPage {
         let pitch = subject.pitch_mm.unwrap_or(1.0);
         // In cells, marks stand at whole numbers only.
         let least = subject.pitch_mm.map_or(1.0, |_| 0.0);
-        let marks = |side: u8| Ticks::new(f64::from(side) * pitch, least);
+        let marks = |side: u8| Ticks::new((0.0, f64::from(side) * pitch), least);
         let (across, along) = (marks(columns), marks(rows));
         let title = subject.title.map_or(0.0, |_| ROW);
-        let corner = (
-            MARGIN + TEXT * 2.0 + width(along.width()) + 6.0,
-            MARGIN + title + TEXT * 3.0 + 4.0,
-        );
+        let corner = (left_of(&along), MARGIN + title + TEXT * 3.0 + 4.0);
         let mut layout = PageLayout {
             subject,
             marks: Vec::new(),
@@ -148,27 +119,6 @@ impl DrawingPage {
             marks: layout.marks,
         }
     }
-}
-
-/// Returns as much of a text as fits onto a page.
-pub(super) fn cut(text: &str) -> String {
-    text.chars().take(LONGEST).collect()
-}
-
-/// Makes the title of the upright axis; `y` is the middle of the axis.
-pub(super) fn upright_title(title: &str, y: f64) -> Element {
-    Element::Text {
-        text: title.to_owned(),
-        place: (MARGIN + TEXT, y),
-        anchor: TextAnchor::Middle,
-        upright: true,
-    }
-}
-
-/// Returns the width of a text of that many characters.
-#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
-pub(super) fn width(characters: usize) -> f64 {
-    TEXT * ADVANCE * characters as f64
 }
 
 impl PageLayout<'_> {
@@ -261,31 +211,14 @@ impl PageLayout<'_> {
         self.line("cells", lines, CELLS);
     }
 
-    /// Draws the frame, the marks of both axes, and the name and unit of each axis.
-    fn axes(&mut self, across: &Ticks, along: &Ticks, (from, to): (Position, Position)) {
+    /// Draws the frame, and both axes with their units.
+    fn axes(&mut self, across: &Ticks, along: &Ticks, plane: (Position, Position)) {
         let scale = self.cell / self.subject.pitch_mm.unwrap_or(1.0);
-        let unit = self.unit();
-        let mut ticks = rectangle(from, to);
-        for (value, label) in &across.0 {
-            let x = from.0 + value * scale;
-            ticks.extend([Segment::Move((x, from.1 - 3.0)), Segment::Line((x, from.1))]);
-            self.text(label, (x, from.1 - 5.0), TextAnchor::Middle);
-        }
-        for (value, label) in &along.0 {
-            let y = from.1 + value * scale;
-            ticks.extend([Segment::Move((from.0 - 3.0, y)), Segment::Line((from.0, y))]);
-            self.text(label, (from.0 - 5.0, y + TEXT * 0.35), TextAnchor::End);
-        }
-        self.line("axes", ticks, Stroke::black(0.6));
-        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
-        let above = from.1 - 5.0 - TEXT * 1.5;
-        self.text(
-            &format!("x / {unit}"),
-            (middle.0, above),
-            TextAnchor::Middle,
-        );
-        self.marks
-            .push(upright_title(&format!("y / {unit}"), middle.1));
+        let place = |(x, y): Position| (plane.0.0 + x * scale, plane.0.1 + y * scale);
+        let titles = ["x", "y"].map(|axis| format!("{axis} / {}", self.unit()));
+        let titles = titles.each_ref().map(String::as_str);
+        let marks = axes(AxisMarks::Outside, titles, (across, along), plane, place);
+        self.marks.extend(marks);
     }
 
     /// Draws the outline of the shape, cut off at the edge of the plane; nothing if the shape is not known.

@@ -6,8 +6,7 @@ use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
 
 use crate::formats::drawing::glyph;
 use crate::formats::drawing::ink::Ink;
-use crate::formats::drawing::page::DrawingPage;
-use crate::formats::drawing::scene::{Element, Position, Stroke};
+use crate::formats::drawing::scene::{DrawingPage, Element, Position, Stroke};
 
 /// The pixels per point.
 const SCALE: f64 = 4.0;

@@ -3,9 +3,10 @@
 //! Borders separate the areas; greys only help the eye, and a bad printer may lose them.
 
 use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, cut, upright_title, width};
+use crate::formats::drawing::plane::{AxisMarks, axes, left_of};
 use crate::formats::drawing::scene::{
-    Element, Position, Segment, Stroke, TextAnchor, label, path_of, rectangle,
+    DrawingPage, Element, MARGIN, Position, ROW, Segment, Stroke, TEXT, TextAnchor, cut, label,
+    path_of, rectangle, width,
 };
 use crate::formats::value::decimal;
 
@@ -103,10 +104,9 @@ impl PoseMap {
         let title = width(X_TITLE.len().max(Y_TITLE.len())) / 2.0;
         let middle = |cells: usize| count(cells) * side / 2.0;
         let (half_width, half_height) = (middle(self.columns), middle(self.rows()));
-        let left = MARGIN + TEXT * 2.0 + width(along.width()) + 6.0;
         let top = MARGIN + above + TEXT * 3.0 + 4.0;
         let corner = (
-            left.max(MARGIN + title - half_width),
+            left_of(&along).max(MARGIN + title - half_width),
             top.max(MARGIN + above + title - half_height),
         );
         let place = |column: usize, row: usize| {
@@ -127,7 +127,17 @@ impl PoseMap {
             let cell = rectangle(place(column, row), place(column + 1, row + 1));
             marks.push(path_of("chosen", cell, Stroke::black(2.0)));
         }
-        self.axes(&mut marks, [&across, &along], (corner, end), side);
+        marks.extend(axes(
+            AxisMarks::Outside,
+            [X_TITLE, Y_TITLE],
+            (&across, &along),
+            (corner, end),
+            |(x, y)| {
+                let x = cells_before(x, x0, self.columns) * side;
+                let y = cells_before(y, y0, self.rows()) * side;
+                (corner.0 + x, corner.1 + y)
+            },
+        ));
         let right = end.0.max(corner.0 + width(self.title.chars().count()));
         // A mark stands at the centre of a cell, half a cell from the end of the axis.
         let mark = width(across.width()) / 2.0 - side / 2.0;
@@ -188,42 +198,17 @@ impl PoseMap {
         }
         lines
     }
+}
 
-    /// Draws the frame, the marks of both axes at the centres of cells, and the titles of the axes.
-    fn axes(
-        &self,
-        marks: &mut Vec<Element>,
-        [across, along]: [&Ticks; 2],
-        (from, to): (Position, Position),
-        side: f64,
-    ) {
-        let at = |value: f64, (low, high): (f64, f64), cells: usize| {
-            let last = count(cells.saturating_sub(1));
-            let share = if high == low {
-                0.0
-            } else {
-                (value - low) / (high - low)
-            };
-            (share * last + 0.5) * side
-        };
-        let mut ticks = rectangle(from, to);
-        for (value, text) in &across.0 {
-            let x = from.0 + at(*value, self.ends[0], self.columns);
-            ticks.extend([Segment::Move((x, from.1 - 3.0)), Segment::Line((x, from.1))]);
-            marks.push(label(text, (x, from.1 - 5.0), TextAnchor::Middle));
-        }
-        for (value, text) in &along.0 {
-            let y = from.1 + at(*value, self.ends[1], self.rows());
-            ticks.extend([Segment::Move((from.0 - 3.0, y)), Segment::Line((from.0, y))]);
-            let place = (from.0 - 5.0, y + TEXT * 0.35);
-            marks.push(label(text, place, TextAnchor::End));
-        }
-        marks.push(path_of("axes", ticks, Stroke::black(0.6)));
-        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
-        let above = (middle.0, from.1 - 5.0 - TEXT * 1.5);
-        marks.push(label(X_TITLE, above, TextAnchor::Middle));
-        marks.push(upright_title(Y_TITLE, middle.1));
-    }
+/// Returns the position of a value along an axis, in cells: the ends of the axis are centres of cells.
+fn cells_before(value: f64, (low, high): (f64, f64), cells: usize) -> f64 {
+    let last = count(cells.saturating_sub(1));
+    let share = if high == low {
+        0.0
+    } else {
+        (value - low) / (high - low)
+    };
+    share * last + 0.5
 }
 
 /// Converts a number of cells for use in lengths.

@@ -1,7 +1,30 @@
-//! The elements of a page: paths and texts, in points from its top left corner, y down.
+//! A page and its elements, paths and texts: in points from its top left corner, y down.
 
 /// A point on the page, or on the plane in cell sides.
 pub(super) type Position = (f64, f64);
+
+/// The size of all text, in points.
+pub(super) const TEXT: f64 = 8.0;
+/// The width of a character in a monospaced font, as a share of its size.
+const ADVANCE: f64 = 0.6;
+/// The margin on all sides.
+pub(super) const MARGIN: f64 = 8.0;
+/// The height of a line of the title or the legend.
+pub(super) const ROW: f64 = 13.0;
+/// The most characters of a title; more would make the page wider than paper.
+const LONGEST: usize = 100;
+
+/// A page: its size in points, the place of the plane, and the marks.
+pub(super) struct DrawingPage {
+    /// The width and the height.
+    pub(super) size: Position,
+    /// The top left and the bottom right corner of the sensory plane.
+    pub(super) plane: (Position, Position),
+    /// The name of the drawing for those who cannot see it, as read by screen readers.
+    pub(super) title: String,
+    /// The marks, in drawing order.
+    pub(super) marks: Vec<Element>,
+}
 
 /// A step of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +116,13 @@ impl Stroke {
     }
 }
 
+/// The lines between cells.
+pub(super) const CELLS: Stroke = Stroke {
+    width: 0.4,
+    grey: 150,
+    dash: None,
+};
+
 /// The point of a text that lies at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TextAnchor {
@@ -150,4 +180,25 @@ pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element 
         anchor,
         upright: false,
     }
+}
+
+/// Makes the title of the upright axis; `y` is the middle of the axis.
+pub(super) fn upright_title(title: &str, y: f64) -> Element {
+    Element::Text {
+        text: title.to_owned(),
+        place: (MARGIN + TEXT, y),
+        anchor: TextAnchor::Middle,
+        upright: true,
+    }
+}
+
+/// Returns as much of a text as fits onto a page.
+pub(super) fn cut(text: &str) -> String {
+    text.chars().take(LONGEST).collect()
+}
+
+/// Returns the width of a text of that many characters.
+#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
+pub(super) fn width(characters: usize) -> f64 {
+    TEXT * ADVANCE * characters as f64
 }

@@ -4,8 +4,9 @@
 //! Colours are greys, and dashes and hatching distinguish the marks as well, so a drawing can be printed in black.
 //! Equal subjects give equal bytes.
 
-use crate::formats::drawing::page::{DrawingPage, TEXT};
-use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
+use crate::formats::drawing::scene::{
+    DrawingPage, Element, Position, Segment, Stroke, TEXT, TextAnchor, rectangle,
+};
 use crate::formats::value::decimal;
 use crate::formats::xml::escaped;
 
