@@ -98,14 +98,14 @@ impl TaxelType {
     fn of(code: &str) -> Option<Self> {
         let number = NumberType::of(code)?;
         let single = |number: f32| u64::from(number.to_bits());
-        let (infinity, active) = match (number.kind(), number.size()) {
-            (b'f', 2) => (Some(0x7c00), [0x3c00, 0x5bf8]),
-            (b'f', 4) => (Some(single(f32::INFINITY)), [single(1.0), single(255.0)]),
-            (b'f', _) => (
+        let (infinity, active) = match number.dtype {
+            Dtype::F16 => (Some(0x7c00), [0x3c00, 0x5bf8]),
+            Dtype::F32 => (Some(single(f32::INFINITY)), [single(1.0), single(255.0)]),
+            Dtype::F64 => (
                 Some(f64::INFINITY.to_bits()),
                 [1_f64.to_bits(), 255_f64.to_bits()],
             ),
-            (b'b', _) | (b'i', 1) => (None, [1, 1]),
+            Dtype::Bool | Dtype::I8 => (None, [1, 1]),
             _ => (None, [1, 255]),
         };
         Some(Self {
@@ -208,7 +208,7 @@ mod tests {
         let length = u32::try_from(text.len()).expect("short").to_le_bytes();
         let length = if version == 1 { &length[..2] } else { &length };
         [
-            b"\x93NUMPY",
+            npy::MAGIC,
             &[version, 0][..],
             length,
             text.as_bytes(),

@@ -1,21 +1,34 @@
 //! Arrays in numpy's file format: a header and the numbers, little-endian, the last axis fastest.
 //!
-//! Source: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>. Arrays of `bool`, unsigned whole
-//! numbers and `f64` are written, in version 1.0. Headers of any type and shape are read, in versions 1 to 3, and
-//! real numbers of any size in either byte order.
+//! Source: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>. Headers are written in
+//! version 1.0. Headers of any type and shape are read, in versions 1 to 3, and real numbers of any size in either byte
+//! order.
 
 use std::fmt::Write;
 
-const MAGIC: &[u8] = b"\x93NUMPY\x01\x00";
+/// The beginning of every file.
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+/// The version of the format that is written.
+const VERSION: &[u8] = &[1, 0];
+/// The number of bytes before the text of a header: the last two are its length.
+pub(crate) const BEFORE_TEXT: usize = 10;
 /// The numbers of an array begin at a multiple of this.
 const ALIGNMENT: usize = 64;
 
-/// The type of the numbers of an array.
+/// The type of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Dtype {
     /// `bool`, a byte each.
     Bool,
+    /// `int8`.
+    I8,
+    /// `int16`.
+    I16,
+    /// `int32`.
+    I32,
+    /// `int64`.
+    I64,
     /// `uint8`.
     U8,
     /// `uint16`.
@@ -24,28 +37,53 @@ pub enum Dtype {
     U32,
     /// `uint64`.
     U64,
+    /// `float16`.
+    F16,
+    /// `float32`.
+    F32,
     /// `float64`.
     F64,
 }
 
 impl Dtype {
+    const ALL: [Self; 12] = [
+        Self::Bool,
+        Self::I8,
+        Self::I16,
+        Self::I32,
+        Self::I64,
+        Self::U8,
+        Self::U16,
+        Self::U32,
+        Self::U64,
+        Self::F16,
+        Self::F32,
+        Self::F64,
+    ];
+
     /// Returns the size of a number in bytes.
     pub const fn width(self) -> usize {
         match self {
-            Self::Bool | Self::U8 => 1,
-            Self::U16 => 2,
-            Self::U32 => 4,
-            Self::U64 | Self::F64 => 8,
+            Self::Bool | Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 | Self::F16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 
     fn code(self) -> &'static str {
         match self {
             Self::Bool => "|b1",
+            Self::I8 => "|i1",
+            Self::I16 => "<i2",
+            Self::I32 => "<i4",
+            Self::I64 => "<i8",
             Self::U8 => "|u1",
             Self::U16 => "<u2",
             Self::U32 => "<u4",
             Self::U64 => "<u8",
+            Self::F16 => "<f2",
+            Self::F32 => "<f4",
             Self::F64 => "<f8",
         }
     }
@@ -54,52 +92,27 @@ impl Dtype {
 /// The type of the numbers in a file that is read, from this program or another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NumberType {
-    /// The kind of number, as in numpy: `b` for truth values, `i` and `u` for whole numbers, `f` for floats.
-    kind: u8,
-    /// The size of a number in bytes: 1, 2, 4 or 8.
-    size: usize,
+    /// The type apart from the order of bytes.
+    pub(super) dtype: Dtype,
     /// Whether the highest byte comes first.
-    big_endian: bool,
+    pub(super) big_endian: bool,
 }
 
 impl NumberType {
-    /// Makes a type from a kind (`b`, `i`, `u` or `f`) and a size of 1, 2, 4 or 8 bytes.
-    #[cfg(feature = "mcap")]
-    pub(super) fn new(kind: u8, size: usize, big_endian: bool) -> Self {
-        Self {
-            kind,
-            size,
-            big_endian,
-        }
-    }
-
     /// Returns the type of a code such as `<f4`; None if it is unknown.
     pub(super) fn of(code: &str) -> Option<Self> {
-        let [order, kind, size @ ..] = code.as_bytes() else {
-            return None;
-        };
-        let size = match (kind, size) {
-            (b'b' | b'i' | b'u', b"1") => 1,
-            (b'i' | b'u' | b'f', b"2") => 2,
-            (b'i' | b'u' | b'f', b"4") => 4,
-            (b'i' | b'u' | b'f', b"8") => 8,
-            _ => return None,
-        };
-        matches!(order, b'<' | b'>' | b'|' | b'=').then_some(Self {
-            kind: *kind,
-            size,
-            big_endian: *order == b'>',
+        let (order, kind) = code.split_at_checked(1)?;
+        let mut types = Dtype::ALL.into_iter();
+        let dtype = types.find(|dtype| &dtype.code()[1..] == kind)?;
+        matches!(order, "<" | ">" | "|" | "=").then_some(Self {
+            dtype,
+            big_endian: order == ">",
         })
-    }
-
-    /// Returns the kind of number: `b` for truth values, `i` and `u` for whole numbers, `f` for floats.
-    pub(super) fn kind(self) -> u8 {
-        self.kind
     }
 
     /// Returns the size of a number in bytes.
     pub(super) fn size(self) -> usize {
-        self.size
+        self.dtype.width()
     }
 
     /// Returns the bits of a number, from its bytes.
@@ -109,7 +122,7 @@ impl NumberType {
             *slot = *byte;
         }
         if self.big_endian {
-            word[..self.size].reverse();
+            word[..self.size()].reverse();
         }
         u64::from_le_bytes(word)
     }
@@ -118,11 +131,13 @@ impl NumberType {
     #[cfg(feature = "frames")]
     pub(super) fn whole(self, bytes: &[u8]) -> Option<i128> {
         let word = self.word(bytes);
-        let unused = 64 - 8 * self.size;
-        match self.kind {
-            b'i' => Some(i128::from((word << unused).cast_signed() >> unused)),
-            b'u' | b'b' => Some(i128::from(word)),
-            _ => None,
+        let unused = 64 - 8 * self.size();
+        match self.dtype {
+            Dtype::I8 | Dtype::I16 | Dtype::I32 | Dtype::I64 => {
+                Some(i128::from((word << unused).cast_signed() >> unused))
+            }
+            Dtype::F16 | Dtype::F32 | Dtype::F64 => None,
+            _ => Some(i128::from(word)),
         }
     }
 
@@ -138,11 +153,18 @@ impl NumberType {
             return whole as f64;
         }
         let word = self.word(bytes);
-        match self.size {
-            2 => half(word as u16),
-            4 => f32::from_bits(word as u32).into(),
+        match self.dtype {
+            Dtype::F16 => half(word as u16),
+            Dtype::F32 => f32::from_bits(word as u32).into(),
             _ => f64::from_bits(word),
         }
+    }
+
+    /// Iterates over the values of numbers that follow each other.
+    #[cfg(feature = "frames")]
+    pub(super) fn values(self, bytes: &[u8]) -> impl Iterator<Item = f64> {
+        let numbers = bytes.chunks(self.size());
+        numbers.map(move |number| self.value(number))
     }
 }
 
@@ -184,16 +206,17 @@ pub fn header<const N: usize>(kind: Dtype, shape: &[u64; N]) -> Vec<u8> {
         sides
     };
     let code = kind.code();
-    let mut text = format!("{{'descr': '{code}', 'fortran_order': False, 'shape': ({sides}), }}");
-    let start = MAGIC.len() + 2;
-    while !(start + text.len() + 1).is_multiple_of(ALIGNMENT) {
-        text.push(' ');
-    }
-    text.push('\n');
-    let mut header = MAGIC.to_vec();
-    header.extend(&text.len().to_le_bytes()[..2]);
-    header.extend(text.as_bytes());
-    header
+    let text = format!("{{'descr': '{code}', 'fortran_order': False, 'shape': ({sides}), }}");
+    let length = (BEFORE_TEXT + text.len() + 1).next_multiple_of(ALIGNMENT);
+    header_of(&text, length)
+}
+
+/// Returns the header with this text: with spaces behind it, so that it has `length` bytes.
+pub(crate) fn header_of(text: &str, length: usize) -> Vec<u8> {
+    let width = length.saturating_sub(BEFORE_TEXT + 1);
+    let text = format!("{text:<width$}\n");
+    let length = &text.len().to_le_bytes()[..2];
+    [MAGIC, VERSION, length, text.as_bytes()].concat()
 }
 
 /// The header of a file: the type and the arrangement of its numbers.
@@ -218,7 +241,7 @@ pub struct Header {
 /// assert_eq!((header.code.as_str(), &header.shape[..], numbers), ("|u1", &[1, 2][..], &[7, 8][..]));
 /// ```
 pub fn parse(file: &[u8]) -> Option<(Header, &[u8])> {
-    let rest = file.strip_prefix(&MAGIC[..6])?;
+    let rest = file.strip_prefix(MAGIC)?;
     let (length, rest) = match rest {
         [1, _, low, high, rest @ ..] => (usize::from(u16::from_le_bytes([*low, *high])), rest),
         [2 | 3, _, rest @ ..] => {
@@ -306,7 +329,7 @@ fn tuple(text: &str) -> Option<Vec<u64>> {
 
 /// Returns the numbers of a file whose header is like one of [`header`] with this type; None for any other file.
 pub fn content(file: &[u8], kind: Dtype) -> Option<&[u8]> {
-    let rest = file.strip_prefix(MAGIC)?;
+    let rest = file.strip_prefix(MAGIC)?.strip_prefix(VERSION)?;
     let (length, rest) = rest.split_first_chunk::<2>()?;
     let (text, numbers) = rest.split_at_checked(u16::from_le_bytes(*length).into())?;
     let expected = format!("{{'descr': '{}', 'fortran_order': False,", kind.code());

@@ -11,16 +11,14 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::time::{Duration, Instant};
 
 use crate::acquire::recorder::syncer::Syncer;
+use crate::formats::npy::{BEFORE_TEXT, header_of};
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::index::index;
 
-/// The number of bytes in the header's text; with the ten bytes before it, 256. The longest text has about 150.
-const HEADER_TEXT: u16 = 246;
-
-/// The beginning of that text, before the rows and columns of a frame.
+/// The beginning of the header's text, before the rows and columns of a frame.
 const DESCRIPTION: &str = "{'descr': [('time', '<f8'), ('number', '<u8'), ('values', '<f8', (";
 
-/// The number of bytes before the first record.
+/// The number of bytes before the first record. The longest text of a header has about 150.
 pub(super) const HEADER: u64 = 256;
 
 /// The number of bytes of time and number before the values of a record.
@@ -205,9 +203,7 @@ pub(super) fn empty() -> Vec<u8> {
 
 /// Returns true if a file begins like an array of records that taxel has written.
 pub(super) fn is_own(start: &[u8]) -> bool {
-    let own = start.strip_prefix(b"\x93NUMPY\x01\x00");
-    let text = own.and_then(|own| own.strip_prefix(&HEADER_TEXT.to_le_bytes()));
-    text.is_some_and(|text| text.starts_with(DESCRIPTION.as_bytes()))
+    start.starts_with(&empty()[..BEFORE_TEXT + DESCRIPTION.len()])
 }
 
 /// Returns the header of an array of records.
@@ -217,9 +213,5 @@ pub(super) fn header(size: Option<FrameSize>, records: u64) -> Vec<u8> {
     let text = format!(
         "{DESCRIPTION}{rows}, {columns}))], 'fortran_order': False, 'shape': ({records},), }}"
     );
-    let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    header.extend(HEADER_TEXT.to_le_bytes());
-    let width = usize::from(HEADER_TEXT) - 1;
-    header.extend(format!("{text:<width$}\n").bytes());
-    header
+    header_of(&text, index(HEADER))
 }

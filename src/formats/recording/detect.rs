@@ -8,6 +8,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::foreign;
+use crate::formats::npy;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingSink, until_enough};
 use crate::formats::recording::format::RecordingFormat;
@@ -54,7 +55,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
     let is_row = |line: &&[u8]| !is_blank(line) && !is_comment(line);
     let row = lines.find(is_row).unwrap_or(first);
     Some(match start {
-        [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => RecordingFormat::Npy,
+        _ if start.starts_with(npy::MAGIC) => RecordingFormat::Npy,
         _ if start.starts_with(&MCAP_MAGIC) => RecordingFormat::Mcap,
         _ if start.starts_with(&FLEXITAC_MARKER) => RecordingFormat::Flexitac,
         [b'P', b'K', 3 | 5, 4 | 6, ..] => RecordingFormat::Npz,

@@ -316,6 +316,7 @@ mod tests {
     use zip::write::SimpleFileOptions;
 
     use super::*;
+    use crate::formats::npy::header_of;
 
     /// Returns times and notes of two frames of two cells from each of two sensors, beside an array `time` of that
     /// type with those numbers.
@@ -324,19 +325,12 @@ mod tests {
         let options = SimpleFileOptions::default();
         let mut add = |name: &str, code: &str, shape: &str, numbers: &[u8]| {
             let text =
-                format!("{{'descr': '{code}', 'fortran_order': False, 'shape': ({shape}), }}\n");
-            let length = u16::try_from(text.len()).expect("short");
+                format!("{{'descr': '{code}', 'fortran_order': False, 'shape': ({shape}), }}");
             archive
                 .start_file(format!("{name}.npy"), options)
                 .expect("begun");
-            for part in [
-                b"\x93NUMPY\x01\x00",
-                &length.to_le_bytes()[..],
-                text.as_bytes(),
-                numbers,
-            ] {
-                archive.write_all(part).expect("written");
-            }
+            let array = [&header_of(&text, 0), numbers].concat();
+            archive.write_all(&array).expect("written");
         };
         for sensor in ["left", "right"] {
             add(sensor, "|u1", "2, 1, 2", &[1, 2, 3, 4]);

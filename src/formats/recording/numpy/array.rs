@@ -343,12 +343,9 @@ pub(super) fn frames(
         }
         let values = layout.record.as_ref().map_or(0, |record| record.values);
         let values = &bytes[values..values + cells];
-        for (slot, bytes) in frame
-            .values_mut()
-            .iter_mut()
-            .zip(values.chunks(layout.number.size()))
-        {
-            *slot = layout.number.value(bytes);
+        let slots = frame.values_mut().iter_mut();
+        for (slot, value) in slots.zip(layout.number.values(values)) {
+            *slot = value;
         }
         frame.time = usize::try_from(frame.number)
             .ok()

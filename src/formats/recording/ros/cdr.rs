@@ -7,7 +7,7 @@
 //! ```
 //! Source: the OMG's DDS-RTPS specification, encapsulation `CDR_BE` and `CDR_LE`.
 
-use crate::formats::npy::NumberType;
+use crate::formats::npy::{Dtype, NumberType};
 
 /// A reader of a message, field by field; its methods return None if the message ends too early.
 #[derive(Debug)]
@@ -79,14 +79,15 @@ impl<'a> CdrReader<'a> {
         self.take(length, 1)
     }
 
-    /// Appends a list of numbers of a kind and size, named as in numpy.
-    pub(super) fn numbers(&mut self, kind: u8, size: usize, values: &mut Vec<f64>) -> Option<()> {
+    /// Appends a list of numbers.
+    pub(super) fn numbers(&mut self, dtype: Dtype, values: &mut Vec<f64>) -> Option<()> {
+        let size = dtype.width();
         let count = self.count(size)?;
         // An empty list is not aligned.
         let alignment = if count > 0 { size } else { 1 };
         let bytes = self.take(count.checked_mul(size)?, alignment)?;
-        let number = NumberType::new(kind, size, self.big_endian);
-        values.extend(bytes.chunks(size).map(|bytes| number.value(bytes)));
+        let big_endian = self.big_endian;
+        values.extend(NumberType { dtype, big_endian }.values(bytes));
         Some(())
     }
 }

@@ -13,6 +13,7 @@ use std::io::Read;
 use std::rc::Rc;
 
 use crate::formats::framed::too_large;
+use crate::formats::npy::Dtype;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
@@ -163,8 +164,8 @@ impl McapState<'_, '_> {
         let broken = || RecordingError::damaged(format!("{topic}: a message is broken"));
         let mut cdr = CdrReader::new(data).ok_or_else(broken)?;
         match kind {
-            MessageKind::Array(kind, size) => {
-                let sizes = multi_array(&mut cdr, kind, size, &mut self.values);
+            MessageKind::Array(dtype) => {
+                let sizes = multi_array(&mut cdr, dtype, &mut self.values);
                 let stated = matrix_size(&sizes.ok_or_else(broken)?);
                 let size = arranged(self.values.len(), stated, self.options.size);
                 self.give(topic, size)
@@ -178,7 +179,7 @@ impl McapState<'_, '_> {
                 for _ in 0..cdr.count(8).ok_or_else(broken)? {
                     let name = format!("{topic}#{}", cdr.text().ok_or_else(broken)?);
                     self.values.clear();
-                    let numbers = cdr.numbers(b'f', 4, &mut self.values);
+                    let numbers = cdr.numbers(Dtype::F32, &mut self.values);
                     numbers.ok_or_else(broken)?;
                     self.give(&name, None)?;
                 }

@@ -8,7 +8,7 @@
 //!
 //! Source: the definitions of these messages.
 
-use crate::formats::npy::NumberType;
+use crate::formats::npy::{Dtype, NumberType};
 use crate::formats::recording::ros::cdr::CdrReader;
 use crate::formats::recording::side::frame_size;
 use crate::frame::FrameSize;
@@ -16,8 +16,8 @@ use crate::frame::FrameSize;
 /// A kind of message that has frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum MessageKind {
-    /// A `MultiArray` of numbers: their kind, as in numpy, and their size in bytes.
-    Array(u8, usize),
+    /// A `MultiArray` of numbers of this type.
+    Array(Dtype),
     /// Grey pixels, row by row; rows may be padded.
     Image,
     /// Lists of values, each with the name of its sensor.
@@ -32,20 +32,20 @@ impl MessageKind {
             ("sensor_msgs", "Image") => Some(Self::Image),
             ("tactile_msgs", "TactileState") => Some(Self::TactileState),
             ("std_msgs", name) => {
-                let (kind, size) = match name.strip_suffix("MultiArray")? {
-                    "Int8" => (b'i', 1),
-                    "UInt8" | "Byte" | "Char" => (b'u', 1),
-                    "Int16" => (b'i', 2),
-                    "UInt16" => (b'u', 2),
-                    "Int32" => (b'i', 4),
-                    "UInt32" => (b'u', 4),
-                    "Int64" => (b'i', 8),
-                    "UInt64" => (b'u', 8),
-                    "Float32" => (b'f', 4),
-                    "Float64" => (b'f', 8),
+                let dtype = match name.strip_suffix("MultiArray")? {
+                    "Int8" => Dtype::I8,
+                    "UInt8" | "Byte" | "Char" => Dtype::U8,
+                    "Int16" => Dtype::I16,
+                    "UInt16" => Dtype::U16,
+                    "Int32" => Dtype::I32,
+                    "UInt32" => Dtype::U32,
+                    "Int64" => Dtype::I64,
+                    "UInt64" => Dtype::U64,
+                    "Float32" => Dtype::F32,
+                    "Float64" => Dtype::F64,
                     _ => return None,
                 };
-                Some(Self::Array(kind, size))
+                Some(Self::Array(dtype))
             }
             _ => None,
         }
@@ -55,8 +55,7 @@ impl MessageKind {
 /// Reads an array into `values`. Returns the sizes of its layout; None if it is broken.
 pub(super) fn multi_array(
     cdr: &mut CdrReader<'_>,
-    kind: u8,
-    size: usize,
+    dtype: Dtype,
     values: &mut Vec<f64>,
 ) -> Option<Vec<u32>> {
     let mut sizes = Vec::new();
@@ -67,7 +66,7 @@ pub(super) fn multi_array(
     }
     let offset = usize::try_from(cdr.word()?).ok()?;
     values.clear();
-    cdr.numbers(kind, size, values)?;
+    cdr.numbers(dtype, values)?;
     values.drain(..offset.min(values.len()));
     Some(sizes)
 }
@@ -91,29 +90,29 @@ pub(super) enum ImageFrame {
 pub(super) fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<ImageFrame> {
     header(cdr)?;
     let (height, width) = (cdr.word()?, cdr.word()?);
-    let (kind, size) = match cdr.text()? {
-        "mono8" | "8UC1" => (b'u', 1),
-        "8SC1" => (b'i', 1),
-        "mono16" | "16UC1" => (b'u', 2),
-        "16SC1" => (b'i', 2),
-        "32SC1" => (b'i', 4),
-        "32FC1" => (b'f', 4),
-        "64FC1" => (b'f', 8),
+    let dtype = match cdr.text()? {
+        "mono8" | "8UC1" => Dtype::U8,
+        "8SC1" => Dtype::I8,
+        "mono16" | "16UC1" => Dtype::U16,
+        "16SC1" => Dtype::I16,
+        "32SC1" => Dtype::I32,
+        "32FC1" => Dtype::F32,
+        "64FC1" => Dtype::F64,
         _ => return Some(ImageFrame::OfCamera),
     };
     let big_endian = cdr.byte()? != 0;
+    let number = NumberType { dtype, big_endian };
     let step = usize::try_from(cdr.word()?).ok()?;
     let data = cdr.bytes()?;
     let Some(frame) = frame_size(width, height) else {
         return Some(ImageFrame::OfCamera);
     };
-    let line = usize::from(frame.columns()) * size;
+    let line = usize::from(frame.columns()) * dtype.width();
     values.clear();
     for row in 0..usize::from(frame.rows()) {
         let start = row.checked_mul(step)?;
         let bytes = data.get(start..start.checked_add(line)?)?;
-        let number = NumberType::new(kind, size, big_endian);
-        values.extend(bytes.chunks(size).map(|bytes| number.value(bytes)));
+        values.extend(number.values(bytes));
     }
     Some(ImageFrame::Values(frame))
 }
