@@ -28,6 +28,7 @@
 //! event            what a reader reports: channels, frames, notes
 //! metadata         the file beside a recording of taxel's own
 //! channel_choice   one channel of several, by its name
+//! channel_table    the channels of a recording, as they appear
 //! answer           a frame as a line of JSON
 //! side             numbers of rows and columns
 //! length           distances between cells, with their units
@@ -52,6 +53,8 @@ mod event;
 mod metadata;
 
 mod channel_choice;
+
+mod channel_table;
 
 mod answer;
 

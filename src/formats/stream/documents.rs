@@ -12,36 +12,28 @@ use crate::frame::{Frame, FrameSize};
 
 /// A decoder of JSON lines. Its channels and times continue after a gap.
 #[derive(Debug)]
-pub(super) struct JsonDecoder {
-    /// The frames and their channels.
-    frames: JsonFrames,
-    /// The number of channels that have been reported, which happens as soon as one has a name.
-    reported: usize,
-}
+pub(super) struct JsonDecoder(JsonFrames);
 
 impl JsonDecoder {
     /// Prepares for a stream; `named` is the size of a frame, if it was given.
     pub(super) fn new(named: Option<FrameSize>) -> Self {
-        Self {
-            frames: JsonFrames::new(named),
-            reported: 0,
-        }
+        Self(JsonFrames::new(named))
     }
 
     /// Prepares for the first line, or the first one after a gap. `clock` is the clock of the source.
     pub(super) fn begin(&mut self, clock: FrameClock) {
-        self.frames.clock.clock = clock;
-        self.frames.forget_sizes();
+        self.0.clock.clock = clock;
+        self.0.forget_sizes();
     }
 
     /// Returns the clock of the source.
     pub(super) fn clock(&self) -> FrameClock {
-        self.frames.clock.clock
+        self.0.clock.clock
     }
 
     /// Forgets the key of the time: another file may have another one.
     pub(super) fn forget_key(&mut self) {
-        self.frames.clock.forget_key();
+        self.0.clock.forget_key();
     }
 
     /// Decodes a line.
@@ -54,7 +46,7 @@ impl JsonDecoder {
         if line.trim_ascii().is_empty() {
             return;
         }
-        if let Err(error) = self.frames.read(line) {
+        if let Err(error) = self.0.read(line) {
             counts.drop_frames(1, line);
             match error {
                 FrameLineError::Wrong { message, .. } => counts.reason = Some(message),
@@ -64,23 +56,17 @@ impl JsonDecoder {
             }
             return;
         }
-        self.report_channels(sink);
-        if let Some(note) = self.frames.clock.clock.take_note() {
+        // A stream has channels as soon as one has a name.
+        if self.0.channels.has_names() {
+            for info in self.0.channels.take_new() {
+                sink(StreamEvent::Channel(info));
+            }
+        }
+        if let Some(note) = self.0.clock.clock.take_note() {
             sink(StreamEvent::Note(&note));
         }
         counts.frames += 1;
-        sink(StreamEvent::Frame(self.frames.frame()));
-    }
-
-    /// Reports the channels that are new, once one has a name.
-    fn report_channels(&mut self, sink: &mut StreamSink<'_>) {
-        let channels = || self.frames.channels();
-        if self.reported < channels().len() && channels().any(|info| info.name.is_some()) {
-            for info in channels().skip(self.reported) {
-                sink(StreamEvent::Channel(info));
-            }
-            self.reported = channels().len();
-        }
+        sink(StreamEvent::Frame(self.0.frame()));
     }
 }
 

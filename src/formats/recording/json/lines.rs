@@ -22,6 +22,7 @@ use serde_json::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Unexpected, Visitor};
 
 use crate::formats::json;
+use crate::formats::recording::channel_table::ChannelTable;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
@@ -43,16 +44,14 @@ pub(in crate::formats::recording) fn read(
 ) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let mut frames = JsonFrames::new(options.size);
-    let mut reported = 0;
     while lines.advance_to_content()? {
         if let Err(error) = frames.read(lines.line()) {
             options.damage(error.in_line(lines.number()), lines.line(), sink)?;
             continue;
         }
-        for info in frames.channels().skip(reported) {
+        for info in frames.channels.take_new() {
             sink(RecordingEvent::Channel(info))?;
         }
-        reported = frames.channels().len();
         if let Some(note) = frames.clock.clock.take_note() {
             sink(RecordingEvent::Note(&note))?;
         }
@@ -67,22 +66,13 @@ pub(in crate::formats) struct JsonFrames {
     /// The line that was read last.
     line: FrameLine,
     /// The channels so far.
-    channels: Vec<JsonChannel>,
+    pub(in crate::formats) channels: ChannelTable,
+    /// The rows and columns of the frames of each channel.
+    sizes: Vec<StreamSize>,
     /// The clock that reads the times of lines.
     pub(in crate::formats) clock: JsonClock,
     /// The frame made of the line.
     frame: Frame,
-}
-
-/// One of several sensors.
-#[derive(Debug)]
-struct JsonChannel {
-    /// The channel as its first frame described it.
-    info: ChannelInfo,
-    /// The rows and columns of its frames.
-    size: StreamSize,
-    /// The number of its frames.
-    frames: u64,
 }
 
 impl JsonFrames {
@@ -90,7 +80,8 @@ impl JsonFrames {
     pub(in crate::formats) fn new(named: Option<FrameSize>) -> Self {
         Self {
             line: FrameLine::new(named),
-            channels: Vec::new(),
+            channels: ChannelTable::new(MOST_CHANNELS, "channels"),
+            sizes: Vec::new(),
             clock: JsonClock::default(),
             frame: Frame::default(),
         }
@@ -103,49 +94,31 @@ impl JsonFrames {
     /// or is of one channel too many.
     pub(in crate::formats) fn read(&mut self, line: &[u8]) -> Result<(), FrameLineError> {
         if let Err(error) = self.line.read(line, &mut self.clock) {
-            for channel in &mut self.channels {
-                channel.size.pass_torn();
-            }
+            self.sizes.iter_mut().for_each(StreamSize::pass_torn);
             return Err(error);
         }
-        let index = self.channel()?;
-        let (line, channel) = (&self.line, &mut self.channels[index]);
-        let before = channel.size.present().unwrap_or(line.size);
-        if !channel.size.admits(line.size) {
+        let line = &self.line;
+        let info = || ChannelInfo {
+            size: Some(line.size),
+            ..ChannelInfo::default()
+        };
+        let channel = self.channels.index_of(line.channel.as_deref(), info);
+        let channel = channel.map_err(FrameLineError::of_line)?;
+        if channel == self.sizes.len() {
+            self.sizes.push(StreamSize::new(line.named));
+        }
+        let size = &mut self.sizes[channel];
+        let before = size.present().unwrap_or(line.size);
+        if !size.admits(line.size) {
             return Err(FrameLineError::of_line(changed(line.size, before)));
         }
         let frame = &mut self.frame;
         frame.reset(line.size);
         frame.values_mut().copy_from_slice(&line.values);
-        frame.channel = index;
-        frame.number = channel.frames;
+        self.channels.number(channel, frame);
         frame.label = line.label;
         frame.time = line.time.map(|time| self.clock.clock.since_first(time));
-        channel.frames += 1;
         Ok(())
-    }
-
-    /// Returns the index of the line's channel, which is added if it is new.
-    fn channel(&mut self) -> Result<usize, FrameLineError> {
-        let name = &self.line.channel;
-        let mut names = self.channels.iter().map(|channel| &channel.info.name);
-        if let Some(known) = names.position(|known| known == name) {
-            return Ok(known);
-        }
-        if self.channels.len() == MOST_CHANNELS {
-            let message = format!("more than {MOST_CHANNELS} channels");
-            return Err(FrameLineError::of_line(message));
-        }
-        self.channels.push(JsonChannel {
-            info: ChannelInfo {
-                name: name.clone(),
-                size: Some(self.line.size),
-                ..ChannelInfo::default()
-            },
-            size: StreamSize::new(self.line.named),
-            frames: 0,
-        });
-        Ok(self.channels.len() - 1)
     }
 
     /// Returns the frame of the last line.
@@ -153,16 +126,9 @@ impl JsonFrames {
         &self.frame
     }
 
-    /// Iterates over the channels so far.
-    pub(in crate::formats) fn channels(&self) -> impl ExactSizeIterator<Item = &ChannelInfo> {
-        self.channels.iter().map(|channel| &channel.info)
-    }
-
     /// Forgets the rows and columns of the channels: after a gap, the sensors may have been reconfigured.
     pub(in crate::formats) fn forget_sizes(&mut self) {
-        for channel in &mut self.channels {
-            channel.size = StreamSize::new(self.line.named);
-        }
+        self.sizes.fill(StreamSize::new(self.line.named));
     }
 }
 

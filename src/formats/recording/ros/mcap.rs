@@ -14,6 +14,7 @@ use std::rc::Rc;
 
 use crate::formats::framed::too_large;
 use crate::formats::npy::Dtype;
+use crate::formats::recording::channel_table::ChannelTable;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
@@ -30,16 +31,6 @@ use crate::parameter::number::counted;
 /// The most topics whose messages could have frames.
 const MOST_TOPICS: usize = 4096;
 
-/// A channel that has been reported.
-struct GivenChannel {
-    /// The topic, with the sensor of a tactile state after `#`.
-    name: String,
-    /// The size of its frames, if it is known.
-    size: Option<FrameSize>,
-    /// The number of its frames so far.
-    frames: u64,
-}
-
 /// The state of the reader: the names in the records so far, and the frame that is being filled.
 struct McapState<'a, 'b> {
     /// The given rows and columns, for messages that do not have them.
@@ -48,8 +39,8 @@ struct McapState<'a, 'b> {
     schemas: HashMap<u16, Option<MessageKind>>,
     /// The topics whose messages have frames, by number: the name, and the kind of message.
     topics: HashMap<u16, (Rc<str>, MessageKind)>,
-    /// The channels that have been reported.
-    given: Vec<GivenChannel>,
+    /// The channels so far.
+    channels: ChannelTable,
     /// The time of the first message with a frame, in nanoseconds.
     start: Option<u64>,
     /// The time of the current message, in nanoseconds.
@@ -76,7 +67,7 @@ pub(in crate::formats::recording) fn read(
         options,
         schemas: HashMap::new(),
         topics: HashMap::new(),
-        given: Vec::new(),
+        channels: ChannelTable::new(MOST_CHANNELS, "channels"),
         start: None,
         time: 0,
         values: Vec::new(),
@@ -84,7 +75,7 @@ pub(in crate::formats::recording) fn read(
         sink,
     };
     each_record(input, &mut |record| state.record(&record))?;
-    if state.given.is_empty() {
+    if state.start.is_none() {
         let message = "no messages with frames, expected std_msgs/*MultiArray, sensor_msgs/Image or \
                        tactile_msgs/TactileState";
         return Err(RecordingError::damaged(message).into());
@@ -198,42 +189,28 @@ impl McapState<'_, '_> {
         // Rows and columns that are given for one channel need not fit the others.
         let named = self.options.size.filter(|asked| asked.cells() == found);
         let size = size.or(named);
-        let channel = match self.given.iter().position(|own| own.name == name) {
-            Some(channel) => channel,
-            None if self.given.len() == MOST_CHANNELS => {
-                let message = format!("more than {MOST_CHANNELS} channels");
-                return Err(RecordingError::damaged(message).into());
-            }
-            None => {
-                check_name(name)?;
-                let info = ChannelInfo {
-                    name: Some(name.to_owned()),
-                    size,
-                    values: Some(found as u64),
-                    ..ChannelInfo::default()
-                };
-                self.given.push(GivenChannel {
-                    name: name.to_owned(),
-                    size,
-                    frames: 0,
-                });
-                (self.sink)(RecordingEvent::Channel(&info))?;
-                self.given.len() - 1
-            }
+        check_name(name)?;
+        let info = || ChannelInfo {
+            size,
+            values: Some(found as u64),
+            ..ChannelInfo::default()
         };
+        let channel = self.channels.index_of(Some(name), info);
+        let channel = channel.map_err(RecordingError::damaged)?;
+        for info in self.channels.take_new() {
+            (self.sink)(RecordingEvent::Channel(info))?;
+        }
         let start = *self.start.get_or_insert(self.time);
         #[expect(clippy::cast_precision_loss, reason = "a difference in nanoseconds")]
         let seconds = (i128::from(self.time) - i128::from(start)) as f64 / 1e9;
         self.frame.time = Some(seconds);
-        self.frame.channel = channel;
-        self.frame.number = self.given[channel].frames;
-        self.fill(name, size, self.given[channel].size)?;
+        self.channels.number(channel, &mut self.frame);
+        self.fill(name, size, self.channels.info(channel).size)?;
         let mut values = self.values.iter();
         if let Some(value) = values.find(|value| value.abs() > LARGEST_VALUE) {
             let message = format!("{name}: a value is {}", too_large(*value));
             return Err(RecordingError::damaged(message).into());
         }
-        self.given[channel].frames += 1;
         (self.sink)(RecordingEvent::Frame(&self.frame))
     }
 

@@ -25,6 +25,7 @@
 
 use std::io::BufRead;
 
+use crate::formats::recording::channel_table::ChannelTable;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, EarlyEnd, RecordingEvent, Sink};
 use crate::formats::recording::length::LengthUnit;
@@ -44,14 +45,6 @@ const MOST_SENSORS: usize = 64;
 
 /// The most bytes of a line with a key.
 const LONGEST_KEY: usize = 1 << 12;
-
-/// A sensor and the number of its frames so far.
-struct XsensorChannel {
-    /// The name from `SENSOR`; None if there is no such line.
-    name: Option<String>,
-    /// The number of frames so far, which is the number of the next one.
-    frames: u64,
-}
 
 /// The block of lines that is being read.
 #[derive(Default)]
@@ -114,8 +107,6 @@ struct XsensorState {
     width_mm: Option<f64>,
     /// `Sensel Height`: the pitch along y.
     height_mm: Option<f64>,
-    /// The sensors in the order of their first frames.
-    channels: Vec<XsensorChannel>,
 }
 
 /// Reads a recording.
@@ -130,6 +121,7 @@ pub(in crate::formats::recording) fn read(
 ) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let mut state = XsensorState::default();
+    let mut channels = ChannelTable::new(MOST_SENSORS, "sensors");
     let mut frame = Frame::default();
     let mut more = lines.advance_to_content()?;
     while more {
@@ -145,7 +137,7 @@ pub(in crate::formats::recording) fn read(
                 return Err(RecordingError::in_line(lines.number(), message).into());
             }
             let name = state.end_sensor();
-            state.give(name, &mut frame, sink, end)?;
+            state.give(name.as_deref(), &mut channels, &mut frame, sink, end)?;
             more = next?;
         } else {
             if is_value(&key) {
@@ -347,7 +339,8 @@ impl XsensorState {
     /// the memory.
     fn give(
         &mut self,
-        name: Option<String>,
+        name: Option<&str>,
+        channels: &mut ChannelTable,
         frame: &mut Frame,
         sink: &mut Sink<'_>,
         line: u64,
@@ -355,33 +348,20 @@ impl XsensorState {
         let moment = self.moment();
         let start = self.start.or(moment);
         self.start = start;
-        let known = self.channels.iter().position(|own| own.name == name);
-        let channel = match known {
-            Some(channel) => channel,
-            None if self.channels.len() == MOST_SENSORS => {
-                let message = format!("more than {MOST_SENSORS} sensors");
-                return Err(RecordingError::in_line(line, message).into());
-            }
-            None => {
-                let info = ChannelInfo {
-                    name: name.clone(),
-                    size: self.size(),
-                    values: None,
-                    unit: self.unit.clone(),
-                    start: self.beginning(),
-                    seconds_per_frame: None,
-                    pitch_mm: self.width_mm.zip(self.height_mm).map(|(x, y)| [x, y]),
-                    threshold: self.threshold,
-                    ..ChannelInfo::default()
-                };
-                self.channels.push(XsensorChannel { name, frames: 0 });
-                sink(RecordingEvent::Channel(&info))?;
-                self.channels.len() - 1
-            }
+        let info = || ChannelInfo {
+            size: self.size(),
+            unit: self.unit.clone(),
+            start: self.beginning(),
+            pitch_mm: self.width_mm.zip(self.height_mm).map(|(x, y)| [x, y]),
+            threshold: self.threshold,
+            ..ChannelInfo::default()
         };
-        frame.channel = channel;
-        frame.number = self.channels[channel].frames;
-        self.channels[channel].frames += 1;
+        let channel = channels.index_of(name, info);
+        let channel = channel.map_err(|message| RecordingError::in_line(line, message))?;
+        for info in channels.take_new() {
+            sink(RecordingEvent::Channel(info))?;
+        }
+        channels.number(channel, frame);
         frame.label = self.label;
         frame.time = moment
             .zip(start)
