@@ -363,8 +363,8 @@ pub(crate) fn write(
     file.finish()?.persist()
 }
 
-/// Returns the folder that contains a file.
-fn folder_of(path: &Path) -> &Path {
+/// Returns the folder that contains a file: `.` if the path is only a name.
+pub(crate) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::formats::shape::MAX_BYTES;
 use crate::storage::access::share;
-use crate::storage::atomic_file::{kind_in_words, sync_folder};
+use crate::storage::atomic_file::{folder_of, kind_in_words, sync_folder};
 use crate::storage::error::{FileError, LibraryError};
 
 /// The name of the folder inside a library with its deleted shapes.
@@ -137,8 +137,7 @@ pub(crate) fn make(path: &Path) -> Result<(), LibraryError> {
     if path.as_os_str().is_empty() || path.is_dir() {
         return Ok(());
     }
-    let parent = path.parent().unwrap_or(Path::new(""));
-    make(parent)?;
+    make(path.parent().unwrap_or(Path::new("")))?;
     match fs::create_dir(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
             // Another program was faster, or something else has the name.
@@ -150,12 +149,7 @@ pub(crate) fn make(path: &Path) -> Result<(), LibraryError> {
         }
         made => made.map_err(|error| FileError::new("make the folder", path, error))?,
     }
-    let parent = if parent.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        parent
-    };
-    Ok(sync_folder(parent)?)
+    Ok(sync_folder(folder_of(path))?)
 }
 
 /// A folder inside the library. It is no link: a link would lead out of the library, to files of others.

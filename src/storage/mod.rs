@@ -85,6 +85,9 @@ pub(crate) use file_id::FileId;
 #[cfg(feature = "acquire")]
 pub(crate) use atomic_file::persist_beside;
 
+#[cfg(feature = "cli")]
+pub(crate) use atomic_file::folder_of;
+
 pub use error::FileError;
 
 #[cfg(feature = "tui")]

@@ -17,7 +17,7 @@
 use std::collections::{HashMap, HashSet};
 use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::cli::arguments::program::Script;
 use crate::cli::commands::export;
@@ -29,6 +29,7 @@ use crate::cli::settings::resolved::Effective;
 use crate::formats::Name;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::name::folded;
+use crate::storage;
 use crate::tui::app::state::Options;
 use crate::tui::keys::key::parse;
 use crate::tui::runtime::World;
@@ -123,12 +124,10 @@ fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOpti
 /// input. None with `--allow-outside`, and for keys alone, which are the user's own.
 fn folder_of(asked: &Script) -> Option<PathBuf> {
     let source = asked.source.as_ref().filter(|_| !asked.allow_outside)?;
-    let own = match source {
-        InputSource::File(path) => path.parent(),
-        InputSource::Standard => None,
-    };
-    let own = own.filter(|folder| !folder.as_os_str().is_empty());
-    Some(own.unwrap_or(Path::new(".")).to_owned())
+    Some(match source {
+        InputSource::File(path) => storage::folder_of(path).to_owned(),
+        InputSource::Standard => PathBuf::from("."),
+    })
 }
 
 /// Prints a text at once; draws a screen, if there is a folder for drawings.
