@@ -8,7 +8,6 @@ use std::hint::black_box;
 
 use taxel::prelude::*;
 use taxel::recognition::{Model, ModelHead, NamedShape, Noise, ShapeCount};
-use taxel::sweep::Shard;
 
 use timing::{Least, Work, in_turn};
 
@@ -29,8 +28,8 @@ fn model(keys: usize) -> Model {
         "blobs",
         Figure::rectangle(6.0, 5.0).on(&sensor).expect("in range"),
     );
-    let poses = (Anchor::Centre, Ranges::default());
-    let head = ModelHead::new(vec![shape], sensor, poses, (Shard::WHOLE, keys as u64));
+    let (anchor, ranges) = (Anchor::Centre, Ranges::default());
+    let head = ModelHead::new(vec![shape], sensor, anchor, ranges, keys as u64);
     let mut keys_and_counts = Vec::with_capacity(keys);
     let mut state = 1;
     let mut seen = std::collections::HashSet::new();

@@ -176,9 +176,9 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
         &header.zoom_x,
         &header.zoom_y,
     ];
-    let poses = (anchor(&header.anchor)?, ranges(texts.map(String::as_str))?);
-    let part = (header.shard.parse()?, header.poses);
-    let mut head = ModelHead::new(shapes, sensor, poses, part);
+    let (anchor, ranges) = (anchor(&header.anchor)?, ranges(texts.map(String::as_str))?);
+    let mut head = ModelHead::new(shapes, sensor, anchor, ranges, header.poses);
+    head.shard = header.shard.parse()?;
     head.cut = header.shapes.iter().map(|shape| shape.cut).collect();
     let keys = keys(&mut archive)?;
     let counts = counts(&mut archive, keys.len())?;

@@ -225,7 +225,6 @@ mod tests {
     use crate::pose::{Anchor, Axis, Ranges};
     use crate::recognition::model::{ModelHead, NamedShape};
     use crate::sensor::Sensor;
-    use crate::sweep::Shard;
 
     /// A whole matrix would take 6.4 GB.
     #[test]
@@ -240,13 +239,8 @@ mod tests {
             .fold(Ranges::default(), |all, (axis, at)| {
                 all.with(axis, at.parse().expect("a range"))
             });
-        let poses = (Anchor::Centre, ranges);
-        let head = ModelHead::new(
-            shapes.collect(),
-            Sensor::default(),
-            poses,
-            (Shard::WHOLE, 1),
-        );
+        let (shapes, sensor) = (shapes.collect(), Sensor::default());
+        let head = ModelHead::new(shapes, sensor, Anchor::Centre, ranges, 1);
         let counts = (0..SHAPES).map(|shape| ShapeCount::new(shape, 1));
         let keys = [("####\n####".parse().ok(), counts.collect())];
         let limit = Evaluation::of(&Model::from_parts(head, &keys).expect("a model"));

@@ -115,12 +115,14 @@ pub struct ModelHead {
 }
 
 impl ModelHead {
-    /// Creates a head for shapes that the sensor never cuts off.
+    /// Creates a head of a whole training, of shapes that the sensor never cuts off; `poses` is the number of poses of
+    /// each shape in the ranges.
     pub fn new(
         shapes: Vec<NamedShape>,
         sensor: Sensor,
-        (anchor, ranges): (Anchor, Ranges),
-        (shard, poses): (Shard, u64),
+        anchor: Anchor,
+        ranges: Ranges,
+        poses: u64,
     ) -> Self {
         Self {
             cut: vec![0; shapes.len()],
@@ -128,7 +130,7 @@ impl ModelHead {
             sensor,
             anchor,
             ranges,
-            shard,
+            shard: Shard::WHOLE,
             poses,
         }
     }

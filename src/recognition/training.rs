@@ -215,9 +215,9 @@ impl<'a> Training<'a> {
             poses = counted.poses;
         }
         let grid = &self.grids[0];
-        let poses_of = (grid.anchor(), *grid.ranges());
-        let mut head = ModelHead::new(self.shapes, *grid.sensor(), poses_of, (self.shard, poses));
-        head.cut = cut;
+        let (sensor, ranges) = (*grid.sensor(), *grid.ranges());
+        let mut head = ModelHead::new(self.shapes, sensor, grid.anchor(), ranges, poses);
+        (head.shard, head.cut) = (self.shard, cut);
         let counts = |index: usize| gathered.counts[index].iter().copied();
         Ok(Model::of_table(head, &gathered.keys, counts)?)
     }

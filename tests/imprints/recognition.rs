@@ -568,9 +568,9 @@ fn the_evaluation_of_a_shard_without_poses_has_numbers() {
 fn a_model_with_another_number_of_poses_than_its_ranges_is_refused() {
     let disc = Figure::ellipse(2.0, 2.0).on(&sensor(16)).expect("in range");
     let model = |poses| {
-        let grid = (Anchor::Corner, ranges("5:5.1:0.1", "5", "0"));
+        let ranges = ranges("5:5.1:0.1", "5", "0");
         let shapes = vec![NamedShape::new("disc", disc)];
-        let head = ModelHead::new(shapes, sensor(16), grid, (Shard::WHOLE, poses));
+        let head = ModelHead::new(shapes, sensor(16), Anchor::Corner, ranges, poses);
         let key = "#".parse().expect("an imprint");
         Model::from_parts(head, &[(Some(key), vec![ShapeCount::new(0, poses)])])
     };
