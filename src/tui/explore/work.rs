@@ -137,19 +137,14 @@ pub(in crate::tui) fn in_ranges(
     message: Message,
 ) -> Option<Effect> {
     match message {
-        Message::Accept => match form.grid().cloned().map_err(Clone::clone) {
+        Message::Accept => match form.accepted() {
             Ok(grid) => {
                 app.forms.note_ranges(form.remembered());
                 return Some(start(app, grid));
             }
-            Err(trouble) => {
-                if trouble.field.is_some() {
-                    form.set_focus(trouble.field);
-                }
-                refuse(app, trouble.full);
-            }
+            Err(error) => refuse(app, error.full),
         },
-        Message::Type(character) if form.focus().is_none() && character != ' ' => {
+        Message::Type(character) if form.form().focus().is_none() && character != ' ' => {
             refuse(app, "an arrow or Space chooses the other anchor");
         }
         message => form.take(&message),

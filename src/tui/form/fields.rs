@@ -1,13 +1,12 @@
 //! Fields of parameters. They know the table of parameters but no shapes.
 //!
-//! A [`ParameterField`] is the text of one parameter; a [`ParameterForm`] is a list of them, one of which may have
-//! the focus. A field converts its text when it is asked for its value, and never keeps a value beside the text, so
-//! the visible text is what counts. The exception is the initial value of a field, which stays exact as long as its
-//! text is not changed. A field allows the same values as files, flags and commands.
+//! A [`ParameterField`] is the text of one parameter. It converts its text when it is asked for its value, and never
+//! keeps a value beside the text, so the visible text is what counts. The exception is its initial value, which stays
+//! exact as long as the text is not changed. A field allows the same values as files, flags and commands.
 
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
-use crate::tui::app::message::Message;
+use crate::tui::widget::field_list::{FieldList, FormError, FormField};
 use crate::tui::widget::text_field::TextField;
 
 /// The greatest number of characters in a field.
@@ -44,29 +43,14 @@ impl ParameterField {
         }
     }
 
-    /// Returns the parameter that the field sets.
-    pub fn parameter(&self) -> Parameter {
-        self.parameter
-    }
-
     /// Whether it may be empty.
     pub fn optional(&self) -> bool {
         self.optional
     }
 
-    /// Returns the text of the field.
-    pub fn text(&self) -> &str {
-        self.input.text()
-    }
-
     /// Returns true if the text differs from the initial one.
     pub fn changed(&self) -> bool {
         self.text() != self.initial_text
-    }
-
-    /// Returns the text with its cursor.
-    pub fn input(&self) -> &TextField {
-        &self.input
     }
 
     /// Whether the next character replaces the text.
@@ -111,85 +95,38 @@ impl ParameterField {
     }
 }
 
-/// A list of fields. One of them has the focus, or none if something beside the form has it.
-#[derive(Clone, Debug)]
-pub struct ParameterForm {
-    /// The fields, from the top.
-    fields: Vec<ParameterField>,
-    /// The index of the field that has the focus.
-    focus: Option<usize>,
-    /// The sensor, which bounds the values.
-    sensor: Sensor,
+impl FormField for ParameterField {
+    fn parameter(&self) -> Parameter {
+        self.parameter
+    }
+
+    fn input(&self) -> &TextField {
+        &self.input
+    }
+
+    fn input_mut(&mut self) -> &mut TextField {
+        &mut self.input
+    }
+
+    fn error(&self, sensor: &Sensor) -> Option<FormError> {
+        self.value(sensor).err().map(FormError::from)
+    }
 }
 
-impl ParameterForm {
-    /// Creates a form for a sensor; no field has the focus.
-    pub fn new(fields: Vec<ParameterField>, sensor: Sensor) -> Self {
-        Self {
-            fields,
-            focus: None,
-            sensor,
-        }
-    }
+/// The fields of a figure, a picture or the sensor.
+pub type ParameterFields = FieldList<ParameterField>;
 
-    /// Returns the fields, from the top.
-    pub fn fields(&self) -> &[ParameterField] {
-        &self.fields
-    }
-
-    /// Returns the fields and drops the form.
-    pub fn into_fields(self) -> Vec<ParameterField> {
-        self.fields
-    }
-
-    /// Returns the sensor, which bounds the values.
-    pub fn sensor(&self) -> &Sensor {
-        &self.sensor
-    }
-
-    /// Returns the index of the field with the focus.
-    pub fn focus(&self) -> Option<usize> {
-        self.focus
-    }
-
-    /// Gives the focus to a field, or to none.
-    pub fn set_focus(&mut self, focus: Option<usize>) {
-        self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
-        if let Some(field) = self.focused() {
-            field.input.enter();
-        }
-    }
-
+impl ParameterFields {
     /// Returns the value of a parameter; None if its field is empty, invalid or missing.
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
-        let field = self
-            .fields
-            .iter()
-            .find(|field| field.parameter == parameter)?;
-        field.value(&self.sensor).ok().flatten()
-    }
-
-    /// Returns the index of the first invalid field, and its error.
-    pub fn error(&self) -> Option<(usize, ParameterError)> {
-        let mut fields = self.fields.iter().enumerate();
-        fields.find_map(|(index, field)| Some((index, field.value(&self.sensor).err()?)))
-    }
-
-    /// Returns the field with the focus.
-    fn focused(&mut self) -> Option<&mut ParameterField> {
-        self.fields.get_mut(self.focus?)
-    }
-
-    /// Passes a message to the field with the focus: it types, moves the cursor or deletes.
-    pub fn take(&mut self, message: &Message) {
-        if let Some(field) = self.focused() {
-            field.input.take(message);
-        }
+        let mut fields = self.fields().iter();
+        let field = fields.find(|field| field.parameter == parameter)?;
+        field.value(self.sensor()).ok().flatten()
     }
 
     /// Changes the number in the field with the focus by one unit of its last decimal.
     pub fn step(&mut self, direction: i8) {
-        let sensor = self.sensor;
+        let sensor = *self.sensor();
         if let Some(field) = self.focused() {
             field.step(direction, &sensor);
         }

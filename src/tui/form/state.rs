@@ -8,16 +8,15 @@
 use crate::figure::{Figure, FigureKind};
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
-use crate::parameter::{Parameter, ParameterError};
+use crate::parameter::Parameter;
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::form::fields::{ParameterField, ParameterForm};
+use crate::tui::form::fields::{ParameterField, ParameterFields};
 use crate::tui::form::memory::FormMemory;
-use crate::tui::keys::key::Arrow;
-use crate::tui::widget::number::around;
+use crate::tui::widget::field_list::FormField;
 
 /// The subject of a form.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +35,7 @@ pub struct FormDialog {
     /// The subject of the form.
     subject: FormSubject,
     /// The fields of the subject.
-    form: ParameterForm,
+    form: ParameterFields,
     /// Fields of other kinds of figure, kept as they were typed.
     hidden: Vec<ParameterField>,
     /// The values of the figures accepted so far.
@@ -100,7 +99,7 @@ impl FormDialog {
 
     /// Creates a form that shows a document; no field has the focus.
     fn new(subject: FormSubject, before: &Document, shown: Document) -> Self {
-        let form = ParameterForm::new(Vec::new(), before.sensor);
+        let form = ParameterFields::new(Vec::new(), false, before.sensor);
         let mut dialog = Self {
             subject,
             form,
@@ -139,7 +138,7 @@ impl FormDialog {
     }
 
     /// Returns the fields.
-    pub fn form(&self) -> &ParameterForm {
+    pub fn form(&self) -> &ParameterFields {
         &self.form
     }
 
@@ -169,9 +168,7 @@ impl FormDialog {
     fn fill(&mut self) {
         let (sensor, focus) = (*self.form.sensor(), self.form.focus());
         let mut known = std::mem::take(&mut self.hidden);
-        known.extend(
-            std::mem::replace(&mut self.form, ParameterForm::new(Vec::new(), sensor)).into_fields(),
-        );
+        known.extend(self.form.take_fields());
         // A figure of another kind is another figure: it does not take over values of the one on the matrix.
         known.retain(ParameterField::changed);
         let parameters = self.parameters();
@@ -186,7 +183,7 @@ impl FormDialog {
         });
         let fields = fields.collect();
         self.hidden = known;
-        self.form = ParameterForm::new(fields, sensor);
+        self.form = ParameterFields::new(fields, self.kind().is_some(), sensor);
         self.form.set_focus(focus);
     }
 
@@ -227,15 +224,15 @@ impl FormDialog {
         // Other kinds of figure, too, begin with their defaults from now on.
         self.memory = FormMemory::default();
         self.hidden.clear();
-        self.form = ParameterForm::new(Vec::new(), sensor);
+        self.form.take_fields();
         self.fill();
         self.edit(|form| form.set_focus(focus));
     }
 
     /// Changes the fields by `change`, and updates the document that the matrix shows.
-    pub fn edit(&mut self, change: impl FnOnce(&mut ParameterForm)) {
+    pub fn edit(&mut self, change: impl FnOnce(&mut ParameterFields)) {
         change(&mut self.form);
-        if let Ok(document) = self.made() {
+        if let Some(document) = self.made() {
             self.shown = document;
             let typed = self.form.focus().and_then(|at| self.form.fields().get(at));
             if typed.is_none_or(ParameterField::fresh) {
@@ -246,57 +243,32 @@ impl FormDialog {
         }
     }
 
-    /// Returns the document that the fields make, or the error of the first invalid field.
-    fn made(&self) -> Result<Document, ParameterError> {
-        if let Some((_, error)) = self.form.error() {
-            return Err(error);
+    /// Returns the document that the fields make; None if a field is invalid.
+    fn made(&self) -> Option<Document> {
+        if self.form.error().is_some() {
+            return None;
         }
         let sensor = self.before.sensor;
         let value = |parameter: Parameter| self.form.value(parameter);
         match &self.subject {
             FormSubject::Figure(kind) => {
-                let figure = Figure::new(*kind, &sensor, value)?;
-                Ok(Document::touched(sensor, Source::Figure(figure)))
+                let figure = Figure::new(*kind, &sensor, value).ok()?;
+                Some(Document::touched(sensor, Source::Figure(figure)))
             }
             FormSubject::Picture(name, imprint) => {
-                let picture = Picture::new(**imprint, &sensor, value)?.named(name);
-                Ok(Document::touched(sensor, Source::Picture(picture)))
+                let picture = Picture::new(**imprint, &sensor, value).ok()?;
+                let source = Source::Picture(picture.named(name));
+                Some(Document::touched(sensor, source))
             }
             FormSubject::Sensor => {
-                let own = self
-                    .parameters()
-                    .into_iter()
-                    .filter_map(|parameter| Some((parameter, value(parameter)?)));
-                let sensor = own
-                    .into_iter()
-                    .try_fold(sensor, |sensor: Sensor, (parameter, value)| {
-                        sensor.with(parameter, value)
-                    })?;
-                Ok(self.before.on(sensor))
+                let mut sensor = sensor;
+                for parameter in self.parameters() {
+                    if let Some(value) = value(parameter) {
+                        sensor = sensor.with(parameter, value).ok()?;
+                    }
+                }
+                Some(self.before.on(sensor))
             }
-        }
-    }
-
-    /// Moves the focus by `by` rows. The kind is the row above the fields; after the last row comes the first.
-    pub fn move_focus(&mut self, by: i8) {
-        let head = usize::from(self.kind().is_some());
-        let now = self.form.focus().map_or(0, |index| index + head);
-        let next = around(now, by, self.form.fields().len() + head);
-        self.edit(|form| form.set_focus(next.checked_sub(head)));
-    }
-
-    /// Handles an arrow: chooses the kind, moves in a field or to another field.
-    pub fn choose(&mut self, arrow: Arrow) {
-        match (self.form.focus(), arrow) {
-            (None, Arrow::Left) => {
-                self.next_kind(FigureKind::ALL.len() - 1, |_| true);
-            }
-            (None, Arrow::Right) => {
-                self.next_kind(1, |_| true);
-            }
-            (Some(_), Arrow::Left | Arrow::Right) => self.form.take(&Message::Choose(arrow)),
-            (_, Arrow::Up) => self.move_focus(-1),
-            (_, Arrow::Down) => self.move_focus(1),
         }
     }
 
@@ -305,7 +277,7 @@ impl FormDialog {
     /// no kind begins with the character.
     pub fn insert(&mut self, character: char) -> bool {
         if self.form.focus().is_none() && begins_number(character) {
-            self.move_focus(1);
+            self.edit(|form| form.move_focus(1));
         }
         if self.form.focus().is_some() {
             self.edit(|form| form.take(&Message::Type(character)));
@@ -321,13 +293,23 @@ impl FormDialog {
         let name = text.trim().to_lowercase();
         let on_kind = self.form.focus().is_none() && self.kind().is_some();
         if on_kind && name.starts_with(begins_number) {
-            self.move_focus(1);
+            self.edit(|form| form.move_focus(1));
         } else if on_kind {
             let kind = name.parse().ok();
             return self.next_kind(1, |other| Some(other) == kind);
         }
         self.edit(|form| form.take(&Message::Paste(text.to_owned())));
         true
+    }
+
+    /// Chooses the next kind; the previous one if `backwards`.
+    pub fn choose_kind(&mut self, backwards: bool) {
+        let step = if backwards {
+            FigureKind::ALL.len() - 1
+        } else {
+            1
+        };
+        self.next_kind(step, |_| true);
     }
 
     /// Chooses the first kind that fits, in steps of `step` from the present one; returns false if none fits.

@@ -19,6 +19,7 @@ pub(in crate::tui) fn update(
     mut dialog: Box<FormDialog>,
     message: Message,
 ) -> Option<Effect> {
+    let on_kind = dialog.form().focus().is_none();
     match message {
         Message::Accept => match dialog.form().error() {
             None => {
@@ -30,14 +31,14 @@ pub(in crate::tui) fn update(
             }
             Some((index, error)) => {
                 dialog.edit(|form| form.set_focus(Some(index)));
-                refuse(app, error.labelled());
+                refuse(app, error.full);
             }
         },
-        Message::Field(by) => dialog.move_focus(by),
         // A click on the kind, if it already has the focus, chooses the next kind.
-        Message::ToField(None) if dialog.form().focus().is_none() => dialog.choose(Arrow::Right),
-        Message::ToField(field) => dialog.edit(|form| form.set_focus(field)),
-        Message::Choose(arrow) => dialog.choose(arrow),
+        Message::ToField(None) | Message::Choose(Arrow::Right) if on_kind => {
+            dialog.choose_kind(false);
+        }
+        Message::Choose(Arrow::Left) if on_kind => dialog.choose_kind(true),
         Message::Type(character) => {
             if !dialog.insert(character) {
                 let kind = quoted_character(character);
@@ -53,9 +54,7 @@ pub(in crate::tui) fn update(
             }
         }
         Message::Defaults => dialog.set_defaults(),
-        Message::Step(_) | Message::Erase(_) | Message::ToEdge(_)
-            if dialog.form().focus().is_none() =>
-        {
+        Message::Step(_) | Message::Erase(_) | Message::ToEdge(_) if on_kind => {
             inform(app, "an arrow or a letter chooses the kind");
         }
         Message::Step(direction) => dialog.edit(|form| form.step(direction)),

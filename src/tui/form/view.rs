@@ -24,7 +24,8 @@ use crate::tui::form::state::FormDialog;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::field_rows::{FieldRow, FieldRows};
+use crate::tui::widget::field_list::FormField;
+use crate::tui::widget::field_rows::FieldRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -97,20 +98,8 @@ fn draw(theme: &Theme, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
         draw_kind(theme, kind, focused, buffer, row);
         cursor = focused.then(|| row.as_position());
     }
-    for (index, place) in rows.visible() {
-        let field = &form.fields()[index];
-        let error = field.value(form.sensor()).err();
-        let row = FieldRow {
-            parameter: field.parameter(),
-            field: field.input(),
-            focused: form.focus() == Some(index),
-            range: form.sensor().range(field.parameter()),
-            remark: remark(field, dialog),
-            error: error.map(|error| error.expected()),
-        };
-        let at = row.draw(theme, (LABEL, INPUT), buffer, place);
-        cursor = cursor.or(row.focused.then_some(at));
-    }
+    let remark = |field: &ParameterField| remark(field, dialog);
+    cursor = cursor.or(rows.draw(theme, form, (LABEL, INPUT), remark, buffer));
     if let Some(warning) = dialog.warning() {
         let warning = format!("! {warning}");
         write::wrapped(buffer, rows.rest(area), theme, &warning, Role::Error);

@@ -13,9 +13,9 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::parameter::{Parameter, Range};
+use crate::parameter::Range;
+use crate::tui::widget::field_list::{FieldList, FormField};
 use crate::tui::widget::number::narrow;
-use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -51,6 +51,36 @@ impl FieldRows {
         }
     }
 
+    /// Draws the fields of a list into the first rows, with this many columns for labels and texts, and with remarks
+    /// that say whether they are about the present value. Returns the position of the text cursor; None if no visible
+    /// field has the focus.
+    pub fn draw<F: FormField>(
+        &self,
+        theme: &Theme,
+        list: &FieldList<F>,
+        widths: (usize, usize),
+        remark: impl Fn(&F) -> Option<(&'static str, bool)>,
+        buffer: &mut Buffer,
+    ) -> Option<Position> {
+        let mut cursor = None;
+        for (index, place) in self.visible() {
+            let Some(field) = list.fields().get(index) else {
+                break;
+            };
+            let focused = list.focus() == Some(index);
+            let row = FieldRow {
+                field,
+                focused,
+                range: list.sensor().range(field.parameter()),
+                remark: remark(field),
+                error: field.error(list.sensor()).map(|error| error.brief),
+            };
+            let at = row.draw(theme, widths, buffer, place);
+            cursor = cursor.or(focused.then_some(at));
+        }
+        cursor
+    }
+
     /// Returns the index of each visible row, with its lines.
     pub fn visible(&self) -> impl Iterator<Item = (usize, Rect)> {
         let rows = *self;
@@ -77,25 +107,23 @@ impl FieldRows {
 
 /// A field as a row of a form shows it.
 #[derive(Clone, Debug)]
-pub struct FieldRow<'a> {
-    /// The parameter that the field is about.
-    pub parameter: Parameter,
-    /// The text.
-    pub field: &'a TextField,
+struct FieldRow<'a, F> {
+    /// The field.
+    field: &'a F,
     /// Whether the field has the focus.
-    pub focused: bool,
+    focused: bool,
     /// The allowed values.
-    pub range: Range,
+    range: Range,
     /// A remark, and whether it is about the present value.
-    pub remark: Option<(&'a str, bool)>,
+    remark: Option<(&'static str, bool)>,
     /// The error in the text; None if it is valid.
-    pub error: Option<String>,
+    error: Option<String>,
 }
 
-impl FieldRow<'_> {
+impl<F: FormField> FieldRow<'_, F> {
     /// Draws the row, with this many columns for the label and for the text. Returns the position that the text
     /// cursor has in the field.
-    pub fn draw(
+    fn draw(
         &self,
         theme: &Theme,
         (label, input): (usize, usize),
@@ -103,14 +131,18 @@ impl FieldRow<'_> {
         area: Rect,
     ) -> Position {
         // Without the focus a field is shown from its start; with the focus, its cursor must be visible.
-        let at = if self.focused { self.field.cursor() } else { 0 };
+        let at = if self.focused {
+            self.field.input().cursor()
+        } else {
+            0
+        };
         let (shown, cursor) = write::field_columns(self.field.text(), at, input, theme);
         let role = if self.focused {
             Role::Focus
         } else {
             Role::Text
         };
-        let name = format!("{:label$}", self.parameter.row().label);
+        let name = format!("{:label$}", self.field.parameter().row().label);
         let line = write::row(area, 0);
         write::line(buffer, line, theme, [(&*name, Role::Text), (&*shown, role)]);
         let beside = write::right_of(line, area.x.saturating_add(narrow(label + input + 1)));
@@ -138,7 +170,7 @@ impl FieldRow<'_> {
     /// first, then the remark, or the range if the remark is about the present value.
     fn draw_range(&self, theme: &Theme, buffer: &mut Buffer, area: Rect, under: Option<Rect>) {
         let bare = self.range.to_string();
-        let range = self.parameter.row().unit.after(&bare);
+        let range = self.field.parameter().row().unit.after(&bare);
         let mut write = |area: Rect, texts: &[&str]| {
             let text = write::first_fitting(texts, usize::from(area.width));
             write::line(buffer, area, theme, [(text, Role::Quiet)]);

@@ -8,7 +8,7 @@
 use std::time::Duration;
 
 use crate::formats::value::{counted, grouped};
-use crate::parameter::{Parameter, Range};
+use crate::parameter::Parameter;
 use crate::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, GridError, MAX_POSES, PoseGrid, Ranges, default_ranges,
 };
@@ -19,7 +19,7 @@ use crate::tui::app::message::Message;
 use crate::tui::explore::message::name_of;
 use crate::tui::form::memory::RememberedRanges;
 use crate::tui::keys::key::Arrow;
-use crate::tui::widget::number::around;
+use crate::tui::widget::field_list::{FieldList, FormError, FormField};
 use crate::tui::widget::text_field::TextField;
 
 /// The maximum number of characters of a field.
@@ -40,32 +40,33 @@ pub struct RangeField {
     proposed: Option<String>,
 }
 
-impl RangeField {
-    /// Returns the parameter of the axis.
-    pub fn parameter(&self) -> Parameter {
+impl FormField for RangeField {
+    fn parameter(&self) -> Parameter {
         self.axis.parameter()
     }
 
-    /// Returns the text.
-    pub fn text(&self) -> &str {
-        self.input.text()
-    }
-
-    /// Returns the text with its cursor.
-    pub fn input(&self) -> &TextField {
+    fn input(&self) -> &TextField {
         &self.input
     }
-}
 
-/// An error in the ranges.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RangesError {
-    /// The index of the wrong field; None if all fields together are wrong, such as too many poses.
-    pub field: Option<usize>,
-    /// The message beside the field; it may have several lines if it is about all fields.
-    pub brief: String,
-    /// The message with the field's name.
-    pub full: String,
+    fn input_mut(&mut self) -> &mut TextField {
+        &mut self.input
+    }
+
+    fn error(&self, sensor: &Sensor) -> Option<FormError> {
+        let range: DecimalRange = match self.text().parse() {
+            Ok(range) => range,
+            Err(error) => {
+                return Some(FormError {
+                    brief: error.expected(),
+                    full: format!("{}: {error}", self.parameter().row().label),
+                });
+            }
+        };
+        let mut ends = [range.value(0), range.last()].into_iter();
+        let error = ends.find_map(|value| sensor.check(self.parameter(), value).err());
+        error.map(FormError::from)
+    }
 }
 
 /// The form of ranges.
@@ -73,18 +74,14 @@ pub struct RangesError {
 pub struct RangesForm {
     /// The source to sweep.
     source: Source,
-    /// The sensor, which bounds the values.
-    sensor: Sensor,
+    /// A field for each axis of the source; the anchor, below them, has the focus if none of them has it.
+    form: FieldList<RangeField>,
     /// The anchor: the point of the shape that x0 and y0 place.
     anchor: Anchor,
-    /// A field for each axis of the source.
-    fields: Vec<RangeField>,
-    /// The index of the field that has the focus; None for the anchor, below the fields.
-    focus: Option<usize>,
     /// The number of taxels that were set by hand, which the sweep ignores.
     by_hand: u32,
     /// The grid of the fields, or their first error.
-    grid: Result<PoseGrid, RangesError>,
+    grid: Result<PoseGrid, FormError>,
     /// The last measured grid, the number of its poses that are cut off, and its time.
     measured: Option<Measured>,
 }
@@ -131,7 +128,7 @@ impl RangesForm {
             input: TextField::new(known(axis).unwrap_or(ranges[axis]).to_string(), LONGEST),
             proposed: None,
         });
-        let fields: Vec<RangeField> = fields.collect();
+        let form = FieldList::new(fields.collect(), true, sensor);
         let typed: Vec<Axis> = Axis::of(&source)
             .filter(|&axis| known(axis).is_some())
             .collect();
@@ -141,31 +138,29 @@ impl RangesForm {
             (None, None) => Anchor::default(),
         };
         let mut form = Self {
-            grid: grid_of(&fields, &source, sensor, anchor),
-            fields,
+            grid: grid_of(&form, &source, anchor),
+            form,
             source,
-            sensor,
             anchor,
-            focus: None,
             by_hand,
             measured: None,
         };
         if earlier.is_none() {
-            for field in &mut form.fields {
+            for field in form.form.fields_mut() {
                 let proposed = field.axis != Axis::Angle;
                 let proposed = proposed && typed.iter().all(|axis| *axis != field.axis);
-                field.proposed = proposed.then(|| field.input.text().to_owned());
+                field.proposed = proposed.then(|| field.text().to_owned());
             }
             form.follow();
         }
-        form.set_focus(Some(0));
+        form.form.set_focus(Some(0));
         form
     }
 
     /// Brings the proposals and the grid up to date after a change of a field or of the anchor.
     fn follow(&mut self) {
         self.propose();
-        self.grid = grid_of(&self.fields, &self.source, self.sensor, self.anchor);
+        self.grid = grid_of(&self.form, &self.source, self.anchor);
     }
 
     /// Proposes ranges for x0 and y0 that fit the shape at the angles and zooms of the other fields, unless other
@@ -173,7 +168,7 @@ impl RangesForm {
     fn propose(&mut self) {
         let mut given = GivenRanges::default();
         let mut orientations = 1;
-        for field in &mut self.fields {
+        for field in self.form.fields_mut() {
             field.proposed = field
                 .proposed
                 .take()
@@ -181,7 +176,7 @@ impl RangesForm {
             if field.proposed.is_some() {
                 continue;
             }
-            let Ok(range) = field.input.text().parse::<DecimalRange>() else {
+            let Ok(range) = field.text().parse::<DecimalRange>() else {
                 return;
             };
             if !matches!(field.axis, Axis::X0 | Axis::Y0) {
@@ -192,9 +187,9 @@ impl RangesForm {
         if orientations > MOST_ORIENTATIONS {
             return;
         }
-        let ranges = default_ranges(&self.source, &self.sensor, self.anchor, &given);
+        let ranges = default_ranges(&self.source, self.form.sensor(), self.anchor, &given);
         let Ok(ranges) = ranges else { return };
-        for field in &mut self.fields {
+        for field in self.form.fields_mut() {
             let text = ranges[field.axis].to_string();
             if field.proposed.as_ref().is_some_and(|old| *old != text) {
                 field.input = TextField::new(text.clone(), LONGEST);
@@ -205,21 +200,22 @@ impl RangesForm {
 
     /// Resets all fields to the defaults.
     fn set_defaults(&mut self) {
-        let of = (self.sensor, self.by_hand);
+        let of = (*self.form.sensor(), self.by_hand);
         let fresh = Self::begun(of, self.source.clone(), None, None);
-        let (focus, measured) = (self.focus, self.measured.take());
+        let (focus, measured) = (self.form.focus(), self.measured.take());
         *self = Self { measured, ..fresh };
-        self.set_focus(focus);
+        self.form.set_focus(focus);
     }
 
     /// Returns the ranges to remember: typed ones and ones from an earlier form, not those that follow the other
     /// fields.
     pub fn remembered(&self) -> RememberedRanges {
-        let own = self.fields.iter().filter(|field| field.proposed.is_none());
+        let fields = self.form.fields().iter();
+        let own = fields.filter(|field| field.proposed.is_none());
         let ranges = own.filter_map(|field| Some((field.axis, field.text().parse().ok()?)));
         RememberedRanges {
             of: self.source.kind_name().to_owned(),
-            size: self.sensor.size(),
+            size: self.form.sensor().size(),
             anchor: self.anchor,
             ranges: ranges.collect(),
         }
@@ -230,24 +226,14 @@ impl RangesForm {
         format!("Explore: {}", name_of(&self.source))
     }
 
-    /// Returns the fields, from the top.
-    pub fn fields(&self) -> &[RangeField] {
-        &self.fields
-    }
-
-    /// Returns the index of the field that has the focus; None for the anchor.
-    pub fn focus(&self) -> Option<usize> {
-        self.focus
+    /// Returns the fields.
+    pub fn form(&self) -> &FieldList<RangeField> {
+        &self.form
     }
 
     /// Returns the anchor, the point of the shape that x0 and y0 place.
     pub fn anchor(&self) -> Anchor {
         self.anchor
-    }
-
-    /// Returns the allowed values of a field.
-    pub fn allowed(&self, field: &RangeField) -> Range {
-        self.sensor.range(field.parameter())
     }
 
     /// Returns the number of taxels that were set by hand, which the sweep ignores.
@@ -299,71 +285,40 @@ impl RangesForm {
         }
     }
 
-    /// Returns the error in a field; None if there is none.
-    pub fn trouble(&self, index: usize) -> Option<RangesError> {
-        trouble(&self.fields, index, &self.sensor)
-    }
-
     /// Returns the grid of the fields.
     ///
     /// # Errors
-    /// Returns the first error in the fields.
-    pub fn grid(&self) -> Result<&PoseGrid, &RangesError> {
+    /// Returns the first error in the fields, after moving the focus to it; or what is wrong with all of them together,
+    /// such as too many poses.
+    pub fn accepted(&mut self) -> Result<PoseGrid, FormError> {
+        if let Some((index, _)) = self.form.error() {
+            self.form.set_focus(Some(index));
+        }
+        self.grid.clone()
+    }
+
+    /// Returns the grid of the fields, or their first error.
+    pub fn grid(&self) -> Result<&PoseGrid, &FormError> {
         self.grid.as_ref()
     }
 
-    /// Moves the focus to a field; None moves it to the anchor.
-    pub fn set_focus(&mut self, focus: Option<usize>) {
-        self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
-        if let Some(field) = self.focused() {
-            field.input.enter();
-        }
-    }
-
-    /// Moves the focus to a row; the anchor follows the fields. If the anchor has the focus already, chooses the
-    /// other anchor.
-    fn point(&mut self, row: usize) {
-        let to = (row < self.fields.len()).then_some(row);
-        if to.is_none() && self.focus.is_none() {
-            self.other_anchor();
-        }
-        self.set_focus(to);
-    }
-
-    /// Moves the focus by `by` rows; the first row follows the last.
-    pub fn move_focus(&mut self, by: i8) {
-        let count = self.fields.len();
-        let next = around(self.focus.unwrap_or(count), by, count + 1);
-        self.set_focus((next < count).then_some(next));
-    }
-
-    /// Returns the field that has the focus; None for the anchor.
-    fn focused(&mut self) -> Option<&mut RangeField> {
-        self.fields.get_mut(self.focus?)
-    }
-
-    /// Handles a message: moves to another row, or types, moves or deletes in the field. On the anchor, Space and the
-    /// arrows to the sides choose the other anchor.
+    /// Handles a message: moves to another row, or types, moves or deletes in the field. On the anchor, Space, a click
+    /// and the arrows to the sides choose the other anchor.
     pub fn take(&mut self, message: &Message) {
+        let on_anchor = self.form.focus().is_none();
         match message {
-            Message::Field(by) => self.move_focus(*by),
-            Message::ToField(row) => self.point(row.unwrap_or(self.fields.len())),
             Message::Defaults => self.set_defaults(),
-            Message::Choose(Arrow::Up) => self.move_focus(-1),
-            Message::Choose(Arrow::Down) => self.move_focus(1),
-            message => match self.focused() {
-                Some(field) => {
-                    let before = field.text().to_owned();
-                    field.input.take(message);
-                    if field.text() != before {
-                        self.follow();
-                    }
-                }
-                None if matches!(message, Message::Choose(_) | Message::Type(' ')) => {
-                    self.other_anchor();
-                }
-                None => {}
-            },
+            Message::ToField(None)
+            | Message::Type(' ')
+            | Message::Choose(Arrow::Left | Arrow::Right)
+                if on_anchor =>
+            {
+                self.other_anchor();
+            }
+            message => {
+                self.form.take(message);
+                self.follow();
+            }
         }
     }
 
@@ -377,50 +332,26 @@ impl RangesForm {
     }
 }
 
-/// Returns the error in a field; None if there is none.
-fn trouble(fields: &[RangeField], index: usize, sensor: &Sensor) -> Option<RangesError> {
-    let field = fields.get(index)?;
-    let wrong = |brief: String, full: String| RangesError {
-        field: Some(index),
-        brief,
-        full,
-    };
-    let range: DecimalRange = match field.text().parse() {
-        Ok(range) => range,
-        Err(error) => {
-            let full = format!("{}: {error}", field.parameter().row().label);
-            return Some(wrong(error.expected(), full));
-        }
-    };
-    let ends = [range.value(0), range.last()];
-    let error = ends
-        .into_iter()
-        .find_map(|value| sensor.check(field.parameter(), value).err());
-    error.map(|error| wrong(error.expected(), error.labelled()))
-}
-
 /// Returns the grid of the fields.
 ///
 /// # Errors
 /// Returns the first error in the fields.
 fn grid_of(
-    fields: &[RangeField],
+    form: &FieldList<RangeField>,
     source: &Source,
-    sensor: Sensor,
     anchor: Anchor,
-) -> Result<PoseGrid, RangesError> {
-    if let Some(trouble) = (0..fields.len()).find_map(|index| trouble(fields, index, &sensor)) {
-        return Err(trouble);
+) -> Result<PoseGrid, FormError> {
+    if let Some((_, error)) = form.error() {
+        return Err(error);
     }
     let mut ranges = Ranges::default();
-    for field in fields {
+    for field in form.fields() {
         if let Ok(range) = field.text().parse() {
             ranges[field.axis] = range;
         }
     }
-    let grid = PoseGrid::new(source.clone(), sensor, anchor, ranges);
-    grid.map_err(|error: GridError| RangesError {
-        field: None,
+    let grid = PoseGrid::new(source.clone(), *form.sensor(), anchor, ranges);
+    grid.map_err(|error: GridError| FormError {
         brief: match &error {
             GridError::Poses { poses } => {
                 let poses = u64::try_from(*poses).unwrap_or(u64::MAX);

@@ -23,7 +23,7 @@ use crate::tui::app::page::{Page, Slot};
 use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::field_rows::{FieldRow, FieldRows, WIDE};
+use crate::tui::widget::field_rows::{FieldRows, WIDE};
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -56,17 +56,19 @@ impl Page for RangesForm {
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let row = rows(self, area).at(at.y)?;
-        Some(Message::ToField(Some(row)))
+        Some(Message::ToField(
+            (row < self.form().fields().len()).then_some(row),
+        ))
     }
 }
 
 /// Returns the places of the fields and of the anchor, the last row, in the area of the form. The title is above them;
 /// below them are three lines, or as many as the rows leave, but at least one.
 fn rows(form: &RangesForm, area: Rect) -> FieldRows {
-    let (below, rows) = (write::below(area, 1), form.fields().len() + 1);
+    let (below, rows) = (write::below(area, 1), form.form().fields().len() + 1);
     let foot = below.height.saturating_sub(narrow(rows)).clamp(1, 3);
     let height = below.height.saturating_sub(foot);
-    let focus = form.focus().unwrap_or(rows - 1);
+    let focus = form.form().focus().unwrap_or(rows - 1);
     FieldRows::of(Rect { height, ..below }, 0, rows, Some(focus))
 }
 
@@ -81,23 +83,14 @@ fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Op
     } else {
         NARROW_INPUT
     };
-    let mut cursor = None;
-    for (index, place) in rows.visible() {
-        let focused = index == form.focus().unwrap_or(form.fields().len());
-        let at = if let Some(field) = form.fields().get(index) {
-            let row = FieldRow {
-                parameter: field.parameter(),
-                field: field.input(),
-                focused,
-                range: form.allowed(field),
-                remark: None,
-                error: form.trouble(index).map(|trouble| trouble.brief),
-            };
-            row.draw(theme, (LABEL, input), buffer, place)
-        } else {
-            draw_anchor(theme, form, buffer, place)
-        };
-        cursor = cursor.or(focused.then_some(at));
+    let fields = form.form();
+    let mut cursor = rows.draw(theme, fields, (LABEL, input), |_| None, buffer);
+    let mut others = rows
+        .visible()
+        .skip_while(|(index, _)| *index < fields.fields().len());
+    if let Some((_, row)) = others.next() {
+        let at = draw_anchor(theme, form, buffer, row);
+        cursor = cursor.or(fields.focus().is_none().then_some(at));
     }
     draw_summary(theme, form, buffer, rows.rest(area));
     cursor
@@ -111,7 +104,7 @@ fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect)
         Anchor::Corner => ("corner", "top left, before turning"),
         Anchor::Centre => ("centre", "point it turns about"),
     };
-    let role = if form.focus().is_none() {
+    let role = if form.form().focus().is_none() {
         Role::Focus
     } else {
         Role::Text
@@ -142,9 +135,9 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
             (text.to_owned(), Role::Text)
         }
         // A wrong field shows its own error.
-        Err(trouble) if trouble.field.is_some() => (String::new(), Role::Text),
-        Err(trouble) => {
-            for (index, line) in trouble.brief.lines().enumerate() {
+        Err(_) if form.form().error().is_some() => (String::new(), Role::Text),
+        Err(error) => {
+            for (index, line) in error.brief.lines().enumerate() {
                 let pieces = [("! ", Role::Error), (line, Role::Error)];
                 write::line(buffer, write::row(area, index), theme, pieces);
             }
