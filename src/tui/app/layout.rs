@@ -1,7 +1,7 @@
 //! The panes of the screen, for drawing and for finding what the mouse points at.
 //!
 //! The panel stands beside the matrix where both fit. On a screen that is wide enough for the default sensor it also
-//! stands beside a larger matrix, which then shows only a part. Otherwise each is a page of its own. Taxels are
+//! stands beside a larger matrix, which then shows only a part. Otherwise each has the screen to itself. Taxels are
 //! enlarged only where the panel keeps all its room. See [`crate::tui::app::view`] for a picture.
 
 use ratatui::layout::Rect;
@@ -12,7 +12,7 @@ use crate::tui::app::page::Slot;
 use crate::tui::matrix::layout::{RULER, TaxelSize};
 use crate::tui::widget::write::{below, right_of};
 
-/// The smallest width of the panel; with less room it is a page of its own.
+/// The smallest width of the panel; with less room it has the screen to itself.
 const PANEL: u16 = 30;
 
 /// The width of a column of descriptors with the longest values, where there are several columns.

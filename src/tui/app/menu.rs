@@ -5,7 +5,7 @@
 //! new  load  figure  picture  save  delete  quit  ? Help                           the key is the bold letter
 //! n l f p s d  q Quit  ? Help                                                      where that has no room either
 //! Enter accept   Esc cancel   ? help                                               in a form or a list
-//! Tab page   d D descriptor   x export   e ranges   ? help   Esc close             on all pages of Explore
+//! Tab page   d D descriptor   x export   e ranges   ? help   Esc close             on all tabs of Explore
 //! ```
 //! On the matrix the menu has the paper's seven options and Help; on other pages it has the keys that lead on from
 //! the page or out of it. The hints have the other keys that mean something now, and those that the menu had no room
@@ -18,7 +18,7 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::app::notice;
-use crate::tui::app::state::{App, NarrowPage};
+use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
@@ -163,13 +163,13 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     let rest = all.filter(|row| {
         !row.hint.is_empty() && menu.iter().all(|item| !std::ptr::eq(item.binding, *row))
     });
-    // Where the descriptors are a page of their own, its key comes first; elsewhere it does nothing.
-    let page = |row: &&Binding| row.does(&Message::SwitchPage);
-    let (first, others): (Vec<_>, Vec<_>) = rest.partition(page);
-    let first = first.into_iter().filter(|_| app.has_pages(panes));
-    // On that page the key leads back to the matrix.
-    let name = |row: &Binding| match app.page {
-        NarrowPage::Panel if row.does(&Message::SwitchPage) => "matrix",
+    // Where the descriptors have no room beside the matrix, their key comes first; elsewhere it does nothing.
+    let switches = |row: &&Binding| row.does(&Message::SwitchPane);
+    let (first, others): (Vec<_>, Vec<_>) = rest.partition(switches);
+    let first = first.into_iter().filter(|_| app.can_switch_pane(panes));
+    // There, the key leads back to the matrix.
+    let name = |row: &Binding| match app.narrow_pane {
+        NarrowPane::Panel if row.does(&Message::SwitchPane) => "matrix",
         _ => row.hint,
     };
     let rows: Vec<_> = first.chain(others).map(|row| (row, name(row))).collect();
@@ -191,7 +191,7 @@ fn useful(app: &App, row: &Binding) -> bool {
 /// own ones over the matrix. For a form, a list, a prompt or a question: the rows that accept, leave or explain it.
 fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
     let hinted = |row: &&Binding| {
-        !row.hint.is_empty() && !row.keys.is_empty() && !row.does(&Message::SwitchPage)
+        !row.hint.is_empty() && !row.keys.is_empty() && !row.does(&Message::SwitchPane)
     };
     match context.screen() {
         Some(Context::Matrix) => {

@@ -64,7 +64,7 @@ pub enum Message {
     /// Show a layer over the taxels, or hide it.
     Layer(Layer),
     /// Change between the matrix and the descriptors where there is no room for both.
-    SwitchPage,
+    SwitchPane,
     /// Hold the shape, so that the arrows move it, or let it go.
     Hold,
     /// Put the held shape back to where it was taken.

@@ -10,7 +10,7 @@ use crate::tui::app::change::{change, settle};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::page::{Page, Slot, Wheel};
-use crate::tui::app::state::{App, NarrowPage};
+use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::{menu, notice};
 use crate::tui::widget::number::taxels;
 
@@ -114,8 +114,9 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     if let Some(dialog) = app.dialogs.last() {
         let page = dialog.page();
         // A narrow screen shows the matrix or the panel.
-        let hidden =
-            page.slot() == Slot::Panel && panes.panel.is_none() && app.page == NarrowPage::Matrix;
+        let hidden = page.slot() == Slot::Panel
+            && panes.panel.is_none()
+            && app.narrow_pane == NarrowPane::Matrix;
         let area = notice::page_area(app, &panes, page);
         if inside(area) && !hidden {
             return page.click(area, place).map(Target::Page);
@@ -129,7 +130,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         return Some(Target::Panel);
     }
     // On a small screen the descriptors may have the place of the matrix.
-    if beside.is_none() && app.page == NarrowPage::Panel {
+    if beside.is_none() && app.narrow_pane == NarrowPane::Panel {
         return inside(panes.content).then_some(Target::Panel);
     }
     let grid = app.grid().filter(|_| inside(panes.matrix))?;

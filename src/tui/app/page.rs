@@ -22,7 +22,7 @@ pub enum Slot {
     Body,
     /// Beside the matrix, which stays visible.
     Form,
-    /// In place of the descriptors: beside the matrix, or where that is too narrow, a page of its own.
+    /// In place of the descriptors: beside the matrix, or where that is too narrow, in place of it.
     Panel,
     /// In the line of notices, over the page below. Notices stand above it.
     Prompt,

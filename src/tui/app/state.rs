@@ -104,9 +104,9 @@ pub enum Display {
     Percent,
 }
 
-/// The page on a screen that is too small for matrix and descriptors side by side.
+/// The pane on a screen that is too small for matrix and descriptors side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NarrowPage {
+pub enum NarrowPane {
     /// The matrix.
     Matrix,
     /// The descriptors.
@@ -195,8 +195,8 @@ pub struct App {
     pub(in crate::tui) display: Display,
     /// The layers over the taxels.
     pub(in crate::tui) layers: Layers,
-    /// The page that a narrow screen shows.
-    pub(in crate::tui) page: NarrowPage,
+    /// The pane that a narrow screen shows.
+    pub(in crate::tui) narrow_pane: NarrowPane,
     /// The step by which a key moves or zooms the shape.
     pub(in crate::tui) step: NudgeStep,
     /// Whether a picture is zoomed about its centre, not about the origin.
@@ -266,7 +266,7 @@ impl App {
             followed: Followed::Cursor,
             display: Display::Imprint,
             layers: Layers::default(),
-            page: NarrowPage::Matrix,
+            narrow_pane: NarrowPane::Matrix,
             step: NudgeStep::Hundredth,
             zoom_centre: false,
             count: None,
@@ -368,13 +368,13 @@ impl App {
 
     /// Returns true if a key switches between the matrix and its descriptors or the page beside it: where only one of
     /// them has room, and where the descriptors may be cut beside the matrix.
-    pub(in crate::tui) fn has_pages(&self, panes: &Panes) -> bool {
+    pub(in crate::tui) fn can_switch_pane(&self, panes: &Panes) -> bool {
         panes.panel.is_none() || self.pane().is_none() && !panes.is_panel_roomy
     }
 
     /// Returns the area of the descriptors beside the matrix; None if one of the two has the whole screen.
     pub(in crate::tui) fn beside(&self, panes: &Panes) -> Option<Rect> {
-        let alone = self.page == NarrowPage::Panel && self.has_pages(panes);
+        let alone = self.narrow_pane == NarrowPane::Panel && self.can_switch_pane(panes);
         panes.panel.filter(|_| !alone)
     }
 

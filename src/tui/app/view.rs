@@ -14,8 +14,8 @@
 //! | hints: other keys that mean something now        |
 //! +--------------------------------------------------+
 //! ```
-//! On a narrow screen matrix and panel are two pages. Where the panel beside the matrix may cut values, it can also
-//! have the whole page. On a low screen the lines below the matrix are left out first. A screen that is too small for
+//! A narrow screen shows one pane, matrix or panel. Where the panel beside the matrix may cut values, it can also
+//! have the whole screen. On a low screen the lines below the matrix are left out first. A screen that is too small for
 //! anything says so. Every pane accepts any rectangle, also an empty one.
 //!
 //! A page borrows its own state, `&Theme` and `&Keymap`. What surrounds the pages reads the whole state: this file, the
@@ -27,7 +27,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::layout::{Panes, SMALLEST};
 use crate::tui::app::page::{Page, Slot};
-use crate::tui::app::state::{App, NarrowPage};
+use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::title::title;
 use crate::tui::app::{menu, notice, status};
 use crate::tui::matrix::panel;
@@ -61,10 +61,10 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     let mut cursor = None;
     match (app.pane(), app.beside(&panes)) {
         (Some(page), beside) if page.slot() == Slot::Panel => {
-            if beside.is_some() || app.page == NarrowPage::Matrix {
+            if beside.is_some() || app.narrow_pane == NarrowPane::Matrix {
                 cursor = matrix.draw(theme, buffer, panes.matrix);
             }
-            if beside.is_some() || app.page == NarrowPage::Panel {
+            if beside.is_some() || app.narrow_pane == NarrowPane::Panel {
                 let area = panes.area(Slot::Panel);
                 cursor = page.draw(theme, app.keymap(), buffer, area).or(cursor);
             }
@@ -83,7 +83,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
             cursor = matrix.draw(theme, buffer, panes.matrix);
             panel(buffer, beside);
         }
-        (None, None) if app.page == NarrowPage::Panel => panel(buffer, panes.content),
+        (None, None) if app.narrow_pane == NarrowPane::Panel => panel(buffer, panes.content),
         (None, None) => cursor = matrix.draw(theme, buffer, panes.matrix),
     }
     // A name and a command are typed in the line of notices.

@@ -7,8 +7,8 @@ use crate::formats::ending::has_ending;
 use crate::quote::{joined, shortened};
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::line_prompt::LinePrompt;
-use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
+use crate::tui::explore::tabs;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
 
@@ -22,9 +22,9 @@ pub enum ExportKind {
     Sweep {
         /// Whether all poses were swept, so that they can be written too.
         poses: bool,
-        /// Whether the page has a drawing.
+        /// Whether the tab has a drawing.
         drawing: bool,
-        /// Whether a CSV file holds the table of the page.
+        /// Whether a CSV file holds the table of the tab.
         table: bool,
     },
     /// The error of a set against size.
@@ -32,13 +32,13 @@ pub enum ExportKind {
 }
 
 impl ExportKind {
-    /// Returns the kind of export of a sweep's results from the open page.
+    /// Returns the kind of export of a sweep's results from the open tab.
     pub fn of(results: &Results) -> Self {
-        let page = pages::row(results.page());
+        let tab = tabs::row(results.tab());
         Self::Sweep {
             poses: results.sweep().complete(),
-            drawing: page.drawing.is_some(),
-            table: page.table.is_some(),
+            drawing: tab.drawing.is_some(),
+            table: tab.table.is_some(),
         }
     }
 
@@ -54,7 +54,7 @@ impl ExportKind {
         }
     }
 
-    /// Returns true if a file of that name can be made, at least on some page.
+    /// Returns true if a file of that name can be made, at least on some tab.
     fn takes(self, name: &str) -> bool {
         match self {
             Self::Sweep { .. } => {

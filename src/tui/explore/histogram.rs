@@ -1,4 +1,4 @@
-//! The histogram page: how often each value of the chosen descriptor occurs.
+//! The histogram tab: how often each value of the chosen descriptor occurs.
 //!
 //! ```text
 //! na: active taxels, cells                             the descriptor and its unit
@@ -16,8 +16,8 @@ use crate::atlas::Histogram;
 use crate::description::Dimension;
 use crate::formats::value::{counted, grouped, percentage};
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
+use crate::tui::explore::tab::{ResultsTab, choose_descriptor};
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -25,8 +25,8 @@ use crate::tui::widget::write;
 /// The number of characters of a number in the line above the bars.
 const NUMBER: usize = 9;
 
-/// The histogram page.
-pub static PAGE: ResultsPage = ResultsPage {
+/// The histogram tab.
+pub static TAB: ResultsTab = ResultsTab {
     title: "histogram",
     context: Context::Histogram,
     filtered: false,
@@ -38,18 +38,18 @@ pub static PAGE: ResultsPage = ResultsPage {
     update: choose_descriptor,
 };
 
-/// Computes the intervals of a histogram that fits on a page. Three lines of the page have no bar: the title, the
+/// Computes the intervals of a histogram that fits on a tab. Three lines of the tab have no bar: the title, the
 /// numbers, and a spare one.
-fn histogram(results: &Results, page: Rect) -> Histogram {
-    let room = usize::from(page.height.saturating_sub(3));
+fn histogram(results: &Results, area: Rect) -> Histogram {
+    let room = usize::from(area.height.saturating_sub(3));
     let (atlas, values) = (&results.sweep().atlas, results.values());
     Histogram::of(atlas, results.feature(), values, room.max(1))
 }
 
 /// Returns the bars as CSV: each interval from its start to before its end, the last one including its end; then the
 /// poses without a value.
-fn table(results: &Results, page: Rect) -> String {
-    let (histogram, key) = (histogram(results, page), &results.feature().key);
+fn table(results: &Results, area: Rect) -> String {
+    let (histogram, key) = (histogram(results, area), &results.feature().key);
     let decimals = histogram.decimals();
     let mut text = "descriptor,from,to,poses\n".to_owned();
     for (bin, poses) in histogram.poses.iter().enumerate() {
@@ -62,8 +62,8 @@ fn table(results: &Results, page: Rect) -> String {
     text
 }
 
-/// Draws the page: the descriptor with its unit, its numbers, and a bar for each bin that there is a line for.
-fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
+/// Draws the tab: the descriptor with its unit, its numbers, and a bar for each bin that there is a line for.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let (result, feature) = (results.sweep(), results.feature());
     let statistic = &result.statistics[results.feature_number()];
     let number = |value| theme.number(value, NUMBER);
@@ -75,8 +75,8 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         _ => ", ratio",
     };
     let title = feature.label() + unit;
-    write::line(buffer, page, theme, [(title.as_str(), Role::Title)]);
-    let histogram = histogram(results, page);
+    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+    let histogram = histogram(results, area);
     let facts = format!(
         "mean {}  sd {}  min {}  max {}  no value: {}",
         number(statistic.mean),
@@ -85,11 +85,11 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         number(statistic.max),
         counted(histogram.without, "pose")
     );
-    let facts_row = write::row(page, 1);
+    let facts_row = write::row(area, 1);
     write::line(buffer, facts_row, theme, [(facts.as_str(), Role::Text)]);
     if histogram.poses.is_empty() {
         let text = format!("{}  no pose has a value", theme.none());
-        let row = write::row(page, 2);
+        let row = write::row(area, 2);
         write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
         return None;
     }
@@ -98,7 +98,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         &histogram,
         feature.descriptor.dimension,
         buffer,
-        write::below(page, 2),
+        write::below(area, 2),
     );
     None
 }

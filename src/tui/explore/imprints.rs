@@ -1,4 +1,4 @@
-//! The imprints page: a list of the distinct imprints.
+//! The imprints tab: a list of the distinct imprints.
 //!
 //! ```text
 //!    #  ↓poses      %   x0   y0 pc ho       na   >7      #12     headings, an arrow at the sort column
@@ -23,8 +23,8 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
+use crate::tui::explore::tab::ResultsTab;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::rows::{ListRows, moved};
@@ -38,8 +38,8 @@ const SHARE: usize = 6;
 /// The number of characters of the sign of the selected row.
 const SIGN: usize = 2;
 
-/// The imprints page.
-pub static PAGE: ResultsPage = ResultsPage {
+/// The imprints tab.
+pub static TAB: ResultsTab = ResultsTab {
     title: "imprints",
     context: Context::Imprints,
     filtered: true,
@@ -52,8 +52,8 @@ pub static PAGE: ResultsPage = ResultsPage {
 };
 
 /// Returns the message of a click: it selects a row, puts the selected row onto the matrix, or sorts by a heading.
-fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
-    let list = ImprintList::of(page, results);
+fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
+    let list = ImprintList::of(area, results);
     if let Some(column) = list.heading(at) {
         return Some(Message::Explore(ExploreMessage::Sort(column)));
     }
@@ -66,14 +66,14 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
 }
 
 /// Selects a row, or another heading.
-fn update(results: &mut Results, message: &Message, page: Rect) {
-    let visible = ImprintList::of(page, results).rows.height.into();
+fn update(results: &mut Results, message: &Message, area: Rect) {
+    let visible = ImprintList::of(area, results).rows.height.into();
     results.keep_first_row(visible);
     if let Some(row) = moved(results.selected(), message) {
         results.select(row);
     }
     if let Message::Explore(ExploreMessage::Columns(by)) = *message {
-        let shown = ImprintList::of(page, results).columns();
+        let shown = ImprintList::of(area, results).columns();
         let shown: Vec<ListColumn> = shown.into_iter().map(|(column, _)| column).collect();
         results.move_heading(by, &shown);
     }
@@ -103,8 +103,8 @@ pub struct ImprintList {
 }
 
 impl ImprintList {
-    /// Computes the layout of the list on its page.
-    pub fn of(page: Rect, results: &Results) -> Self {
+    /// Computes the layout of the list on its tab.
+    pub fn of(area: Rect, results: &Results) -> Self {
         let result = results.sweep();
         let grid = &result.grid;
         let id = result.atlas.len().to_string().len().max(2);
@@ -115,25 +115,25 @@ impl ImprintList {
             varying.map(|axis| (axis, results.width_of(axis))).collect();
         let short = SIGN + id + 1 + poses + 1 + SHARE + 1 + 2 + 1 + 2 + 1 + VALUE;
         let full = short + place.iter().map(|(_, width)| width + 1).sum::<usize>();
-        let room = usize::from(page.width);
+        let room = usize::from(area.width);
         let thumbnail = usize::from(grid.sensor().columns().min(16)) + 2;
         let width = if full <= room { full } else { short };
         let beside = width + thumbnail <= room;
         let table = Rect {
-            width: narrow(width).min(page.width),
-            ..page
+            width: narrow(width).min(area.width),
+            ..area
         };
-        let x = table.right().saturating_add(2).min(page.right());
-        // A low page has a row before it has headings, and these before the line about the selected imprint.
-        let (above, below) = (u16::from(page.height > 1), u16::from(page.height > 2));
+        let x = table.right().saturating_add(2).min(area.right());
+        // A low tab has a row before it has headings, and these before the line about the selected imprint.
+        let (above, below) = (u16::from(area.height > 1), u16::from(area.height > 2));
         let gallery = Rect {
             x,
-            width: page.right() - x,
-            height: page.height - below,
-            ..page
+            width: area.right() - x,
+            height: area.height - below,
+            ..area
         };
         let rows = Rect {
-            height: page.height - above - below,
+            height: area.height - above - below,
             ..write::below(table, above)
         };
         Self {
@@ -141,10 +141,10 @@ impl ImprintList {
                 height: above,
                 ..table
             },
-            // The list turns page by page, so that a clicked row stays where it is.
+            // The list scrolls by whole screenfuls, so that a clicked row stays where it is.
             first: results.first_row(rows.height.into()),
             rows,
-            detail: write::below(page, page.height - below),
+            detail: write::below(area, area.height - below),
             gallery: beside.then_some(gallery),
             id,
             poses,
@@ -188,9 +188,9 @@ pub(super) fn no_row(results: &Results) -> String {
     format!("no imprint fits {}", results.filter())
 }
 
-/// Draws the page. Returns the position of the selected row.
-fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
-    let list = ImprintList::of(page, results);
+/// Draws the tab. Returns the position of the selected row.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+    let list = ImprintList::of(area, results);
     draw_headings(theme, results, &list, buffer);
     if results.row_count() == 0 {
         let text = no_row(results);

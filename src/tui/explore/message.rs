@@ -48,9 +48,9 @@ pub fn name_of(source: &Source) -> &str {
     stored.unwrap_or(source.kind_name())
 }
 
-/// The pages of the results.
+/// The tabs of the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExplorePage {
+pub enum ExploreTab {
     /// The distinct imprints.
     Imprints,
     /// Statistics of every descriptor.
@@ -65,8 +65,8 @@ pub enum ExplorePage {
     Angles,
 }
 
-impl ExplorePage {
-    /// All pages, in the order of their tabs.
+impl ExploreTab {
+    /// All tabs, from the left.
     pub const ALL: [Self; 6] = [
         Self::Imprints,
         Self::Statistics,
@@ -77,7 +77,7 @@ impl ExplorePage {
     ];
 }
 
-/// A request by a key or a command on the pages of Explore.
+/// A request by a key or a command on the tabs of Explore.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExploreMessage {
     /// Open the last results, or the form if there are none.
@@ -88,10 +88,10 @@ pub enum ExploreMessage {
     Start(Box<PoseGrid>),
     /// Stop the work in progress. A sweep keeps what is complete.
     Stop,
-    /// Go to a page.
-    Page(ExplorePage),
-    /// Go to the page this many further on; negative goes back.
-    NextPage(i8),
+    /// Go to a tab.
+    Tab(ExploreTab),
+    /// Go to the tab this many further on; negative goes back.
+    NextTab(i8),
     /// Choose the descriptor this many further on; negative goes back.
     Feature(i8),
     /// Scroll the columns of the statistics by this many; in the list, choose another heading; in the scatter plot,

@@ -1,4 +1,4 @@
-//! Explore: every imprint of a shape. Here are the form of ranges, the sweep in progress, the pages of its results,
+//! Explore: every imprint of a shape. Here are the form of ranges, the sweep in progress, the tabs of its results,
 //! and their export.
 //!
 //! ```text
@@ -7,10 +7,10 @@
 //! results    the findings, and what is shown of them      column: the columns to sort the list by
 //! export  filter  mark       the prompts for a file name, a condition and a letter
 //! prompts    handles messages in filter and mark
-//! page       the type of a page of the results            pages: the table of pages
-//! imprints  statistics  histogram  map  scatter  angles   the pages
+//! tab        the type of a tab of the results             tabs: the table of tabs
+//! imprints  statistics  histogram  map  scatter  angles   the tabs
 //! work       from the form to the results                 update: what keys do over the results
-//! view       tabs, summary, and the page
+//! view       tabs, summary, and the tab
 //! ```
 
 pub mod message;
@@ -29,7 +29,7 @@ pub mod filter;
 
 pub mod mark;
 
-pub mod page;
+pub mod tab;
 
 pub mod imprints;
 
@@ -43,7 +43,7 @@ pub mod scatter;
 
 pub mod angles;
 
-pub mod pages;
+pub mod tabs;
 
 pub mod view;
 

@@ -7,7 +7,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::{MarkDialog, MarkPurpose};
-use crate::tui::explore::message::ExplorePage;
+use crate::tui::explore::message::ExploreTab;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -54,7 +54,7 @@ pub(in crate::tui) fn in_filter(
 }
 
 /// Returns the prompt for a letter. Shows a notice and returns None if there is nothing to mark or to go to. A mark
-/// belongs to a pose, so that it holds on every page and under every filter.
+/// belongs to a pose, so that it holds on every tab and under every filter.
 pub(in crate::tui) fn mark_dialog(
     app: &mut App,
     results: &Results,
@@ -136,13 +136,13 @@ pub(in crate::tui) fn in_mark(
 /// among the points. The map has all poses; the list has only imprints that pass the filter, so a mark may be out of
 /// reach there.
 fn go_to(results: &mut Results, pose: u64) -> Result<(), String> {
-    if matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
+    if matches!(results.tab(), ExploreTab::Map | ExploreTab::Angles) {
         results.go_to_pose(pose);
         return Ok(());
     }
     results.go_to_imprint_at(pose)?;
-    if results.page() != ExplorePage::Scatter {
-        results.turn_to(ExplorePage::Imprints);
+    if results.tab() != ExploreTab::Scatter {
+        results.open_tab(ExploreTab::Imprints);
     }
     Ok(())
 }

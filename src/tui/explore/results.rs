@@ -1,8 +1,8 @@
-//! The results of a sweep, and the state of their pages: page, descriptor, order, row, cursor of the map.
+//! The results of a sweep, and the state of their tabs: the open one, descriptor, order, row, cursor of the map.
 //!
-//! The findings never change, and are shared with workers that write them to files. All pages show the same
+//! The findings never change, and are shared with workers that write them to files. All tabs show the same
 //! descriptor, and the list and the map lead to each other. The file is long because each key changes what several
-//! pages show.
+//! tabs show.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::touch::Plane;
 use crate::tui::explore::angles::curve::{AngleCurve, AngleSearch, zooms_of};
 use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::map::visible::VisibleImprints;
-use crate::tui::explore::message::{ExplorePage, Findings, name_of};
+use crate::tui::explore::message::{ExploreTab, Findings, name_of};
 use crate::tui::widget::number::around;
 
 /// The first descriptor of the horizontal axis of the scatter plot: the perimeter `p`, by its index.
@@ -28,8 +28,8 @@ const X_FEATURE: usize = 7;
 pub struct Results {
     /// The findings, shared with workers that write them.
     findings: Arc<Findings>,
-    /// The shown page.
-    page: ExplorePage,
+    /// The open tab.
+    tab: ExploreTab,
     /// The number of the chosen descriptor.
     feature: usize,
     /// The values of the chosen descriptor, by the imprints' numbers.
@@ -37,7 +37,7 @@ pub struct Results {
     /// The number of the descriptor of the scatter plot's horizontal axis, and its values by the imprints' numbers.
     x_feature: (usize, Vec<Option<f64>>),
     /// The zooms for which the imprints of each angle were requested last, and the search for them; None until the
-    /// page of angles was opened.
+    /// tab of angles was opened.
     angles: Option<(PoseIndex, AngleSearch)>,
     /// The imprints that the map shows.
     visible_imprints: VisibleImprints,
@@ -72,7 +72,7 @@ impl Results {
     /// Creates the state for some findings, with the most frequent imprint first.
     pub fn new(findings: Arc<Findings>) -> Self {
         let mut results = Self {
-            page: ExplorePage::Imprints,
+            tab: ExploreTab::Imprints,
             feature: 0,
             values: findings.sweep.atlas.values(0),
             x_feature: (X_FEATURE, findings.sweep.atlas.values(X_FEATURE)),
@@ -106,20 +106,20 @@ impl Results {
         &self.findings.sweep
     }
 
-    /// Returns the shown page.
-    pub fn page(&self) -> ExplorePage {
-        self.page
+    /// Returns the open tab.
+    pub fn tab(&self) -> ExploreTab {
+        self.tab
     }
 
-    /// Goes to a page.
-    pub fn turn_to(&mut self, page: ExplorePage) {
-        self.page = page;
+    /// Opens a tab.
+    pub fn open_tab(&mut self, tab: ExploreTab) {
+        self.tab = tab;
     }
 
-    /// Goes `by` pages on; the first follows the last.
-    pub fn next_page(&mut self, by: i8) {
-        let next = around(self.page as usize, by, ExplorePage::ALL.len());
-        self.page = ExplorePage::ALL[next];
+    /// Goes `by` tabs on; the first follows the last.
+    pub fn next_tab(&mut self, by: i8) {
+        let next = around(self.tab as usize, by, ExploreTab::ALL.len());
+        self.tab = ExploreTab::ALL[next];
     }
 
     /// Returns the number of the chosen descriptor.
@@ -182,10 +182,10 @@ impl Results {
         }
     }
 
-    /// Returns the place at whose zooms the page needs the imprints of each angle, if they were not requested yet.
+    /// Returns the place at whose zooms the tab needs the imprints of each angle, if they were not requested yet.
     /// They count as requested afterwards.
     pub fn missing_angles(&mut self) -> Option<PoseIndex> {
-        let missing = self.page == ExplorePage::Angles && self.angles().is_none();
+        let missing = self.tab == ExploreTab::Angles && self.angles().is_none();
         if missing {
             self.angles = Some((zooms_of(self.pose_index), AngleSearch::Running));
         }
@@ -225,7 +225,7 @@ impl Results {
     }
 
     /// Returns a summary of the sweep; it begins with a remark if the sweep is only a part. `filtered` is whether the
-    /// shown page follows the filter.
+    /// open tab follows the filter.
     pub fn summary(&self, filtered: bool) -> String {
         let result = self.sweep();
         let all = result.grid.poses();
@@ -350,7 +350,7 @@ impl Results {
     }
 
     /// Returns the index of the first row of a list that shows `visible` rows. It stays the same while the selected
-    /// row is visible; otherwise the list turns by whole pages. The last page is full.
+    /// row is visible; otherwise the list scrolls by whole screenfuls. The last one is full.
     pub fn first_row(&self, visible: usize) -> usize {
         let visible = visible.max(1);
         let last = self.rows.len().saturating_sub(visible);
@@ -444,10 +444,10 @@ impl Results {
         self.pose_index = self.sweep().grid.index(number);
     }
 
-    /// Returns the number of the present pose: at the map's cursor on the pages of map and angles, otherwise the
+    /// Returns the number of the present pose: at the map's cursor on the tabs of map and angles, otherwise the
     /// first pose of the selected imprint.
     pub fn pose(&self) -> Option<u64> {
-        if matches!(self.page, ExplorePage::Map | ExplorePage::Angles) {
+        if matches!(self.tab, ExploreTab::Map | ExploreTab::Angles) {
             return Some(self.sweep().grid.number(self.pose_index));
         }
         let (_, entry) = self.rows_from(self.selected).next()?;
@@ -547,7 +547,7 @@ mod tests {
     #[test]
     fn angles_of_an_earlier_zoom_do_not_replace_the_present_ones() {
         let mut results = with_zooms();
-        results.turn_to(ExplorePage::Angles);
+        results.open_tab(ExploreTab::Angles);
         let curve = |place| Arc::new(AngleCurve::of(results.sweep(), place));
         let first = results.pose_index();
         let second = first.with(Axis::ZoomX, 1);
@@ -574,7 +574,7 @@ mod tests {
     #[test]
     fn angles_that_arrive_at_another_zoom_are_there_or_asked_for_again_on_the_way_back() {
         let mut results = with_zooms();
-        results.turn_to(ExplorePage::Angles);
+        results.open_tab(ExploreTab::Angles);
         let curve = |place| Some(Arc::new(AngleCurve::of(results.sweep(), place)));
         let first = results.pose_index();
         let second = first.with(Axis::ZoomX, 1);
@@ -624,7 +624,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_page_is_full_and_the_list_turns_only_when_needed() {
+    fn the_last_screenful_is_full_and_the_list_scrolls_only_when_needed() {
         let mut results = results();
         let (all, visible) = (results.row_count(), 10);
         assert!(all > 25 && all % visible != 0, "{all}");
@@ -673,7 +673,7 @@ mod tests {
     #[test]
     fn the_cursor_of_the_map_stays_on_it() {
         let mut results = results();
-        results.turn_to(ExplorePage::Map);
+        results.open_tab(ExploreTab::Map);
         for (axis, by, place) in [
             (Axis::X0, -1, [0, 0, 0, 0, 0]),
             (Axis::X0, 1, [1, 0, 0, 0, 0]),
@@ -691,7 +691,7 @@ mod tests {
         results.turn(1);
         assert_eq!(results.pose_index().into_array(), [0, 2, 0, 0, 0]);
         assert_eq!(results.pose(), Some(20));
-        results.next_page(1);
-        assert_eq!(results.page(), ExplorePage::Scatter);
+        results.next_tab(1);
+        assert_eq!(results.tab(), ExploreTab::Scatter);
     }
 }

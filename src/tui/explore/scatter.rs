@@ -1,4 +1,4 @@
-//! The scatter page: two descriptors of every imprint that the filter keeps, one against the other.
+//! The scatter tab: two descriptors of every imprint that the filter keeps, one against the other.
 //!
 //! ```text
 //! p: perimeter against na: active taxels; 62 imprints      the descriptors, and how many imprints have both values
@@ -7,7 +7,7 @@
 //!    └────┬────┬──── na
 //! imprint 5: na 22, p 20; 4 poses                          the selected imprint
 //! ```
-//! Up and down choose the vertical descriptor, which is the one of the other pages too; left and right choose the
+//! Up and down choose the vertical descriptor, which is the one of the other tabs too; left and right choose the
 //! horizontal one. A click selects the nearest imprint.
 
 use ratatui::buffer::Buffer;
@@ -21,8 +21,8 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::imprints::no_row;
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::page::{NOTHING_TO_DRAW, ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
+use crate::tui::explore::tab::{NOTHING_TO_DRAW, ResultsTab, choose_descriptor};
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
@@ -31,8 +31,8 @@ use crate::tui::widget::write;
 /// The number of characters of a value.
 const VALUE: usize = 9;
 
-/// The scatter page.
-pub static PAGE: ResultsPage = ResultsPage {
+/// The scatter tab.
+pub static TAB: ResultsTab = ResultsTab {
     title: "scatter",
     context: Context::Scatter,
     filtered: true,
@@ -45,11 +45,11 @@ pub static PAGE: ResultsPage = ResultsPage {
 };
 
 /// Chooses a descriptor, or selects an imprint.
-fn update(results: &mut Results, message: &Message, page: Rect) {
+fn update(results: &mut Results, message: &Message, area: Rect) {
     match *message {
         Message::Explore(ExploreMessage::Columns(by)) => results.next_x_feature(by),
         Message::Select(row) => results.select(row),
-        _ => choose_descriptor(results, message, page),
+        _ => choose_descriptor(results, message, area),
     }
 }
 
@@ -67,11 +67,11 @@ fn points(results: &Results) -> Vec<(usize, (f64, f64))> {
         .collect()
 }
 
-/// Returns the plot field on the page, for some points; None without room.
-fn field(page: Rect, points: &[(usize, (f64, f64))]) -> Option<PlotField> {
+/// Returns the plot field on the tab, for some points; None without room.
+fn field(area: Rect, points: &[(usize, (f64, f64))]) -> Option<PlotField> {
     let area = Rect {
-        height: page.height.saturating_sub(2),
-        ..write::below(page, 1)
+        height: area.height.saturating_sub(2),
+        ..write::below(area, 1)
     };
     let x = axis_ends(points.iter().map(|(_, point)| point.0));
     let y = axis_ends(points.iter().map(|(_, point)| point.1));
@@ -80,9 +80,9 @@ fn field(page: Rect, points: &[(usize, (f64, f64))]) -> Option<PlotField> {
 
 /// Returns the message of a click: it selects the nearest imprint, or puts it onto the matrix if it is selected
 /// already.
-fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
+fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     let points = points(results);
-    let field = field(page, &points)?;
+    let field = field(area, &points)?;
     let (x, y) = field.dot(field.point(at)?);
     let far = |(_, point): &&(usize, (f64, f64))| {
         let (other_x, other_y) = field.dot(*point);
@@ -111,11 +111,11 @@ fn title(results: &Results, count: usize) -> String {
     )
 }
 
-/// Draws the page. Returns the position of the selected imprint.
-fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
+/// Draws the tab. Returns the position of the selected imprint.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let points = points(results);
     let title = title(results, points.len());
-    write::line(buffer, page, theme, [(title.as_str(), Role::Title)]);
+    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
     if points.is_empty() {
         let text = if results.row_count() == 0 {
             no_row(results)
@@ -123,17 +123,17 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
             "no imprint has both values".to_owned()
         };
         let pieces = [(text.as_str(), Role::Quiet)];
-        write::line(buffer, write::row(page, 1), theme, pieces);
+        write::line(buffer, write::row(area, 1), theme, pieces);
         return None;
     }
     let selected = results.rows_from(results.selected()).next();
-    let foot = write::below(page, page.height.saturating_sub(1));
-    if let Some((_, entry)) = selected.filter(|_| page.height > 1) {
+    let foot = write::below(area, area.height.saturating_sub(1));
+    if let Some((_, entry)) = selected.filter(|_| area.height > 1) {
         let text = detail(theme, results, &entry);
         write::line(buffer, foot, theme, [(text.as_str(), Role::Text)]);
     }
-    let Some(field) = field(page, &points) else {
-        draw_no_room(theme, buffer, page);
+    let Some(field) = field(area, &points) else {
+        draw_no_room(theme, buffer, area);
         return None;
     };
     let x_key = features()[results.x_feature()].key.as_str();
@@ -166,7 +166,7 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     )
 }
 
-/// Returns the drawing of the page for a file.
+/// Returns the drawing of the tab for a file.
 fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
     let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
     if points.is_empty() {

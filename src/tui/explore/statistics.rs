@@ -1,4 +1,4 @@
-//! The statistics page.
+//! The statistics tab.
 //!
 //! ```text
 //! 175 distinct up to shifts, 105 up to quarter turns and mirror images too
@@ -17,15 +17,15 @@ use crate::formats::value::grouped;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
+use crate::tui::explore::tab::{ResultsTab, choose_descriptor};
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below};
 
-/// The statistics page.
-pub static PAGE: ResultsPage = ResultsPage {
+/// The statistics tab.
+pub static TAB: ResultsTab = ResultsTab {
     title: "statistics",
     context: Context::Statistics,
     filtered: false,
@@ -33,15 +33,15 @@ pub static PAGE: ResultsPage = ResultsPage {
     table: Some(table),
     wheel: Wheel::Rows,
     draw,
-    click: |results, page, at| {
-        let row = StatisticsTable::of(page, results).rows.at(at)?;
+    click: |results, area, at| {
+        let row = StatisticsTable::of(area, results).rows.at(at)?;
         Some(Message::Select(row))
     },
     update,
 };
 
 /// Returns the statistics of all descriptors as CSV, with the same columns as the summary of a sweep.
-fn table(results: &Results, _page: Rect) -> String {
+fn table(results: &Results, _area: Rect) -> String {
     let keys = STATISTIC_COLUMNS.iter().map(|column| column.key);
     let mut text = format!("descriptor,{}\n", keys.collect::<Vec<_>>().join(","));
     for statistic in &results.sweep().statistics {
@@ -56,12 +56,12 @@ fn table(results: &Results, _page: Rect) -> String {
 }
 
 /// Scrolls the columns, or chooses a descriptor.
-fn update(results: &mut Results, message: &Message, page: Rect) {
+fn update(results: &mut Results, message: &Message, area: Rect) {
     if let Message::Explore(ExploreMessage::Columns(by)) = message {
-        let (_, visible) = StatisticsTable::of(page, results).columns;
+        let (_, visible) = StatisticsTable::of(area, results).columns;
         results.move_columns(*by, STATISTIC_COLUMNS.len() - visible);
     } else {
-        choose_descriptor(results, message, page);
+        choose_descriptor(results, message, area);
     }
 }
 
@@ -83,18 +83,18 @@ pub struct StatisticsTable {
 }
 
 impl StatisticsTable {
-    /// Computes the layout of the table on its page.
-    pub fn of(page: Rect, results: &Results) -> Self {
+    /// Computes the layout of the table on its tab.
+    pub fn of(area: Rect, results: &Results) -> Self {
         let (name, count) = (17, STATISTIC_COLUMNS.len());
-        let room = usize::from(page.width).saturating_sub(name);
+        let room = usize::from(area.width).saturating_sub(name);
         // Eight columns fit into 80 characters.
         let column = (room / count).clamp(7, 10);
         let visible = (room / column).min(count);
         let totals = Rect {
-            height: if page.height > 6 { 2 } else { 0 },
-            ..page
+            height: if area.height > 6 { 2 } else { 0 },
+            ..area
         };
-        let table = below(page, totals.height);
+        let table = below(area, totals.height);
         let rows = below(table, 1);
         Self {
             totals,
@@ -115,10 +115,10 @@ impl StatisticsTable {
     }
 }
 
-/// Draws the page. Returns the position of the chosen descriptor.
-fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
-    let table = StatisticsTable::of(page, results);
-    for (index, total) in totals(results, page.width.into()).iter().enumerate() {
+/// Draws the tab. Returns the position of the chosen descriptor.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+    let table = StatisticsTable::of(area, results);
+    for (index, total) in totals(results, area.width.into()).iter().enumerate() {
         let row = write::row(table.totals, index);
         write::line(buffer, row, theme, [(total.as_str(), Role::Text)]);
     }

@@ -1,8 +1,8 @@
 //! Handles messages over the results of a sweep, and in the prompt for the name of an export. The other prompts have
 //! [`crate::tui::explore::prompts`].
 //!
-//! Messages that mean the same on all pages are handled here: the page, the descriptor, the order, the map's angle and
-//! zoom. Scrolling and selecting are left to the page's own row in [`crate::tui::explore::pages`].
+//! Messages that mean the same on all tabs are handled here: the tab, the descriptor, the order, the map's angle and
+//! zoom. Scrolling and selecting are left to the tab's own row in [`crate::tui::explore::tabs`].
 
 use crate::formats::value::{counted, grouped};
 use crate::pose::Axis;
@@ -18,11 +18,11 @@ use crate::tui::app::state::App;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::MarkPurpose;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
-use crate::tui::explore::pages;
+use crate::tui::explore::message::{ExploreMessage, ExploreTab, name_of};
 use crate::tui::explore::prompts::mark_dialog;
 use crate::tui::explore::results::Results;
-use crate::tui::explore::work::{act, page_area};
+use crate::tui::explore::tabs;
+use crate::tui::explore::work::{act, tab_area};
 use crate::tui::keys::action;
 use crate::tui::recognise;
 use crate::tui::recognise::message::RecogniseMessage;
@@ -75,10 +75,10 @@ pub(in crate::tui) fn in_results(
             if let Message::Explore(asked) = &message {
                 change_view(app, &mut results, asked);
             }
-            let page = page_area(app, &results);
+            let area = tab_area(app, &results);
             let before = results.map_zoom();
-            (pages::row(results.page()).update)(&mut results, &message, page);
-            if let (Message::Zoom(by), ExplorePage::Map) = (&message, results.page())
+            (tabs::row(results.tab()).update)(&mut results, &message, area);
+            if let (Message::Zoom(by), ExploreTab::Map) = (&message, results.tab())
                 && results.map_zoom() == before
             {
                 let end = ["this is the whole range", "every pose has its letter"];
@@ -101,12 +101,12 @@ fn compare(app: &mut App, results: Box<Results>) {
     }
 }
 
-/// Returns the prompt for a file. It proposes the page's drawing or table if it has one, otherwise the table of
+/// Returns the prompt for a file. It proposes the tab's drawing or table if it has one, otherwise the table of
 /// imprints.
 fn export_of(results: &Results) -> ExportDialog {
     // A slash would separate folders.
     let name = name_of(results.sweep().grid.source()).replace('/', "-");
-    let row = pages::row(results.page());
+    let row = tabs::row(results.tab());
     let name = match (row.drawing, row.table) {
         (Some(_), _) => format!("{name}-{}.svg", row.title),
         (_, Some(_)) => format!("{name}-{}.csv", row.title),
@@ -118,9 +118,9 @@ fn export_of(results: &Results) -> ExportDialog {
 /// Handles messages that change only what is shown, not the document, so that there is nothing to undo.
 fn change_view(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     match *asked {
-        ExploreMessage::Page(page) => results.turn_to(page),
-        ExploreMessage::NextPage(by) => results.next_page(by),
-        ExploreMessage::Feature(_) if results.page() == ExplorePage::Map => {
+        ExploreMessage::Tab(tab) => results.open_tab(tab),
+        ExploreMessage::NextTab(by) => results.next_tab(by),
+        ExploreMessage::Feature(_) if results.tab() == ExploreTab::Map => {
             refuse(app, "the map shows no descriptor");
         }
         ExploreMessage::Feature(by) => results.next_feature(by),
@@ -149,7 +149,7 @@ fn only_one(app: &App, results: &Results, axis: Axis) -> Option<String> {
     if !grid.axes().any(|own| own == axis) {
         return Some(format!("a figure has no {name}"));
     }
-    let here = pages::row(results.page()).context;
+    let here = tabs::row(results.tab()).context;
     let ranges = app.keymap().label(here, &action::RANGES);
     let is_only = grid.counts()[axis] == 1;
     is_only.then(|| format!("only one {name} was swept; {ranges} explores other ranges"))
@@ -196,12 +196,12 @@ fn follow(app: &mut App, results: &mut Results) {
     let Some(pose) = results.pose() else {
         return refuse(app, "nothing is selected here");
     };
-    if !matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
+    if !matches!(results.tab(), ExploreTab::Map | ExploreTab::Angles) {
         results.go_to_pose(pose);
-        return results.turn_to(ExplorePage::Map);
+        return results.open_tab(ExploreTab::Map);
     }
     match results.go_to_imprint_at(pose) {
-        Ok(()) => results.turn_to(ExplorePage::Imprints),
+        Ok(()) => results.open_tab(ExploreTab::Imprints),
         Err(reason) => refuse(app, reason),
     }
 }
@@ -242,7 +242,7 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     None
 }
 
-/// Handles a message in the prompt for the name of a file. The prompt serves the pages of Explore and the curve of
+/// Handles a message in the prompt for the name of a file. The prompt serves the tabs of Explore and the curve of
 /// the page of sizes; a refused name stays in it.
 pub(in crate::tui) fn in_export(
     app: &mut App,
@@ -269,7 +269,7 @@ pub(in crate::tui) fn in_export(
 /// Exports results to a file. The export of a sweep shows its progress, and opens the prompt again itself.
 fn export(app: &mut App, dialog: ExportDialog, name: String) -> Option<Effect> {
     let results = app.results_below()?;
-    if let Some(file) = pages::file(results, &name, page_area(app, results)) {
+    if let Some(file) = tabs::file(results, &name, tab_area(app, results)) {
         return from_prompt(app, Dialog::Export(dialog), |app| {
             write_file(app, name, file)
         });

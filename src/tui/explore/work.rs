@@ -3,7 +3,7 @@
 //! ```text
 //! Open -> form of ranges -> Start -> Running -> Swept -> results        Stop: the results so far
 //! results -> name of a file -> Running -> Written                       Stop: no file
-//! results -> name of a drawing or of the page's table -> a request about files   explore::update
+//! results -> name of a drawing or of the tab's table -> a request about files   explore::update
 //! ```
 //! Each piece of work has a number, and its events carry it. Events of work that is no longer awaited are dropped.
 
@@ -48,10 +48,10 @@ pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect
     }
 }
 
-/// Returns the area of the results' pages on the screen; empty if there is no room.
-pub(super) fn page_area(app: &App, results: &Results) -> Rect {
+/// Returns the area of the results' tabs on the screen; empty if there is no room.
+pub(super) fn tab_area(app: &App, results: &Results) -> Rect {
     let area = app.panes().map(|panes| panes.area(results.slot()));
-    area.map_or(Rect::default(), |area| ResultPanes::of(area).page)
+    area.map_or(Rect::default(), |area| ResultPanes::of(area).tab)
 }
 
 /// Opens the last results if they belong to the shape on the matrix, otherwise the form. Results of another shape are
@@ -193,7 +193,7 @@ pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration
     }
 }
 
-/// Returns the search for the imprints of each angle, if the open page shows them and they have not been found yet.
+/// Returns the search for the imprints of each angle, if the open tab shows them and they have not been found yet.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let Some(Dialog::Results(results)) = app.dialogs.last_mut() else {
         return None;
@@ -260,7 +260,7 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
 }
 
 /// Returns the remark that a file holds all imprints although their list is filtered. Empty without a filter, and for
-/// a drawing, which shows what its page shows.
+/// a drawing, which shows what its tab shows.
 fn filter_remark(app: &App, name: &str) -> String {
     match app.results_below() {
         Some(results) if !results.filter().is_empty() && DrawingFormat::of_path(name).is_none() => {

@@ -18,7 +18,7 @@ pub(in crate::tui) fn in_help(app: &mut App, mut help: Help, message: &Message) 
     match *message {
         Message::Scroll(lines) => help.scroll(lines, keymap, room),
         Message::ScrollScreen(by) => {
-            // One line of the page before stays visible, for the reader's orientation.
+            // One line of the screenful before stays visible, for the reader's orientation.
             let page = room.1.saturating_sub(1).max(1).cast_signed();
             help.scroll(page.saturating_mul(by.into()), keymap, room);
         }

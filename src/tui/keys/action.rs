@@ -16,7 +16,7 @@ use crate::pose::Axis;
 use crate::tui::app::library::Purpose;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
 use crate::tui::explore::column::ListColumn;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::message::{ExploreMessage, ExploreTab};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::message::RecogniseMessage;
@@ -176,7 +176,7 @@ macro_rules! actions {
     };
 }
 
-use ExploreMessage::{Along, Angle, Columns, Feature, NextPage, Sort};
+use ExploreMessage::{Along, Angle, Columns, Feature, NextTab, Sort};
 use Message::{Explore, Recognise};
 
 actions! {
@@ -231,7 +231,7 @@ actions! {
         ZOOM_OUT "zoom-out" ["zoom out"] Message::Zoom(-1);
         ZOOM_CENTRE "zoom-centre" [] Message::ZoomCentre;
         SENSOR "sensor" [] Message::Sensor;
-        PANEL "panel" [] Message::SwitchPage;
+        PANEL "panel" [] Message::SwitchPane;
         COPY_DESCRIPTORS "copy-descriptors" ["copy", "copy descriptors"] Message::Copy(Copied::Descriptors);
         COPY_IMPRINT "copy-imprint" ["copy imprint"] Message::Copy(Copied::Imprint);
         MOUSE "mouse" [] Message::MouseOnOff;
@@ -270,14 +270,14 @@ actions! {
         EXPLORE "explore" [] Explore(ExploreMessage::Open);
         RANGES "ranges" [] Explore(ExploreMessage::Ranges);
         STOP "stop" [] Explore(ExploreMessage::Stop);
-        IMPRINTS "imprints" [] Explore(ExploreMessage::Page(ExplorePage::Imprints));
-        STATISTICS "statistics" [] Explore(ExploreMessage::Page(ExplorePage::Statistics));
-        HISTOGRAM "histogram" [] Explore(ExploreMessage::Page(ExplorePage::Histogram));
-        MAP "map" [] Explore(ExploreMessage::Page(ExplorePage::Map));
-        SCATTER "scatter" [] Explore(ExploreMessage::Page(ExplorePage::Scatter));
-        ANGLES "angles" [] Explore(ExploreMessage::Page(ExplorePage::Angles));
-        NEXT_PAGE "next-page" [] Explore(NextPage(1));
-        PREVIOUS_PAGE "previous-page" [] Explore(NextPage(-1));
+        IMPRINTS "imprints" [] Explore(ExploreMessage::Tab(ExploreTab::Imprints));
+        STATISTICS "statistics" [] Explore(ExploreMessage::Tab(ExploreTab::Statistics));
+        HISTOGRAM "histogram" [] Explore(ExploreMessage::Tab(ExploreTab::Histogram));
+        MAP "map" [] Explore(ExploreMessage::Tab(ExploreTab::Map));
+        SCATTER "scatter" [] Explore(ExploreMessage::Tab(ExploreTab::Scatter));
+        ANGLES "angles" [] Explore(ExploreMessage::Tab(ExploreTab::Angles));
+        NEXT_TAB "next-page" [] Explore(NextTab(1));
+        PREVIOUS_TAB "previous-page" [] Explore(NextTab(-1));
         NEXT_DESCRIPTOR "next-descriptor" [] Explore(Feature(1));
         PREVIOUS_DESCRIPTOR "previous-descriptor" [] Explore(Feature(-1));
         COLUMNS_RIGHT "columns-right" [] Explore(Columns(1));

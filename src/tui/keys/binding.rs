@@ -66,7 +66,7 @@ macro_rules! contexts {
 const EVERYWHERE: Option<Context> = Some(Context::Everywhere);
 /// The outer place of most places with a field.
 const LINE: Option<Context> = Some(Context::Line);
-/// The outer place of the pages of Explore.
+/// The outer place of the tabs of Explore.
 const EXPLORE: Option<Context> = Some(Context::Explore);
 
 contexts! {
@@ -90,19 +90,19 @@ contexts! {
     Ranges "ranges" "Ranges of a sweep" Typed, LINE;
     /// While a worker runs.
     Running "running" "While work is under way" Ignored, EVERYWHERE;
-    /// On every page of Explore.
+    /// On every tab of Explore.
     Explore "explore" "Exploring, on every page" Ignored, EVERYWHERE;
-    /// On the imprints page of Explore.
+    /// On the imprints tab of Explore.
     Imprints "imprints" "In the list of imprints" Ignored, EXPLORE;
-    /// On the statistics page of Explore.
+    /// On the statistics tab of Explore.
     Statistics "statistics" "In the statistics" Ignored, EXPLORE;
-    /// On the histogram page of Explore.
+    /// On the histogram tab of Explore.
     Histogram "histogram" "At the histogram" Ignored, EXPLORE;
-    /// On the map page of Explore.
+    /// On the map tab of Explore.
     Map "map" "On the map" Ignored, EXPLORE;
-    /// On the scatter page of Explore.
+    /// On the scatter tab of Explore.
     Scatter "scatter" "At the scatter plot" Ignored, EXPLORE;
-    /// On the angles page of Explore.
+    /// On the angles tab of Explore.
     Angles "angles" "At the plot of angles" Ignored, EXPLORE;
     /// In the field for a filter of the list of imprints.
     Filter "filter" "Filtering the list of imprints" Typed, LINE;
@@ -133,18 +133,18 @@ contexts! {
 }
 
 impl Context {
-    /// Returns the screen that this place is a page of; hints show the keys of both.
+    /// Returns the screen that this place is a part of; hints show the keys of both.
     pub fn screen(self) -> Option<Self> {
-        let pages = [Self::Explore, Self::Matrix];
-        let own = self.outer().filter(|outer| pages.contains(outer));
+        let screens = [Self::Explore, Self::Matrix];
+        let own = self.outer().filter(|outer| screens.contains(outer));
         own.filter(|_| self != Self::Hold)
     }
 
-    /// Returns the other pages of the same screen; none if the screen has no pages.
-    pub(in crate::tui) fn other_pages(self) -> impl Iterator<Item = Self> {
-        let turns = |place: Self| place.outer() == EXPLORE;
+    /// Returns the places of the other tabs of Explore; none elsewhere.
+    pub(in crate::tui) fn other_tabs(self) -> impl Iterator<Item = Self> {
+        let is_tab = |place: Self| place.outer() == EXPLORE;
         let others = Self::ALL.into_iter();
-        others.filter(move |other| turns(self) && turns(*other) && *other != self)
+        others.filter(move |other| is_tab(self) && is_tab(*other) && *other != self)
     }
 
     /// Returns true if a key that has no binding here may be looked up in `place`, directly or through other places.

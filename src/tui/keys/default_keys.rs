@@ -196,7 +196,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Ctrl('c') => QUIT] "" "stop; again while it stops: quit at once";
     }
 
-    /// The pages of Explore look here for keys that have no row there.
+    /// The tabs of Explore look here for keys that have no row there.
     Explore {
         [Char('1') => IMPRINTS,
             Char('2') => STATISTICS,
@@ -204,7 +204,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             Char('4') => MAP,
             Char('5') => SCATTER,
             Char('6') => ANGLES] "" "imprints, statistics, histogram, map, scatter, angles";
-        [Tab => NEXT_PAGE, BackTab => PREVIOUS_PAGE]
+        [Tab => NEXT_TAB, BackTab => PREVIOUS_TAB]
             "page" "next, previous page";
         [Char('d') => NEXT_DESCRIPTOR, Char('D') => PREVIOUS_DESCRIPTOR]
             "descriptor" "next, previous descriptor, except on the map";

@@ -156,7 +156,7 @@ pub enum HelpLine {
 }
 
 /// Returns the lines of help in a place. On the matrix, where a user begins, these are all rows; elsewhere the rows
-/// of the place and its outer places, without keys that an inner one binds, then those of the screen's other pages.
+/// of the place and its outer places, without keys that an inner one binds, then those of the screen's other tabs.
 pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
     let whole = |place| section(place, keymap, &[]);
     if context == Context::Matrix {
@@ -169,7 +169,7 @@ pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
         let own = keymap.of(place).flat_map(|row| row.keys.iter());
         taken.extend(own.map(|(key, _)| *key));
     }
-    lines.extend(context.other_pages().flat_map(whole));
+    lines.extend(context.other_tabs().flat_map(whole));
     lines
 }
 

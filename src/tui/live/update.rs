@@ -170,7 +170,7 @@ pub(in crate::tui) fn in_live(
         Message::Scroll(by) => page.scrub(by.into()),
         Message::ScrollTo(Endpoint::First) => page.to_oldest(),
         Message::ScrollTo(Endpoint::Last) => page.to_newest(),
-        Message::SwitchPage => page.display.only_panel ^= true,
+        Message::SwitchPane => page.display.only_panel ^= true,
         Message::Live(asked) => effect = adjust(app, &mut page, &asked),
         Message::Command => {
             let prompt = CommandDialog::new(&app.commands);

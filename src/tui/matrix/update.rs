@@ -20,7 +20,7 @@ use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::library::LibraryRequest;
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
 use crate::tui::app::quit::quit;
-use crate::tui::app::state::{App, Display, Followed, NarrowPage, RunState, UnfinishedSave};
+use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState, UnfinishedSave};
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::page::Help;
 use crate::tui::history::page::HistoryDialog;
@@ -281,13 +281,17 @@ fn edit(app: &mut App, message: &Message) {
         }
         Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
-        Message::SwitchPage if app.panes().is_some_and(|panes| !app.has_pages(&panes)) => {
+        Message::SwitchPane
+            if app
+                .panes()
+                .is_some_and(|panes| !app.can_switch_pane(&panes)) =>
+        {
             inform(app, "both sides of the screen are visible");
         }
-        Message::SwitchPage => {
-            app.page = match app.page {
-                NarrowPage::Matrix => NarrowPage::Panel,
-                NarrowPage::Panel => NarrowPage::Matrix,
+        Message::SwitchPane => {
+            app.narrow_pane = match app.narrow_pane {
+                NarrowPane::Matrix => NarrowPane::Panel,
+                NarrowPane::Panel => NarrowPane::Matrix,
             };
         }
         Message::Hold if app.held.is_some() => let_go(app),

@@ -10,7 +10,7 @@ use crate::storage::ModelChoice;
 use crate::tui::app::change::{inform, let_go, refuse};
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, NarrowPage};
+use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -125,7 +125,7 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     let looks_again = opened || choice.is_some();
     if let Some(page) = closed {
         app.dialogs.push(Dialog::Recognition(page));
-        app.page = NarrowPage::Panel;
+        app.narrow_pane = NarrowPane::Panel;
     }
     let page = state(app)?;
     let choice = choice.unwrap_or_else(|| page.choice().clone());
@@ -290,7 +290,7 @@ fn prepare_again(app: &mut App) -> Option<Effect> {
 fn close(app: &mut App, mut page: Box<Recognition>) -> Option<Effect> {
     let stops = page.stop_search();
     app.recognition = Some(page);
-    app.page = NarrowPage::Matrix;
+    app.narrow_pane = NarrowPane::Matrix;
     let_go(app);
     stops.then_some(Effect::Work(Work::StopFindingPoses))
 }
@@ -306,7 +306,7 @@ pub(in crate::tui) fn in_quiz(
         Message::Accept => guess(app, *quiz, true),
         Message::Cancel | Message::Quit => guess(app, *quiz, false),
         Message::Recognise(RecogniseMessage::Touch) => touch_again(app, *quiz),
-        Message::SwitchPage => {
+        Message::SwitchPane => {
             app.dialogs.push(Dialog::Quiz(quiz));
             return matrix::update::act(app, message);
         }
@@ -347,7 +347,7 @@ fn guess(app: &mut App, quiz: Quiz, named: bool) {
         page.score.right += u32::from(right);
         page.score.best += u32::from(best == Some(shape));
     }
-    app.page = NarrowPage::Panel;
+    app.narrow_pane = NarrowPane::Panel;
     inform(app, text);
 }
 

@@ -10,7 +10,7 @@
 //! first toggle                 166     329
 //! toggle that makes a hole      54     105
 //! a form opens                 666    1491
-//! a page of Explore           1498    2504
+//! a tab of Explore            1498    2504
 //! nothing has changed            0      25
 //! ```
 //! The budgets are 2200 bytes for the first frame, 60 for a cursor move and 0 for no change (a line of 9600 baud

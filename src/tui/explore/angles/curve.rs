@@ -2,7 +2,7 @@
 //! angle.
 //!
 //! The imprints of an angle are found by sweeping its positions again. A large grid is sampled: only every n-th angle
-//! and every m-th y0 are swept, so that the plot is there within a second. Until then the page says "computing".
+//! and every m-th y0 are swept, so that the plot is there within a second. Until then the tab says "computing".
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The angles page: the chosen descriptor against the angle.
+//! The angles tab: the chosen descriptor against the angle.
 //!
 //! ```text
 //! na: active taxels against the angle   line: mean, dashes: min, max       the descriptor, and the legend
@@ -21,8 +21,8 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::angles::curve::{AngleSearch, AngleSpread};
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::page::{NOTHING_TO_DRAW, ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
+use crate::tui::explore::tab::{NOTHING_TO_DRAW, ResultsTab, choose_descriptor};
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
@@ -34,8 +34,8 @@ const VALUE: usize = 9;
 /// The legend of the lines.
 const LEGEND: &str = "  line: mean, dashes: min, max";
 
-/// The angles page.
-pub static PAGE: ResultsPage = ResultsPage {
+/// The angles tab.
+pub static TAB: ResultsTab = ResultsTab {
     title: "angles",
     context: Context::Angles,
     filtered: false,
@@ -55,11 +55,11 @@ fn spread(results: &Results) -> Vec<AngleSpread> {
     })
 }
 
-/// Returns the plot field on the page; None without room.
-fn field(page: Rect, spread: &[AngleSpread]) -> Option<PlotField> {
+/// Returns the plot field on the tab; None without room.
+fn field(area: Rect, spread: &[AngleSpread]) -> Option<PlotField> {
     let area = Rect {
-        height: page.height.saturating_sub(2),
-        ..write::below(page, 1)
+        height: area.height.saturating_sub(2),
+        ..write::below(area, 1)
     };
     let values = spread.iter().flat_map(|at| [at.min, Some(at.mean), at.max]);
     let x = axis_ends(spread.iter().map(|at| at.degrees));
@@ -67,9 +67,9 @@ fn field(page: Rect, spread: &[AngleSpread]) -> Option<PlotField> {
 }
 
 /// Returns the message of a click, which chooses the nearest angle.
-fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
+fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     let spread = spread(results);
-    let (degrees, _) = field(page, &spread)?.point(at)?;
+    let (degrees, _) = field(area, &spread)?.point(at)?;
     let far = |at: &&AngleSpread| (at.degrees - degrees).abs();
     let nearest = spread
         .iter()
@@ -105,27 +105,27 @@ fn without_curve(results: &Results) -> &'static str {
     }
 }
 
-/// Draws the page. Returns the position of the mean at the chosen angle.
-fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
-    let text = title(results, page.width.into());
-    let end = write::line(buffer, page, theme, [(text.as_str(), Role::Title)]);
-    let legend = write::right_of(page, end);
+/// Draws the tab. Returns the position of the mean at the chosen angle.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+    let text = title(results, area.width.into());
+    let end = write::line(buffer, area, theme, [(text.as_str(), Role::Title)]);
+    let legend = write::right_of(area, end);
     if write::width(LEGEND) <= usize::from(legend.width) {
         write::line(buffer, legend, theme, [(LEGEND, Role::Quiet)]);
     }
     let spread = spread(results);
     let Some(here) = nearest(results, &spread) else {
         let text = (without_curve(results), Role::Quiet);
-        write::line(buffer, write::row(page, 1), theme, [text]);
+        write::line(buffer, write::row(area, 1), theme, [text]);
         return None;
     };
-    if page.height > 1 {
-        let foot = write::below(page, page.height - 1);
+    if area.height > 1 {
+        let foot = write::below(area, area.height - 1);
         let text = detail(&here);
         write::line(buffer, foot, theme, [(text.as_str(), Role::Text)]);
     }
-    let Some(field) = field(page, &spread) else {
-        draw_no_room(theme, buffer, page);
+    let Some(field) = field(area, &spread) else {
+        draw_no_room(theme, buffer, area);
         return None;
     };
     let key = results.feature().key.as_str();
@@ -207,7 +207,7 @@ fn detail(at: &AngleSpread) -> String {
     )
 }
 
-/// Returns the drawing of the page for a file.
+/// Returns the drawing of the tab for a file.
 fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
     let spread = spread(results);
     if spread.is_empty() {

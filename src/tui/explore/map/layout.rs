@@ -2,7 +2,7 @@
 //!
 //! If letters for all poses do not fit, the map begins as a picture of its whole range, in which each half of a
 //! character is a pose: every n-th one along both axes. Zooming in halves n, down to every pose, and then changes to
-//! letters. A map that is larger than its page scrolls with its cursor. A letter is two columns wide if the whole map
+//! letters. A map that is larger than its tab scrolls with its cursor. A letter is two columns wide if the whole map
 //! fits that way.
 
 use ratatui::layout::{Position, Rect};
@@ -66,15 +66,15 @@ fn scales((width, height): (u64, u64), (columns, lines): (u16, u16)) -> Vec<MapS
 }
 
 impl MapPane {
-    /// Computes the layout of the map on its page, with the cursor as near to the middle as the ends allow.
-    pub fn of(page: Rect, results: &Results) -> Self {
+    /// Computes the layout of the map on its tab, with the cursor as near to the middle as the ends allow.
+    pub fn of(area: Rect, results: &Results) -> Self {
         let grid = &results.sweep().grid;
         let [width, height, ..] = grid.counts().into_array();
         let label = narrow(results.width_of(Axis::Y0) + 1);
         let side = u16::from(grid.sensor().columns()).clamp(22, 32);
-        let with_side = page.width >= label + side + 22;
-        let room = page.width - if with_side { side + 2 } else { 0 };
-        let body = below(page, 2);
+        let with_side = area.width >= label + side + 22;
+        let room = area.width - if with_side { side + 2 } else { 0 };
+        let body = below(area, 2);
         let body = Rect {
             height: body.height.saturating_sub(1),
             ..body
@@ -95,15 +95,15 @@ impl MapPane {
         let rows = u64::from(body.height) * u64::from(lines);
         let (from_y, seen_y) = seen(y0, height, stride, rows, lines.into());
         let cells = Rect {
-            x: page.x + label.min(page.width),
+            x: area.x + label.min(area.width),
             width: narrow(seen_x) * cell,
             height: narrow(seen_y.div_ceil(lines.into())),
             ..body
         };
         let line = |index: u16| Rect {
-            height: u16::from(index < page.height),
+            height: u16::from(index < area.height),
             width: room,
-            ..below(page, index)
+            ..below(area, index)
         };
         Self {
             head: line(0),
@@ -116,13 +116,13 @@ impl MapPane {
             first: (from_x, from_y),
             count: (seen_x, seen_y),
             side: with_side.then_some(Rect {
-                x: page.x + room + 2,
+                x: area.x + room + 2,
                 width: side,
-                ..page
+                ..area
             }),
             detail: Rect {
-                height: u16::from(page.height > 2),
-                ..below(page, page.height.saturating_sub(1))
+                height: u16::from(area.height > 2),
+                ..below(area, area.height.saturating_sub(1))
             },
         }
     }

@@ -1,4 +1,4 @@
-//! The map page: which imprint each x0 and y0 leaves at one angle.
+//! The map tab: which imprint each x0 and y0 leaves at one angle.
 //!
 //! ```text
 //! letters   a letter, colour or shade for each imprint, different for neighbours
@@ -22,12 +22,12 @@ use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
+use crate::tui::explore::tab::ResultsTab;
 use crate::tui::keys::binding::Context;
 
-/// The map page.
-pub static PAGE: ResultsPage = ResultsPage {
+/// The map tab.
+pub static TAB: ResultsTab = ResultsTab {
     title: "map",
     context: Context::Map,
     filtered: false,
@@ -40,14 +40,14 @@ pub static PAGE: ResultsPage = ResultsPage {
 };
 
 /// Returns the message of a click, which puts the cursor at a pose.
-fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
-    let (x0, y0) = MapPane::of(page, results).pose(at)?;
+fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
+    let (x0, y0) = MapPane::of(area, results).pose(at)?;
     Some(Message::Explore(ExploreMessage::Point(x0, y0)))
 }
 
 /// Moves the cursor by as many poses as the map's step: along y0 by lines, along x0 also to the ends. Zooms the map.
-fn update(results: &mut Results, message: &Message, page: Rect) {
-    let pane = MapPane::of(page, results);
+fn update(results: &mut Results, message: &Message, area: Rect) {
+    let pane = MapPane::of(area, results);
     let stride = i64::try_from(pane.stride).unwrap_or(i64::MAX);
     match *message {
         Message::Cursor(arrow) => {

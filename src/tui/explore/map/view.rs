@@ -1,4 +1,4 @@
-//! The map page: which imprint each x0 and y0 leaves, at one angle and zoom.
+//! The map tab: which imprint each x0 and y0 leaves, at one angle and zoom.
 //!
 //! ```text
 //! angle 0° 1/36  zoom x 1.00 1/3           imprint 0       the fixed angle and zooms, with number and count
@@ -28,8 +28,8 @@ use crate::touch::Plane;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::map::letters::{LETTERS, letter, signs};
 use crate::tui::explore::map::visible::VisiblePoses;
-use crate::tui::explore::page::NOTHING_TO_DRAW;
 use crate::tui::explore::results::Results;
+use crate::tui::explore::tab::NOTHING_TO_DRAW;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
@@ -59,14 +59,14 @@ fn meaning(theme: &Theme, pane: &MapPane) -> [String; 2] {
     [format!("{full}; {part}"), format!("  {part}")]
 }
 
-/// Draws the page. Returns the position of the cursor.
+/// Draws the tab. Returns the position of the cursor.
 pub(in crate::tui) fn draw(
     results: &Results,
     theme: &Theme,
     buffer: &mut Buffer,
-    page: Rect,
+    area: Rect,
 ) -> Option<Position> {
-    let pane = MapPane::of(page, results);
+    let pane = MapPane::of(area, results);
     let grid = &results.sweep().grid;
     let head = heading(results);
     let end = write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
@@ -78,12 +78,12 @@ pub(in crate::tui) fn draw(
         write::line(buffer, legend, theme, [(text.as_str(), Role::Quiet)]);
     }
     let cursor = draw_cells(theme, results, &pane, buffer);
-    draw_rulers(theme, grid, &pane, buffer, page);
+    draw_rulers(theme, grid, &pane, buffer, area);
     draw_pose(theme, results, &pane, buffer);
     cursor
 }
 
-/// Returns the drawing of the page for a file: the whole range at the present angle and zooms of the shape.
+/// Returns the drawing of the tab for a file: the whole range at the present angle and zooms of the shape.
 pub(in crate::tui) fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
     let grid = &results.sweep().grid;
     let [width, height, ..] = grid.counts().into_array();
@@ -240,16 +240,16 @@ fn halves(theme: &Theme, upper: Option<u8>, lower: Option<u8>) -> (char, Style) 
 }
 
 /// Draws y0 left of the cells, and above them the first and the last x0.
-fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, page: Rect) {
+fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, area: Rect) {
     let ranges = grid.ranges();
-    let label = usize::from(pane.cells.x.saturating_sub(page.x)).saturating_sub(1);
+    let label = usize::from(pane.cells.x.saturating_sub(area.x)).saturating_sub(1);
     let step = pane.stride * u64::from(pane.lines);
     for line in 0..pane.cells.height {
         let index = pane.first.1 + u64::from(line) * step;
         let row = Rect {
-            x: page.x,
+            x: area.x,
             y: pane.cells.y + line,
-            width: pane.cells.x.saturating_sub(page.x),
+            width: pane.cells.x.saturating_sub(area.x),
             height: 1,
         };
         let value = Parameter::Y0.format(ranges[Axis::Y0].value(index));

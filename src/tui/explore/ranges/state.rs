@@ -297,7 +297,10 @@ impl RangesForm {
         self.grid.clone()
     }
 
-    /// Returns the grid of the fields, or their first error.
+    /// Returns the grid of the fields.
+    ///
+    /// # Errors
+    /// Returns the first error in the fields, or what is wrong with all of them together.
     pub fn grid(&self) -> Result<&PoseGrid, &FormError> {
         self.grid.as_ref()
     }

@@ -1,0 +1,48 @@
+//! The table of tabs of the results. A new tab is a row here and a variant of [`ExploreTab`].
+
+use ratatui::layout::Rect;
+
+use crate::formats::DrawingFormat;
+use crate::formats::ending::has_ending;
+use crate::tui::explore::message::ExploreTab;
+use crate::tui::explore::results::Results;
+use crate::tui::explore::tab::ResultsTab;
+use crate::tui::explore::{angles, histogram, imprints, map, scatter, statistics};
+
+/// Returns the row of a tab.
+pub fn row(tab: ExploreTab) -> &'static ResultsTab {
+    match tab {
+        ExploreTab::Imprints => &imprints::TAB,
+        ExploreTab::Statistics => &statistics::TAB,
+        ExploreTab::Histogram => &histogram::TAB,
+        ExploreTab::Map => &map::TAB,
+        ExploreTab::Scatter => &scatter::TAB,
+        ExploreTab::Angles => &angles::TAB,
+    }
+}
+
+/// Returns the content of a file of that name if it holds what the open tab shows: its drawing, or the numbers of its
+/// table, whose tab has this area. None for a file that holds the results of the whole sweep.
+///
+/// # Errors
+/// Returns why the tab cannot be drawn.
+pub(super) fn file(results: &Results, name: &str, area: Rect) -> Option<Result<Vec<u8>, String>> {
+    let tab = row(results.tab());
+    if let Some(format) = DrawingFormat::of_path(name) {
+        return Some(match tab.drawing {
+            Some(drawing) => drawing(results, format),
+            None => Err(no_drawing(format)),
+        });
+    }
+    let table = tab.table.filter(|_| has_ending(name, "csv"))?;
+    Some(Ok(table(results, area).into_bytes()))
+}
+
+/// Returns the reason why a tab that is a table is not drawn, with the tabs that are.
+fn no_drawing(format: DrawingFormat) -> String {
+    let rows = ExploreTab::ALL.into_iter().map(row);
+    let drawn = rows.filter(|row| row.drawing.is_some());
+    let titles: Vec<&str> = drawn.map(|row| row.title).collect();
+    let titles = titles.join(", ");
+    format!("this page has no drawing for .{format}; {titles} have one")
+}
