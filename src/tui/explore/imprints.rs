@@ -57,17 +57,12 @@ fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     if let Some(column) = list.heading(at) {
         return Some(Message::Explore(ExploreMessage::Sort(column)));
     }
-    let rows = ListRows {
-        area: list.rows,
-        first: list.first,
-        count: results.row_count(),
-    };
-    rows.click(at, results.selected())
+    list.rows.click(at, results.selected())
 }
 
 /// Selects a row, or another heading.
 fn update(results: &mut Results, message: &Message, area: Rect) {
-    let visible = ImprintList::of(area, results).rows.height.into();
+    let visible = ImprintList::of(area, results).rows.area.height.into();
     results.keep_first_row(visible);
     if let Some(row) = moved(results.selected(), message) {
         results.select(row);
@@ -86,13 +81,11 @@ pub struct ImprintList {
     /// The headings.
     pub head: Rect,
     /// The rows.
-    pub rows: Rect,
+    pub rows: ListRows,
     /// The line about the selected imprint.
     pub detail: Rect,
     /// The thumbnails; None without room beside the rows.
     pub gallery: Option<Rect>,
-    /// The index of the first visible row.
-    pub first: usize,
     /// The number of characters of an imprint's number.
     pub id: usize,
     /// The number of characters of a number of poses.
@@ -141,9 +134,12 @@ impl ImprintList {
                 height: above,
                 ..table
             },
-            // The list scrolls by whole screenfuls, so that a clicked row stays where it is.
-            first: results.first_row(rows.height.into()),
-            rows,
+            rows: ListRows {
+                // The list scrolls by whole screenfuls, so that a clicked row stays where it is.
+                first: results.first_row(rows.height.into()),
+                count: results.row_count(),
+                area: rows,
+            },
             detail: write::below(area, area.height - below),
             gallery: beside.then_some(gallery),
             id,
@@ -194,13 +190,16 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     draw_headings(theme, results, &list, buffer);
     if results.row_count() == 0 {
         let text = no_row(results);
-        write::line(buffer, list.rows, theme, [(text.as_str(), Role::Quiet)]);
+        write::line(
+            buffer,
+            list.rows.area,
+            theme,
+            [(text.as_str(), Role::Quiet)],
+        );
     }
-    let visible = usize::from(list.rows.height);
     let marks = marked(results);
-    let mut cursor = None;
-    for (index, entry) in results.rows_from(list.first).take(visible) {
-        let row = write::row(list.rows, index - list.first);
+    let rows = results.rows_from(list.rows.first);
+    for ((index, entry), row) in rows.zip(list.rows.area.rows()) {
         let selected = index == results.selected();
         let (sign, role) = if selected {
             ('>', Role::Focus)
@@ -212,7 +211,6 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         let pieces = [(sign.as_str(), Role::Key), (text.as_str(), role)];
         write::line(buffer, row, theme, pieces);
         if selected {
-            cursor = Some(Position::new(row.x, row.y));
             let texts = detail(theme, results, &entry);
             let texts = texts.each_ref().map(String::as_str);
             let text = write::first_fitting(&texts, list.detail.width.into());
@@ -222,7 +220,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     if let Some(area) = list.gallery {
         draw_gallery(theme, results, buffer, area);
     }
-    cursor
+    list.rows.position(results.selected())
 }
 
 /// Draws the headings, with an arrow at the column that rows are sorted by. The chosen heading looks like the

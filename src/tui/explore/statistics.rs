@@ -136,13 +136,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         theme,
         [(headings.as_str(), Role::Title)],
     );
-    let mut cursor = None;
-    let statistics = results.sweep().statistics.iter().enumerate();
-    let rows = statistics
-        .skip(table.rows.first)
-        .take(table.rows.area.height.into());
-    for (index, statistic) in rows {
-        let row = write::row(table.rows.area, index - table.rows.first);
+    for (index, row, statistic) in table.rows.visible(results.sweep().statistics.iter()) {
         let chosen = index == results.feature_number();
         let sign = if chosen { "> " } else { "  " };
         let key = format!("{:width$}", statistic.feature.key, width = name - 2);
@@ -158,11 +152,8 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
             (values.as_str(), Role::Text),
         ];
         write::line(buffer, row, theme, pieces);
-        if chosen {
-            cursor = Some(Position::new(row.x, row.y));
-        }
     }
-    cursor
+    table.rows.position(results.feature_number())
 }
 
 /// Returns which row is chosen if not all rows are visible, and on which side there are more columns.

@@ -9,6 +9,7 @@ use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::found::{Search, contains, marked, number};
+use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -80,10 +81,9 @@ impl HistoryDialog {
         having.map(|(row, _)| row).collect()
     }
 
-    /// Returns the first visible row in an area.
-    fn first(&self, area: Rect) -> usize {
-        let visible = area.height.saturating_sub(1);
-        write::first_of(visible, self.steps.len() + 1, self.selected)
+    /// Returns the visible rows in an area, below the heading.
+    fn visible(&self, area: Rect) -> ListRows {
+        ListRows::around(write::below(area, 1), self.steps.len() + 1, self.selected)
     }
 }
 
@@ -107,13 +107,10 @@ impl Page for HistoryDialog {
         let count = format!("   {}", counted(self.steps.len() as u64, "step"));
         let head = [("History", Role::Title), (count.as_str(), Role::Quiet)];
         write::line(buffer, area, theme, head);
-        let first = self.first(area);
-        let visible = usize::from(area.height.saturating_sub(1));
+        let visible = self.visible(area);
         let width = self.steps.len().to_string().len();
         let wanted = self.search.wanted();
-        let mut cursor = None;
-        for (index, text) in self.rows().enumerate().skip(first).take(visible) {
-            let row = write::row(area, index - first + 1);
+        for (index, row, text) in visible.visible(self.rows()) {
             let selected = index == self.selected;
             // Signs mark the rows, too, for terminals that cannot reverse.
             let sign = if selected { '>' } else { ' ' };
@@ -123,22 +120,13 @@ impl Page for HistoryDialog {
             let text = marked(text, wanted, role);
             let pieces = std::iter::once((number.as_str(), role)).chain(text);
             write::line(buffer, row, theme, pieces);
-            if selected {
-                cursor = Some(Position::new(row.x, row.y));
-            }
         }
-        cursor
+        visible.position(self.selected)
     }
 
     /// Selects a row on a click; a click on the selected row goes to its state.
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
-        let line = usize::from(at.y.checked_sub(area.y + 1)?);
-        let row = Some(self.first(area) + line).filter(|&row| row <= self.steps.len())?;
-        Some(if row == self.selected {
-            Message::Accept
-        } else {
-            Message::Select(row)
-        })
+        self.visible(area).click(at, self.selected)
     }
 
     fn wheel(&self) -> Wheel {

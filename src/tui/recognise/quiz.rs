@@ -203,20 +203,12 @@ impl Page for Quiz {
             [(how.as_str(), Role::Quiet)],
         );
         let rows = rows(self, area);
-        let (list, first) = (rows.area, rows.first);
-        let below = self
-            .count()
-            .saturating_sub(first + usize::from(list.height));
-        if first + below > 0 {
-            let hidden = format!("  {first} above, {below} below");
+        if let Some(hidden) = rows.hidden() {
             let row = write::row(area, usize::from(HEAD) - 1);
             write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
         }
-        let mut cursor = None;
-        for (line, shape) in (first..self.count()).take(list.height.into()).enumerate() {
-            let row = write::row(list, line);
-            let selected = shape == self.selected;
-            let (sign, role) = if selected {
+        for (_, row, shape) in rows.visible(0..self.count()) {
+            let (sign, role) = if shape == self.selected {
                 ("> ", Role::Focus)
             } else {
                 ("  ", Role::Text)
@@ -231,11 +223,8 @@ impl Page for Quiz {
                 (self.name(shape), role),
             ];
             write::line(buffer, row, theme, pieces);
-            if selected {
-                cursor = Some(Position::new(row.x, row.y));
-            }
         }
-        cursor
+        rows.position(self.selected)
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {

@@ -105,16 +105,12 @@ fn draw(
         let place = write::below(area, LIST_HEAD);
         write::wrapped(buffer, place, theme, &reason, Role::Quiet);
     }
-    let first = list_rows(area, dialog).first;
-    let lines = usize::from(area.height.saturating_sub(LIST_HEAD));
-    let below = dialog.rows().len().saturating_sub(first + lines);
-    if first + below > 0 {
-        let hidden = format!("  {first} above, {below} below");
+    let rows = list_rows(area, dialog);
+    if let Some(hidden) = rows.hidden() {
         let row = write::row(area, usize::from(LIST_HEAD) - 1);
         write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
     }
-    for (index, (entry, read)) in dialog.rows().enumerate().skip(first).take(lines) {
-        let row = write::row(area, index - first + usize::from(LIST_HEAD));
+    for (index, row, (entry, read)) in rows.visible(dialog.rows()) {
         draw_row(theme, entry, read, index == dialog.selected(), buffer, row);
     }
     if let (Some(preview), Some((entry, Some(read)))) = (preview, dialog.choice()) {

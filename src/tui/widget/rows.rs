@@ -26,6 +26,28 @@ impl ListRows {
         }
     }
 
+    /// Returns the visible items of a list, each with its index and its line.
+    pub fn visible<T>(
+        self,
+        all: impl Iterator<Item = T>,
+    ) -> impl Iterator<Item = (usize, Rect, T)> {
+        let visible = all.enumerate().skip(self.first).zip(self.area.rows());
+        visible.map(|((index, item), line)| (index, line, item))
+    }
+
+    /// Returns the start of the line of a row, for the cursor; None if it is out of sight.
+    pub fn position(&self, row: usize) -> Option<Position> {
+        let line = self.area.rows().nth(row.checked_sub(self.first)?)?;
+        (row < self.count).then(|| line.as_position())
+    }
+
+    /// Returns how many rows are out of sight; None if all are visible.
+    pub fn hidden(&self) -> Option<String> {
+        let last = self.first + usize::from(self.area.height);
+        let (above, below) = (self.first, self.count.saturating_sub(last));
+        (above + below > 0).then(|| format!("  {above} above, {below} below"))
+    }
+
     /// Returns the index of the row at a position of the screen; None if there is none.
     pub fn at(&self, position: Position) -> Option<usize> {
         let row = self.first + usize::from(position.y.checked_sub(self.area.y)?);

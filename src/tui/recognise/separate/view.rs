@@ -27,6 +27,7 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::recognise::message::SizeFound;
 use crate::tui::recognise::separate::state::{Separate, SizeWork};
 use crate::tui::widget::curve::Curve;
+use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
@@ -43,9 +44,7 @@ struct SeparatePanes {
     /// The heading of the table.
     head: Rect,
     /// The rows of the table.
-    rows: Rect,
-    /// The first visible row.
-    first: usize,
+    rows: ListRows,
     /// The example imprint, beside the table.
     picture: Rect,
     /// The lines below the table.
@@ -74,8 +73,7 @@ impl SeparatePanes {
                 ..body
             },
             head: write::row(table, 0),
-            rows,
-            first: write::first_of(rows.height, page.found().len(), page.cursor()),
+            rows: ListRows::around(rows, page.found().len(), page.cursor()),
             picture: write::right_of(table, table.x.saturating_add(TABLE)),
             detail: write::below(area, area.height.saturating_sub(DETAIL)),
         }
@@ -133,9 +131,8 @@ impl Page for Separate {
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let panes = SeparatePanes::of(area, self);
-        let inside = panes.rows.contains(at) && at.x < panes.picture.x;
-        let row = panes.first + usize::from(at.y.checked_sub(panes.rows.y)?);
-        (inside && row < self.found().len()).then_some(Message::Select(row))
+        let row = panes.rows.at(at).filter(|_| at.x < panes.picture.x)?;
+        Some(Message::Select(row))
     }
 
     fn wheel(&self) -> Wheel {
@@ -213,23 +210,19 @@ impl Separate {
         ];
         let head = whole_columns(&head, panes.head.width);
         write::line(buffer, panes.head, theme, [(head.as_str(), Role::Title)]);
-        let mut cursor = None;
-        let rows = self.found().iter().enumerate().skip(panes.first);
-        for (line, (row, size)) in rows.take(panes.rows.height.into()).enumerate() {
-            let place = write::row(panes.rows, line);
-            let here = row == self.cursor();
-            let role = match (here, size.point.error() <= self.request().wanted) {
+        for (row, place, size) in panes.rows.visible(self.found().iter()) {
+            let role = match (
+                row == self.cursor(),
+                size.point.error() <= self.request().wanted,
+            ) {
                 (true, _) => Role::Focus,
                 (_, true) => Role::Key,
                 _ => Role::Text,
             };
             let text = whole_columns(&row_cells(size), place.width);
             write::line(buffer, place, theme, [(text.as_str(), role)]);
-            if here {
-                cursor = Some(Position::new(place.x, place.y));
-            }
         }
-        cursor
+        panes.rows.position(self.cursor())
     }
 
     /// Draws the result for the wanted error, and the pair that is confused most at the cursor.
