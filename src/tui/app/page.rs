@@ -69,7 +69,8 @@ pub trait Page {
     /// Returns its place on the screen.
     fn slot(&self) -> Slot;
 
-    /// Draws the page into the area of its slot. Returns the position of the text cursor, None if the page has none.
+    /// Draws the page into the area of its slot, which is empty. Returns the position of the text cursor, None if the
+    /// page has none.
     fn draw(
         &self,
         theme: &Theme,

@@ -66,6 +66,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
             }
             if beside.is_some() || app.narrow_pane == NarrowPane::Panel {
                 let area = panes.area(Slot::Panel);
+                write::clear(buffer, area);
                 cursor = page.draw(theme, app.keymap(), buffer, area).or(cursor);
             }
         }
@@ -77,6 +78,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
                 }
             }
             let area = notice::page_area(app, &panes, page);
+            write::clear(buffer, area);
             cursor = page.draw(theme, app.keymap(), buffer, area);
         }
         (None, Some(beside)) => {

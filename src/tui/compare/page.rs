@@ -374,7 +374,6 @@ impl Page for Comparison {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        write::clear(buffer, area);
         // On a narrow screen the names are cut, not the number, and neither of them leaves no room for the other.
         let differ = differing(self.differing());
         let labels = ["   A: ", "   B: "];

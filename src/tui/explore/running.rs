@@ -100,7 +100,36 @@ impl Page for Running {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        draw(theme, self, buffer, area);
+        let inner = write::right_of(area, area.x.saturating_add(2));
+        let (title, end) = match &self.job {
+            WorkKind::Sweep(grid) => (
+                format!("Exploring: {}", name_of(grid.source())),
+                "stopping keeps what is complete",
+            ),
+            WorkKind::Write(name, _) => {
+                (format!("Writing {name}"), "stopping leaves no file behind")
+            }
+        };
+        // On a low screen, there are no blank lines between them.
+        let spaced = usize::from(area.height >= 9);
+        let row = |index: usize| write::row(inner, index * (1 + spaced));
+        write::line(buffer, row(0), theme, [(title.as_str(), Role::Title)]);
+        let done = self.progress.map_or(0, |progress| progress.poses);
+        if let Some(all) = self.poses() {
+            let percent = u128::from(done) * 100 / u128::from(all.max(1));
+            let all_of_them = counted(all, "pose");
+            let text = format!("{} of {all_of_them}, {percent} %", grouped(done));
+            write::line(buffer, row(1), theme, [(text.as_str(), Role::Text)]);
+            gauge(theme, done, all, buffer, row(2));
+        }
+        let time = speed(self);
+        write::line(buffer, row(3), theme, [(time.as_str(), Role::Text)]);
+        let end = if self.stopping {
+            "stopping; Ctrl-C quits at once"
+        } else {
+            end
+        };
+        write::line(buffer, row(4), theme, [(end, Role::Quiet)]);
         None
     }
 
@@ -112,39 +141,6 @@ impl Page for Running {
     fn cancels_itself(&self) -> bool {
         true
     }
-}
-
-/// Draws title, progress, gauge, speed and what stopping leaves, a line each.
-fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
-    write::clear(buffer, area);
-    let inner = write::right_of(area, area.x.saturating_add(2));
-    let (title, end) = match &running.job {
-        WorkKind::Sweep(grid) => (
-            format!("Exploring: {}", name_of(grid.source())),
-            "stopping keeps what is complete",
-        ),
-        WorkKind::Write(name, _) => (format!("Writing {name}"), "stopping leaves no file behind"),
-    };
-    // On a low screen, there are no blank lines between them.
-    let spaced = usize::from(area.height >= 9);
-    let row = |index: usize| write::row(inner, index * (1 + spaced));
-    write::line(buffer, row(0), theme, [(title.as_str(), Role::Title)]);
-    let done = running.progress.map_or(0, |progress| progress.poses);
-    if let Some(all) = running.poses() {
-        let percent = u128::from(done) * 100 / u128::from(all.max(1));
-        let all_of_them = counted(all, "pose");
-        let text = format!("{} of {all_of_them}, {percent} %", grouped(done));
-        write::line(buffer, row(1), theme, [(text.as_str(), Role::Text)]);
-        gauge(theme, done, all, buffer, row(2));
-    }
-    let time = speed(running);
-    write::line(buffer, row(3), theme, [(time.as_str(), Role::Text)]);
-    let end = if running.stopping {
-        "stopping; Ctrl-C quits at once"
-    } else {
-        end
-    };
-    write::line(buffer, row(4), theme, [(end, Role::Quiet)]);
 }
 
 /// Draws a bar whose filled part is the share that is done.

@@ -41,9 +41,6 @@ impl Page for Results {
         area: Rect,
     ) -> Option<Position> {
         let parts = ResultPanes::of(area);
-        for area in [parts.titles, parts.summary, parts.tab] {
-            write::clear(buffer, area);
-        }
         for (tab, title, area) in parts.titles(self.tab()) {
             let role = if tab == self.tab() {
                 Role::Focus

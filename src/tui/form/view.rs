@@ -54,7 +54,22 @@ impl Page for FormDialog {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        draw(theme, self, buffer, area)
+        let title = self.title();
+        write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+        let (form, rows) = (self.form(), rows(self, area));
+        let mut cursor = None;
+        if let Some(kind) = self.kind() {
+            let (row, focused) = (write::row(area, 1), form.focus().is_none());
+            draw_kind(theme, kind, focused, buffer, row);
+            cursor = focused.then(|| row.as_position());
+        }
+        let remark = |field: &ParameterField| remark(field, self);
+        cursor = cursor.or(rows.draw(theme, form, (LABEL, INPUT), remark, buffer));
+        if let Some(warning) = self.warning() {
+            let warning = format!("! {warning}");
+            write::wrapped(buffer, rows.rest(area), theme, &warning, Role::Error);
+        }
+        cursor
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
@@ -84,27 +99,6 @@ fn rows(dialog: &FormDialog, area: Rect) -> FieldRows {
     let (fixed, fields) = (dialog.kind().is_some().into(), dialog.form().fields());
     let focus = dialog.form().focus();
     FieldRows::of(write::below(area, 1), fixed, fields.len(), focus)
-}
-
-/// Draws the form. Returns the position of the text cursor.
-fn draw(theme: &Theme, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    write::clear(buffer, area);
-    let title = dialog.title();
-    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
-    let (form, rows) = (dialog.form(), rows(dialog, area));
-    let mut cursor = None;
-    if let Some(kind) = dialog.kind() {
-        let (row, focused) = (write::row(area, 1), form.focus().is_none());
-        draw_kind(theme, kind, focused, buffer, row);
-        cursor = focused.then(|| row.as_position());
-    }
-    let remark = |field: &ParameterField| remark(field, dialog);
-    cursor = cursor.or(rows.draw(theme, form, (LABEL, INPUT), remark, buffer));
-    if let Some(warning) = dialog.warning() {
-        let warning = format!("! {warning}");
-        write::wrapped(buffer, rows.rest(area), theme, &warning, Role::Error);
-    }
-    cursor
 }
 
 /// Returns the letters that choose a kind.

@@ -158,7 +158,6 @@ impl Page for Help {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        write::clear(buffer, area);
         let (lines, top) = self.lines(keymap, area.as_size().into());
         let here = self.search.entry();
         let mut cursor = None;

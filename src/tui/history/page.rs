@@ -103,7 +103,6 @@ impl Page for HistoryDialog {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        write::clear(buffer, area);
         let count = format!("   {}", counted(self.steps.len() as u64, "step"));
         let head = [("History", Role::Title), (count.as_str(), Role::Quiet)];
         write::line(buffer, area, theme, head);

@@ -183,7 +183,6 @@ impl Page for Confusion {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        write::clear(buffer, area);
         let panes = ConfusionPanes::of(area, self);
         let evaluation = &self.trained.evaluation;
         let title = format!("Confusion: {}", self.trained.choice);

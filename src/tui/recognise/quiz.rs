@@ -184,7 +184,6 @@ impl Page for Quiz {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        write::clear(buffer, area);
         let title = match self.touches.len() {
             0 | 1 => "Which shape is this?".to_owned(),
             count => format!("Which shape is this? Touch {count}"),

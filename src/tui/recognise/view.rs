@@ -62,7 +62,6 @@ impl Page for Recognition {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        write::clear(buffer, area);
         let mut panel = Panel {
             theme,
             keymap,

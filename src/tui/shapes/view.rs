@@ -52,7 +52,41 @@ impl Page for ListDialog {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        Some(draw(theme, keymap, self, buffer, area))
+        let (area, preview) = list(area);
+        let title = match self.purpose() {
+            ListPurpose::Load => "Load",
+            ListPurpose::Delete => "Delete",
+            ListPurpose::Picture => "Picture",
+        };
+        let label = "  filter: ";
+        let room =
+            usize::from(area.width).saturating_sub(write::width(title) + write::width(label));
+        let typed = write::width(self.filter());
+        let (filter, _) = write::field_text(self.filter(), typed, room, theme);
+        let head = [
+            (title, Role::Title),
+            (label, Role::Text),
+            (&*filter, Role::Text),
+        ];
+        let end = write::line(buffer, area, theme, head);
+        draw_count(theme, self, buffer, write::right_of(area, end));
+        if let Some(reason) = why_empty(keymap, self) {
+            let place = write::below(area, LIST_HEAD);
+            write::wrapped(buffer, place, theme, &reason, Role::Quiet);
+        }
+        let rows = list_rows(area, self);
+        if let Some(hidden) = rows.hidden() {
+            let row = write::row(area, usize::from(LIST_HEAD) - 1);
+            write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
+        }
+        for (index, row, (entry, read)) in rows.visible(self.rows()) {
+            draw_row(theme, entry, read, index == self.selected(), buffer, row);
+        }
+        if let (Some(preview), Some((entry, Some(read)))) = (preview, self.choice()) {
+            draw_preview(theme, entry, read, buffer, preview);
+        }
+        let end = end.min(area.right().saturating_sub(1));
+        Some(Position::new(end, area.y))
     }
 
     /// A click selects a row, a click on the selected row takes it.
@@ -73,50 +107,6 @@ impl Page for ListDialog {
     fn wheel(&self) -> Wheel {
         Wheel::Rows
     }
-}
-
-/// Draws the list. Returns where the text cursor is.
-fn draw(
-    theme: &Theme,
-    keymap: &Keymap,
-    dialog: &ListDialog,
-    buffer: &mut Buffer,
-    body: Rect,
-) -> Position {
-    write::clear(buffer, body);
-    let (area, preview) = list(body);
-    let title = match dialog.purpose() {
-        ListPurpose::Load => "Load",
-        ListPurpose::Delete => "Delete",
-        ListPurpose::Picture => "Picture",
-    };
-    let label = "  filter: ";
-    let room = usize::from(area.width).saturating_sub(write::width(title) + write::width(label));
-    let typed = write::width(dialog.filter());
-    let (filter, _) = write::field_text(dialog.filter(), typed, room, theme);
-    let head = [
-        (title, Role::Title),
-        (label, Role::Text),
-        (&*filter, Role::Text),
-    ];
-    let end = write::line(buffer, area, theme, head);
-    draw_count(theme, dialog, buffer, write::right_of(area, end));
-    if let Some(reason) = why_empty(keymap, dialog) {
-        let place = write::below(area, LIST_HEAD);
-        write::wrapped(buffer, place, theme, &reason, Role::Quiet);
-    }
-    let rows = list_rows(area, dialog);
-    if let Some(hidden) = rows.hidden() {
-        let row = write::row(area, usize::from(LIST_HEAD) - 1);
-        write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
-    }
-    for (index, row, (entry, read)) in rows.visible(dialog.rows()) {
-        draw_row(theme, entry, read, index == dialog.selected(), buffer, row);
-    }
-    if let (Some(preview), Some((entry, Some(read)))) = (preview, dialog.choice()) {
-        draw_preview(theme, entry, read, buffer, preview);
-    }
-    Position::new(end.min(area.right().saturating_sub(1)), area.y)
 }
 
 /// Returns the reason why no shape is shown; None if there are some.

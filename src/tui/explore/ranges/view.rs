@@ -51,7 +51,25 @@ impl Page for RangesForm {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        draw(theme, self, buffer, area)
+        let title = self.title();
+        write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+        let rows = rows(self, area);
+        let input = if area.width >= WIDE {
+            INPUT
+        } else {
+            NARROW_INPUT
+        };
+        let fields = self.form();
+        let mut cursor = rows.draw(theme, fields, (LABEL, input), |_| None, buffer);
+        let mut others = rows
+            .visible()
+            .skip_while(|(index, _)| *index < fields.fields().len());
+        if let Some((_, row)) = others.next() {
+            let at = draw_anchor(theme, self, buffer, row);
+            cursor = cursor.or(fields.focus().is_none().then_some(at));
+        }
+        draw_summary(theme, self, buffer, rows.rest(area));
+        cursor
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
@@ -70,30 +88,6 @@ fn rows(form: &RangesForm, area: Rect) -> FieldRows {
     let height = below.height.saturating_sub(foot);
     let focus = form.form().focus().unwrap_or(rows - 1);
     FieldRows::of(Rect { height, ..below }, 0, rows, Some(focus))
-}
-
-/// Draws the form. Returns the position of the text cursor.
-fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    write::clear(buffer, area);
-    let title = form.title();
-    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
-    let rows = rows(form, area);
-    let input = if area.width >= WIDE {
-        INPUT
-    } else {
-        NARROW_INPUT
-    };
-    let fields = form.form();
-    let mut cursor = rows.draw(theme, fields, (LABEL, input), |_| None, buffer);
-    let mut others = rows
-        .visible()
-        .skip_while(|(index, _)| *index < fields.fields().len());
-    if let Some((_, row)) = others.next() {
-        let at = draw_anchor(theme, form, buffer, row);
-        cursor = cursor.or(fields.focus().is_none().then_some(at));
-    }
-    draw_summary(theme, form, buffer, rows.rest(area));
-    cursor
 }
 
 /// Draws the anchor between angle brackets, and its meaning as far as there is room. Returns the position of the

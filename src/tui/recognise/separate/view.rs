@@ -104,7 +104,6 @@ impl Page for Separate {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        write::clear(buffer, area);
         let panes = SeparatePanes::of(area, self);
         let request = self.request();
         let title = format!("Separate: {}", request.trained.choice);
