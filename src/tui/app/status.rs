@@ -47,7 +47,7 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
         };
         let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
         write::line(buffer, panes.source, theme, pieces);
-        write::line(buffer, panes.taxel, theme, [(line.as_str(), Role::Text)]);
+        write::text(buffer, panes.taxel, theme, &line, Role::Text);
     }
     menu::draw(theme, buffer, &menu::hints(app, panes));
     let prompt = app.dialogs.last().map(Dialog::page);

@@ -55,7 +55,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     let covers = |slot| matches!(slot, Slot::Screen | Slot::Body);
     if !app.pane().map(Page::slot).is_some_and(covers) {
         let title = title(app);
-        write::line(buffer, panes.title, theme, [(&*title, Role::Text)]);
+        write::text(buffer, panes.title, theme, &title, Role::Text);
     }
     let panel = |buffer: &mut Buffer, area: Rect| panel::draw(&matrix, theme, buffer, area);
     let mut cursor = None;
@@ -100,6 +100,6 @@ fn too_small(theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let needed = format!("{width} × {height}");
     for (index, text) in ["too small,", "need", &needed].into_iter().enumerate() {
         let row = write::row(area, index);
-        write::line(buffer, row, theme, [(text, Role::Error)]);
+        write::text(buffer, row, theme, text, Role::Error);
     }
 }

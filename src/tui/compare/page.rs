@@ -228,7 +228,7 @@ impl Comparison {
         let titles: Vec<String> = titles.map(|title| title.trim_end().to_owned()).collect();
         let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
         let title = write::first_fitting(&titles, area.width.saturating_sub(1).into());
-        write::line(buffer, area, theme, [(title, Role::Title)]);
+        write::text(buffer, area, theme, title, Role::Title);
         // A number that does not fit would touch the descriptors.
         let line = write::left_of(write::row(area, 1), grid.x + grid.characters().0);
         if grid.y > line.y {
@@ -285,7 +285,7 @@ impl Comparison {
                     _ => theme.text(&row[column]),
                 };
                 let role = roles[usize::from(column > 0)];
-                write::line(buffer, place, theme, [(&*text, role)]);
+                write::text(buffer, place, theme, &text, role);
                 place = write::right_of(place, place.x.saturating_add(width + GAP));
             }
         }

@@ -75,7 +75,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         _ => ", ratio",
     };
     let title = feature.label() + unit;
-    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+    write::text(buffer, area, theme, &title, Role::Title);
     let histogram = histogram(results, area);
     let facts = format!(
         "mean {}  sd {}  min {}  max {}  no value: {}",
@@ -86,11 +86,11 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         counted(histogram.without, "pose")
     );
     let facts_row = write::row(area, 1);
-    write::line(buffer, facts_row, theme, [(facts.as_str(), Role::Text)]);
+    write::text(buffer, facts_row, theme, &facts, Role::Text);
     if histogram.poses.is_empty() {
         let text = format!("{}  no pose has a value", theme.none());
         let row = write::row(area, 2);
-        write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+        write::text(buffer, row, theme, &text, Role::Quiet);
         return None;
     }
     bars(

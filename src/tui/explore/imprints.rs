@@ -190,12 +190,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     draw_headings(theme, results, &list, buffer);
     if results.row_count() == 0 {
         let text = no_row(results);
-        write::line(
-            buffer,
-            list.rows.area,
-            theme,
-            [(text.as_str(), Role::Quiet)],
-        );
+        write::text(buffer, list.rows.area, theme, &text, Role::Quiet);
     }
     let marks = marked(results);
     let rows = results.rows_from(list.rows.first);
@@ -214,7 +209,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
             let texts = detail(theme, results, &entry);
             let texts = texts.each_ref().map(String::as_str);
             let text = write::first_fitting(&texts, list.detail.width.into());
-            write::line(buffer, list.detail, theme, [(text, Role::Text)]);
+            write::text(buffer, list.detail, theme, text, Role::Text);
         }
     }
     if let Some(area) = list.gallery {
@@ -350,7 +345,7 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
         };
         let captions = [" imprint ", ""].map(|word| format!("{sign}{word}{}", entry.id));
         let caption = write::first_fitting(&[&captions[0], &captions[1]], place.width.into());
-        write::line(buffer, place, theme, [(caption, Role::Key)]);
+        write::text(buffer, place, theme, caption, Role::Key);
         thumbnail::draw(theme, &entry.imprint, buffer, write::below(place, 1));
     }
 }

@@ -113,23 +113,23 @@ impl Page for Running {
         // On a low screen, there are no blank lines between them.
         let spaced = usize::from(area.height >= 9);
         let row = |index: usize| write::row(inner, index * (1 + spaced));
-        write::line(buffer, row(0), theme, [(title.as_str(), Role::Title)]);
+        write::text(buffer, row(0), theme, &title, Role::Title);
         let done = self.progress.map_or(0, |progress| progress.poses);
         if let Some(all) = self.poses() {
             let percent = u128::from(done) * 100 / u128::from(all.max(1));
             let all_of_them = counted(all, "pose");
             let text = format!("{} of {all_of_them}, {percent} %", grouped(done));
-            write::line(buffer, row(1), theme, [(text.as_str(), Role::Text)]);
+            write::text(buffer, row(1), theme, &text, Role::Text);
             gauge(theme, done, all, buffer, row(2));
         }
         let time = speed(self);
-        write::line(buffer, row(3), theme, [(time.as_str(), Role::Text)]);
+        write::text(buffer, row(3), theme, &time, Role::Text);
         let end = if self.stopping {
             "stopping; Ctrl-C quits at once"
         } else {
             end
         };
-        write::line(buffer, row(4), theme, [(end, Role::Quiet)]);
+        write::text(buffer, row(4), theme, end, Role::Quiet);
         None
     }
 

@@ -115,7 +115,7 @@ fn title(results: &Results, count: usize) -> String {
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let points = points(results);
     let title = title(results, points.len());
-    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+    write::text(buffer, area, theme, &title, Role::Title);
     if points.is_empty() {
         let text = if results.row_count() == 0 {
             no_row(results)
@@ -130,7 +130,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     let foot = write::below(area, area.height.saturating_sub(1));
     if let Some((_, entry)) = selected.filter(|_| area.height > 1) {
         let text = detail(theme, results, &entry);
-        write::line(buffer, foot, theme, [(text.as_str(), Role::Text)]);
+        write::text(buffer, foot, theme, &text, Role::Text);
     }
     let Some(field) = field(area, &points) else {
         draw_no_room(theme, buffer, area);

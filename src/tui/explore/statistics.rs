@@ -120,7 +120,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     let table = StatisticsTable::of(area, results);
     for (index, total) in totals(results, area.width.into()).iter().enumerate() {
         let row = write::row(table.totals, index);
-        write::line(buffer, row, theme, [(total.as_str(), Role::Text)]);
+        write::text(buffer, row, theme, total, Role::Text);
     }
     let (first, visible) = table.columns;
     let (name, width) = (table.name, table.column);
@@ -130,12 +130,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         let title: String = column.title.chars().take(width - 1).collect();
         headings += &format!("{title:>width$}");
     }
-    write::line(
-        buffer,
-        table.head,
-        theme,
-        [(headings.as_str(), Role::Title)],
-    );
+    write::text(buffer, table.head, theme, &headings, Role::Title);
     for (index, row, statistic) in table.rows.visible(results.sweep().statistics.iter()) {
         let chosen = index == results.feature_number();
         let sign = if chosen { "> " } else { "  " };

@@ -47,15 +47,10 @@ impl Page for Results {
             } else {
                 Role::Key
             };
-            write::line(buffer, area, theme, [(title.as_str(), role)]);
+            write::text(buffer, area, theme, &title, role);
         }
         let summary = self.summary(tabs::row(self.tab()).filtered);
-        write::line(
-            buffer,
-            parts.summary,
-            theme,
-            [(summary.as_str(), Role::Text)],
-        );
+        write::text(buffer, parts.summary, theme, &summary, Role::Text);
         (tabs::row(self.tab()).draw)(self, theme, buffer, parts.tab)
     }
 

@@ -55,7 +55,7 @@ impl Page for FormDialog {
         area: Rect,
     ) -> Option<Position> {
         let title = self.title();
-        write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+        write::text(buffer, area, theme, &title, Role::Title);
         let (form, rows) = (self.form(), rows(self, area));
         let mut cursor = None;
         if let Some(kind) = self.kind() {

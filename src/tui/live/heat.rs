@@ -122,7 +122,7 @@ impl<'a> HeatMap<'a> {
             for (y, row) in self.grid.rows.visible() {
                 let place = write::row(area, usize::from(y + above));
                 let text = format!("{row:>2}");
-                write::line(buffer, place, self.theme, [(&*text, Role::Quiet)]);
+                write::text(buffer, place, self.theme, &text, Role::Quiet);
             }
         }
     }

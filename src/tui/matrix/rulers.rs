@@ -34,7 +34,7 @@ pub(super) fn draw(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: R
     ];
     for (_, x, y, mark) in marks.into_iter().filter(|(more, ..)| *more) {
         let place = Rect::new(x, y, 1, 1).intersection(area);
-        write::line(buffer, place, theme, [(&*mark.to_string(), Role::Key)]);
+        write::text(buffer, place, theme, &mark.to_string(), Role::Key);
     }
 }
 
@@ -60,7 +60,7 @@ pub(in crate::tui) fn draw_columns(
         let text = column.to_string();
         if x + narrow(text.len()) <= line.right() {
             let place = write::right_of(line, x);
-            write::line(buffer, place, theme, [(text.as_str(), Role::Quiet)]);
+            write::text(buffer, place, theme, &text, Role::Quiet);
         }
     }
 }
@@ -73,6 +73,6 @@ pub(in crate::tui) fn draw_rows(theme: &Theme, grid: &TaxelGrid, buffer: &mut Bu
         let y = place.y + (place.height - 1) / 2;
         let line = write::row(area, usize::from(y - area.y));
         let text = format!("{row:>2}");
-        write::line(buffer, line, theme, [(text.as_str(), Role::Quiet)]);
+        write::text(buffer, line, theme, &text, Role::Quiet);
     }
 }

@@ -199,7 +199,7 @@ impl Page for Confusion {
             "rows: true shape; columns: name given; %",
         ];
         let meaning = write::first_fitting(&meanings, area.width.into());
-        write::line(buffer, write::row(area, 1), theme, [(meaning, Role::Quiet)]);
+        write::text(buffer, write::row(area, 1), theme, meaning, Role::Quiet);
         self.draw_head(theme, &panes, buffer);
         let rows = (panes.first.0..self.count()).take(panes.rows.height.into());
         let mut cursor = None;
@@ -252,17 +252,12 @@ impl Confusion {
             width: panes.label.saturating_sub(1).min(panes.head.width),
             ..panes.head
         };
-        write::line(
-            buffer,
-            corner,
-            theme,
-            [(hidden.join(" ").as_str(), Role::Quiet)],
-        );
+        write::text(buffer, corner, theme, &hidden.join(" "), Role::Quiet);
         let last = column + panes.columns;
         for (index, column) in (column..last.min(self.count())).enumerate() {
             let number = format!("{:>5} ", column + 1);
             let place = panes.cell(panes.head, index);
-            write::line(buffer, place, theme, [(number.as_str(), Role::Title)]);
+            write::text(buffer, place, theme, &number, Role::Title);
         }
     }
 
@@ -300,7 +295,7 @@ impl Confusion {
                 (_, _, 0) => Role::Quiet,
                 _ => Role::Text,
             };
-            write::line(buffer, place, theme, [(text.as_str(), role)]);
+            write::text(buffer, place, theme, &text, role);
             if here {
                 cursor = Some(Position::new(place.x, place.y));
             }
@@ -319,14 +314,15 @@ impl Confusion {
             grouped(confusion.get(row, column)),
             counted(confusion.touches_of(row), "touch"),
         );
-        write::line(buffer, panes.detail, theme, [(text.as_str(), Role::Text)]);
+        write::text(buffer, panes.detail, theme, &text, Role::Text);
         let Some(example) = &self.example else { return };
         let text = example.in_words(self.cell, |shape| self.trained.name(shape));
-        write::line(
+        write::text(
             buffer,
             write::row(panes.detail, 1),
             theme,
-            [(text.as_str(), Role::Text)],
+            &text,
+            Role::Text,
         );
         if let (Some(area), Some(imprint)) = (panes.picture, &example.imprint) {
             thumbnail::draw(theme, imprint, buffer, area);

@@ -188,23 +188,18 @@ impl Page for Quiz {
             0 | 1 => "Which shape is this?".to_owned(),
             count => format!("Which shape is this? Touch {count}"),
         };
-        write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+        write::text(buffer, area, theme, &title, Role::Title);
         let key = |action| keymap.label(Context::Quiz, action);
         let how = format!(
             "{} names it, {} touches it again",
             key(&action::ACCEPT),
             key(&action::QUIZ)
         );
-        write::line(
-            buffer,
-            write::row(area, 1),
-            theme,
-            [(how.as_str(), Role::Quiet)],
-        );
+        write::text(buffer, write::row(area, 1), theme, &how, Role::Quiet);
         let rows = rows(self, area);
         if let Some(hidden) = rows.hidden() {
             let row = write::row(area, usize::from(HEAD) - 1);
-            write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
+            write::text(buffer, row, theme, &hidden, Role::Quiet);
         }
         for (_, row, shape) in rows.visible(0..self.count()) {
             let (sign, role) = if shape == self.selected {

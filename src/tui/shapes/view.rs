@@ -77,7 +77,7 @@ impl Page for ListDialog {
         let rows = list_rows(area, self);
         if let Some(hidden) = rows.hidden() {
             let row = write::row(area, usize::from(LIST_HEAD) - 1);
-            write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
+            write::text(buffer, row, theme, &hidden, Role::Quiet);
         }
         for (index, row, (entry, read)) in rows.visible(self.rows()) {
             draw_row(theme, entry, read, index == self.selected(), buffer, row);
@@ -138,7 +138,7 @@ fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rec
         &count
     };
     let text = write::first_fitting(&[hinted, &count], usize::from(area.width).saturating_sub(1));
-    write::line(buffer, area, theme, [(text, Role::Quiet)]);
+    write::text(buffer, area, theme, text, Role::Quiet);
 }
 
 /// Draws a row: a sign, the name, the size, the origin of the shape.

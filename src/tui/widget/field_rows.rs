@@ -161,7 +161,7 @@ impl<F: FormField> FieldRow<'_, F> {
             // Cut at its end, a message would hide the limit.
             let bare = full.replacen("expected ", "", 1);
             let text = write::first_fitting(&[&full, &bare], place.width.into());
-            write::line(buffer, place, theme, [(text, Role::Error)]);
+            write::text(buffer, place, theme, text, Role::Error);
         }
         Position::new(area.x.saturating_add(narrow(label + cursor)), area.y)
     }
@@ -173,7 +173,7 @@ impl<F: FormField> FieldRow<'_, F> {
         let range = self.field.parameter().row().unit.after(&bare);
         let mut write = |area: Rect, texts: &[&str]| {
             let text = write::first_fitting(texts, usize::from(area.width));
-            write::line(buffer, area, theme, [(text, Role::Quiet)]);
+            write::text(buffer, area, theme, text, Role::Quiet);
         };
         match (self.remark.filter(|_| self.error.is_none()), under) {
             (None, _) => write(area, &[&range, &bare]),

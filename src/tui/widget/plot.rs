@@ -110,7 +110,7 @@ impl PlotField {
 
     /// Draws both axes with numbers and labels; the upward axis has the first label.
     pub fn draw_axes(&self, theme: &Theme, buffer: &mut Buffer, [upward, right]: [&str; 2]) {
-        write::line(buffer, self.area, theme, [(upward, Role::Key)]);
+        write::text(buffer, self.area, theme, upward, Role::Key);
         self.draw_frame(theme, buffer);
         self.draw_upwards(theme, buffer);
         self.draw_across(theme, buffer, right);
@@ -149,7 +149,7 @@ impl PlotField {
                 let room = usize::from(left - self.area.x).saturating_sub(1);
                 let text = format!("{text:>room$}");
                 let row = self.line_at(at.y);
-                write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+                write::text(buffer, row, theme, &text, Role::Quiet);
             }
             last = Some(at.y);
         }
@@ -162,7 +162,7 @@ impl PlotField {
         let end = self.area.right().saturating_sub(width);
         let below = self.line_at(bottom + 1);
         let place = write::right_of(below, end);
-        write::line(buffer, place, theme, [(label, Role::Key)]);
+        write::text(buffer, place, theme, label, Role::Key);
         let middle = f64::midpoint(self.y.0, self.y.1);
         let mut free = self.area.x;
         for (value, text) in axis_marks(self.x, self.field.width / APART) {
@@ -176,7 +176,7 @@ impl PlotField {
             let from = at.x.saturating_sub(width / 2);
             if from >= free && from + width < end {
                 let place = write::right_of(below, from);
-                write::line(buffer, place, theme, [(text.as_str(), Role::Quiet)]);
+                write::text(buffer, place, theme, &text, Role::Quiet);
                 free = from + width + 1;
             }
         }
@@ -242,7 +242,7 @@ impl PlotField {
         // The label of the axis on the same line is only a word.
         if width < self.field.width {
             let place = write::right_of(self.line_at(self.area.y), self.area.right() - width);
-            write::line(buffer, place, theme, [(legend.as_str(), Role::Quiet)]);
+            write::text(buffer, place, theme, &legend, Role::Quiet);
         }
     }
 }
@@ -250,7 +250,7 @@ impl PlotField {
 /// Writes under the title of a page that there is no room for its plot.
 pub fn draw_no_room(theme: &Theme, buffer: &mut Buffer, page: Rect) {
     let text = "no room for the plot";
-    write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
+    write::text(buffer, write::row(page, 1), theme, text, Role::Quiet);
 }
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
         };
         let text: String = (left..left + width).map(half).collect();
         let place = write::row(area, line);
-        write::line(buffer, place, theme, [(text.as_str(), Role::Chosen)]);
+        write::text(buffer, place, theme, &text, Role::Chosen);
     }
 }
 

@@ -46,6 +46,12 @@ pub fn line<'a>(
     x
 }
 
+/// Writes a text into the first line of an area. If it does not fit, it is cut short with an ellipsis. Returns the
+/// column after it.
+pub fn text(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) -> u16 {
+    line(buffer, area, theme, [(text, role)])
+}
+
 /// Fits a text into a number of columns: unchanged if it fits without the spaces at its end, otherwise shortened with
 /// an ellipsis.
 pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {

@@ -108,21 +108,21 @@ fn without_curve(results: &Results) -> &'static str {
 /// Draws the tab. Returns the position of the mean at the chosen angle.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let text = title(results, area.width.into());
-    let end = write::line(buffer, area, theme, [(text.as_str(), Role::Title)]);
+    let end = write::text(buffer, area, theme, &text, Role::Title);
     let legend = write::right_of(area, end);
     if write::width(LEGEND) <= usize::from(legend.width) {
-        write::line(buffer, legend, theme, [(LEGEND, Role::Quiet)]);
+        write::text(buffer, legend, theme, LEGEND, Role::Quiet);
     }
     let spread = spread(results);
     let Some(here) = nearest(results, &spread) else {
-        let text = (without_curve(results), Role::Quiet);
-        write::line(buffer, write::row(area, 1), theme, [text]);
+        let text = without_curve(results);
+        write::text(buffer, write::row(area, 1), theme, text, Role::Quiet);
         return None;
     };
     if area.height > 1 {
         let foot = write::below(area, area.height - 1);
         let text = detail(&here);
-        write::line(buffer, foot, theme, [(text.as_str(), Role::Text)]);
+        write::text(buffer, foot, theme, &text, Role::Text);
     }
     let Some(field) = field(area, &spread) else {
         draw_no_room(theme, buffer, area);

@@ -69,13 +69,13 @@ pub(in crate::tui) fn draw(
     let pane = MapPane::of(area, results);
     let grid = &results.sweep().grid;
     let head = heading(results);
-    let end = write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
+    let end = write::text(buffer, pane.head, theme, &head, Role::Title);
     // A legend is drawn only if there is room for all of it.
     let legend = write::right_of(pane.head, end);
     let texts = meaning(theme, &pane);
     let fits = |text: &&String| write::width(text) <= usize::from(legend.width);
     if let Some(text) = texts.iter().find(fits) {
-        write::line(buffer, legend, theme, [(text.as_str(), Role::Quiet)]);
+        write::text(buffer, legend, theme, text, Role::Quiet);
     }
     let cursor = draw_cells(theme, results, &pane, buffer);
     draw_rulers(theme, grid, &pane, buffer, area);
@@ -254,7 +254,7 @@ fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buff
         };
         let value = Parameter::Y0.format(ranges[Axis::Y0].value(index));
         let text = format!("{value:>label$}");
-        write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+        write::text(buffer, row, theme, &text, Role::Quiet);
     }
     let value = |index: u64| Parameter::X0.format(ranges[Axis::X0].value(index));
     let (first, last) = (
@@ -270,8 +270,8 @@ fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buff
     } else {
         first
     };
-    write::line(buffer, pane.ruler, theme, [("y0", Role::Quiet)]);
-    write::line(buffer, ruler, theme, [(text.as_str(), Role::Quiet)]);
+    write::text(buffer, pane.ruler, theme, "y0", Role::Quiet);
+    write::text(buffer, ruler, theme, &text, Role::Quiet);
 }
 
 /// Draws the pose at the cursor: its imprint, the number of that, and its place.
@@ -291,11 +291,11 @@ fn draw_pose(theme: &Theme, results: &Results, pane: &MapPane, buffer: &mut Buff
     };
     let detail = format!("{which} at {}; {poses}", results.pose_text(&pose));
     let detail = detail.trim_end_matches("; ");
-    write::line(buffer, pane.detail, theme, [(detail, Role::Text)]);
+    write::text(buffer, pane.detail, theme, detail, Role::Text);
     if let Some(side) = pane.side {
-        write::line(buffer, side, theme, [(which.as_str(), Role::Title)]);
+        write::text(buffer, side, theme, &which, Role::Title);
         let row = write::row(side, 1);
-        write::line(buffer, row, theme, [(poses.as_str(), Role::Text)]);
+        write::text(buffer, row, theme, &poses, Role::Text);
         let below = write::below(side, 3);
         let below = Rect {
             height: below.height.saturating_sub(1),

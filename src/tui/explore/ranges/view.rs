@@ -52,7 +52,7 @@ impl Page for RangesForm {
         area: Rect,
     ) -> Option<Position> {
         let title = self.title();
-        write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+        write::text(buffer, area, theme, &title, Role::Title);
         let rows = rows(self, area);
         let input = if area.width >= WIDE {
             INPUT
@@ -138,7 +138,7 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
             return;
         }
     };
-    write::line(buffer, write::row(area, 0), theme, [(text.as_str(), role)]);
+    write::text(buffer, write::row(area, 0), theme, &text, role);
     let mut line = 1;
     if let Some(cut_off) = form.cut_off().filter(|&poses| poses > 0) {
         let all = form.grid().is_ok_and(|grid| grid.poses() == cut_off);
@@ -148,14 +148,14 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
             _ => format!("! the sensor cuts off {}", counted(cut_off, "pose")),
         };
         let row = write::row(area, line);
-        write::line(buffer, row, theme, [(text.as_str(), Role::Error)]);
+        write::text(buffer, row, theme, &text, Role::Error);
         line += 1;
     }
     if form.by_hand() > 0 {
         let taxels = counted(form.by_hand(), "taxel");
         let text = format!("without {taxels} set by hand");
         let row = write::row(area, line);
-        write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+        write::text(buffer, row, theme, &text, Role::Quiet);
     }
 }
 

@@ -120,7 +120,7 @@ impl Page for Separate {
             self.draw_work(theme, keymap, work, buffer, second);
         } else {
             let steps = request.steps();
-            write::line(buffer, second, theme, [(steps.as_str(), Role::Quiet)]);
+            write::text(buffer, second, theme, &steps, Role::Quiet);
         }
         self.draw_curve(theme, buffer, panes.curve);
         let cursor = self.draw_table(theme, &panes, buffer);
@@ -160,7 +160,7 @@ impl Separate {
             (false, true) => format!("{found} of {all} sizes; {stop} stops "),
             (false, false) => format!("searching between sizes; {stop} stops "),
         };
-        let end = write::line(buffer, row, theme, [(text.as_str(), Role::Text)]);
+        let end = write::text(buffer, row, theme, &text, Role::Text);
         // The number of steps of this search is not known in advance.
         if found == all {
             return;
@@ -208,7 +208,7 @@ impl Separate {
             "  sensor".to_owned(),
         ];
         let head = whole_columns(&head, panes.head.width);
-        write::line(buffer, panes.head, theme, [(head.as_str(), Role::Title)]);
+        write::text(buffer, panes.head, theme, &head, Role::Title);
         for (row, place, size) in panes.rows.visible(self.found().iter()) {
             let role = match (
                 row == self.cursor(),
@@ -219,7 +219,7 @@ impl Separate {
                 _ => Role::Text,
             };
             let text = whole_columns(&row_cells(size), place.width);
-            write::line(buffer, place, theme, [(text.as_str(), role)]);
+            write::text(buffer, place, theme, &text, role);
         }
         panes.rows.position(self.cursor())
     }
@@ -234,22 +234,22 @@ impl Separate {
     ) {
         let wanted = self.wanted_text(keymap);
         let line = |index| write::row(panes.detail, index);
-        write::line(buffer, line(0), theme, [(wanted.as_str(), Role::Title)]);
+        write::text(buffer, line(0), theme, &wanted, Role::Title);
         let Some(size) = self.selected() else { return };
         let place = size_label(self.request().axis, size.point.value);
         let Some(worst) = &size.worst else {
             let text = format!("{place}: no shape is taken for another one");
-            write::line(buffer, line(1), theme, [(text.as_str(), Role::Text)]);
+            write::text(buffer, line(1), theme, &text, Role::Text);
             return;
         };
         let name = |shape| self.request().trained.name(shape);
         let (touched, named) = (name(worst.touched), name(worst.named));
         let share = percent(worst.share);
         let text = format!("{place}: {touched} named {named} in {share} of its touches");
-        write::line(buffer, line(1), theme, [(text.as_str(), Role::Text)]);
+        write::text(buffer, line(1), theme, &text, Role::Text);
         if let Some(example) = &worst.example {
             let text = example.in_words((worst.touched, worst.named), name);
-            write::line(buffer, line(2), theme, [(text.as_str(), Role::Quiet)]);
+            write::text(buffer, line(2), theme, &text, Role::Quiet);
             if let Some(imprint) = &example.imprint {
                 thumbnail::draw(theme, imprint, buffer, panes.picture);
             }
