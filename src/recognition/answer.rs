@@ -106,8 +106,8 @@ pub struct Answer {
     pub method: SearchMethod,
 }
 
-/// Two probabilities that differ by at most this share of the larger one count as equal: multiplying the same whole
-/// numbers in another order changes the last digits.
+/// Two probabilities that differ by at most this share of the larger one are equal: multiplying the same whole numbers
+/// in another order changes the last digits.
 const SAME: f64 = 1e-12;
 
 impl Model {
@@ -246,6 +246,14 @@ impl Posterior {
         let positive = shares.enumerate().filter(|&(_, share)| share > 0.0);
         let mut ranking: Vec<(usize, f64)> = positive.collect();
         ranking.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+        let equal = |(_, one): &(usize, f64), (_, other): &(usize, f64)| one - other <= SAME * one;
+        for tied in ranking.chunk_by_mut(equal) {
+            let greatest = tied[0].1;
+            for (_, share) in tied.iter_mut() {
+                *share = greatest;
+            }
+            tied.sort_by_key(|&(shape, _)| shape);
+        }
         Self {
             possible: ranking.len(),
             ranking,
@@ -286,7 +294,7 @@ fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answ
         return answer;
     };
     let others = answer.ranking[1..].iter();
-    let equal = others.take_while(|(_, other)| most - other <= SAME * most);
+    let equal = others.take_while(|&&(_, other)| other == most);
     let equal: Vec<usize> = equal.map(|&(shape, _)| shape).collect();
     answer.shape = Some(first);
     answer.state = if reject_below.is_some_and(|least| most < least) {
@@ -308,14 +316,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shapes_whose_odds_differ_by_a_rounding_error_are_tied() {
+    fn shapes_whose_odds_differ_by_a_rounding_error_are_tied_in_the_order_of_the_set() {
         let answer = |other: f64| {
             let odds = [0.0, f64::NEG_INFINITY, other];
-            let answer = decide(Posterior::of_logarithms(&odds), false, None);
-            (answer.state, answer.shape, answer.tied)
+            decide(Posterior::of_logarithms(&odds), false, None)
         };
-        assert_eq!(answer(-1e-14), (AnswerState::Tied, Some(0), vec![0, 2]));
-        assert_eq!(answer(1e-14), (AnswerState::Tied, Some(2), vec![2, 0]));
-        assert_eq!(answer(-1e-9), (AnswerState::Likely, Some(0), vec![]));
+        for rounding in [-1e-14, 0.0, 1e-14] {
+            let answer = answer(rounding);
+            assert_eq!(answer.state, AnswerState::Tied, "{rounding}");
+            assert_eq!(
+                (answer.shape, answer.tied),
+                (Some(0), vec![0, 2]),
+                "{rounding}"
+            );
+            let [(0, one), (2, other)] = answer.ranking[..] else {
+                panic!("{rounding}: {:?}", answer.ranking);
+            };
+            assert!(
+                one == other && (one - 0.5).abs() < 1e-12,
+                "{rounding}: {one}, {other}"
+            );
+        }
+        let answer = answer(1e-9);
+        assert_eq!((answer.state, answer.shape), (AnswerState::Likely, Some(2)));
+        assert!(answer.tied.is_empty());
     }
 }
