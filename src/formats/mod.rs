@@ -115,7 +115,9 @@ pub use content::{Content, ContentError, read_content};
 pub use npz::{ArchiveError, ArchiveKind, kind_of as archive_kind};
 
 #[cfg(feature = "recognition")]
-pub use model::{FORMAT as MODEL_FORMAT, read as read_model, write as write_model};
+pub use model::{
+    FORMAT as MODEL_FORMAT, header as model_header, read as read_model, write as write_model,
+};
 
 #[cfg(feature = "recognition")]
 pub use named_shape::{NamedShapeError, ShapeLookup, named_shape, named_shape_of_words};

@@ -71,7 +71,7 @@ struct ShapeHeader<Shape> {
 /// Returns the errors of the writer.
 pub fn write(model: &Model, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
     let mut archive = ArrayWriter::new(&mut output);
-    let header = header(model)?;
+    let header = header(model.head())?;
     archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
     let keys = model.keys();
     let imprints = || (0..keys.len()).map(|key| keys.imprint(key));
@@ -123,10 +123,13 @@ fn row_type(columns: u8) -> Dtype {
     }
 }
 
-/// Returns the header as JSON.
-fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
-    let ranges = model.ranges();
-    let shapes = model.shapes().iter().zip(model.cut());
+/// Returns the header of a model as JSON, which begins its file. Equal heads have equal headers.
+///
+/// # Errors
+/// Returns an error if a name or a number cannot be written as JSON, which does not happen.
+pub fn header(head: &ModelHead) -> Result<Vec<u8>, ArchiveError> {
+    let ranges = &head.ranges;
+    let shapes = head.shapes.iter().zip(&head.cut);
     serde_json::to_vec(&ModelHeader {
         format: FORMAT.to_owned(),
         shapes: shapes
@@ -137,15 +140,15 @@ fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
                 source: &shape.source,
             })
             .collect(),
-        sensor: model.sensor(),
-        anchor: model.anchor().name().to_owned(),
+        sensor: &head.sensor,
+        anchor: head.anchor.name().to_owned(),
         x0: ranges[Axis::X0].to_string(),
         y0: ranges[Axis::Y0].to_string(),
         angle: ranges[Axis::Angle].to_string(),
         zoom_x: ranges[Axis::ZoomX].to_string(),
         zoom_y: ranges[Axis::ZoomY].to_string(),
-        shard: model.shard().to_string(),
-        poses: model.poses(),
+        shard: head.shard.to_string(),
+        poses: head.poses,
     })
     .map_err(|error| ArchiveError::Io(error.into()))
 }

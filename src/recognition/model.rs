@@ -336,7 +336,7 @@ impl Model {
     }
 
     /// Returns everything except the keys.
-    pub(super) fn head(&self) -> &ModelHead {
+    pub fn head(&self) -> &ModelHead {
         &self.head
     }
 

@@ -185,6 +185,25 @@ impl<'a> Training<'a> {
         &self.grids
     }
 
+    /// Returns the head of the model, as if the sensor cut nothing off.
+    pub fn head(&self) -> ModelHead {
+        let grid = &self.grids[0];
+        let (shapes, poses) = (self.shapes.clone(), self.shard.poses(grid));
+        let (sensor, ranges) = (*grid.sensor(), *grid.ranges());
+        let mut head = ModelHead::new(shapes, sensor, grid.anchor(), ranges, poses);
+        head.shard = self.shard;
+        head
+    }
+
+    /// Returns true if a model has the head that the model of this training will have. It tells nothing about the keys
+    /// and how they were counted.
+    pub fn would_make(&self, model: &Model) -> bool {
+        let (mut head, cut) = (self.head(), model.cut());
+        let is_allowed = self.allow_cut || cut.iter().all(|&cut| cut == 0);
+        head.cut = cut.to_vec();
+        is_allowed && head == *model.head()
+    }
+
     /// Runs the training.
     ///
     /// # Errors
@@ -192,8 +211,8 @@ impl<'a> Training<'a> {
     /// [`TrainingError::Stopped`].
     pub fn run(self) -> Result<Model, TrainingError> {
         let mut gathered = Gathered::default();
-        let mut cut = Vec::new();
-        let mut poses = 0;
+        let mut head = self.head();
+        head.cut.clear();
         for (shape, grid) in (0..).zip(&self.grids) {
             let sweep = Sweep::new(grid).shard(self.shard).progress(self.progress);
             let counted = sweep.count().ok_or(TrainingError::Stopped)?;
@@ -211,13 +230,8 @@ impl<'a> Training<'a> {
                 let slot = gathered.slot(&keys, index);
                 gathered.counts[slot].push(ShapeCount::new(shape, poses));
             }
-            cut.push(counted.partly_off);
-            poses = counted.poses;
+            head.cut.push(counted.partly_off);
         }
-        let grid = &self.grids[0];
-        let (sensor, ranges) = (*grid.sensor(), *grid.ranges());
-        let mut head = ModelHead::new(self.shapes, sensor, grid.anchor(), ranges, poses);
-        (head.shard, head.cut) = (self.shard, cut);
         let counts = |index: usize| gathered.counts[index].iter().copied();
         Ok(Model::of_table(head, &gathered.keys, counts)?)
     }

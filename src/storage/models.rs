@@ -17,7 +17,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::name::folded;
-use crate::formats::{ArchiveError, Name, read_model, write_model};
+use crate::formats::{ArchiveError, Name, model_header, read_model, write_model};
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
 use crate::storage::error::{ArchiveFileError, LibraryError};
@@ -31,6 +31,10 @@ const ENDING: &str = "npz";
 
 /// The largest size of a cached model, in bytes.
 const MAX_CACHED: u64 = 64 << 20;
+
+/// The version of the algorithms that count the keys of a model. Increase it when the same training makes another model,
+/// so that no cached model of before is used.
+const COUNTING: u32 = 1;
 
 /// Reads a model from a file.
 ///
@@ -238,8 +242,8 @@ impl Drop for MadeFolder {
 
 /// A cache of models, which are trained again when they are missing.
 ///
-/// The name of a file is a hash of what was trained, so another set or grid has another file. A file that is damaged,
-/// of an older version, or of something else is not used.
+/// The name of a file is a hash of what was trained, by which version, so another set or grid has another file. A file
+/// that is damaged, of an older version, or of something else is not used.
 #[derive(Clone, Debug)]
 pub struct ModelCache(PathBuf);
 
@@ -255,28 +259,17 @@ impl ModelCache {
         Self(folder.into())
     }
 
-    /// Returns the file that holds the model of a training.
-    fn file(&self, training: &Training<'_>) -> PathBuf {
-        // Everything that the model depends on, and the version of the program, as a text that differs whenever these
-        // differ.
-        let mut text = format!("{} {:?}", env!("CARGO_PKG_VERSION"), training);
-        for grid in training.grids() {
-            text.push_str(&format!("{grid:?}"));
-        }
-        self.0
-            .join(format!("{:032x}.{ENDING}", xxh3_128(text.as_bytes())))
+    /// Returns the file that holds the model of a training; None for a training whose model cannot be written.
+    fn file(&self, training: &Training<'_>) -> Option<PathBuf> {
+        let mut content = format!("{} {COUNTING} ", env!("CARGO_PKG_VERSION")).into_bytes();
+        content.extend(model_header(&training.head()).ok()?);
+        Some(self.0.join(format!("{:032x}.{ENDING}", xxh3_128(&content))))
     }
 
     /// Returns the model of a training if its file exists and is complete.
     fn load(path: &Path, training: &Training<'_>) -> Option<Model> {
         let model = load_model(path).ok()?;
-        let same = training.grids().iter().zip(model.shapes());
-        let mut same = same.map(|(grid, shape)| {
-            grid.sensor() == model.sensor()
-                && grid.ranges() == model.ranges()
-                && grid.source().kind() == shape.source.kind()
-        });
-        (training.grids().len() == model.shapes().len() && same.all(|same| same)).then_some(model)
+        training.would_make(&model).then_some(model)
     }
 
     /// Keeps a model. A cache that cannot be written to is not an error: the model is trained again next time. A
@@ -308,10 +301,9 @@ pub fn cached_or_trained<'a, E>(
     training: Training<'a>,
     train: impl FnOnce(Training<'a>) -> Result<Model, E>,
 ) -> Result<Model, E> {
-    let Some(cache) = cache else {
+    let Some((cache, path)) = cache.and_then(|cache| Some((cache, cache.file(&training)?))) else {
         return train(training);
     };
-    let path = cache.file(&training);
     if let Some(model) = ModelCache::load(&path, &training) {
         return Ok(model);
     }
@@ -400,7 +392,7 @@ mod tests {
             (is_trained, model.expect("not stopped"))
         };
         let trained = training(4.0).run().expect("not stopped");
-        let path = cache.file(&training(4.0));
+        let path = cache.file(&training(4.0)).expect("a file");
         // A model that is too large is not written.
         cache.keep_up_to(99, &path, &trained);
         assert!(!folder.path().join("cache").exists());
@@ -452,20 +444,52 @@ mod tests {
     }
 
     #[test]
-    fn a_model_of_fewer_shapes_is_not_taken_for_that_of_a_training() {
+    fn a_model_of_other_shapes_or_poses_is_not_taken_for_that_of_a_training() {
         let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("fewer.npz");
+        let cache = ModelCache::in_folder(folder.path());
         let whole = training(4.0);
-        let fewer = || {
+        let own = cache.file(&whole).expect("a file");
+        let of = |shapes: &[NamedShape], anchor| {
             let grid = &whole.grids()[0];
-            let shapes = whole.shapes()[..1].to_vec();
-            let fewer = Training::new(shapes, *grid.sensor(), Anchor::Centre, *grid.ranges());
-            fewer.expect("a set")
+            let other = Training::new(shapes.to_vec(), *grid.sensor(), anchor, *grid.ranges());
+            other.expect("a set")
         };
-        let model = fewer().run().expect("not stopped");
-        let stopped = AtomicBool::new(false);
-        save_model(&model, &path, Existing::Kept, &stopped).expect("written");
-        assert!(ModelCache::load(&path, &fewer()).is_some());
-        assert!(ModelCache::load(&path, &whole).is_none());
+        let mut heavier = whole.shapes().to_vec();
+        heavier[0].weight = 3;
+        for (index, other) in [
+            training(4.1),
+            of(&whole.shapes()[..1], Anchor::Centre),
+            of(whole.shapes(), Anchor::Corner),
+            of(&heavier, Anchor::Centre),
+            whole.clone().shard("1/2".parse().expect("a shard")),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            assert_ne!(cache.file(&other).as_ref(), Some(&own), "{index}");
+            let model = other.clone().run().expect("not stopped");
+            let stopped = AtomicBool::new(false);
+            save_model(&model, &own, Existing::Replaced, &stopped).expect("written");
+            assert!(ModelCache::load(&own, &other).is_some(), "{index}");
+            assert!(ModelCache::load(&own, &whole).is_none(), "{index}");
+        }
+    }
+
+    #[test]
+    fn a_model_of_poses_that_are_cut_off_is_only_for_a_training_that_allows_them() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("cut.npz");
+        let sensor = Sensor::default();
+        let shapes = [NamedShape::new(
+            "bar",
+            Figure::rectangle(8.0, 2.0).on(&sensor).expect("in range"),
+        )];
+        let ranges = Ranges::default().with(Axis::X0, "12:12.9:0.1".parse().expect("a range"));
+        let training = Training::new(shapes, sensor, Anchor::Corner, ranges).expect("a set");
+        let allowed = training.clone().allow_cut(true);
+        let model = allowed.clone().run().expect("not stopped");
+        save_model(&model, &path, Existing::Kept, &AtomicBool::new(false)).expect("written");
+        assert!(ModelCache::load(&path, &allowed).is_some());
+        assert!(ModelCache::load(&path, &training).is_none());
     }
 }
