@@ -882,14 +882,20 @@ fn the_table_of_pairs_is_limited() {
     };
     let lines: String = (0..4097).map(line).collect();
     fs::write(place.path("many.jsonl"), lines).expect("written");
-    place.done("model train many.jsonl --positions 1 --angle 0 --out many.npz --quiet");
+    let train = "model train many.jsonl --quiet --out";
+    place.done(&format!("{train} many.npz --positions 1 --angle 0"));
+    // The second shard is not read: it is of another grid.
+    for shard in 1..=2 {
+        let grid = format!("--positions 2 --angle {shard} --shard {shard}/2");
+        place.done(&format!("{train} many-{shard}.npz {grid}"));
+    }
     for (line, table) in [
         ("model confusion many.npz --pairs", "--pairs"),
         ("model confusion many.npz", "confusion matrix"),
         ("model confusion many.npz --json", "confusion matrix"),
         ("model confusion many.npz --given na", "confusion matrix"),
         (
-            "merge many.npz --json --quiet --out merged.npz",
+            "merge many-1.npz many-2.npz --json --quiet --out merged.npz",
             "confusion matrix",
         ),
     ] {
@@ -898,6 +904,17 @@ fn the_table_of_pairs_is_limited() {
         refused(&run, 1, &message);
     }
     assert!(!Path::new(&place.path("merged.npz")).exists());
+    // A drawing is limited to fewer shapes. This is found before the file that exists, and so before the work.
+    let lines: String = (0..65).map(line).collect();
+    place.write("65.jsonl", &lines);
+    place.done("model train 65.jsonl --positions 1 --angle 0 --out 65.npz --quiet");
+    place.write("there.svg", "");
+    let run = place.run(
+        "model confusion 65.npz --classifier knn --export there.svg",
+        "",
+    );
+    let message = "there.svg: 65 shapes, and a drawing shows at most 64; .csv takes all";
+    refused(&run, 1, message);
 }
 
 #[test]

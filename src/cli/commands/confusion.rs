@@ -3,6 +3,7 @@
 //! The best classifier is counted from all touches of the model, so its error is the limit of every method that sees
 //! one touch. Each question of `Evaluated` has a function here; `output/evaluation` makes the output.
 
+use std::iter;
 use std::path::Path;
 
 use serde_json::json;
@@ -10,7 +11,7 @@ use serde_json::json;
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
 use crate::cli::commands::export::{put, written};
-use crate::cli::commands::model;
+use crate::cli::commands::model::{self, FoundModel};
 use crate::cli::commands::noise;
 use crate::cli::error::{CliError, MOST_PAIRED};
 use crate::cli::input::shapes::Shelf;
@@ -19,7 +20,6 @@ use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::note::note;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
-use crate::formats::ending::has_ending;
 use crate::formats::value::percent;
 use crate::formats::{ConfusionMap, DrawingFormat, json};
 use crate::parameter::number::share;
@@ -37,13 +37,7 @@ pub(crate) fn confusion(
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
-    if let Some(table) = table_of_pairs(&asked.of) {
-        fits_in_table(table, model.shapes().len())?;
-    }
-    if let Some(path) = &asked.export {
-        // A file that cannot be written is an error before the work, not after it.
-        drop(UnfinishedFile::new(path, asked.existing)?);
-    }
+    check(asked, &model)?;
     let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
     let as_json = asked.form == EvaluationForm::Json;
     let text = match &asked.of {
@@ -67,6 +61,31 @@ pub(crate) fn confusion(
         note(&written(path), charset);
     }
     Ok(text)
+}
+
+/// Refuses what the shapes and the sensor of a model do not allow, and a file that cannot be written: before the work,
+/// not after it.
+///
+/// # Errors
+/// Returns [`CliError::TooManyPairs`], [`CliError::TooManyShapes`], [`CliError::Range`] for too many dead taxels, and
+/// the errors of the file.
+fn check(asked: &ConfusionArguments, model: &FoundModel) -> Result<(), CliError> {
+    let table = table_of_pairs(&asked.of);
+    if let Some(table) = table {
+        fits_in_table(table, model.shapes().len())?;
+    }
+    if let Evaluated::Noise(noise) = &asked.of {
+        noise::check_dead(&noise.dead, &noise::sensor(noise, &model.sensor()))?;
+    }
+    let Some(path) = &asked.export else {
+        return Ok(());
+    };
+    if table.is_some() && DrawingFormat::of_path(path).is_some() {
+        let names = model.shapes().iter().map(|shape| shape.name.clone());
+        drawing(path, &names.collect::<Vec<_>>(), iter::empty())?;
+    }
+    drop(UnfinishedFile::new(path, asked.existing)?);
+    Ok(())
 }
 
 /// Returns the table of all pairs of shapes that a question is answered with, as messages call it; None if there is
@@ -149,23 +168,12 @@ fn reached(
 /// given.
 ///
 /// # Errors
-/// Returns [`CliError::Ending`] for a file that is not a table, and [`CliError::Stopped`] after a signal.
+/// Returns [`CliError::Stopped`] after a signal.
 fn all_classifiers(
     model: &Model,
     asked: &ConfusionArguments,
     charset: Charset,
 ) -> Result<String, CliError> {
-    if let Some(path) = asked
-        .export
-        .as_ref()
-        .filter(|path| !has_ending(path, "csv"))
-    {
-        return Err(CliError::Ending {
-            name: path.to_string_lossy().into_owned(),
-            what: "the table of all classifiers",
-            expected: ".csv",
-        });
-    }
     let signals = Signals::catch()?;
     let all = Classifier::ALL.into_iter();
     let all = all.map(|classifier| reached(classifier, model, asked, charset, &signals));
@@ -254,16 +262,12 @@ fn advice(asked: &ConfusionArguments) -> String {
 /// method knows when it is certain.
 ///
 /// # Errors
-/// Returns [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
+/// Returns the errors of [`drawing`].
 fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, CliError> {
     let Some(format) = DrawingFormat::of_path(path) else {
         return Ok(evaluation::csv(own).into_bytes());
     };
-    let map = ConfusionMap::new(&own.labels, own.confusion.rows());
-    let map = map.ok_or_else(|| CliError::TooManyShapes {
-        name: path.to_string_lossy().into_owned(),
-        shapes: own.labels.len(),
-    })?;
+    let map = drawing(path, &own.labels, own.confusion.rows())?;
     let mut title = format!("error {}", percent(own.error()));
     if knows_certain {
         let certain = share(own.certain, own.touches);
@@ -272,4 +276,19 @@ fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, C
     let map = map.with_title(&title);
     map.content(format)
         .map_err(|error| CliError::of_file(path, error))
+}
+
+/// Returns the drawing of a matrix, which [`file`] writes to `path`.
+///
+/// # Errors
+/// Returns [`CliError::TooManyShapes`] for a matrix that would not be legible.
+fn drawing(
+    path: &Path,
+    labels: &[String],
+    counts: impl IntoIterator<Item = Vec<u128>>,
+) -> Result<ConfusionMap, CliError> {
+    ConfusionMap::new(labels, counts).ok_or_else(|| CliError::TooManyShapes {
+        name: path.to_string_lossy().into_owned(),
+        shapes: labels.len(),
+    })
 }

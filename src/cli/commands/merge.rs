@@ -159,7 +159,7 @@ pub(crate) fn merge(
         say(&bound);
     }
     let (imprints, summary) = if is_model {
-        let model = models(&parts, &memory)?;
+        let model = models(&parts, wanted, &memory)?;
         (model.keys().len(), leave_model(&model, wanted)?)
     } else {
         let result = sweeps(&parts, &memory)?;
@@ -225,11 +225,15 @@ fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError>
     Ok(merge.finish()?)
 }
 
-/// Merges the shards of a training.
-fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
+/// Merges the shards of a training. They are refused at the first one if the result has too many shapes for what is to
+/// be printed.
+fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model, CliError> {
     let mut merge = ModelMerge::default();
     for part in parts {
         let model = load_model(&part.path)?;
+        if wanted.json {
+            fits_in_table("confusion matrix", model.shapes().len())?;
+        }
         merge.add(&model).map_err(|error| match error {
             ModelError::Foreign { .. } | ModelError::Shards(ShardOrderError::Twice { .. }) => {
                 part.refused(&error)
@@ -243,10 +247,6 @@ fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
 
 /// Writes a merged model, and returns the summary to print, with the error if there is no file.
 fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
-    if wanted.json {
-        // Before anything is written.
-        fits_in_table("confusion matrix", model.shapes().len())?;
-    }
     let signals = Signals::catch()?;
     let saved = wanted.atlas.as_ref().map_or(Ok(()), |file| {
         let existing = wanted.existing.at_writing();

@@ -228,6 +228,14 @@ impl FoundModel {
         }
     }
 
+    /// Returns the sensor that they were touched with, or will be.
+    pub(crate) fn sensor(&self) -> Sensor {
+        match self {
+            Self::Read(model) => *model.sensor(),
+            Self::BuiltIn(training) => training.head().sensor,
+        }
+    }
+
     /// Returns the model. A built-in set comes from the user's cache, or if it is not there, it is trained, which
     /// takes some seconds; `progress` makes the display of its progress. Signals are not caught meanwhile: nothing
     /// would have to be removed.

@@ -41,7 +41,7 @@ use crate::recognition::{
     GivenDescriptors, HalfStepWork, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate,
     TouchesUntil,
 };
-use crate::sensor::{MatrixSize, Sensor};
+use crate::sensor::Sensor;
 
 /// A row of the table: the noise, the number of dead taxels, and the result.
 struct NoiseRow {
@@ -67,8 +67,8 @@ pub(crate) fn degradation(
 ) -> Result<String, CliError> {
     let given = given_of(asked, all_asked);
     let signals = Signals::catch()?;
-    let sensor = matrix(model, asked.size)?;
-    check_dead(&asked.dead, &sensor)?;
+    let sensor = sensor(asked, model.sensor());
+    check_fits(model, &sensor)?;
     if let Some(text) = left_out(model, &sensor).filter(|_| !all_asked.quiet) {
         note(&text, charset);
     }
@@ -110,7 +110,10 @@ pub(crate) fn degradation(
 }
 
 /// Refuses more dead taxels than the matrix has.
-fn check_dead(dead: &[u32], sensor: &Sensor) -> Result<(), CliError> {
+///
+/// # Errors
+/// Returns [`CliError::Range`].
+pub(crate) fn check_dead(dead: &[u32], sensor: &Sensor) -> Result<(), CliError> {
     let cells = u32::from(sensor.columns()) * u32::from(sensor.rows());
     match dead.iter().find(|&&dead| dead > cells) {
         None => Ok(()),
@@ -141,14 +144,18 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
     put(path, &content, asked.existing)
 }
 
-/// Returns the matrix that is touched: of the given size, or else that of the model.
+/// Returns the sensor that is touched: of the given size, or else that of the model.
+pub(crate) fn sensor(asked: &NoiseArguments, of_model: &Sensor) -> Sensor {
+    asked.size.map_or(*of_model, Sensor::of_size)
+}
+
+/// Refuses a sensor on which no imprint of some shape fits.
 ///
 /// # Errors
-/// Returns [`CliError::NoTouch`] if no imprint of a shape fits on it.
-fn matrix(model: &Model, size: Option<MatrixSize>) -> Result<Sensor, CliError> {
-    let sensor = size.map_or(*model.sensor(), Sensor::of_size);
+/// Returns [`CliError::NoTouch`].
+fn check_fits(model: &Model, sensor: &Sensor) -> Result<(), CliError> {
     match model.first_too_large(sensor.size()) {
-        None => Ok(sensor),
+        None => Ok(()),
         Some(shape) => Err(CliError::NoTouch {
             name: model.shapes()[shape].name.clone(),
             size: sensor.size(),

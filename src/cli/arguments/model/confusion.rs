@@ -23,6 +23,7 @@ use crate::cli::arguments::flags::{
 };
 use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
 use crate::cli::error::CliError;
+use crate::formats::ending::has_ending;
 use crate::index::wide;
 use crate::pose::{DecimalRange, RangeError};
 use crate::recognition::{Classifier, ClassifierSettings, GivenDescriptors, Noise, Rounding};
@@ -230,18 +231,29 @@ impl ConfusionArguments {
     /// Reads the arguments of [`command`].
     ///
     /// # Errors
-    /// Returns [`CliError::Unused`] for a flag that has no effect with the others.
+    /// Returns [`CliError::Unused`] for a flag that has no effect with the others, and [`CliError::Ending`] for a
+    /// drawing of all classifiers.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         check_classifier(matches)?;
         check_roundings(matches)?;
         let roundings = matches.get_many::<Rounding>("round").into_iter().flatten();
+        let (of, export) = (Evaluated::of(matches), matches.get_one::<PathBuf>("export"));
+        if let (Evaluated::AllClassifiers, Some(path)) = (&of, export)
+            && !has_ending(path, "csv")
+        {
+            return Err(CliError::Ending {
+                name: path.to_string_lossy().into_owned(),
+                what: "the table of all classifiers",
+                expected: ".csv",
+            });
+        }
         Ok(Self {
             model: flags::word(matches, "model"),
-            of: Evaluated::of(matches),
+            of,
             roundings: roundings.copied().collect(),
             classifiers: classifiers(matches),
             form: EvaluationForm::of(matches),
-            export: matches.get_one::<PathBuf>("export").cloned(),
+            export: export.cloned(),
             existing: flags::existing(matches),
             quiet: matches.get_flag("quiet"),
         })
