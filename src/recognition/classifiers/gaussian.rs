@@ -1,5 +1,6 @@
 //! Gaussians of the features, one for each class.
 
+use std::iter;
 use std::sync::Arc;
 
 use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, Dyn};
@@ -8,7 +9,8 @@ use crate::parameter::number::share;
 use crate::recognition::classifiers::features::{FeatureTable, LEAST_VARIANCE};
 use crate::recognition::model::Model;
 
-/// The number added to a variance of 1, so that covariances of dependent features can be inverted.
+/// The number added to a variance of 1, so that covariances of dependent features can be inverted. It is ten times as
+/// large until rounding errors permit that.
 const RIDGE: f64 = 0.001;
 
 /// The Gaussian of one class.
@@ -26,8 +28,8 @@ pub(super) struct Gaussian {
 enum Spread {
     /// The variances of independent features.
     Diagonal(DVector<f64>),
-    /// The factor of any covariance; None if rounding errors leave it without one.
-    Full(Option<Arc<Cholesky<f64, Dyn>>>),
+    /// The factor of any covariance.
+    Full(Arc<Cholesky<f64, Dyn>>),
 }
 
 impl Gaussian {
@@ -50,16 +52,14 @@ impl Gaussian {
         each_deviation(model, table, &means, |shape, part, away| {
             covariances[shape].ger(part, away, away, 1.0);
         });
-        let ridge = DMatrix::identity(width, width) * RIDGE;
-        let spread = |covariance| Spread::Full(Cholesky::new(covariance + &ridge).map(Arc::new));
         if !common {
-            return Self::all(model, means, covariances.into_iter().map(spread));
+            return Self::all(model, means, covariances.iter().map(Spread::full));
         }
         let mut pooled = DMatrix::zeros(width, width);
         for (shape, covariance) in model.shapes().iter().zip(covariances) {
             pooled += covariance * share(shape.weight.into(), model.weights());
         }
-        Self::all(model, means, std::iter::repeat(spread(pooled)))
+        Self::all(model, means, iter::repeat(Spread::full(&pooled)))
     }
 
     fn all(
@@ -89,10 +89,7 @@ impl Gaussian {
             }
             Spread::Full(factor) => {
                 let away = vector(row) - &self.mean;
-                match factor {
-                    Some(factor) => away.dot(&factor.solve(&away)),
-                    None => away.norm_squared(),
-                }
+                away.dot(&factor.solve(&away))
             }
         }
     }
@@ -104,12 +101,29 @@ impl Gaussian {
 }
 
 impl Spread {
+    /// Factors a covariance after adding the least ridge that makes this possible. Every finite covariance has one; of
+    /// any other, only the variances are used.
+    fn full(covariance: &DMatrix<f64>) -> Self {
+        let ridges = iter::successors(Some(RIDGE), |ridge| Some(10.0 * ridge));
+        let mut ridges = ridges.take_while(|ridge| ridge.is_finite());
+        let factor = ridges.find_map(|ridge| {
+            let mut covariance = covariance.clone();
+            for index in 0..covariance.nrows() {
+                covariance[(index, index)] += ridge;
+            }
+            Cholesky::new(covariance)
+        });
+        match factor {
+            Some(factor) => Self::Full(Arc::new(factor)),
+            None => Self::Diagonal(covariance.diagonal().add_scalar(RIDGE)),
+        }
+    }
+
     fn log_determinant(&self) -> f64 {
         let logarithms = |sides: &DVector<f64>| sides.iter().map(|&side| libm::log(side)).sum();
         match self {
             Self::Diagonal(variances) => logarithms(variances),
-            Self::Full(Some(factor)) => 2.0 * logarithms(&factor.l_dirty().diagonal()),
-            Self::Full(None) => 0.0,
+            Self::Full(factor) => 2.0 * logarithms(&factor.l_dirty().diagonal()),
         }
     }
 }
@@ -148,4 +162,34 @@ fn pose_shares(model: &Model) -> impl Iterator<Item = (usize, usize, f64)> + '_ 
 /// Returns features as a vector.
 fn vector(row: &[f64]) -> DVectorView<'_, f64> {
     DVectorView::from_slice(row, row.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twice the same feature, with a variance beside which the usual ridge is a rounding error.
+    #[test]
+    fn a_class_of_large_dependent_features_is_measured_in_its_own_deviations() {
+        let variance = 1e20;
+        let spread = Spread::full(&DMatrix::from_element(2, 2, variance));
+        let log_determinant = spread.log_determinant();
+        assert!((50.0..92.2).contains(&log_determinant), "{log_determinant}");
+        let class = Gaussian {
+            mean: DVector::zeros(2),
+            spread,
+            log_determinant,
+            prior: 0.0,
+        };
+        let deviation = f64::sqrt(variance);
+        let distance = class.distance(&[deviation, deviation]);
+        assert!((distance - 1.0).abs() < 1e-3, "{distance}");
+    }
+
+    #[test]
+    fn the_usual_ridge_is_enough_for_dependent_features() {
+        let spread = Spread::full(&DMatrix::from_element(2, 2, 1.0));
+        let exact = libm::log(2.0 * RIDGE + RIDGE * RIDGE);
+        assert!((spread.log_determinant() - exact).abs() < 1e-9);
+    }
 }
