@@ -41,16 +41,16 @@ pub(crate) struct EvaluationJson<'a> {
 impl Serialize for EvaluationJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let own = self.evaluation;
-        let known = |number: u128| self.classifier.is_none().then_some(number);
+        let known = |count: u128| self.classifier.is_none().then(|| number(count));
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("labels", &own.labels)?;
-        map.serialize_entry("touches", &own.touches)?;
-        map.serialize_entry("right", &own.right)?;
+        map.serialize_entry("touches", &number(own.touches))?;
+        map.serialize_entry("right", &number(own.right))?;
         map.serialize_entry("accuracy", &own.accuracy())?;
         map.serialize_entry("error", &own.error())?;
         map.serialize_entry("certain", &known(own.certain))?;
-        map.serialize_entry("tied", &own.tied)?;
-        map.serialize_entry("right_in_top_two", &own.right_in_top_two)?;
+        map.serialize_entry("tied", &number(own.tied))?;
+        map.serialize_entry("right_in_top_two", &number(own.right_in_top_two))?;
         map.serialize_entry("information_bits", &own.information_bits)?;
         map.serialize_entry("prior_bits", &own.prior_bits)?;
         map.serialize_entry("keys", &own.keys)?;
@@ -78,7 +78,8 @@ struct MatrixRows<'a>(&'a ConfusionMatrix);
 
 impl Serialize for MatrixRows<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.rows())
+        let row = |counts: Vec<u128>| counts.into_iter().map(number).collect::<Vec<_>>();
+        serializer.collect_seq(self.0.rows().map(row))
     }
 }
 
@@ -414,4 +415,48 @@ pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) ->
     }
     text += "errors in percent, for each pair alone\n";
     charset.lines(&text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::formats::json;
+    use crate::pose::{Anchor, Axis, Ranges};
+    use crate::recognition::{Model, ModelHead, NamedShape, ShapeCount};
+    use crate::sensor::Sensor;
+    use crate::sweep::Shard;
+
+    #[test]
+    fn counts_beyond_64_bits_are_texts_wherever_they_stand() {
+        let bar = Figure::rectangle(4.0, 2.0).on(&Sensor::default());
+        let shapes = vec![NamedShape::new("bar", bar.expect("in range")).weighted(u32::MAX)];
+        let (mut ranges, poses) = (Ranges::default(), 1000 * 1000 * 36_000);
+        for (axis, range) in [
+            (Axis::X0, "5:5.999:0.001"),
+            (Axis::Y0, "5:5.999:0.001"),
+            (Axis::Angle, "0:359.99:0.01"),
+        ] {
+            ranges = ranges.with(axis, range.parse().expect("a range"));
+        }
+        let (poses_of, part) = ((Anchor::Centre, ranges), (Shard::WHOLE, poses));
+        let head = ModelHead::new(shapes, Sensor::default(), poses_of, part);
+        let key = ("####\n####".parse().ok(), vec![ShapeCount::new(0, poses)]);
+        let limit = Evaluation::of(&Model::from_parts(head, &[key]).expect("a model"));
+        let text = json::text(&EvaluationJson {
+            evaluation: &limit,
+            classifier: None,
+        });
+        for part in [
+            "\"touches\":",
+            "\"right\":",
+            "\"certain\":",
+            "\"right_in_top_two\":",
+            "\"confusion\":[[",
+        ] {
+            let count = format!("{part}\"154618822620000000000\"");
+            assert!(text.contains(&count), "{count}: {text}");
+        }
+        assert!(text.contains("\"tied\":0,"), "{text}");
+    }
 }
