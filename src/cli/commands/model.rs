@@ -8,7 +8,7 @@
 //!   block: rectangle length 4.50, width 4.30, recognised in 99.1 %
 //! 1,800 poses each
 //! …
-//! hash 2888dcc5d50ce3389fbcb40d256ae2ab, taxel 0.1.0
+//! hash 2888dcc5d50ce3389fbcb40d256ae2ab
 //! ```
 //! The hash is that of the content: two trainings of one set on one grid have the same hash on any machine.
 
@@ -368,11 +368,7 @@ pub(crate) fn show(
         text += &evaluation::summary(&limit, NamedBy::Imprint);
         text += &never_certain(&model);
     }
-    text += &format!(
-        "hash {}, taxel {}\n",
-        model_hash(&model)?,
-        env!("CARGO_PKG_VERSION")
-    );
+    text += &format!("hash {}\n", model_hash(&model)?);
     Ok(charset.lines(&text))
 }
 
@@ -459,7 +455,6 @@ fn card_json(
     card.insert("information_bits".into(), json!(limit.information_bits));
     card.insert("never_certain".into(), never.collect());
     card.insert("hash".into(), json!(model_hash(model)?));
-    card.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
     Ok(card)
 }
 
