@@ -201,12 +201,13 @@ impl FinishedFile {
     }
 }
 
-/// Checks whether a file of this path may be written, as far as it shows before the attempt.
+/// Checks whether a file can be begun at a path, so that an error comes before the work rather than after it. Leaves
+/// nothing behind.
 ///
 /// # Errors
-/// Returns the errors of [`UnfinishedFile::new`] about an existing file.
-pub fn check_target(path: &Path, existing: Existing) -> Result<(), FileError> {
-    replaced(path, existing).map(drop)
+/// Returns the errors of [`UnfinishedFile::new`].
+pub fn check_writable(path: &Path, existing: Existing) -> Result<(), FileError> {
+    UnfinishedFile::new(path, existing).map(drop)
 }
 
 /// Returns the metadata of the file to replace; None if there is none.
@@ -400,5 +401,31 @@ fn sync(folder: &Path) -> io::Result<()> {
             Ok(())
         }
         synced => synced,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_can_be_checked_before_it_is_written() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        assert!(check_writable(&path("new"), Existing::Kept).is_ok());
+        let refused = check_writable(&path("no/folder"), Existing::Kept).expect_err("no folder");
+        assert!(
+            refused.to_string().contains("write into its folder"),
+            "{refused}"
+        );
+        assert!(
+            fs::read_dir(folder.path())
+                .expect("a folder")
+                .next()
+                .is_none()
+        );
+        fs::write(path("old"), "").expect("written");
+        assert!(check_writable(&path("old"), Existing::Kept).is_err());
+        assert!(check_writable(&path("old"), Existing::Replaced).is_ok());
     }
 }

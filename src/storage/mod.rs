@@ -77,7 +77,7 @@ mod models;
 #[cfg(all(feature = "recognition", feature = "library"))]
 mod model_choice;
 
-pub use atomic_file::{Existing, FinishedFile, UnfinishedFile, check_target, persist_pair};
+pub use atomic_file::{Existing, FinishedFile, UnfinishedFile, check_writable, persist_pair};
 
 #[cfg(feature = "acquire")]
 pub(crate) use file_id::FileId;

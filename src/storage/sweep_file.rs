@@ -13,7 +13,7 @@ use crate::formats::ending::has_ending;
 use crate::formats::npy::Dtype;
 use crate::formats::{ArchiveError, archive, npy};
 use crate::pose::PoseGrid;
-use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
+use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile, check_writable};
 use crate::storage::error::ArchiveFileError;
 use crate::storage::first_error::FirstErrorWriter;
 use crate::sweep::SweepResult;
@@ -71,7 +71,7 @@ impl AtlasFile {
     /// # Errors
     /// Returns the system's error, with the file's name; also if a file exists and must be kept.
     pub fn check(&self, existing: Existing) -> Result<(), ArchiveFileError> {
-        Ok(UnfinishedFile::new(&self.path, existing).map(drop)?)
+        Ok(check_writable(&self.path, existing)?)
     }
 
     /// Writes the atlas of a result. Leaves nothing behind if `stopped` becomes true on the way.

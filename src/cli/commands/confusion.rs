@@ -24,7 +24,7 @@ use crate::formats::value::percent;
 use crate::formats::{ConfusionMap, DrawingFormat, json};
 use crate::parameter::number::share;
 use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy};
-use crate::storage::UnfinishedFile;
+use crate::storage::check_writable;
 
 /// Evaluates a model. Returns the text to print.
 ///
@@ -84,8 +84,7 @@ fn check(asked: &ConfusionArguments, model: &FoundModel) -> Result<(), CliError>
         let names = model.shapes().iter().map(|shape| shape.name.clone());
         drawing(path, &names.collect::<Vec<_>>(), iter::empty())?;
     }
-    drop(UnfinishedFile::new(path, asked.existing)?);
-    Ok(())
+    Ok(check_writable(path, asked.existing)?)
 }
 
 /// Returns the table of all pairs of shapes that a question is answered with, as messages call it; None if there is

@@ -17,7 +17,7 @@ use crate::formats::{Content, Drawing};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::source::Source;
-use crate::storage::{Existing, FinishedFile, check_target};
+use crate::storage::{Existing, FinishedFile, check_writable};
 
 impl Export {
     /// Returns the same export with the number of a frame at the end of the file name, before the extension.
@@ -35,17 +35,17 @@ impl Export {
         Self { path, ..*self }
     }
 
-    /// Refuses a file that would replace the recording being read, or anything that is not to be replaced. So one of
+    /// Refuses a file that would replace the recording being read, or that cannot be written. So one of
     /// several files that cannot be written is an error before the first of them is written.
     ///
     /// # Errors
-    /// Returns [`CliError::Frames`], or the errors of [`check_target`].
+    /// Returns [`CliError::Frames`], or the errors of [`check_writable`].
     pub(crate) fn check(&self, recording: &RecordingFile) -> Result<(), CliError> {
         let Some(path) = &self.path else {
             return Ok(());
         };
         recording.refuse_as_target(path)?;
-        Ok(check_target(path, self.existing)?)
+        Ok(check_writable(path, self.existing)?)
     }
 
     /// Like [`Self::begin`], for a frame. A drawing shows its values in shades, if they are given.

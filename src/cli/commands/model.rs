@@ -41,7 +41,7 @@ use crate::recognition::{Evaluation, Model, NamedShape, Training, TrainingError}
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{
-    ArchiveFileError, ModelCache, ModelChoice, ModelFolder, UnfinishedFile, cached_or_trained,
+    ArchiveFileError, ModelCache, ModelChoice, ModelFolder, cached_or_trained, check_writable,
     load_model, load_whole_model, model_hash, save_model, unknown_set,
 };
 use crate::sweep::Shard;
@@ -80,8 +80,7 @@ pub(crate) fn train(
         ModelTarget::File(_) => Ok::<_, CliError>(None),
     };
     let _folder = make_folder()?;
-    // A path that cannot be written is an error before the work, not after it.
-    drop(UnfinishedFile::new(&path, asked.existing.at_writing())?);
+    check_writable(&path, asked.existing.at_writing())?;
     if !asked.quiet {
         note(&grid_text(&sensor, anchor, &ranges), charset);
     }

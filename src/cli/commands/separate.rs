@@ -30,7 +30,7 @@ use crate::pose::{Axis, DecimalRange, Ranges};
 use crate::recognition::{CellPositions, Model, Separation, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::ModelChoice;
-use crate::storage::UnfinishedFile;
+use crate::storage::check_writable;
 
 /// The number of sizes that a search tries between two sizes of a scan.
 const REFINED: u64 = 9;
@@ -52,7 +52,7 @@ pub(crate) fn separate(
     let sizes = fitting(asked, &separation, &thresholds)?;
     let signals = Signals::catch()?;
     if let Some(path) = &asked.export {
-        drop(UnfinishedFile::new(path, asked.existing)?);
+        check_writable(path, asked.existing)?;
     }
     // An answer without all its sizes says so, even with --quiet.
     if let Some(text) = left_out(asked, &sizes) {
