@@ -143,11 +143,11 @@ impl Surroundings {
                 recognise::recognise(&asked, shelf, charset, &mut io::stdout().lock())?;
             }
             Request::Figure(figure, sensor, form, kept) => {
-                self.touch(*figure, sensor, form, kept)?;
+                self.touch(&figure, sensor, form, &kept)?;
             }
             Request::Picture(what, given, form, kept) => {
                 let (picture, sensor) = touch::picture(&what, &given, shelf)?;
-                self.touch(picture, sensor, form, kept)?;
+                self.touch(&picture, sensor, form, &kept)?;
             }
             Request::Describe(what, form) => {
                 print(&describe::content(&shelf.find(&what)?, form, charset))?;
@@ -201,10 +201,10 @@ impl Surroundings {
     /// Touches a figure or a picture and prints its imprint, with notes on standard error.
     fn touch(
         &self,
-        source: Source,
+        source: &Source,
         sensor: Sensor,
         form: Form,
-        kept: Kept,
+        kept: &Kept,
     ) -> Result<(), CliError> {
         let touched = touch::touch(source, sensor, form, kept, &self.shelf, self.charset)?;
         write(&touched.answer)?;

@@ -9,11 +9,12 @@ use std::io;
 use std::path::Path;
 
 use crate::cli::arguments::export::{Export, ExportFormat};
+use crate::cli::arguments::kept::{Kept, Saving};
 use crate::cli::error::CliError;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::settings::pitch::Pitch;
-use crate::formats::{Content, Drawing};
+use crate::formats::{Content, Drawing, Name, StoredShape};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::source::Source;
@@ -116,6 +117,36 @@ impl Export {
                 self.existing,
             )?)),
         }
+    }
+}
+
+impl Kept {
+    /// Keeps a touch: the file is written, then the shape is stored, then the file gets its name, which hardly ever
+    /// fails. So both are kept or neither. Notes of what was kept are added to `notes`. Returns the content for standard
+    /// output that takes the place of the answer, if any.
+    ///
+    /// # Errors
+    /// Returns the errors of `begin`, of the library and of the file.
+    pub(crate) fn keep(
+        &self,
+        begin: impl FnOnce(&Export) -> Result<Begun, CliError>,
+        shape: impl FnOnce(Name) -> StoredShape,
+        shelf: &Shelf,
+        notes: &mut Vec<String>,
+    ) -> Result<Option<Vec<u8>>, CliError> {
+        let begun = self.export.as_ref().map(begin).transpose()?;
+        if let Some(Saving { name, existing }) = &self.saving {
+            let saved = shelf.save(&shape(name.clone()), *existing)?;
+            notes.push(format!("saved as {saved}"));
+        }
+        Ok(match begun.map(Begun::end).transpose()? {
+            Some(Exported::Content(content)) => Some(content),
+            Some(Exported::Said(said)) => {
+                notes.push(said);
+                None
+            }
+            None => None,
+        })
     }
 }
 

@@ -26,7 +26,7 @@ use std::slice;
 use crate::cli::arguments::export::Export;
 use crate::cli::arguments::form::Form;
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
-use crate::cli::arguments::kept::{Kept, Saving};
+use crate::cli::arguments::kept::Kept;
 use crate::cli::commands::export::{Begun, Exported};
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::commands::noise_report;
@@ -42,10 +42,9 @@ use crate::cli::output::report;
 use crate::cli::settings::pitch::Pitch;
 use crate::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, RecordingError};
 use crate::formats::value::counted;
-use crate::formats::{StoredShape, json};
+use crate::formats::{Name, StoredShape, json};
 use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, SetRule, Tare};
 use crate::imprint::Imprint;
-use crate::matrix::Matrix;
 use crate::parameter::Parameter;
 use crate::parameter::number::short;
 use crate::sensor::Sensor;
@@ -406,8 +405,12 @@ impl Selection {
         if let Form::Table(_) = output.form {
             lines.extend(without_pitch);
         }
-        let instead =
-            save_and_export(&imprint, heat, frame, &titles[0], pitch, output, &mut lines)?;
+        let begin = |export: &Export| {
+            let export = export.numbered(frame.number);
+            export.begin_frame(&imprint, heat, &titles[0], pitch)
+        };
+        let shape = |name| stored(name, &imprint, pitch);
+        let instead = output.kept.keep(begin, shape, output.shelf, &mut lines)?;
         let text = match (instead, output.form) {
             (Some(content), _) => content,
             (None, Form::Json(_)) => {
@@ -540,45 +543,14 @@ fn cell_size(
     Ok((None, Some(reason)))
 }
 
-/// Stores and exports an imprint as asked. Returns the content for standard output that takes the place of the
-/// answer, if any; notes are added to `lines`. The file is written before the shape is saved, so that nothing is
-/// saved if the file cannot be written; it gets its name after that.
-///
-/// # Errors
-/// Returns the errors of the library and of the file.
-fn save_and_export(
-    imprint: &Imprint,
-    heat: Option<&Matrix<f64>>,
-    frame: &Frame,
-    title: &str,
-    pitch: Option<f64>,
-    output: &mut FramesOutput<'_>,
-    lines: &mut Vec<String>,
-) -> Result<Option<Vec<u8>>, CliError> {
-    let export = output.kept.export.as_ref();
-    let export = export.map(|export: &Export| export.numbered(frame.number));
-    let begun = export.map(|export| export.begin_frame(imprint, heat, title, pitch));
-    let begun = begun.transpose()?;
-    if let Some(Saving { name, existing }) = &output.kept.saving {
-        let sensor = Sensor::of_size(imprint.size());
-        let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
-        let shape = StoredShape {
-            name: name.clone(),
-            sensor: with_pitch.unwrap_or(sensor),
-            imprint: *imprint,
-            source: None,
-        };
-        lines.push(format!(
-            "saved as {}",
-            output.shelf.save(&shape, *existing)?
-        ));
+/// Returns the imprint of a frame as a shape to store. The pitch of its sensor is `pitch`, or else the default.
+fn stored(name: Name, imprint: &Imprint, pitch: Option<f64>) -> StoredShape {
+    let sensor = Sensor::of_size(imprint.size());
+    let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
+    StoredShape {
+        name,
+        sensor: with_pitch.unwrap_or(sensor),
+        imprint: *imprint,
+        source: None,
     }
-    Ok(match begun.map(Begun::end).transpose()? {
-        Some(Exported::Content(content)) => Some(content),
-        Some(Exported::Said(said)) => {
-            lines.push(said);
-            None
-        }
-        None => None,
-    })
 }

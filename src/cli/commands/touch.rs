@@ -3,10 +3,10 @@
 
 use std::ffi::OsStr;
 
+use crate::cli::arguments::export::Export;
 use crate::cli::arguments::form::Form;
-use crate::cli::arguments::kept::{Kept, Saving};
+use crate::cli::arguments::kept::Kept;
 use crate::cli::arguments::parameters::Given;
-use crate::cli::commands::export::{Begun, Exported};
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
@@ -29,46 +29,30 @@ pub(crate) struct Touched {
 
 /// Touches a source, and stores and exports the shape as asked.
 ///
-/// If the shape is to be stored and exported, both are done or neither: the file is written under another name, then
-/// the shape is stored, then the file gets its name.
-///
 /// # Errors
-/// Returns the errors of the library and of the file.
+/// Returns the errors of [`Kept::keep`].
 pub(crate) fn touch(
-    source: Source,
+    source: &Source,
     sensor: Sensor,
     form: Form,
-    Kept { saving, export }: Kept,
+    kept: &Kept,
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<Touched, CliError> {
-    let imprint = Plane::new(sensor).touch(&source);
+    let imprint = Plane::new(sensor).touch(source);
     let (Form::Json(pitch) | Form::Table(pitch)) = form;
     let pitch = pitch.of(Some(&sensor));
     let mut made = vec![source.to_string()];
-    let beyond = report::beyond(&source, &sensor);
+    let beyond = report::beyond(source, &sensor);
     let mut notes: Vec<String> = beyond.into_iter().collect();
-    let mut begun = None;
-    if let Some(export) = export {
-        let title = source.to_string();
-        begun = Some(export.begin(&imprint, Some(&source), &title, pitch)?);
-    }
-    if let Some(Saving { name, existing }) = saving {
-        let shape = StoredShape {
-            name,
-            sensor,
-            imprint,
-            source: Some(source),
-        };
-        notes.push(format!("saved as {}", shelf.save(&shape, existing)?));
-    }
-    let mut instead = None;
-    // The file is complete; giving it its name hardly ever fails.
-    match begun.map(Begun::end).transpose()? {
-        Some(Exported::Content(content)) => instead = Some(content),
-        Some(Exported::Said(said)) => notes.push(said),
-        None => {}
-    }
+    let shape = |name| StoredShape {
+        name,
+        sensor,
+        imprint,
+        source: Some(source.clone()),
+    };
+    let begin = |export: &Export| export.begin(&imprint, Some(source), &made[0], pitch);
+    let instead = kept.keep(begin, shape, shelf, &mut notes)?;
     Ok(match (instead, form) {
         (Some(answer), _) => Touched { answer, notes },
         (None, Form::Json(_)) => Touched {
