@@ -8,7 +8,8 @@ use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-fn refused(text: &str, expected: &str) {
+/// Checks that settings are refused with this message.
+fn invalid(text: &str, expected: &str) {
     let error = Config::read(text).expect_err(text).to_string();
     assert_eq!(error, expected, "{text}");
 }
@@ -106,7 +107,7 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
             "2:1: \"<A-x>\" is not one key, expected one as in x, <Tab>, <C-x>",
         ),
     ] {
-        refused(text, expected);
+        invalid(text, expected);
     }
     for (text, place) in [
         ("theme = \n", "1:"),
@@ -144,29 +145,29 @@ fn unknown_actions_and_duplicate_keys_are_named() {
             "3:2: key \"sensor\" is given twice".to_owned(),
         ),
     ] {
-        refused(text, &expected);
+        invalid(text, &expected);
     }
 }
 
 #[test]
 fn surprising_changes_of_keys_are_refused_with_their_places() {
-    refused(
+    invalid(
         "[keys.matrix]\n'<CR>' = 'toggle'\n'<Enter>' = 'undo'\n",
         "3:1: <Enter> is bound twice here",
     );
-    refused(
+    invalid(
         "[keys.matrix]\nx = 'undo'\nd = 'toggle'\n",
         "3:1: d is the only key of \"delete\" here; give the action another key first",
     );
-    refused(
+    invalid(
         "keys.matrix.x = 'increase'\n",
         "1:17: \"increase\" is not an action of [keys.matrix]; 'taxel config' lists them",
     );
-    refused(
+    invalid(
         "[keys.list]\nj = 'scroll-down'\n",
         "2:1: j types text here; choose a key like <C-x>",
     );
-    refused(
+    invalid(
         "[keys.everywhere]\n'<C-c>' = 'none'\n",
         "2:1: <C-c> always closes what is open and cannot be changed",
     );

@@ -5,7 +5,7 @@ use std::io::Write;
 use serde_json::Value;
 
 use super::array::array;
-use super::{Run, misused, taxel};
+use super::{Run, misused, sh, taxel};
 
 /// Returns the path of a sample from the tests of recordings.
 fn sample(name: &str) -> String {
@@ -59,7 +59,7 @@ fn answered(name: &str, flags: &str) -> Vec<Value> {
 }
 
 /// Checks that a run exits with status 1 and a message that contains `message`.
-fn refused(name: &str, flags: &str, message: &str) {
+fn unanswered(name: &str, flags: &str, message: &str) {
     let run = frames(name, flags);
     assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{flags}");
     assert!(run.stderr.contains(message), "{flags}: {}", run.stderr);
@@ -128,12 +128,12 @@ fn frames_are_chosen_by_number_label_or_sum() {
     let all = answered("tekscan.asf", &format!("--all {rule}"));
     let numbers: Vec<_> = all.iter().map(|answer| answer["frame"].clone()).collect();
     assert_eq!(numbers, [0, 1, 2]);
-    refused(
+    unanswered(
         "tekscan.asf",
         "--frame 3 --at-least 9",
         "no frame 3, expected 0 to 2",
     );
-    refused(
+    unanswered(
         "tekscan.asf",
         "--label 0 --at-least 9",
         "no frame is labelled 0",
@@ -167,12 +167,12 @@ fn the_rule_comes_from_flags_or_from_the_recording() {
         (&tared["sum"], &tared["max"], &tared["tare"]),
         (&50.into(), &13.into(), &3.into())
     );
-    refused(
+    unanswered(
         "tekscan.asf",
         "--peak",
         "--at-least, --percent, --low and --high, or --deviations",
     );
-    refused(
+    unanswered(
         "tekscan.asf",
         "--peak --at-least 1 --tare 4",
         "frames for the tare: found 3, expected 4",
@@ -200,7 +200,7 @@ fn the_rule_comes_from_flags_or_from_the_recording() {
 #[test]
 fn rows_and_columns_that_do_not_fit_a_frame_are_named() {
     let arguments = "--all --channel /state#tip --at-least 1 --rows 7 --columns 11";
-    refused(
+    unanswered(
         "topics.mcap",
         arguments,
         "found 3 values a frame, expected 77: 7 rows of 11\n",
@@ -209,12 +209,12 @@ fn rows_and_columns_that_do_not_fit_a_frame_are_named() {
 
 #[test]
 fn one_of_several_channels_must_be_named() {
-    refused(
+    unanswered(
         "xsensor.csv",
         "--peak --at-least 9",
         "2 channels, choose one with --channel: left, right",
     );
-    refused(
+    unanswered(
         "xsensor.csv",
         "--peak --channel top",
         "no channel named \"top\"; channels: left, right\n",
@@ -237,13 +237,13 @@ fn the_only_array_of_an_archive_is_a_channel_with_the_arrays_name() {
         &answered("touch.npz", "--frame 0 --at-least 9 --json")[0],
         frame
     );
-    refused("touch.npz", "--channel other", "touch");
+    unanswered("touch.npz", "--channel other", "touch");
 }
 
 #[test]
 fn missing_rows_and_columns_are_asked_for_and_a_crop_must_fit() {
-    refused("plain.csv", "", "--rows and --columns");
-    refused(
+    unanswered("plain.csv", "", "--rows and --columns");
+    unanswered(
         "plain.csv",
         "--rows 4 --columns 4",
         "found 22 values, expected 16",
@@ -257,7 +257,7 @@ fn missing_rows_and_columns_are_asked_for_and_a_crop_must_fit() {
     );
     for choice in ["--frame 0 --at-least 9", ""] {
         let beyond = format!("{choice} --crop 3,0,3x1");
-        refused("u2.npy", &beyond, "the crop reaches beyond");
+        unanswered("u2.npy", &beyond, "the crop reaches beyond");
     }
     let negative = taxel(&format!("frames {} --crop -1,0,3x3", sample("u2.npy")), "");
     assert_eq!(negative.status, Some(2));
@@ -468,7 +468,7 @@ fn no_frame_is_exported_if_a_later_one_cannot_be() {
         "{:?} already exists; --force replaces it",
         taken.display().to_string()
     );
-    refused("tekscan.asf", &flags, &message);
+    unanswered("tekscan.asf", &flags, &message);
     let files = std::fs::read_dir(&folder).expect("a folder").count();
     assert_eq!(files, 1);
     let forced = frames("tekscan.asf", &format!("{flags} --force"));
@@ -551,7 +551,7 @@ fn cells_that_are_not_square_have_no_lengths_in_mm() {
         run.stdout
     );
     assert!(!run.stdout.contains("in mm"), "{}", run.stdout);
-    refused(
+    unanswered(
         "xsensor.csv",
         "--channel left --peak --pitch 2",
         "--pitch: cells of 2.5 × 3 mm",
@@ -670,12 +670,8 @@ fn an_endless_input_is_refused_at_once() {
         ("1 2 3", "3 numbers a line, but no rows and columns"),
         ("{\\\"frame\\\":[[1],[]]}", "line 1, column "),
     ] {
-        let taxel = env!("CARGO_BIN_EXE_taxel");
-        let line = format!("yes \"{line}\" | timeout 5 '{taxel}' frames -");
-        let run = std::process::Command::new("sh")
-            .args(["-c", &line])
-            .output();
-        let run = run.expect("started");
+        let script = format!("yes \"{line}\" | timeout 5 \"$0\" frames -");
+        let run = sh(&script).output().expect("started");
         let said = String::from_utf8_lossy(&run.stderr).into_owned();
         assert_eq!(run.status.code(), Some(1), "{said}");
         assert!(said.contains(expected), "{said}");
@@ -758,17 +754,17 @@ fn a_plain_table_of_factors_is_read_as_a_gain() {
     assert_eq!(na(&table("1000")), na(&format!("{}\n", table("1000"))));
     assert_ne!(na(&table("1000")), 0);
     std::fs::write(&path, format!("{}\n", ["1"; 20].join(","))).expect("written");
-    refused("tekscan.asf", &flags, "the gain has 20 columns and 1 row");
+    unanswered("tekscan.asf", &flags, "the gain has 20 columns and 1 row");
     std::fs::write(&path, "{\"frame\":[1,1]}\n").expect("written");
-    refused(
+    unanswered(
         "tekscan.asf",
         &flags,
         "expected a table: a line for each row",
     );
     std::fs::write(&path, "a word\n").expect("written");
-    refused("tekscan.asf", &flags, "not a recording of a known format");
+    unanswered("tekscan.asf", &flags, "not a recording of a known format");
     std::fs::copy(sample("tekscan.asf"), &path).expect("copied");
-    refused(
+    unanswered(
         "tekscan.asf",
         &flags,
         "a recording of several frames, expected a table of factors",
@@ -795,7 +791,7 @@ fn a_threshold_out_of_range_names_what_is_allowed() {
             "error: --high 1e301 is out of range (allowed: -1e300 to 1e300)\n",
         ),
     ] {
-        refused("tekscan.asf", &format!("--all {flags}"), message);
+        unanswered("tekscan.asf", &format!("--all {flags}"), message);
     }
     for text in ["x", "nan"] {
         let noise = format!("frames touch.csv --all --at-least 1 --model figures --noise {text}");

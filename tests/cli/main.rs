@@ -65,9 +65,22 @@ use std::time::{Duration, Instant};
 
 /// Returns the command that runs the program in a locale, with pipes for all its streams.
 fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_taxel"));
+    let mut command = alone(Command::new(env!("CARGO_BIN_EXE_taxel")), locale);
+    command.args(arguments);
     command
-        .args(arguments)
+}
+
+/// Returns the command that runs a script in `sh`, in a UTF-8 locale, as [`program`] runs the program, which is `$0` in
+/// the script. Arguments that are added are `$1` and so on.
+fn sh(script: &str) -> Command {
+    let mut command = alone(Command::new("sh"), "C.UTF-8");
+    command.args(["-c", script, env!("CARGO_BIN_EXE_taxel")]);
+    command
+}
+
+/// Gives a command pipes for all its streams, a locale, and no files of the user: no settings, no library, no cache.
+fn alone(mut command: Command, locale: &str) -> Command {
+    command
         .env_remove("LC_CTYPE")
         .env_remove("LANG")
         .env("LC_ALL", locale)

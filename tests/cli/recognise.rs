@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::model::{COARSE, Place, keys};
-use super::{Run, finish, misused, program, refused};
+use super::{Run, finish, misused, program, refused, sh};
 
 /// A square of 4 × 4, which only one of the four rectangles leaves.
 const SQUARE: &str = "......\n.####.\n.####.\n.####.\n.####.\n......\n";
@@ -472,12 +472,9 @@ fn mistyped_names_are_refused_before_training() {
 #[test]
 fn the_training_of_a_built_in_set_respects_the_memory_limit() {
     let place = place();
-    let mut command = std::process::Command::new("sh");
+    let mut command = sh("ulimit -d 12000; exec \"$0\" recognise square.txt");
     command
-        .args(["-c", "ulimit -d 12000; exec \"$0\" recognise square.txt"])
-        .arg(env!("CARGO_BIN_EXE_taxel"))
         .current_dir(place.0.path())
-        .env("TAXEL_CONFIG", "/dev/null")
         .env("XDG_CACHE_HOME", place.path("cache"))
         .env("RAYON_NUM_THREADS", "1");
     let run = command.output().expect("it starts");

@@ -10,6 +10,7 @@ use crate::paper::RING_IMPRINTS;
 
 use super::python_has;
 use super::refused;
+use super::sh;
 use super::wait;
 use super::{Run, taxel};
 
@@ -359,14 +360,8 @@ fn a_million_threads_are_not_started() {
 #[test]
 fn a_sweep_goes_on_if_a_signal_is_ignored() {
     let sweep = "sweep octagon --side 6 --columns 32 --rows 32 --angle 0:44:0.02 --jobs 1 --quiet";
-    let taxel = env!("CARGO_BIN_EXE_taxel");
-    let script = format!("trap '' INT TERM; echo ready; exec {taxel} {sweep}");
-    let mut shell = Command::new("sh");
-    shell.args(["-c", &script]).env("TAXEL_CONFIG", "/dev/null");
-    let mut child = shell
-        .stdout(std::process::Stdio::piped())
-        .spawn()
-        .expect("there is a shell");
+    let script = format!("trap '' INT TERM; echo ready; exec \"$0\" {sweep}");
+    let mut child = sh(&script).spawn().expect("there is a shell");
     let mut output = std::io::BufReader::new(child.stdout.take().expect("piped"));
     let mut line = String::new();
     std::io::BufRead::read_line(&mut output, &mut line).expect("text");
@@ -700,10 +695,7 @@ fn a_sweep_respects_the_memory_limit() {
 fn a_file_beyond_the_limit_is_an_error_like_a_full_disk() {
     let scratch = folder();
     let path = scratch.path().join("a.npz").display().to_string();
-    let mut command = Command::new("sh");
-    command.args(["-c", "ulimit -f 8; exec \"$@\"", "sh"]);
-    command.env("TAXEL_CONFIG", "/dev/null");
-    command.arg(env!("CARGO_BIN_EXE_taxel"));
+    let mut command = sh("ulimit -f 8; exec \"$0\" \"$@\"");
     command.args("sweep hexagon --side 3 --quiet --angle 0:50:10 --atlas".split(' '));
     let run = command.arg(&path).output().expect("started");
     let said = String::from_utf8_lossy(&run.stderr);

@@ -10,7 +10,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::skip::lacking;
-use super::{misused, program, python_has, taxel, until, wait};
+use super::{misused, program, python_has, sh, taxel, until, wait};
 
 pub(super) fn sample(name: &str) -> String {
     format!(
@@ -623,19 +623,8 @@ fn a_hangup_ends_a_recording_in_a_pipeline() {
         let file = folder.path().join("touch.npy");
         let path = file.to_str().expect("UTF-8");
         let trap = if ignored { "trap '' HUP;" } else { "" };
-        let line = format!(
-            "{trap} exec '{}' watch - --write '{path}'",
-            env!("CARGO_BIN_EXE_taxel")
-        );
-        let mut command = Command::new("sh");
-        let piped = std::process::Stdio::piped;
-        command.args(["-c", &line]).env("TAXEL_CONFIG", "/dev/null");
-        let child = command
-            .stdin(piped())
-            .stdout(piped())
-            .stderr(piped())
-            .spawn();
-        let mut child = child.expect("it starts");
+        let mut command = sh(&format!("{trap} exec \"$0\" watch - --write \"$1\""));
+        let mut child = command.arg(path).spawn().expect("it starts");
         let mut output = BufReader::new(child.stdout.take().expect("piped"));
         let mut input = child.stdin.take().expect("piped");
         let mut sends = |frames| {
