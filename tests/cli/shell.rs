@@ -231,6 +231,16 @@ fn shells_accept_the_completions() {
     misused("completions csh", "invalid value 'csh'");
 }
 
+/// Returns the folders in which a shell finds commands, with that of the program before the others.
+fn path_of_commands() -> String {
+    let binary = Path::new(env!("CARGO_BIN_EXE_taxel"));
+    format!(
+        "{}:{}",
+        binary.parent().expect("a folder").display(),
+        std::env::var("PATH").expect("a path")
+    )
+}
+
 /// Completes names of shapes for commands that accept them, and quotes spaces and quotation marks for bash.
 #[test]
 fn bash_completes_names_of_shapes_and_models() {
@@ -243,12 +253,7 @@ fn bash_completes_names_of_shapes_and_models() {
     in_library(folder.path(), &["delete", "gone"]);
     fs::write(folder.path().join("parts.jsonl"), super::model::PARTS).expect("written");
     with_models(folder.path(), "model show");
-    let binary = Path::new(env!("CARGO_BIN_EXE_taxel"));
-    let path = format!(
-        "{}:{}",
-        binary.parent().expect("a folder").display(),
-        std::env::var("PATH").expect("a path")
-    );
+    let path = path_of_commands();
     let completions = taxel("completions bash", "").stdout;
     let offered = |words: &[&str]| {
         let script = "source /dev/stdin; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); \
@@ -344,6 +349,33 @@ fn zsh_completes_names_of_shapes_only_where_a_name_works() {
         names,
         [true, false, false],
         "recognise, frames, watch: {masks:?}"
+    );
+}
+
+/// The functions `compdef` and so on take the place of zsh's own, which need a terminal.
+#[test]
+fn zsh_gets_the_names_from_the_program() {
+    if !has("zsh") {
+        return;
+    }
+    let script = "compdef() {}; _call_program() { shift; eval \"$@\" }; \
+                  _alternative() { print -rl -- $1 $names }; \
+                  source /dev/stdin; _taxel_names shape 'library list' sets";
+    let mut zsh = super::alone(Command::new("zsh"), "C.UTF-8");
+    zsh.args(["-f", "-c", script])
+        .env("PATH", path_of_commands());
+    let completions = taxel("completions zsh", "").stdout;
+    let run = super::finish(zsh.spawn().expect("it starts"), completions.as_bytes());
+    assert_eq!(run.stderr, "");
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    assert_eq!(lines.first(), Some(&"names:shape:compadd -a names"));
+    assert!(
+        lines.contains(&"oval ring") && lines.contains(&"washer"),
+        "{lines:?}"
+    );
+    assert!(
+        lines.ends_with(&["figures", "figures-30", "shapes"]),
+        "{lines:?}"
     );
 }
 

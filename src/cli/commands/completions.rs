@@ -192,10 +192,10 @@ _taxel_names() {
         if [[ $list == sets ]]; then
             names+=(SETS)
         else
-            names+=(${(f)"$(_call_program names taxel $list --names ${(q)library} 2> /dev/null)"})
+            names+=(${(f)"$(_call_program names taxel $list --names ${(q@)library} 2> /dev/null)"})
         fi
     done
-    _alternative "names:$label:compadd -a names" 'files:file:_files'
+    _alternative "names:${label}:compadd -a names" 'files:file:_files'
 }
 
 "#;
