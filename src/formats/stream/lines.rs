@@ -8,6 +8,7 @@
 //! 7 3
 //!
 //! 2024-05-01 12:00:00.25,0,12,7,3     a moment at the beginning of a frame's first line is its time
+//! 2024-05-01 12:00:00,250,0,12,7,3    with a decimal comma only if rows and columns are given
 //! # frame 7       a comment, or sep=;, wherever it stands
 //! ```
 //! If a stream is read from its beginning, such as a file, the first block may be a frame, or the end of one: its
@@ -19,10 +20,10 @@
 
 use crate::formats::recording::side::frame_size;
 use crate::formats::recording::stream_size::StreamSize;
-use crate::formats::recording::text::separator::is_comment;
+use crate::formats::recording::text::separator::{Separator, is_comment};
 use crate::formats::recording::time::exact::Time;
 use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::recording::time::moment;
+use crate::formats::recording::time::moment::{self, DecimalCommas, Moment};
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
 use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
@@ -78,6 +79,8 @@ struct Block {
     begins_alone: bool,
     /// Whether the line below a single value has several numbers.
     is_below_value: bool,
+    /// The decimal commas that its timestamps may have.
+    commas: DecimalCommas,
 }
 
 impl Block {
@@ -105,6 +108,7 @@ impl Block {
     fn clear(&mut self) {
         self.values.clear();
         (self.rows, self.broken, self.is_below_value) = (0, false, false);
+        self.commas = DecimalCommas::default();
     }
 }
 
@@ -149,11 +153,32 @@ impl LinesDecoder {
         if is_comment(trimmed) {
             return;
         }
-        let (moment, line) = match moment::leading(line) {
+        if self.size.named().is_none() {
+            self.current.commas.compare(line);
+        }
+        let (moment, line) = match self.leading(line) {
             Some((moment, numbers)) => (Some(self.clock.moment(moment)), numbers),
             None => (None, line),
         };
         self.numbers(moment, line, counts, sink);
+    }
+
+    /// Splits a line into the timestamp at its beginning and the numbers after it. If rows and columns were given, the
+    /// number of numbers shows whether a comma in the timestamp is its decimal sign.
+    fn leading<'l>(&self, line: &'l [u8]) -> Option<(Moment, &'l [u8])> {
+        let plain = moment::leading(line);
+        let Some(size) = self.size.named() else {
+            return plain;
+        };
+        let counts = [size.cells(), size.columns().into()];
+        let fits = |(_, row): &(Moment, &[u8])| {
+            let fields = Separator::Byte(b',').fields(row);
+            counts.contains(&fields.count())
+        };
+        let other = moment::leading_with_fraction(line).filter(fits);
+        other
+            .filter(|_| !plain.as_ref().is_some_and(fits))
+            .or(plain)
     }
 
     /// Decodes the numbers of a line that is not empty, after its timestamp.
@@ -286,6 +311,11 @@ impl LinesDecoder {
             return;
         }
         match self.current.size() {
+            Some(own) if self.size.present() != Some(own) && self.current.commas.are_possible() => {
+                self.size.pass_torn();
+                counts.unshaped = Some(own.columns().into());
+                self.lose(1, &self.current.sample, counts);
+            }
             Some(own) if self.held.is_some() => self.hold(own, counts, sink),
             Some(own) => self.block(own, counts, sink),
             None => {
@@ -516,6 +546,21 @@ mod tests {
         // The comma may be a decimal sign.
         let unclear = "12:00:00,125 1 2 3 4\n";
         assert_eq!(times(unclear, Some(FrameSize::of(2, 2))), (Vec::new(), 1));
+        // The number of numbers tells, if it is known.
+        let frame = "12:00:00,000,1,2,3,4\n12:00:00,125,512,2,3,4\n";
+        let rows = "12:00:00,000,1,2\n12:00:00,000,3,4\n\n12:00:00,125,512,2\n12:00:00,125,3,4\n\n";
+        for text in [frame, rows] {
+            let found = times(text, Some(FrameSize::of(2, 2)));
+            let expected = vec![(Some(0.0), 1.0), (Some(0.125), 512.0)];
+            assert_eq!(found, (expected, 0), "{text}");
+        }
+        assert_eq!(times(rows, None), (Vec::new(), 2));
+        let cells = "12:00:00,512,2\n12:00:00,498,4\n\n";
+        assert_eq!(times(cells, None), (vec![(Some(0.0), 512.0)], 0));
+        assert_eq!(
+            times("12:00:00,512,2,3,4\n", Some(FrameSize::of(2, 2))),
+            (vec![(Some(0.0), 512.0)], 0)
+        );
     }
 
     #[test]

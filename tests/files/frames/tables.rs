@@ -210,6 +210,72 @@ fn numbers_and_times_beside_the_cells_are_recognised_by_their_growth() {
 }
 
 #[test]
+fn a_decimal_comma_between_commas_is_found_by_the_number_of_fields() {
+    // As Python's logging writes them, over the end of a second.
+    let moment = |index: u32| {
+        let milliseconds = 960 + 10 * index;
+        format!(
+            "2024-05-01 12:00:0{},{:03}",
+            milliseconds / 1000,
+            milliseconds % 1000
+        )
+    };
+    let cell = |index: u32| index % 3;
+    let lines = |line: &dyn Fn(u32) -> String| (0..12).map(line).collect::<String>();
+    let frame = |index| format!("{},{},2,3,4\n", moment(index), cell(index));
+    let numbered = |index| format!("{index},{},{},2,3,4\n", moment(index), cell(index));
+    let behind = |index| format!("{},2,3,4,{}\n", cell(index), moment(index));
+    let block = |index| {
+        let moment = moment(index);
+        format!("{moment},{},2\n{moment},3,4\n\n", cell(index))
+    };
+    let named = format!("time,r0c0,r0c1,r1c0,r1c1\n{}", lines(&frame));
+    for (text, shape) in [
+        (lines(&frame), Some((2, 2))),
+        (lines(&numbered), Some((2, 2))),
+        (lines(&behind), Some((2, 2))),
+        (lines(&block), Some((2, 2))),
+        (named, None),
+    ] {
+        let found = frames(&text, shape);
+        assert_eq!(found.len(), 12, "{text}");
+        for (index, (_, time, values)) in (0..).zip(found) {
+            let expected = 0.01 * f64::from(index);
+            assert!(
+                time.is_some_and(|time| (time - expected).abs() < 1e-9),
+                "{time:?}: {text}"
+            );
+            assert_eq!(values, [cell(index).into(), 2.0, 3.0, 4.0], "{text}");
+        }
+    }
+    for (text, shape, message) in [
+        (
+            lines(&block),
+            None,
+            "3 numbers a line, but no rows and columns",
+        ),
+        // The number may be that of the frame.
+        (
+            "12:00:00,100,1,2,3,4\n12:00:00,101,1,2,3,4\n12:00:01,102,1,2,3,4\n".to_owned(),
+            Some((2, 2)),
+            "line 1: found 1 number besides the 4 cells, and cannot tell which",
+        ),
+    ] {
+        let found = recorded(text.as_bytes(), shape);
+        assert!(
+            error(&found).starts_with(message),
+            "{text}: {}",
+            error(&found)
+        );
+    }
+    // These are cells: their number is right, or times would go back.
+    let text = "12:00:00,100,2,3,4\n12:00:01,110,2,3,4\n";
+    assert_eq!(values(text, Some((2, 2)))[1], [110.0, 2.0, 3.0, 4.0]);
+    let text = "12:00:00,110,2\n12:00:00,100,4\n\n";
+    assert_eq!(values(text, None), [[110.0, 2.0, 100.0, 4.0]]);
+}
+
+#[test]
 fn a_first_line_of_consecutive_numbers_may_be_values() {
     let block = "0 1 2 3\n4 5 6 7\n8 9 10 11\n12 13 14 15\n\n";
     let other = "0,1,2,3\n5,5,5,5\n\n0,1,2,3\n6,6,6,6\n\n";

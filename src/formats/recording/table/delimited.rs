@@ -8,7 +8,8 @@
 //!                                         2  9  1
 //! ```
 //! Fields are separated by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line
-//! decides. Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A`
+//! decides. Between commas, a timestamp may have a decimal comma, `12:00:00,125`, if that makes the number of fields
+//! right. Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A`
 //! and `<NA>` mean that there is no cell. Lines that begin with `#`, with `//`, or with `%` and a blank are skipped.
 //!
 //! A line below the names of cells may hold the unit of each field.
@@ -379,7 +380,7 @@ impl RowBlock {
             return Err(RecordingError::in_line(number, message));
         }
         // Each row may have its timestamp; that of the first row counts.
-        let (moment, line) = match moment::leading(line) {
+        let (moment, line) = match moment::leading_in(self.separator, line) {
             Some((moment, row)) => (Some(moment), row),
             None => (None, line),
         };

@@ -36,7 +36,7 @@ pub(super) fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>,
 /// Splits a line into the text of the timestamp at its beginning and the numbers after it; None if anything else is
 /// there.
 pub(super) fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8], &[u8])> {
-    let (_, row) = moment::leading(line)?;
+    let (_, row) = moment::leading_in(separator, line)?;
     let moment = line[..line.len() - row.len()].trim_ascii();
     let moment = moment.strip_suffix(b",").unwrap_or(moment);
     let moment = moment.strip_suffix(b";").unwrap_or(moment);

@@ -16,12 +16,12 @@ use crate::formats::recording::table::header::{
     COMPARED, MOST_BESIDE, TableHeader, first_line, is_like_next, is_mostly_numeric, is_ramp,
     moment_of_row, wrong_value,
 };
-use crate::formats::recording::table::unnamed_fields::unnamed_fields;
+use crate::formats::recording::table::unnamed_fields::{unclear, unnamed_fields};
 use crate::formats::recording::text::lines::{TextLines, is_blank, text};
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::{Separator, is_comment};
 use crate::formats::recording::time::field_role::{FieldRole, role, roles};
-use crate::formats::recording::time::moment;
+use crate::formats::recording::time::moment::{self, DecimalCommas};
 use crate::frame::{FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 use crate::parameter::number::{counted, grouped};
 
@@ -215,74 +215,193 @@ fn units_below(
 /// Finds the arrangement of a table without names. Its first lines are in `read`, which begins in line `number` of
 /// the file.
 ///
-/// A line is a row if it has as many fields as a frame has columns; or, if no shape is given, if an empty line ends
-/// the first block. Otherwise, or if it contains texts, it is a frame.
+/// If commas separate the fields, the comma in a timestamp may be one of them or a decimal sign: the arrangement that
+/// has the right number of fields decides.
 fn of_numbers(
     lines: &mut TextLines<impl BufRead>,
     separator: Separator,
     (number, read): (u64, &[&[u8]]),
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
-    let fields = first_fields(separator, read[0], options.size);
-    let numeric = (0..fields.len()).filter(|&field| separator.is_numeric(fields[field]));
-    let numeric: Vec<usize> = numeric.collect();
-    let numbers = |line: &[u8]| numbers_in(separator, line, fields.len(), &numeric);
-    let values = numeric.len();
-    let moment = moment_of_row(separator, read[0]);
-    let width = match moment {
-        Some((_, row)) => side(separator.fields(row).count()),
-        None => side(values).filter(|_| values == fields.len()),
-    };
-    let enough = lines_needed(options.size, width, values);
-    let mut compared: Vec<Vec<f64>> = read.iter().map(|line| numbers(line)).collect();
+    let size = options.size;
+    let other = Some(Separator::FieldComma).filter(|_| separator == Separator::Byte(b','));
+    let needed = |own| UnnamedFirst::new(own, read[0], size).lines_needed(size);
+    let enough = other.map_or(0, needed).max(needed(separator));
+    let mut compared: Vec<Vec<u8>> = read.iter().map(|line| line.to_vec()).collect();
     let (block, parted) = first_block(lines, (read.len(), enough), |line| {
-        compared.push(numbers(line));
+        compared.push(line.to_owned());
     })?;
-    let own = width.filter(|_| parted && block > 1);
-    let own = FrameSize::of_sides(own, Some(block));
-    let (size, lines) = match (options.size, own) {
-        (Some(size), _) if width == Some(size.columns()) && size.rows() > 1 => {
-            (size, LineLayout::Row { parted })
-        }
-        (Some(size), _) => {
-            // Numbers before a timestamp are not cells.
-            let moment = (0..fields.len()).find(|&field| moment::read(fields[field]).is_some());
-            let before = |&&field: &&usize| moment.is_some_and(|moment| field < moment);
-            let before = numeric.iter().filter(before).count();
-            let found = FrameFields::unnamed(size, number, (&compared, before))?;
-            let found = found.among(&numeric, &fields, number)?;
-            let found = found.with_moment(separator, &fields);
-            (size, LineLayout::Frame(found))
-        }
-        (None, Some(own)) => (own, LineLayout::Row { parted }),
-        (None, None) => {
-            let numbers = values as u64;
-            return Err(RecordingError::Columns { numbers });
-        }
+    let mut commas = DecimalCommas::default();
+    for line in &compared {
+        commas.compare(line);
+    }
+    let other = other.filter(|_| commas.are_possible());
+    let of = |separator| {
+        let first = UnnamedFirst::new(separator, read[0], size);
+        first.layout(number, &compared, (block, parted), size)
     };
-    let start = match lines {
-        LineLayout::Row { .. } => moment.map(|(moment, _)| text(moment)),
-        LineLayout::Frame(_) => lines.start(&fields),
-    };
-    Ok(TableLayout {
-        separator,
-        size,
-        start,
-        lines,
-        note: None,
-        unit: None,
-    })
+    match (of(separator), other.map(of)) {
+        (Ok(plain), Some(Ok(other))) => either(plain, other, number, &compared, size),
+        // In a single line, another number may stand beside the cells.
+        (Err(_), Some(Ok(other))) if compared.len() > 1 => Ok(other),
+        (plain, _) => plain,
+    }
 }
 
-/// Returns the numbers in the fields `numeric` of a line that has `count` fields; NaN for those that have none.
-fn numbers_in(separator: Separator, line: &[u8], count: usize, numeric: &[usize]) -> Vec<f64> {
-    let fields: Vec<&[u8]> = separator.fields_of(line, count).take(count).collect();
-    let number = |&field: &usize| {
-        fields
-            .get(field)
-            .map_or(f64::NAN, |own| separator.number(own))
+/// Returns one of two arrangements of the same lines: in the second, a comma is the decimal sign of a timestamp. It is,
+/// if the number behind the comma is nothing but a time in the first arrangement, or if that has a time that stays the
+/// same beside the timestamp.
+///
+/// # Errors
+/// Returns an error if both are possible.
+fn either(
+    plain: TableLayout,
+    other: TableLayout,
+    number: u64,
+    lines: &[Vec<u8>],
+    size: Option<FrameSize>,
+) -> Result<TableLayout, RecordingError> {
+    let (LineLayout::Frame(own), LineLayout::Frame(_)) = (&plain.lines, &other.lines) else {
+        let numbers = plain.size.columns().into();
+        return size
+            .map(|_| plain)
+            .ok_or(RecordingError::Columns { numbers });
     };
-    numeric.iter().map(number).collect()
+    let separator = plain.separator;
+    let is_still = own.time.is_some_and(|time| {
+        let mut times = lines
+            .iter()
+            .map(|line| separator.fields(line).nth(time.field));
+        let first = times.next().flatten();
+        first.is_some_and(|first| separator.is_numeric(first)) && times.all(|time| time == first)
+    });
+    let mut fields = other.separator.fields(&lines[0]);
+    let digits = fields.position(|field| field.contains(&b',') && moment::read(field).is_some());
+    let digits = digits.map(|moment| moment + 1);
+    let is_digits = |field: &usize| Some(*field) == digits;
+    if !is_still && own.cells.iter().chain(&own.label).any(is_digits) {
+        let fields = separator.fields(&lines[0]);
+        let numbers = fields.filter(|field| separator.is_numeric(field));
+        let (cells, numbers) = (own.cells.len(), numbers.count());
+        return Err(unclear(number, cells, numbers.saturating_sub(cells)));
+    }
+    Ok(other)
+}
+
+/// The first line of a table without names.
+struct UnnamedFirst<'a> {
+    /// The separator between its fields.
+    separator: Separator,
+    /// Its fields.
+    fields: Vec<&'a [u8]>,
+    /// The indices of the numbers among them.
+    numeric: Vec<usize>,
+    /// The timestamp at its beginning.
+    moment: Option<&'a [u8]>,
+    /// The number of columns, if it is the row of a frame.
+    width: Option<u16>,
+}
+
+impl<'a> UnnamedFirst<'a> {
+    /// Reads the line; frames have the given size.
+    fn new(separator: Separator, line: &'a [u8], size: Option<FrameSize>) -> Self {
+        let fields = first_fields(separator, line, size);
+        let numeric = (0..fields.len()).filter(|&field| separator.is_numeric(fields[field]));
+        let numeric: Vec<usize> = numeric.collect();
+        let moment = moment_of_row(separator, line);
+        let width = match moment {
+            Some((_, row)) => side(separator.fields(row).count()),
+            None => side(numeric.len()).filter(|_| numeric.len() == fields.len()),
+        };
+        Self {
+            separator,
+            fields,
+            numeric,
+            moment: moment.map(|(moment, _)| moment),
+            width,
+        }
+    }
+
+    /// Returns the number of lines that are needed to decide how the table is arranged. A growing file is read no
+    /// further than these lines.
+    fn lines_needed(&self, size: Option<FrameSize>) -> u16 {
+        match size {
+            Some(size) if self.is_row(size) => size.rows() + 1,
+            Some(size) => match self.numeric.len().checked_sub(size.cells()) {
+                Some(1 | 2) => COMPARED,
+                _ => 2,
+            },
+            None => MAX_FRAME_SIDE + 1,
+        }
+    }
+
+    /// Returns true if the line is the row of a frame of this size.
+    fn is_row(&self, size: FrameSize) -> bool {
+        self.width == Some(size.columns()) && size.rows() > 1
+    }
+
+    /// Finds the arrangement of the lines that begin with this one, which is line `number`. The first `block` of them
+    /// stand together, and an empty line follows if they are `parted`.
+    ///
+    /// A line is a row if it has as many fields as a frame has columns; or, if no size is given, if an empty line ends
+    /// the first block. Otherwise, or if it contains texts, it is a frame.
+    ///
+    /// # Errors
+    /// Returns an error if the lines do not show which fields are cells, or if rows and columns must be given.
+    fn layout(
+        &self,
+        number: u64,
+        lines: &[Vec<u8>],
+        (block, parted): (u16, bool),
+        size: Option<FrameSize>,
+    ) -> Result<TableLayout, RecordingError> {
+        let own = self.width.filter(|_| parted && block > 1);
+        let own = FrameSize::of_sides(own, Some(block));
+        let (size, lines) = match (size, own) {
+            (Some(size), _) if self.is_row(size) => (size, LineLayout::Row { parted }),
+            (Some(size), _) => {
+                let lines: Vec<Vec<f64>> = lines.iter().map(|line| self.numbers_in(line)).collect();
+                let (fields, numeric) = (&self.fields, &self.numeric);
+                // Numbers before a timestamp are not cells.
+                let moment = (0..fields.len()).find(|&field| moment::read(fields[field]).is_some());
+                let before = |&&field: &&usize| moment.is_some_and(|moment| field < moment);
+                let before = numeric.iter().filter(before).count();
+                let found = FrameFields::unnamed(size, number, (&lines, before))?;
+                let found = found.among(numeric, fields, number)?;
+                let found = found.with_moment(self.separator, fields);
+                (size, LineLayout::Frame(found))
+            }
+            (None, Some(own)) => (own, LineLayout::Row { parted }),
+            (None, None) => {
+                let numbers = self.numeric.len() as u64;
+                return Err(RecordingError::Columns { numbers });
+            }
+        };
+        let start = match lines {
+            LineLayout::Row { .. } => self.moment.map(text),
+            LineLayout::Frame(_) => lines.start(&self.fields),
+        };
+        Ok(TableLayout {
+            separator: self.separator,
+            size,
+            start,
+            lines,
+            note: None,
+            unit: None,
+        })
+    }
+
+    /// Returns the numbers of a line in the fields that are numbers in this one; NaN for those that have none.
+    fn numbers_in(&self, line: &[u8]) -> Vec<f64> {
+        let count = self.fields.len();
+        let fields: Vec<&[u8]> = self.separator.fields_of(line, count).take(count).collect();
+        let number = |&field: &usize| {
+            fields
+                .get(field)
+                .map_or(f64::NAN, |own| self.separator.number(own))
+        };
+        self.numeric.iter().map(number).collect()
+    }
 }
 
 /// Returns the fields of the first line of a table without names: with an empty one at the end if the line is a row or
@@ -318,20 +437,6 @@ fn first_block(
         block += 1;
     }
     Ok((block, false))
-}
-
-/// Returns the number of lines that are needed to decide how a table without names is arranged. `size` is the size of
-/// a frame, `width` the width of a row, `values` the number of values in the first line. A growing file is read no
-/// further than these lines.
-fn lines_needed(size: Option<FrameSize>, width: Option<u16>, values: usize) -> u16 {
-    match size {
-        Some(size) if width == Some(size.columns()) && size.rows() > 1 => size.rows() + 1,
-        Some(size) => match values.checked_sub(size.cells()) {
-            Some(1 | 2) => COMPARED,
-            _ => 2,
-        },
-        None => MAX_FRAME_SIDE + 1,
-    }
 }
 
 impl LineLayout {
@@ -446,6 +551,11 @@ fn with_header(
     };
     let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
     let time = header.time(others());
+    let fits = |separator: Separator| separator.fields_of(first, count).count() == count;
+    // The names say whether a comma is the decimal sign of a timestamp.
+    let is_decimal = separator == Separator::Byte(b',') && !fits(separator);
+    let decimal = Some(Separator::FieldComma).filter(|&own| is_decimal && fits(own));
+    let separator = decimal.unwrap_or(separator);
     let fields: Vec<&[u8]> = separator.fields_of(first, count).take(count).collect();
     let below = header.units.as_ref().map(|(number, _)| *number);
     let found = FrameFields {

@@ -241,7 +241,7 @@ fn most_evident(
 }
 
 /// Returns the error for lines that do not show which fields are cells.
-fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
+pub(super) fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
     let beside = counted(beside as u64, "number");
     let message = format!(
         "found {beside} besides the {cells} cells, and cannot tell which: add a header line, such as frame,time,r0c0"

@@ -8,7 +8,7 @@
 //! Dates that begin with the day or the month are not read, because 01.02. and 02/01 may be the same day.
 
 use crate::formats::recording::text::row::Field;
-use crate::formats::recording::text::separator::decimal;
+use crate::formats::recording::text::separator::{Separator, decimal, may_be_decimal_comma};
 
 /// A timestamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,9 +122,9 @@ pub(in crate::formats) fn is_alone(line: &[u8]) -> bool {
     !line.iter().any(|byte| b",;".contains(byte)) && read(line).is_some()
 }
 
-/// Splits a line into the timestamp at its beginning and the numbers after it; None if either is missing. A comma may
-/// separate cells or begin the fraction of a second. If both are possible, as in `12:00:00,125 7 3`, there is no
-/// timestamp.
+/// Splits a line into the timestamp at its beginning and the numbers after it; None if either is missing. A comma
+/// separates cells, also after whole seconds: where it may be a decimal sign, [`DecimalCommas`] finds it. If cells are
+/// not separated by commas, as in `12:00:00,125 7 3`, there is no timestamp.
 pub(in crate::formats) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
     let mark = if line.contains(&b';') { b';' } else { b',' };
     let line = line.trim_ascii_start();
@@ -151,6 +151,69 @@ pub(in crate::formats) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
         .count();
     let may_be_fraction = mark == b',' && digits > 0 && !cells[digits..].contains(&b',');
     (!may_be_fraction && !cells.trim_ascii().is_empty()).then_some((moment, cells))
+}
+
+/// Splits a line like [`leading`], with the comma after the seconds as a decimal sign; None if it cannot be one.
+pub(in crate::formats) fn leading_with_fraction(line: &[u8]) -> Option<(Moment, &[u8])> {
+    let end = end_of_fraction(line)?;
+    let cells = line[end..].trim_ascii_start().strip_prefix(b",")?;
+    let moment = read(&line[..end])?;
+    (!cells.trim_ascii().is_empty()).then_some((moment, cells))
+}
+
+/// Splits a line like [`leading`] or [`leading_with_fraction`], as the separator says.
+pub(in crate::formats::recording) fn leading_in(
+    separator: Separator,
+    line: &[u8],
+) -> Option<(Moment, &[u8])> {
+    let fraction = || leading_with_fraction(line);
+    let own = (separator == Separator::FieldComma).then(fraction);
+    own.flatten().or_else(|| leading(line))
+}
+
+/// Returns the index behind the first fraction of a second that may follow a decimal comma; None if there is none, or
+/// if semicolons separate cells.
+fn end_of_fraction(line: &[u8]) -> Option<usize> {
+    let mut commas = (0..line.len()).filter(|&at| line[at] == b',');
+    let comma = commas.find(|&comma| may_be_decimal_comma(line, comma))? + 1;
+    let fraction = line[comma..].iter().position(|byte| !byte.is_ascii_digit());
+    (!line.contains(&b';')).then_some(fraction.map_or(line.len(), |digits| comma + digits))
+}
+
+/// The search for decimal commas in timestamps of lines whose cells are separated by commas, too, as Python's `logging`
+/// writes them: `2024-05-01 12:00:00,125,7,3`. They are possible if all compared lines may have one, and the times
+/// with it do not fall.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::formats) struct DecimalCommas {
+    /// The seconds of the last line; None before the first line.
+    last: Option<f64>,
+    /// Whether a line shows that there are none.
+    are_excluded: bool,
+    /// The midnights that were passed.
+    midnights: Midnights,
+}
+
+impl DecimalCommas {
+    /// Compares the next line.
+    pub(in crate::formats) fn compare(&mut self, line: &[u8]) {
+        if self.are_excluded {
+            return;
+        }
+        let seconds = end_of_fraction(line).and_then(|end| {
+            let start = line[..end].iter().rposition(|&byte| byte == b',');
+            let field = line[..start?].iter().rposition(|&byte| byte == b',');
+            read(&line[field.map_or(0, |before| before + 1)..end])
+        });
+        let seconds = seconds.map(|moment| self.midnights.seconds(moment));
+        let before = self.last.unwrap_or(f64::NEG_INFINITY);
+        self.last = seconds.filter(|&seconds| seconds >= before);
+        self.are_excluded = self.last.is_none();
+    }
+
+    /// Returns true if the compared lines may have decimal commas.
+    pub(in crate::formats) fn are_possible(&self) -> bool {
+        self.last.is_some()
+    }
 }
 
 /// Counts the midnights that clocks without a date pass: when the time falls by more than half a day.
@@ -257,6 +320,43 @@ mod tests {
         ] {
             assert_eq!(leading(line.as_bytes()), None, "{line}");
         }
+    }
+
+    #[test]
+    fn a_comma_after_whole_seconds_may_be_a_decimal_sign() {
+        for (line, seconds, rest) in [
+            ("2024-05-01 12:00:00,125,7,3", 1_714_564_800.125, "7,3"),
+            ("9:00:00,000250 , 7 3", 32_400.000_25, " 7 3"),
+            ("12:00:00,000000001,7", 43_200.000_000_001, "7"),
+        ] {
+            let found = leading_with_fraction(line.as_bytes());
+            let found = found.map(|(moment, rest)| (moment.seconds, rest));
+            assert_eq!(found, Some((seconds, rest.as_bytes())), "{line}");
+        }
+        for line in [
+            "12:00:00,12,7",
+            "12:00:00,1250,7",
+            "12:00:00, 125,7",
+            "12:00:00.5,125,7",
+            "12:00,125,7",
+            "12:00:00,125;7",
+            "12:00:00,125",
+            "7,12:00:00,125,7",
+        ] {
+            assert_eq!(leading_with_fraction(line.as_bytes()), None, "{line}");
+        }
+        let are_possible = |lines: &[&str]| {
+            let mut commas = DecimalCommas::default();
+            for line in lines {
+                commas.compare(line.as_bytes());
+            }
+            commas.are_possible()
+        };
+        assert!(are_possible(&["12:00:00,990,1", "12:00:01,000,1"]));
+        assert!(are_possible(&["7,23:59:59,990", "8,00:00:00,000"]));
+        assert!(!are_possible(&["12:00:00,125,1", "12:00:00,124,1"]));
+        assert!(!are_possible(&["12:00:00,125,1", "12:00:01,25,1"]));
+        assert!(!are_possible(&[]));
     }
 
     #[test]
