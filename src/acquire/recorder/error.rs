@@ -69,6 +69,12 @@ pub enum MetadataFileError {
         /// The error that the system reports.
         error: io::Error,
     },
+    /// The metadata is larger than 4 MiB, and was not read.
+    #[error("{}: larger than 4 MiB, the limit for metadata; {UNKNOWN}", path.display())]
+    Large {
+        /// The file.
+        path: PathBuf,
+    },
     /// The metadata is damaged, of another version, or was changed.
     #[error("{}: {error}; {UNKNOWN}", path.display())]
     Broken {

@@ -10,7 +10,7 @@ use crate::formats::ending::has_ending;
 use crate::formats::recording::RecordingMetadata;
 use crate::storage::{Existing, FileId, FinishedFile, persist_beside};
 
-/// The largest size of metadata, in bytes.
+/// The size limit of metadata in bytes, 4 MiB.
 const LARGEST_METADATA: u64 = 1 << 22;
 
 /// Metadata that is to be written. Writing it takes as long as the disk does, and needs no recorder: meanwhile,
@@ -144,7 +144,7 @@ fn is_recorded(path: &Path) -> bool {
 /// Reads the metadata beside an array. Returns None if there is no such file, or if it is not metadata.
 ///
 /// # Errors
-/// Returns an error if the metadata is damaged, of another version or cannot be read.
+/// Returns an error if the metadata is too large, damaged, of another version or cannot be read.
 pub(super) fn read_beside(path: &Path) -> Option<Result<RecordingMetadata, MetadataFileError>> {
     let path = path.with_extension("json");
     let content = || {
@@ -152,13 +152,16 @@ pub(super) fn read_beside(path: &Path) -> Option<Result<RecordingMetadata, Metad
         // Opening a pipe would wait for its writer.
         if path.metadata()?.is_file() {
             let file = File::open(&path)?;
-            file.take(LARGEST_METADATA).read_to_end(&mut bytes)?;
+            file.take(LARGEST_METADATA + 1).read_to_end(&mut bytes)?;
         }
         Ok::<_, io::Error>(bytes)
     };
     match content() {
         Ok(bytes) => {
             let read = RecordingMetadata::read(&bytes)?;
+            if bytes.len() as u64 > LARGEST_METADATA {
+                return Some(Err(MetadataFileError::Large { path }));
+            }
             Some(read.map_err(|error| MetadataFileError::Broken { path, error }))
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,

@@ -548,6 +548,28 @@ mod tests {
     }
 
     #[test]
+    fn metadata_that_is_too_large_is_not_called_damaged() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let text = RecordingMetadata::default().text().expect("a text");
+        for (size, is_read) in [(1 << 22, true), ((1 << 22) + 1, false)] {
+            let blanks = vec![b' '; size - text.len()];
+            let written = [&blanks[..], &text].concat();
+            std::fs::write(path.with_extension("json"), written).expect("written");
+            match metadata_beside(&path).expect("there") {
+                Ok(_) => assert!(is_read),
+                Err(error) => {
+                    let message = error.to_string();
+                    assert!(
+                        !is_read && message.contains("larger than 4 MiB"),
+                        "{message}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
     fn the_name_of_a_recording_must_end_like_that_of_an_array() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("touch.json");
