@@ -257,12 +257,16 @@ pub(super) fn kind_in_words(kind: FileType) -> &'static str {
 /// is given last. So a program that dies in between leaves no file of the second name. The old one is then called
 /// `.taxel-tmp-XXXXXXXXXXXXXXXX`, until a program that writes into the folder a minute later or more removes it. Of two
 /// programs that name such files in one folder at once, one waits for the other, for two seconds at most. Returns the
-/// first file, open, for further writing.
+/// first file, open, for further writing, and the error if a folder cannot be synced
+/// ([`FileError::is_in_place`]).
 ///
 /// # Errors
-/// Returns the errors of [`FinishedFile::persist`]. If one of the files got no name, the old files are restored; the
-/// message says what could not be restored.
-pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
+/// Returns the errors of [`FinishedFile::persist`] if one of the files got no name. The old files are restored then;
+/// the message says what could not be restored.
+pub fn persist_pair(
+    first: FinishedFile,
+    second: FinishedFile,
+) -> Result<(File, Result<(), FileError>), FileError> {
     let _lock = lock_folder(folder_of(&first.path));
     let (path, beside) = (first.path.clone(), second.path.clone());
     let is_replaced = first.is_replaced()?;
@@ -292,9 +296,7 @@ pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, F
         let _ = sync_folder(folder_of(&path));
         return Err(error.and(lost).and(put_back(moved)));
     }
-    synced?;
-    sync_folder(folder_of(&beside))?;
-    Ok(file)
+    Ok((file, synced.and_then(|()| sync_folder(folder_of(&beside)))))
 }
 
 /// Gives the second of two files that belong together its name again, unless another file has the name of the first

@@ -348,7 +348,8 @@ mod tests {
         // The program dies after the first step: the old poses are gone, the old atlas is there.
         std::fs::remove_file(&poses).expect("there");
         assert_eq!(std::fs::read_to_string(&atlas).ok().as_deref(), Some("old"));
-        persist_pair(first, second).expect("named");
+        let (_, synced) = persist_pair(first, second).expect("named");
+        synced.expect("synced");
         assert!(std::fs::read(&poses).is_ok_and(|bytes| bytes.starts_with(b"\x93NUMPY")));
         assert!(std::fs::read_to_string(&atlas).is_ok_and(|text| text.starts_with("id,")));
     }
@@ -364,7 +365,8 @@ mod tests {
                 file.write(number.to_string().as_bytes()).expect("written");
                 file.finish().expect("synced")
             });
-            persist_pair(first, second).expect("named");
+            let (_, synced) = persist_pair(first, second).expect("named");
+            synced.expect("synced");
         };
         for round in 0..20 {
             std::thread::scope(|scope| {

@@ -85,7 +85,8 @@ pub(crate) fn killed() -> String {
     )
 }
 
-/// Refuses each call: the old recording with its description must be there, or the new one.
+/// Refuses each call: the old recording with its description must be there, or the new one. A recording that only could
+/// not be synced has frames and an end.
 pub(crate) fn refused() -> String {
     if !strace::works() {
         return "SKIPPED, strace is missing or may not trace".to_owned();
@@ -102,7 +103,9 @@ pub(crate) fn refused() -> String {
         let command = record(folder.path(), "new.txt");
         let output = strace::tampered(&command, call, &format!("error={error}"));
         let context = format!("{call:?} {error}: {output:?}");
-        let (is_new, frames, _) = found(folder.path()).expect(&context);
+        let (is_new, frames, ended) = found(folder.path()).expect(&context);
+        let is_sync = call.name.ends_with("sync");
+        assert!(!is_new || !is_sync || frames > 0 && ended, "{context}");
         match output.status.code() {
             Some(0) => assert!(is_new && frames == 3, "{context}"),
             Some(1) => assert!(is_new || frames == 1, "{context}"),

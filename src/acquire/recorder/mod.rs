@@ -33,7 +33,7 @@ use crate::formats::recording::RecordedView;
 use crate::formats::recording::RecordingMetadata;
 use crate::formats::system_error::system_reason;
 use crate::frame::{Frame, FrameSize};
-use crate::storage::{Existing, FileId, FinishedFile, UnfinishedFile, persist_pair};
+use crate::storage::{Existing, FileError, FileId, FinishedFile, UnfinishedFile, persist_pair};
 
 /// The largest number of bursts over which the rate is measured: several minutes.
 const MOST_BURSTS: usize = 4096;
@@ -250,15 +250,7 @@ impl FrameRecorder {
             let begun = self.array.begin(found);
             begun.map_err(|error| self.refused(error))?;
         }
-        self.names = match std::mem::replace(&mut self.names, Names::Refused) {
-            Names::Waiting(array, beside) => {
-                let file = persist_pair(array, beside).map_err(refused)?;
-                let id = FileId::of(&file).map_err(|error| self.refused(error))?;
-                self.array.move_to(file);
-                Names::Given(id)
-            }
-            names => names,
-        };
+        let synced = self.give_names()?;
         if self.array.size() != Some(found) {
             self.left_out += 1;
             return Ok(());
@@ -273,7 +265,28 @@ impl FrameRecorder {
             self.leave_out_marks();
         }
         let added = self.array.add(frame, time);
-        added.map_err(|error| self.refused(error))
+        added.map_err(|error| self.refused(error))?;
+        synced.map_err(refused)
+    }
+
+    /// Gives the files their names with the first frame. Returns an error inside if they have them, but their folder
+    /// cannot be synced: then they are recorded in all the same.
+    ///
+    /// # Errors
+    /// Returns an error if the files did not get their names.
+    fn give_names(&mut self) -> Result<Result<(), FileError>, RecorderError> {
+        if !matches!(self.names, Names::Waiting(..)) {
+            return Ok(Ok(()));
+        }
+        let Names::Waiting(array, beside) = std::mem::replace(&mut self.names, Names::Refused)
+        else {
+            return Ok(Ok(()));
+        };
+        let (file, synced) = persist_pair(array, beside).map_err(refused)?;
+        let id = FileId::of(&file).map_err(|error| self.refused(error))?;
+        self.array.move_to(file);
+        self.names = Names::Given(id);
+        Ok(synced)
     }
 
     /// Writes out the frames if they have waited too long; to be called now and then.

@@ -195,7 +195,7 @@ fn write(
         None => None,
     };
     let named = match (atlas, poses) {
-        (Some(atlas), Some(poses)) => persist_pair(atlas, poses).map(drop),
+        (Some(atlas), Some(poses)) => persist_pair(atlas, poses).and_then(|(_, synced)| synced),
         (Some(file), None) | (None, Some(file)) => file.persist(),
         (None, None) => Ok(()),
     };
