@@ -18,15 +18,7 @@ use crate::acquire::followed_file::{self, Growth};
 use crate::acquire::growing_file::{GrowingFile, ReadAnew};
 use crate::acquire::serial;
 use crate::acquire::source::{FrameSource, check_address};
-
-/// The time that a read waits for bytes.
-const MOMENT: Timespec = Timespec {
-    tv_sec: 0,
-    tv_nsec: 100_000_000,
-};
-
-/// The time between two checks whether a connection is still wanted.
-const ASKED: Duration = Duration::from_millis(100);
+use crate::acquire::ticker::TICK;
 
 /// The number of times that a pipe that is still open is tried again before it counts as another program's.
 const RELEASES: u32 = 5;
@@ -113,7 +105,11 @@ impl ByteInput {
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<ReadOutcome> {
         if let Some(fd) = self.fd() {
             let mut fds = [PollFd::from_borrowed_fd(fd, PollFlags::IN)];
-            match poll(&mut fds, Some(&MOMENT)) {
+            let moment = Timespec {
+                tv_sec: 0,
+                tv_nsec: TICK.subsec_nanos().into(),
+            };
+            match poll(&mut fds, Some(&moment)) {
                 Ok(0) | Err(rustix::io::Errno::INTR) => return Ok(ReadOutcome::Bytes(0)),
                 Ok(_) => {}
                 Err(error) => return Err(error.into()),
@@ -163,7 +159,7 @@ fn open_fifo_unless(
         if waiting().is_break() {
             return Ok(None);
         }
-        std::thread::sleep(ASKED);
+        std::thread::sleep(TICK);
     }
     open_fifo(path).map(Some)
 }
@@ -197,7 +193,7 @@ fn connect_unless(
         return connect(address).map(Some);
     }
     loop {
-        match connected.recv_timeout(ASKED) {
+        match connected.recv_timeout(TICK) {
             Ok(stream) => return stream.map(Some),
             Err(RecvTimeoutError::Timeout) if waiting().is_break() => return Ok(None),
             Err(RecvTimeoutError::Timeout) => {}
@@ -264,7 +260,7 @@ mod tests {
         let address = listener.local_addr().expect("an address");
         rustix::net::listen(&listener, 0).expect("shortened");
         let mut queue = Vec::new();
-        while let Ok(stream) = TcpStream::connect_timeout(&address, ASKED) {
+        while let Ok(stream) = TcpStream::connect_timeout(&address, TICK) {
             queue.push(stream);
         }
         let begun = std::time::Instant::now();

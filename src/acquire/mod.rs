@@ -27,6 +27,8 @@ mod arrival_clock;
 
 mod silence;
 
+mod ticker;
+
 mod stream;
 
 mod pace;

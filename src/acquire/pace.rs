@@ -5,14 +5,12 @@ use std::time::{Duration, Instant};
 
 use crate::acquire::event::{AcquireOptions, Playback};
 use crate::acquire::followed_file::Growth;
+use crate::acquire::ticker::TICK;
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingNote};
 use crate::frame::Frame;
 
 /// The seconds per frame of a recording that does not state them: ten frames a second.
 const STEP: f64 = 0.1;
-
-/// The length of the pieces into which waits are divided, so that they can be interrupted.
-pub(super) const MOMENT: Duration = Duration::from_millis(100);
 
 /// The longest wait for a frame, in seconds: a day.
 const LONGEST: f64 = 86_400.0;
@@ -175,7 +173,7 @@ impl<'a> Pace<'a> {
                 return ControlFlow::Continue(());
             }
             tick()?;
-            std::thread::sleep(left.min(MOMENT));
+            std::thread::sleep(left.min(TICK));
         }
     }
 }

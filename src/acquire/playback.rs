@@ -11,11 +11,12 @@ use std::time::Instant;
 use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
-use crate::acquire::pace::{MOMENT, Pace};
+use crate::acquire::pace::Pace;
 use crate::acquire::recorder::metadata_beside;
 use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::{OpenRecording, has_no_file};
 use crate::acquire::stream::Consumer;
+use crate::acquire::ticker::{TICK, Ticker};
 use crate::formats::recording::{
     ChannelInfo, EarlierLayout, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
     RecordingInput, RecordingMetadata, RecordingNote, format_after, read_as,
@@ -48,6 +49,7 @@ pub(super) fn run(
         metadata,
         consumer: RefCell::new(consumer),
         ended: Cell::new(false),
+        ticker: RefCell::new(Ticker::new()),
         counts: RefCell::default(),
         silence: RefCell::new(SilenceWatch::new(Instant::now())),
         damage: RefCell::default(),
@@ -70,6 +72,7 @@ struct Player<'a, 'b> {
     consumer: RefCell<&'a mut Consumer<'b>>,
     /// Whether the consumer wants no more.
     ended: Cell<bool>,
+    ticker: RefCell<Ticker>,
     /// The counts of a followed file: bytes, frames and wrong frames.
     counts: RefCell<StreamCounts>,
     /// The wait for the next frame of a followed file.
@@ -213,7 +216,7 @@ impl Player<'_, '_> {
                     Ok(None) | Err(_) if self.wait_for_more(path, &growth).is_break() => {
                         return Ok(());
                     }
-                    Ok(None) | Err(_) => std::thread::sleep(MOMENT),
+                    Ok(None) | Err(_) => std::thread::sleep(TICK),
                 }
             };
         }
@@ -230,15 +233,18 @@ impl Player<'_, '_> {
         flow
     }
 
-    /// Reports a tick. Returns `Break` if no more is wanted.
+    /// Reports a tick if one is due. Returns `Break` if no more is wanted.
     fn tick(&self) -> ControlFlow<()> {
-        if self.stop.load(Ordering::Relaxed) {
+        if self.ended.get() || self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
+        }
+        if !self.ticker.borrow_mut().is_due() {
+            return ControlFlow::Continue(());
         }
         self.report(AcquireEvent::Tick(&self.counts.borrow()))
     }
 
-    /// Reports a tick at the end of a followed file, and whether it is silent. A file that has not grown may be a complete
+    /// Reports a tick, if one is due, at the end of a followed file, and whether it is silent. A file that has not grown may be a complete
     /// recording. Returns `Break` if no more is wanted.
     fn wait_for_more(&self, path: &Path, growth: &Growth) -> ControlFlow<()> {
         self.counts.borrow_mut().bytes = growth.bytes();
@@ -284,6 +290,8 @@ impl Player<'_, '_> {
         if let Some(note) = pace.take(frame) {
             self.report(AcquireEvent::Note(&note))?;
         }
+        // Also if playback lags behind and does not wait.
+        self.tick()?;
         pace.wait(&mut || self.tick())
     }
 

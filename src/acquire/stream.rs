@@ -11,6 +11,7 @@ use crate::acquire::byte_input::{ByteInput, ReadOutcome};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
+use crate::acquire::ticker::{TICK, Ticker};
 use crate::formats::recording::{RecordingFormat, recognised};
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSink};
 
@@ -20,9 +21,6 @@ const CHUNK: usize = 1 << 16;
 /// The time after which a lost source is tried again.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// The time between two ticks.
-const TICK: Duration = Duration::from_millis(100);
-
 /// The times and counts that are measured while a stream is read.
 struct StreamClock<'a> {
     source: &'a FrameSource,
@@ -31,21 +29,20 @@ struct StreamClock<'a> {
     /// Whether a frame without a time of its own gets the time of its arrival.
     timed: bool,
     silence: SilenceWatch,
-    last_tick: Instant,
+    ticker: Ticker,
     /// The times of frames.
     times: ArrivalClock,
 }
 
 impl<'a> StreamClock<'a> {
     fn new(source: &'a FrameSource, options: &AcquireOptions) -> Self {
-        let now = Instant::now();
         Self {
             is_live: options.playback != Playback::Once,
             source,
             // The present content of a file has arrived at some other time.
             timed: options.playback != Playback::Once && !matches!(source, FrameSource::File(_)),
-            silence: SilenceWatch::new(now),
-            last_tick: now,
+            silence: SilenceWatch::new(Instant::now()),
+            ticker: Ticker::new(),
             times: ArrivalClock::default(),
         }
     }
@@ -300,14 +297,12 @@ fn tick(
     clock: &mut StreamClock<'_>,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
-    let now = Instant::now();
-    if now - clock.last_tick < TICK {
+    if !clock.ticker.is_due() {
         return ControlFlow::Continue(());
     }
-    clock.last_tick = now;
     let counts = decoder.counts();
     consumer(AcquireEvent::Tick(counts))?;
-    match clock.silence.look(counts.bytes, now) {
+    match clock.silence.look(counts.bytes, Instant::now()) {
         Some(bytes_per_second) => consumer(AcquireEvent::Silent {
             bytes_per_second,
             counts,

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 use taxel::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 use taxel::frame::FrameSize;
@@ -374,6 +374,38 @@ fn a_consumer_that_broke_off_while_more_was_waited_for_gets_no_more() {
         ControlFlow::Continue(())
     });
     assert!(result.is_ok() && has_ended);
+}
+
+#[test]
+fn ticks_come_ten_times_a_second_whether_playback_waits_or_lags() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("many.csv");
+    let rows = (0..200).map(|row| format!("{},1,2\n", f64::from(row) * 0.002));
+    fs::write(
+        &path,
+        "time_s,r0c0,r0c1\n".to_owned() + &rows.collect::<String>(),
+    )
+    .expect("written");
+    for (speed, lag) in [(1.0, 0), (1e9, 2)] {
+        let mut options = AcquireOptions::default();
+        let repeat = false;
+        options.playback = Playback::Paced { speed, repeat };
+        let (mut ticks, start) = (0, Instant::now());
+        let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
+            match event {
+                AcquireEvent::Tick(_) => ticks += 1,
+                AcquireEvent::Frame { .. } => std::thread::sleep(Duration::from_millis(lag)),
+                _ => {}
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(result.is_ok());
+        let most = start.elapsed().as_millis() / 100;
+        assert!(
+            (2..=most).contains(&ticks),
+            "{ticks} ticks in {most} tenths"
+        );
+    }
 }
 
 #[test]
