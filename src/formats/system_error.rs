@@ -20,6 +20,12 @@ pub(crate) fn system_reason(error: &Error) -> String {
     }
 }
 
+/// Returns true if a file does not exist, also because a file is where its folder is expected.
+#[cfg(any(feature = "library", feature = "sweep"))]
+pub(crate) fn is_missing(error: &Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
+}
+
 /// Returns the reason of the system for refusing to write a file. If it does not find the file, its folder is missing.
 #[cfg(any(feature = "acquire", feature = "sweep"))]
 pub(crate) fn write_reason(error: &Error) -> String {

@@ -9,9 +9,9 @@ use crate::formats::ArchiveError;
 use crate::formats::name::NameError;
 #[cfg(feature = "library")]
 use crate::formats::shape::ShapeError;
-use crate::formats::system_error::system_reason;
 #[cfg(feature = "sweep")]
 use crate::formats::system_error::write_reason;
+use crate::formats::system_error::{is_missing, system_reason};
 
 /// The error for an operation on a file that the system refused.
 #[derive(Debug, thiserror::Error)]
@@ -71,10 +71,7 @@ impl FileError {
 
     /// Returns true if there is no such file, or if a file is where a folder is expected.
     pub fn is_missing(&self) -> bool {
-        matches!(
-            self.error.kind(),
-            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
-        )
+        is_missing(&self.error)
     }
 
     /// Returns the system's error, for a message that names the file itself.
@@ -134,9 +131,9 @@ impl ArchiveFileError {
         Self::new(path, io::Error::new(error.kind(), text))
     }
 
-    /// Returns true if there is no such file.
+    /// Returns true if there is no such file, or if a file is where a folder is expected.
     pub fn is_missing(&self) -> bool {
-        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::NotFound)
+        matches!(&self.error, ArchiveError::Io(error) if is_missing(error))
     }
 
     /// Returns true if a file of that name is there already, and was to be kept.
@@ -220,4 +217,27 @@ pub enum LibraryError {
     /// No folder was named, and the system does not say where a user's data belong.
     #[error("no home folder to keep the library in")]
     NoPlace,
+}
+
+#[cfg(all(test, feature = "sweep"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_below_a_file_is_missing_to_every_command() {
+        for (kind, is_missing) in [
+            (io::ErrorKind::NotFound, true),
+            (io::ErrorKind::NotADirectory, true),
+            (io::ErrorKind::PermissionDenied, false),
+        ] {
+            let path = Path::new("a");
+            let file = FileError::new("read it", path, kind.into());
+            let archive = ArchiveFileError::doing("read", path, &kind.into());
+            assert_eq!(
+                [file.is_missing(), archive.is_missing()],
+                [is_missing; 2],
+                "{kind}"
+            );
+        }
+    }
 }

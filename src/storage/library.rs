@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
+use crate::formats::system_error::is_missing;
 #[cfg(feature = "tui")]
 use crate::quote::did_you_mean;
 use crate::storage::atomic_file::{self, sync_folder};
@@ -186,8 +187,7 @@ impl Library {
         let path = self.path(name.as_str());
         match fs::symlink_metadata(&path) {
             Ok(_) => return Ok(Some(name.as_str().to_owned())),
-            Err(error)
-                if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {}
+            Err(error) if is_missing(&error) => {}
             Err(error) => return Err(FileError::new("access it", &path, error).into()),
         }
         self.names.find(&self.folder, name, || self.own_names())

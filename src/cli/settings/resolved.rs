@@ -16,7 +16,7 @@
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
@@ -24,7 +24,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Wrong};
 use crate::cli::settings::flags::Chosen;
 use crate::cli::settings::sensors::{SENSOR_SETTINGS, SensorSettings, TABLES, Written};
-use crate::formats::system_error::system_reason;
+use crate::formats::system_error::{is_missing, system_reason};
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::location;
@@ -75,7 +75,7 @@ impl Loaded {
         let limit = MAX_BYTES as u64;
         let read = open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
         let there = match read {
-            Err(error) if may_be_missing && is_missing(&path, &error) => false,
+            Err(error) if may_be_missing && has_no_file(&path, &error) => false,
             Err(error) => return Err(failure(format!("cannot read: {}", system_reason(&error)))),
             Ok(_) => true,
         };
@@ -97,10 +97,9 @@ impl Loaded {
 
 /// Returns true if there is no settings file. A dangling link is one, because its target may be on a disk that is not
 /// mounted.
-fn is_missing(path: &Path, error: &io::Error) -> bool {
+fn has_no_file(path: &Path, error: &io::Error) -> bool {
     let leads_nowhere = |path: &Path| path.is_symlink() && !path.exists();
-    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
-        && !path.ancestors().any(leads_nowhere)
+    is_missing(error) && !path.ancestors().any(leads_nowhere)
 }
 
 /// Opens the settings file. A pipe is refused: opening one waits for a writer, which may never come.
