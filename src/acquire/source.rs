@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 
-use crate::acquire::event::{AcquireError, AcquireOptions};
+use crate::acquire::event::{AcquireError, AcquireOptions, Playback};
 use crate::acquire::recorder::RecorderError;
 use crate::formats::recording::{ReadOptions, RecordingError, RecordingFormat, format_of};
 use crate::formats::system_error::system_reason;
@@ -171,6 +171,12 @@ impl FrameSource {
     /// Returns true if the source is a file that was moved or removed: no file has its name.
     pub(super) fn has_vanished(&self) -> bool {
         matches!(self, Self::File(path) if has_no_file(path))
+    }
+
+    /// Returns true if all its frames arrive while they are read, and not as fast as possible: those in a file came
+    /// before.
+    pub(crate) fn arrives(&self, playback: Playback) -> bool {
+        playback != Playback::Once && !matches!(self, Self::File(_))
     }
 
     /// Returns true if the source may come back after it was lost, so that taxel tries again.

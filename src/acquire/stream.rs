@@ -21,9 +21,8 @@ const CHUNK: usize = 1 << 16;
 /// The time after which a lost source is tried again.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// The times and counts that are measured while a stream is read.
-struct StreamClock<'a> {
-    source: &'a FrameSource,
+/// The times that are measured while a stream is read.
+struct StreamClock {
     /// Whether frames arrive while they are read; false for a source that is read as fast as possible.
     is_live: bool,
     /// Whether a frame without a time of its own gets the time of its arrival.
@@ -34,17 +33,31 @@ struct StreamClock<'a> {
     times: ArrivalClock,
 }
 
-impl<'a> StreamClock<'a> {
-    fn new(source: &'a FrameSource, options: &AcquireOptions) -> Self {
+impl StreamClock {
+    fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
         Self {
             is_live: options.playback != Playback::Once,
-            source,
             // The present content of a file has arrived at some other time.
-            timed: options.playback != Playback::Once && !matches!(source, FrameSource::File(_)),
+            timed: source.arrives(options.playback),
             silence: SilenceWatch::new(Instant::now()),
             ticker: Ticker::new(),
             times: ArrivalClock::default(),
         }
+    }
+
+    /// Reports an event of the decoder. A frame without a time gets that of its arrival.
+    fn report(&mut self, event: StreamEvent<'_>, consumer: &mut Consumer<'_>) -> ControlFlow<()> {
+        consumer(match event {
+            StreamEvent::Frame(frame) => {
+                self.silence.note_frame(Instant::now());
+                let time = self.times.time(frame.time, self.timed);
+                AcquireEvent::Frame { frame, time }
+            }
+            StreamEvent::Channel(info) => AcquireEvent::Channel(info),
+            StreamEvent::Provisional(frame) => AcquireEvent::Provisional(frame),
+            StreamEvent::Withdrawn => AcquireEvent::Withdrawn,
+            StreamEvent::Note(note) => AcquireEvent::Note(note),
+        })
     }
 }
 
@@ -58,55 +71,15 @@ pub(super) fn run(
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
-    let mut decoder = decoder_for(source, options);
-    let once = options.playback == Playback::Once;
-    let open: &Open<'_> = &|waiting| ByteInput::open(source, options, waiting);
-    let opened = first_input(source, options, open, stop, &decoder, consumer)?;
-    let Some(mut input) = opened else {
-        return Ok(());
+    let reader = StreamReader {
+        source,
+        options,
+        stop,
+        decoder: decoder_for(source, options),
+        clock: StreamClock::new(source, options),
+        consumer,
     };
-    let mut clock = StreamClock::new(source, options);
-    let mut bytes = vec![0; CHUNK];
-    while !stop.load(Ordering::Relaxed) {
-        let lost = match input.read(&mut bytes) {
-            Ok(ReadOutcome::Bytes(count)) => {
-                check_start(source, options, &decoder, &bytes[..count])?;
-                match decode(&mut decoder, &bytes[..count], &mut clock, consumer) {
-                    ControlFlow::Continue(()) => continue,
-                    ControlFlow::Break(()) => return Ok(()),
-                }
-            }
-            Ok(ReadOutcome::Anew(how)) => {
-                if step(&mut decoder, StreamDecoder::finish, &mut clock, consumer).is_break()
-                    || consumer(AcquireEvent::Anew(how)).is_break()
-                {
-                    return Ok(());
-                }
-                decoder.begin_anew();
-                clock.times.rejoin();
-                continue;
-            }
-            Ok(ReadOutcome::End) if source.comes_back() && !once => {
-                io::Error::new(io::ErrorKind::UnexpectedEof, "the other end has closed it")
-            }
-            Ok(ReadOutcome::End) => break,
-            Err(error) if source.comes_back() && !once => error,
-            Err(error) => return Err(broken(&mut decoder, &mut clock, consumer, error)),
-        };
-        // The next bytes may begin inside a frame.
-        if step(&mut decoder, StreamDecoder::restart, &mut clock, consumer).is_break() {
-            return Ok(());
-        }
-        match again(open, AcquireEvent::Lost(&lost), stop, &decoder, consumer) {
-            Some(found) => input = found,
-            None => return Ok(()),
-        }
-        clock.times.rejoin();
-        let bytes = decoder.counts().bytes;
-        clock.silence.reopen(bytes, Instant::now());
-    }
-    finish(&mut decoder, &mut clock, consumer, stop);
-    Ok(())
+    reader.read()
 }
 
 /// Creates the decoder for a source.
@@ -118,197 +91,191 @@ fn decoder_for(source: &FrameSource, options: &AcquireOptions) -> StreamDecoder 
     })
 }
 
-/// Checks that the first bytes of standard input or a FIFO do not begin a recording that only a file can be. Tables,
-/// JSON lines, echoes and the bytes of boards can be streams, too; on other sources, the bytes may begin anywhere. A
-/// format that the user names is not doubted.
-///
-/// # Errors
-/// Returns [`AcquireError::NotStream`].
-fn check_start(
-    source: &FrameSource,
-    options: &AcquireOptions,
-    decoder: &StreamDecoder,
-    bytes: &[u8],
-) -> Result<(), AcquireError> {
-    let begins = matches!(source, FrameSource::Standard | FrameSource::Fifo(_));
-    if !begins || decoder.counts().bytes > 0 || options.format.is_some() {
-        return Ok(());
-    }
-    match recognised(bytes) {
-        Some(
-            format @ (RecordingFormat::Tekscan
-            | RecordingFormat::Xsensor
-            | RecordingFormat::Emed
-            | RecordingFormat::Zebris
-            | RecordingFormat::Npy
-            | RecordingFormat::Npz
-            | RecordingFormat::Popu
-            | RecordingFormat::Mcap),
-        ) => Err(AcquireError::NotStream { format }),
-        _ => Ok(()),
-    }
+/// A reader of a source of bytes.
+struct StreamReader<'a, 'b> {
+    source: &'a FrameSource,
+    options: &'a AcquireOptions,
+    stop: &'a AtomicBool,
+    decoder: StreamDecoder,
+    clock: StreamClock,
+    consumer: &'a mut Consumer<'b>,
 }
 
-/// Reports the frames that are still in the decoder, and the end, unless the acquisition was stopped before it.
-fn finish(
-    decoder: &mut StreamDecoder,
-    clock: &mut StreamClock<'_>,
-    consumer: &mut Consumer<'_>,
-    stop: &AtomicBool,
-) {
-    let _ = step(decoder, StreamDecoder::finish, clock, consumer);
-    if !stop.load(Ordering::Relaxed) {
-        let _ = consumer(AcquireEvent::Ended(decoder.counts()));
-    }
-}
-
-/// A function that opens the source. While that takes long, it calls its argument now and then, and returns None if
-/// the argument breaks.
-type Open<'a> = dyn Fn(&mut dyn FnMut() -> ControlFlow<()>) -> io::Result<Option<ByteInput>> + 'a;
-
-/// Reports a tick while opening a source or waiting for it. Returns `Break` if no more is wanted.
-fn wait(
-    stop: &AtomicBool,
-    decoder: &StreamDecoder,
-    consumer: &mut Consumer<'_>,
-) -> ControlFlow<()> {
-    if stop.load(Ordering::Relaxed) {
-        return ControlFlow::Break(());
-    }
-    consumer(AcquireEvent::Tick(decoder.counts()))
-}
-
-/// Opens a source; if it does not exist yet, waits for it if the options say so. None if no more is wanted.
-fn first_input(
-    source: &FrameSource,
-    options: &AcquireOptions,
-    open: &Open<'_>,
-    stop: &AtomicBool,
-    decoder: &StreamDecoder,
-    consumer: &mut Consumer<'_>,
-) -> Result<Option<ByteInput>, AcquireError> {
-    match open(&mut || wait(stop, decoder, consumer)) {
-        Ok(input) => Ok(input),
-        // Waiting does not make an invalid source valid.
-        Err(error)
-            if options.waits
-                && source.comes_back()
-                && error.kind() != io::ErrorKind::InvalidInput =>
-        {
-            let absent = AcquireEvent::Absent(&error);
-            Ok(again(open, absent, stop, decoder, consumer))
-        }
-        Err(error) => Err(AcquireError::opening(error)),
-    }
-}
-
-/// Calls one step of a decoder, and reports its events until no more are wanted.
-fn step(
-    decoder: &mut StreamDecoder,
-    how: impl FnOnce(&mut StreamDecoder, &mut StreamSink<'_>),
-    clock: &mut StreamClock<'_>,
-    consumer: &mut Consumer<'_>,
-) -> ControlFlow<()> {
-    let mut flow = ControlFlow::Continue(());
-    how(decoder, &mut |event| {
-        if flow.is_continue() {
-            flow = report(event, clock, consumer);
-        }
-    });
-    flow
-}
-
-/// Reports or counts what came before a source failed. Returns the error.
-fn broken(
-    decoder: &mut StreamDecoder,
-    clock: &mut StreamClock<'_>,
-    consumer: &mut Consumer<'_>,
-    error: io::Error,
-) -> AcquireError {
-    let _ = step(decoder, StreamDecoder::finish, clock, consumer);
-    AcquireError::reading(error)
-}
-
-/// Reports why it waits for a source, and tries to open it each second until it exists. None if no more is wanted.
-fn again(
-    open: &Open<'_>,
-    event: AcquireEvent<'_>,
-    stop: &AtomicBool,
-    decoder: &StreamDecoder,
-    consumer: &mut Consumer<'_>,
-) -> Option<ByteInput> {
-    let since = Instant::now();
-    if consumer(event).is_break() {
-        return None;
-    }
-    loop {
-        let next = Instant::now() + RETRY;
-        while Instant::now() < next {
-            if wait(stop, decoder, consumer).is_break() {
-                return None;
+impl StreamReader<'_, '_> {
+    /// Reads the source to its end, or until no more is wanted.
+    fn read(mut self) -> Result<(), AcquireError> {
+        let Some(mut input) = self.first_input()? else {
+            return Ok(());
+        };
+        // The wait for the source is not a silence.
+        self.clock.silence = SilenceWatch::new(Instant::now());
+        let comes_back = self.source.comes_back() && self.options.playback != Playback::Once;
+        let mut bytes = vec![0; CHUNK];
+        while !self.stop.load(Ordering::Relaxed) {
+            let lost = match input.read(&mut bytes) {
+                Ok(ReadOutcome::Bytes(count)) => {
+                    self.check_start(&bytes[..count])?;
+                    match self.decode(&bytes[..count]) {
+                        ControlFlow::Continue(()) => continue,
+                        ControlFlow::Break(()) => return Ok(()),
+                    }
+                }
+                Ok(ReadOutcome::Anew(how)) => {
+                    if self.step(StreamDecoder::finish).is_break()
+                        || (self.consumer)(AcquireEvent::Anew(how)).is_break()
+                    {
+                        return Ok(());
+                    }
+                    self.decoder.begin_anew();
+                    self.clock.times.rejoin();
+                    continue;
+                }
+                Ok(ReadOutcome::End) if comes_back => {
+                    io::Error::new(io::ErrorKind::UnexpectedEof, "the other end has closed it")
+                }
+                Ok(ReadOutcome::End) => break,
+                Err(error) if comes_back => error,
+                Err(error) => {
+                    // What came before counts.
+                    let _ = self.step(StreamDecoder::finish);
+                    return Err(AcquireError::reading(error));
+                }
+            };
+            // The next bytes may begin inside a frame.
+            if self.step(StreamDecoder::restart).is_break() {
+                return Ok(());
             }
-            std::thread::sleep(TICK);
+            match self.again(AcquireEvent::Lost(&lost)) {
+                Some(found) => input = found,
+                None => return Ok(()),
+            }
+            self.clock.times.rejoin();
+            let bytes = self.decoder.counts().bytes;
+            self.clock.silence.reopen(bytes, Instant::now());
         }
-        if let Ok(input) = open(&mut || wait(stop, decoder, consumer)) {
-            let input = input?;
-            let gap = since.elapsed();
-            let back = consumer(AcquireEvent::Back { gap });
-            return back.is_continue().then_some(input);
+        let _ = self.step(StreamDecoder::finish);
+        if !self.stop.load(Ordering::Relaxed) {
+            let _ = (self.consumer)(AcquireEvent::Ended(self.decoder.counts()));
+        }
+        Ok(())
+    }
+
+    /// Checks that the first bytes of standard input or a FIFO do not begin a recording that only a file can be.
+    /// Tables, JSON lines, echoes and the bytes of boards can be streams, too; on other sources, the bytes may begin
+    /// anywhere. A format that the user names is not doubted.
+    ///
+    /// # Errors
+    /// Returns [`AcquireError::NotStream`].
+    fn check_start(&self, bytes: &[u8]) -> Result<(), AcquireError> {
+        let begins = matches!(self.source, FrameSource::Standard | FrameSource::Fifo(_));
+        if !begins || self.decoder.counts().bytes > 0 || self.options.format.is_some() {
+            return Ok(());
+        }
+        match recognised(bytes) {
+            Some(
+                format @ (RecordingFormat::Tekscan
+                | RecordingFormat::Xsensor
+                | RecordingFormat::Emed
+                | RecordingFormat::Zebris
+                | RecordingFormat::Npy
+                | RecordingFormat::Npz
+                | RecordingFormat::Popu
+                | RecordingFormat::Mcap),
+            ) => Err(AcquireError::NotStream { format }),
+            _ => Ok(()),
         }
     }
-}
 
-/// Decodes bytes, perhaps none, and reports their frames and a tick.
-fn decode(
-    decoder: &mut StreamDecoder,
-    bytes: &[u8],
-    clock: &mut StreamClock<'_>,
-    consumer: &mut Consumer<'_>,
-) -> ControlFlow<()> {
-    // If no bytes came, the content that was in a file has been read.
-    clock.timed |= clock.is_live && bytes.is_empty();
-    let push = |decoder: &mut StreamDecoder, sink: &mut StreamSink<'_>| decoder.push(bytes, sink);
-    step(decoder, push, clock, consumer)?;
-    tick(decoder, clock, consumer)
-}
+    /// Opens the source. Returns None if no more is wanted meanwhile.
+    fn open(&mut self) -> io::Result<Option<ByteInput>> {
+        ByteInput::open(self.source, self.options, &mut || self.wait())
+    }
 
-/// Reports an event of the decoder. A frame without a time gets that of its arrival.
-fn report(
-    event: StreamEvent<'_>,
-    clock: &mut StreamClock<'_>,
-    consumer: &mut Consumer<'_>,
-) -> ControlFlow<()> {
-    match event {
-        StreamEvent::Frame(frame) => {
-            clock.silence.note_frame(Instant::now());
-            let time = clock.times.time(frame.time, clock.timed);
-            consumer(AcquireEvent::Frame { frame, time })
+    /// Reports a tick while opening a source or waiting for it. Returns `Break` if no more is wanted.
+    fn wait(&mut self) -> ControlFlow<()> {
+        if self.stop.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
         }
-        StreamEvent::Channel(info) => consumer(AcquireEvent::Channel(info)),
-        StreamEvent::Provisional(frame) => consumer(AcquireEvent::Provisional(frame)),
-        StreamEvent::Withdrawn => consumer(AcquireEvent::Withdrawn),
-        StreamEvent::Note(note) => consumer(AcquireEvent::Note(note)),
+        (self.consumer)(AcquireEvent::Tick(self.decoder.counts()))
     }
-}
 
-/// Reports a tick if one is due, and whether the stream is silent.
-fn tick(
-    decoder: &StreamDecoder,
-    clock: &mut StreamClock<'_>,
-    consumer: &mut Consumer<'_>,
-) -> ControlFlow<()> {
-    if !clock.ticker.is_due() {
-        return ControlFlow::Continue(());
+    /// Opens the source; if it does not exist yet, waits for it if the options say so. None if no more is wanted.
+    fn first_input(&mut self) -> Result<Option<ByteInput>, AcquireError> {
+        match self.open() {
+            Ok(input) => Ok(input),
+            // Waiting does not make an invalid source valid.
+            Err(error)
+                if self.options.waits
+                    && self.source.comes_back()
+                    && error.kind() != io::ErrorKind::InvalidInput =>
+            {
+                Ok(self.again(AcquireEvent::Absent(&error)))
+            }
+            Err(error) => Err(AcquireError::opening(error)),
+        }
     }
-    let counts = decoder.counts();
-    consumer(AcquireEvent::Tick(counts))?;
-    match clock.silence.look(counts.bytes, Instant::now()) {
-        Some(bytes_per_second) => consumer(AcquireEvent::Silent {
-            bytes_per_second,
-            counts,
-            has_vanished: clock.source.has_vanished(),
-        }),
-        None => ControlFlow::Continue(()),
+
+    /// Reports why it waits for the source, and tries to open it each second until it exists. None if no more is
+    /// wanted.
+    fn again(&mut self, event: AcquireEvent<'_>) -> Option<ByteInput> {
+        let since = Instant::now();
+        if (self.consumer)(event).is_break() {
+            return None;
+        }
+        loop {
+            let next = Instant::now() + RETRY;
+            while Instant::now() < next {
+                if self.wait().is_break() {
+                    return None;
+                }
+                std::thread::sleep(TICK);
+            }
+            if let Ok(input) = self.open() {
+                let input = input?;
+                let gap = since.elapsed();
+                let back = (self.consumer)(AcquireEvent::Back { gap });
+                return back.is_continue().then_some(input);
+            }
+        }
+    }
+
+    /// Decodes bytes, perhaps none, and reports their frames and a tick.
+    fn decode(&mut self, bytes: &[u8]) -> ControlFlow<()> {
+        // If no bytes came, the content that was in a file has been read.
+        self.clock.timed |= self.clock.is_live && bytes.is_empty();
+        self.step(|decoder, sink| decoder.push(bytes, sink))?;
+        self.tick()
+    }
+
+    /// Calls one step of the decoder, and reports its events until no more are wanted.
+    fn step(
+        &mut self,
+        how: impl FnOnce(&mut StreamDecoder, &mut StreamSink<'_>),
+    ) -> ControlFlow<()> {
+        let mut flow = ControlFlow::Continue(());
+        how(&mut self.decoder, &mut |event| {
+            if flow.is_continue() {
+                flow = self.clock.report(event, self.consumer);
+            }
+        });
+        flow
+    }
+
+    /// Reports a tick if one is due, and whether the stream is silent.
+    fn tick(&mut self) -> ControlFlow<()> {
+        if !self.clock.ticker.is_due() {
+            return ControlFlow::Continue(());
+        }
+        let counts = self.decoder.counts();
+        (self.consumer)(AcquireEvent::Tick(counts))?;
+        match self.clock.silence.look(counts.bytes, Instant::now()) {
+            Some(bytes_per_second) => (self.consumer)(AcquireEvent::Silent {
+                bytes_per_second,
+                counts,
+                has_vanished: self.source.has_vanished(),
+            }),
+            None => ControlFlow::Continue(()),
+        }
     }
 }
 

@@ -37,7 +37,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire};
+use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, acquire};
 use crate::cli::arguments::watch::WatchArguments;
 use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
@@ -101,8 +101,7 @@ pub(crate) fn watch(
     // Errors in these are reported before a recording begins.
     let lines = line_writer(asked, &processing, shelf, &signals.stopped)?;
     let recording = WatchRecording::create(&source, asked).map_err(CliError::Recorder)?;
-    let is_live =
-        asked.options.playback != Playback::Once && !matches!(source, FrameSource::File(_));
+    let is_live = source.arrives(asked.options.playback);
     let mut watcher = Watcher {
         asked,
         reports: SourceReports::new(&source, &asked.options, note),
@@ -122,10 +121,7 @@ pub(crate) fn watch(
     });
     let stopped = !signals.goes_on();
     watcher.finish(acquired, stopped)?;
-    Ok(match signals.failure() {
-        CliError::Stopped { status } if stopped => status,
-        _ => 0,
-    })
+    Ok(if stopped { signals.status() } else { 0 })
 }
 
 /// Starts the writer of the answers. With a model, it also names each imprint, so that neither training nor search
