@@ -3,9 +3,11 @@
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Seek};
-use std::os::unix::fs::{FileExt, MetadataExt};
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
+
+use crate::storage::FileId;
 
 /// The pause at the end of a file before it is checked for growth again.
 const GROWTH: Duration = Duration::from_millis(50);
@@ -116,7 +118,7 @@ impl GrowingFile {
         };
         let own = self.file.metadata()?;
         // Read the old file to its end before switching: bytes may have been appended before the rename.
-        let is_own = (named.dev(), named.ino()) == (own.dev(), own.ino());
+        let is_own = FileId::in_metadata(&named) == FileId::in_metadata(&own);
         if is_own || !named.is_file() || own.len() > self.offset {
             return Ok(None);
         }

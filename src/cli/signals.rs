@@ -93,7 +93,12 @@ impl Signals {
 
     /// Returns the error of a command that was stopped by the last signal.
     pub(crate) fn failure(&self) -> CliError {
-        let (_, status) = STOPPING[self.last.load(Ordering::Relaxed)];
+        let status = self.status();
         CliError::Stopped { status }
+    }
+
+    /// Returns the exit status of a command that was stopped by the last signal.
+    pub(crate) fn status(&self) -> u8 {
+        STOPPING[self.last.load(Ordering::Relaxed)].1
     }
 }

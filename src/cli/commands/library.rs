@@ -135,8 +135,7 @@ fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     threads::on_all_cores(lines)
 }
 
-/// Returns the answer of `taxel library list --names`, for scripts and for shell completions. No file is read. A file
-/// whose name is not valid for a shape is left out.
+/// Returns the answer of `taxel library list --names`, for scripts and for shell completions. No file is read.
 ///
 /// # Errors
 /// Returns an error if the folder cannot be listed.
@@ -150,8 +149,7 @@ pub(crate) fn names(shelf: &Shelf, which: NameSet) -> Result<String, CliError> {
             entries.map(|entry| entry.name).collect()
         }
     };
-    let names = names.into_iter().filter(|name| Name::new(name).is_ok());
-    Ok(names.map(|name| name + "\n").collect())
+    Ok(names.into_iter().map(|name| name + "\n").collect())
 }
 
 /// Returns a warning about a list without shapes of the user's: the folder that `--library` names does not exist.
