@@ -109,8 +109,7 @@ enum DescribedRule {
     Set(SetRule),
     Noise {
         noise: f64,
-        #[serde(default)]
-        least: u32,
+        least: Option<LeastTaxels>,
     },
     Other(RuleRecord),
 }
@@ -207,7 +206,7 @@ impl RecordingMetadata {
             Some(DescribedRule::Set(rule)) => Some(rule),
             Some(DescribedRule::Noise { noise, least }) => Some(SetRule {
                 rule: Rule::noise(noise).map_err(MetadataError::of_key("rule"))?,
-                least,
+                least: least.map_or(0, LeastTaxels::get),
                 from: RuleOrigin::File,
             }),
             Some(DescribedRule::Other(record)) => Some(SetRule {
@@ -407,6 +406,11 @@ mod tests {
         };
         assert_eq!(wrong("\"marks\":[]"), "right");
         assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
+        assert_eq!(wrong("\"rule\":{\"noise\":4,\"least\":4096}"), "right");
+        for rule in ["noise", "percent"] {
+            let rule = format!("\"rule\":{{\"{rule}\":4,\"least\":4097}}");
+            assert_ne!(wrong(&rule), "right", "{rule}");
+        }
         assert!(
             wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("tare: row 2 has 2 values")
         );
