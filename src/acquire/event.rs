@@ -151,6 +151,8 @@ pub enum AcquireEvent<'a> {
     },
     /// A recording begins again.
     Again,
+    /// The end of a recording that has grown is reached: from now on frames arrive as they are written. Reported once.
+    Follows,
     /// Reading a growing file starts again at its beginning.
     Anew(ReadAnew),
     /// The end of a stream, with its counts.

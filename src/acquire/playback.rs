@@ -50,6 +50,7 @@ pub(super) fn run(
         consumer: RefCell::new(consumer),
         ended: Cell::new(false),
         ticker: RefCell::new(Ticker::new()),
+        follows: Cell::new(false),
         counts: RefCell::default(),
         silence: RefCell::new(SilenceWatch::new(Instant::now())),
         damage: RefCell::default(),
@@ -73,6 +74,8 @@ struct Player<'a, 'b> {
     /// Whether the consumer wants no more.
     ended: Cell<bool>,
     ticker: RefCell<Ticker>,
+    /// Whether [`AcquireEvent::Follows`] was reported.
+    follows: Cell<bool>,
     /// The counts of a followed file: bytes, frames and wrong frames.
     counts: RefCell<StreamCounts>,
     /// The wait for the next frame of a followed file.
@@ -251,6 +254,9 @@ impl Player<'_, '_> {
         self.tick()?;
         if !growth.has_grown() {
             return ControlFlow::Continue(());
+        }
+        if !self.follows.replace(true) {
+            self.report(AcquireEvent::Follows)?;
         }
         let looked = (self.silence.borrow_mut()).look(growth.bytes(), Instant::now());
         looked.map_or(ControlFlow::Continue(()), |bytes_per_second| {

@@ -16,7 +16,8 @@ use crate::tui::live::request::WatchRequest;
 pub enum LiveMessage {
     /// Opens the page of the last source.
     Open,
-    /// Watches the source of the page again: a recording from its start, any other source after its end.
+    /// Watches the source of the page again: a recording that does not grow from its start, any other source after its
+    /// end.
     Again,
     /// Watches a source.
     Watch(Arc<WatchRequest>),
@@ -115,6 +116,8 @@ pub struct FeedStatus {
     pub channel: Option<Arc<ChannelInfo>>,
     /// The number of channels; 0 for a stream.
     pub channels: usize,
+    /// Whether the source is a file that grows and is read to its present end.
+    pub follows: bool,
     /// The number of lost frames: torn, short, long or garbled.
     pub lost: u64,
     /// A sample of the last lost frame, up to 40 characters.

@@ -497,9 +497,10 @@ impl Live {
         self.status.channels > 0
     }
 
-    /// Returns true if the source can be watched again: a recording at any time, any other source after its end.
+    /// Returns true if the source can be watched again: a recording at any time unless it is still being written, any
+    /// other source after its end.
     pub fn can_begin_again(&self) -> bool {
-        self.is_recording() || self.status.state.is_final()
+        self.is_recording() && !self.status.follows || self.status.state.is_final()
     }
 
     /// Takes frames again, from the work of this number. The history begins anew with a recording, because the same

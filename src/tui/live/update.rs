@@ -134,7 +134,7 @@ fn open(app: &mut App) -> Option<Effect> {
     effect
 }
 
-/// Watches the source of the open page again: a recording at any time, any other source after its end.
+/// Watches the source of the open page again, if that is possible now.
 fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
     if !page.can_begin_again() {
         refuse(app, LiveRefusal::NotEnded.to_string());

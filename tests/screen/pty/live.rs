@@ -620,6 +620,30 @@ fn the_notice_of_a_connection_gap_stays_until_a_key_is_pressed() {
 }
 
 #[test]
+fn a_file_that_grows_is_not_read_again_by_key_and_its_recording_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    fs::write(folder.join("touch.txt"), frames(0..3)).expect("written");
+    let mut file = fs::File::options()
+        .append(true)
+        .open(folder.join("touch.txt"))
+        .expect("it is there");
+    let mut grows = |numbers| file.write_all(frames(numbers).as_bytes()).expect("written");
+    let mut program = watching(folder, "touch.txt --at-least 9 --write a.npy");
+    program.shows("frame 1");
+    grows(3..6);
+    program.shows("frame 4");
+    program.types(b"w");
+    program.shows("the source has not ended yet");
+    grows(6..9);
+    program.shows("frame 7");
+    program.types(b"qq");
+    program.ends_well(0);
+    let recorded = records(&folder.join("a.npy")).expect("an array");
+    assert!(recorded >= 8, "{recorded}");
+}
+
+#[test]
 fn a_recording_that_cannot_be_started_opens_no_page() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();

@@ -234,6 +234,7 @@ impl FrameFeed {
                 first.get_or_insert_with(|| note.to_string());
             }),
             AcquireEvent::Back { gap } => self.change(|pending| pending.back_after(gap)),
+            AcquireEvent::Follows => self.change(|pending| pending.status().follows = true),
             AcquireEvent::Anew(how) => self.change(|pending| {
                 // A note rather than a state: the next frame would replace a state at once.
                 pending.status().note = Some(format!("the file {how}"));
