@@ -248,6 +248,12 @@ pub(crate) enum CliError {
         /// The number of all shapes.
         shapes: usize,
     },
+    /// Unsaved work in the library is damaged. Each file has been listed.
+    #[error("{} of unsaved work cannot be read", counted(*files as u64, "file"))]
+    UnsavedWork {
+        /// The number of damaged files.
+        files: usize,
+    },
     /// The settings file cannot be read, or has an error.
     #[error("{place}: {message}")]
     Settings {

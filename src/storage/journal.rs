@@ -131,12 +131,7 @@ impl Orphan {
     /// version; and if this user may not remove it: it is another user's. Leaves files of other names alone, too, and
     /// a folder outside of the library that a link leads to.
     pub fn all(library: &Library) -> Vec<Self> {
-        let folder = InnerFolder::of(library.folder(), JOURNAL);
-        // A folder that cannot be read must not keep the program from starting.
-        let Ok(Ok(mut paths)) = folder.map(|folder| folder.paths()) else {
-            return Vec::new();
-        };
-        paths.retain(|path| is_journal(path));
+        let mut paths = files_of(library);
         paths.sort_by_cached_key(|path| {
             let changed = fs::symlink_metadata(path).and_then(|file| file.modified());
             // Of files with the same time, `1-10.json` comes after `1-9.json`.
@@ -188,6 +183,36 @@ impl Orphan {
         Some(Self { shape, path, lock })
     }
 
+    /// Returns the work that cannot be offered, each with its file and the reason, sorted by file: a journal that is
+    /// damaged or of a later version. It stays where it is. Leaves out what this user may not remove or read: it is
+    /// another user's.
+    pub fn unreadable(library: &Library) -> Vec<(PathBuf, LibraryError)> {
+        let mut paths = files_of(library);
+        paths.retain(|path| path.extension().is_some_and(|ending| ending == "json"));
+        paths.sort();
+        let journals = paths.into_iter().filter(|path| is_removable(path));
+        let unread = journals.filter_map(|path| {
+            let reason = match folder::read(&path) {
+                Ok(content) => {
+                    let error = StoredShape::read(&content).err()?;
+                    let path = path.clone();
+                    LibraryError::Broken { path, error }
+                }
+                Err(LibraryError::System(refused))
+                    if matches!(
+                        refused.error.kind(),
+                        ErrorKind::NotFound | ErrorKind::PermissionDenied
+                    ) =>
+                {
+                    return None;
+                }
+                Err(error) => error,
+            };
+            Some((path, reason))
+        });
+        unread.collect()
+    }
+
     /// Returns how long ago the work was written; None if the system does not say, or if its clock was set back
     /// since.
     pub fn age(&self) -> Option<Duration> {
@@ -200,6 +225,16 @@ impl Orphan {
     pub fn discard(self) -> bool {
         remove(&self.path, Some(self.lock))
     }
+}
+
+/// Returns the files of journals in a library, in no order. A folder that cannot be read must not keep the program from
+/// starting, so it counts as empty.
+fn files_of(library: &Library) -> Vec<PathBuf> {
+    let folder = InnerFolder::of(library.folder(), JOURNAL);
+    let paths = folder.and_then(|folder| Ok(folder.paths()?));
+    let mut paths = paths.unwrap_or_default();
+    paths.retain(|path| is_journal(path));
+    paths
 }
 
 /// Returns true if a library holds exactly this work under its name, or if there is nothing to hold.

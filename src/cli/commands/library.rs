@@ -32,7 +32,7 @@ use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape, json};
 use crate::quote::{as_argument, shortened_message};
 use crate::sensor::Sensor;
-use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
+use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, Orphan, ShapeOrigin};
 
 /// A shape of the library, as a line of the list.
 struct ListLine {
@@ -293,6 +293,9 @@ enum Finding {
     /// A file that is not a shape.
     #[serde(rename = "left over")]
     LeftOver { path: String, reason: &'static str },
+    /// Unsaved work that cannot be read.
+    #[serde(rename = "damaged")]
+    Damaged { path: String, reason: String },
 }
 
 impl fmt::Display for Finding {
@@ -301,6 +304,7 @@ impl fmt::Display for Finding {
             Self::Broken { name, reason } => write!(f, "broken: {name}: {reason}"),
             Self::Name { name, reason } => write!(f, "name: {name}: {reason}"),
             Self::LeftOver { path, reason } => write!(f, "left over: {path}: {reason}"),
+            Self::Damaged { reason, .. } => write!(f, "damaged: unsaved work: {reason}"),
         }
     }
 }
@@ -339,7 +343,8 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
 }
 
 /// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or a JSON
-/// array of objects, and [`CliError::Shapes`] if a shape is damaged, to be reported after it.
+/// array of objects, and [`CliError::Shapes`] if a shape is damaged or [`CliError::UnsavedWork`] if unsaved work is, to be
+/// reported after it.
 ///
 /// # Errors
 /// Returns an error if the folder cannot be listed, and [`CliError::NoFolder`] if `--library` names one that does not
@@ -364,9 +369,17 @@ pub(crate) fn check(
     let mut findings: Vec<Finding> = broken.collect();
     let broken = findings.len();
     findings.extend(names);
-    findings.extend(library.leftovers()?.into_iter().map(|(path, reason)| {
+    let damaged = Orphan::unreadable(&library);
+    let mut leftovers = library.leftovers()?;
+    leftovers.retain(|(path, _)| !damaged.iter().any(|(own, _)| own == path));
+    findings.extend(leftovers.into_iter().map(|(path, reason)| {
         let path = path.display().to_string();
         Finding::LeftOver { path, reason }
+    }));
+    let files = damaged.len();
+    findings.extend(damaged.into_iter().map(|(path, error)| Finding::Damaged {
+        path: path.display().to_string(),
+        reason: shortened_message(&error.to_string()),
     }));
     let text = if as_json {
         json::ascii(&findings) + "\n"
@@ -378,8 +391,9 @@ pub(crate) fn check(
             .map(|line| charset.line(&line).into_owned() + "\n")
             .collect()
     };
-    let result = match broken {
-        0 => Ok(()),
+    let result = match (broken, files) {
+        (0, 0) => Ok(()),
+        (0, _) => Err(CliError::UnsavedWork { files }),
         _ => Err(CliError::Shapes { broken, shapes }),
     };
     Ok((text, result))

@@ -62,6 +62,8 @@ use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork, TerminalEffect
 pub struct World {
     /// The unsaved work that is offered, and the number of offers in all.
     orphan: Option<(Box<Orphan>, usize)>,
+    /// The unsaved work that cannot be read and why, in a sentence; None if there is none.
+    unreadable: Option<String>,
     /// The writer of the journal, which keeps unsaved work.
     journal: JournalWriter,
     /// The reminders from run to run; None if nothing is remembered.
@@ -88,6 +90,7 @@ impl World {
         Self {
             journal: JournalWriter::new(Journal::new(&library)),
             orphan: newest_orphan(&library),
+            unreadable: leftover::unreadable(&library),
             reminders: Some(Reminders::of(&library)),
             ..Self::for_script(library)
         }
@@ -103,6 +106,7 @@ impl World {
             reminder_writer: DiskQueue::new(library),
             later: VecDeque::new(),
             orphan: None,
+            unreadable: None,
             reminders: None,
             log: ShapeLog::default(),
             journal: JournalWriter::idle(),
@@ -208,9 +212,12 @@ impl World {
         }
     }
 
-    /// Returns the first message, which offers the unsaved work of a crashed program; None if there is none.
-    pub fn greeting(&self) -> Option<Message> {
-        Some(Message::Library(LibraryEvent::Found(self.left()?)))
+    /// Returns the first messages: one about unsaved work that cannot be read, and the offer of the unsaved work of a
+    /// crashed program.
+    pub fn greeting(&self) -> impl Iterator<Item = Message> + use<> {
+        let unreadable = self.unreadable.clone().map(LibraryEvent::Failed);
+        let found = self.left().map(LibraryEvent::Found);
+        unreadable.into_iter().chain(found).map(Message::Library)
     }
 
     /// Returns the offer of unsaved work, None if there is none.

@@ -84,10 +84,7 @@ impl Session {
         };
         session.world.remind(&mut session.app);
         let greeting = session.world.greeting();
-        for message in [Some(Message::Resized(width, height)), greeting]
-            .into_iter()
-            .flatten()
-        {
+        for message in std::iter::once(Message::Resized(width, height)).chain(greeting) {
             session.send(message);
         }
         session

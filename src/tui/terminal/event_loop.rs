@@ -237,7 +237,7 @@ impl<'a> EventLoop<'a> {
         if let Some(first) = self.first.take() {
             self.update(first)?;
         }
-        if let Some(greeting) = self.world.greeting() {
+        for greeting in self.world.greeting() {
             self.update(greeting)?;
         }
         self.draw(false)?;
