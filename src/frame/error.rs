@@ -73,7 +73,7 @@ pub enum FrameError {
 
 impl FrameError {
     /// Returns true if a frame of another size could be processed.
-    #[cfg(feature = "cli")]
+    #[cfg(feature = "tui")]
     pub(crate) fn is_of_size(&self) -> bool {
         matches!(
             self,

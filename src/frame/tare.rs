@@ -69,16 +69,16 @@ impl TareFrames {
         if self.missing() == 0 {
             return Ok(());
         }
-        self.check_memory(frame.values().len())?;
         let size = frame.size();
-        let expected = *self.size.get_or_insert(size);
-        if size != expected {
+        if let Some(found) = self.size.filter(|&found| found != size) {
             return Err(FrameError::Size {
                 what: "tare",
-                found: expected,
+                found,
                 expected: size,
             });
         }
+        self.check_memory(frame.values().len())?;
+        self.size = Some(size);
         let values = frame.values().iter();
         let known = values.map(|&value| if is_value(value) { value } else { f64::NAN });
         self.values.extend(known);

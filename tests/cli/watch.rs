@@ -369,6 +369,25 @@ fn frames_of_another_size_do_not_end_the_stream() {
     }
 }
 
+#[test]
+fn frames_of_another_size_are_left_out_of_a_tare() {
+    let wide = "1 2 3\n\n".repeat(5);
+    let input = stream(0..3) + &wide + &stream(3..8);
+    let run = taxel("watch - --tare 5 --at-least 1", &input);
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    let frames: Vec<u64> = lines(&run.stdout)
+        .iter()
+        .map(|line| line["frame"].as_u64().expect("a number"))
+        .collect();
+    assert_eq!(frames, [0, 1, 2, 6, 7, 8]);
+    for said in [
+        "standard input: frame 3 is not printed: the tare has 2 columns and 2 rows",
+        "standard input: 3 frames of another size not printed",
+    ] {
+        assert!(run.stderr.contains(said), "{said}: {}", run.stderr);
+    }
+}
+
 /// Returns true if a program has locked a file, which is how it claims a serial line.
 fn has_locked(program: &Child, file: &Path) -> bool {
     let id = program.id().to_string();

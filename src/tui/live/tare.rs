@@ -76,20 +76,21 @@ impl LiveTare {
         }
     }
 
-    /// Adds one of the first frames, and uses the tare after the last of them.
+    /// Adds one of the first frames, and uses the tare after the last of them. A frame whose size does not fit is left
+    /// out; the error says so until one that fits.
     pub(super) fn add(&mut self, frame: &Frame, processing: &mut Processing) {
         let Some(mut first) = self.first.take() else {
             return;
         };
         let added = first.add_frame(frame, &processing.view);
-        let ended = added.and_then(|()| {
-            if first.missing() > 0 {
+        self.error = match added {
+            Ok(()) if first.missing() == 0 => self.end(first, frame, processing).err(),
+            Err(error) if !error.is_of_size() => Some(error),
+            added => {
                 self.first = Some(first);
-                return Ok(());
+                added.err()
             }
-            self.end(first, frame, processing)
-        });
-        self.error = ended.err();
+        };
     }
 
     /// Notes that no more frames will come. Returns true if a tare was being made, which cannot be finished any more.
@@ -170,6 +171,23 @@ pub(super) fn progress_text((taken, wanted): (u64, u64)) -> String {
 mod tests {
     use super::*;
     use crate::frame::FrameSize;
+
+    #[test]
+    fn frames_of_another_size_are_left_out_of_a_tare() {
+        let mut request = WatchRequest::new("none");
+        request.tare = 3;
+        let (mut tare, mut processing) = (LiveTare::new(&request), Processing::default());
+        let mut add = |side| {
+            let frame = Frame::new(FrameSize::of(side, side));
+            tare.add(&frame, &mut processing);
+            (tare.progress(), tare.error().is_some())
+        };
+        assert_eq!(add(2), (Some((1, 3)), false));
+        assert_eq!(add(6), (Some((1, 3)), true));
+        assert_eq!(add(2), (Some((2, 3)), false));
+        assert_eq!(add(2), (None, false));
+        assert_eq!(processing.tare.map(|tare| tare.frames()), Some(3));
+    }
 
     #[test]
     fn a_tare_that_lacked_frames_is_made_when_the_source_is_watched_again() {

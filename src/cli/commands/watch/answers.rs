@@ -6,7 +6,7 @@ use crate::cli::output::line_writer::LineWriter;
 use crate::formats::json;
 use crate::formats::recording::FrameAnswer;
 use crate::formats::value::counted;
-use crate::frame::{Frame, Processing, SetRule, Tare};
+use crate::frame::{Frame, FrameError, Processing, SetRule, Tare};
 
 /// The answers, a line each.
 pub(super) struct Answers {
@@ -63,11 +63,7 @@ impl Answers {
         let processed = match processing.run(frame) {
             Ok(processed) => processed,
             Err(error) if self.answered > 0 && error.is_of_size() => {
-                self.unfit += 1;
-                if self.unfit == 1 {
-                    let number = frame.number;
-                    reports.say(&format!("frame {number} is not printed: {error}"));
-                }
+                self.leave_out(frame.number, &error, reports);
                 return Ok(());
             }
             Err(error) => return Err(reports.refused(&error)),
@@ -85,6 +81,19 @@ impl Answers {
             return Ok(());
         }
         self.end(reports)
+    }
+
+    /// Leaves out the frame of this number, whose size does not fit, and reports the first one.
+    pub(super) fn leave_out(
+        &mut self,
+        number: u64,
+        error: &FrameError,
+        reports: &mut SourceReports<'_>,
+    ) {
+        self.unfit += 1;
+        if self.unfit == 1 {
+            reports.say(&format!("frame {number} is not printed: {error}"));
+        }
     }
 
     /// Ends the answers if no more can be written: the reader is gone, or there is no model.

@@ -273,11 +273,17 @@ impl Watcher<'_> {
             self.frame = own;
             return answered;
         };
-        let is_complete = queue.add(own, &self.processing.view);
-        if is_complete.map_err(|error| self.reports.refused(&error))? {
-            self.end_tare()?;
+        let is_first = queue.is_empty();
+        match queue.add(own, &self.processing.view) {
+            Ok(true) => self.end_tare(),
+            Ok(false) => Ok(()),
+            Err(error) if !is_first && error.is_of_size() => {
+                self.answers
+                    .leave_out(frame.number, &error, &mut self.reports);
+                Ok(())
+            }
+            Err(error) => Err(self.reports.refused(&error)),
         }
-        Ok(())
     }
 
     /// Uses the complete tare, and answers the frames that waited for it.

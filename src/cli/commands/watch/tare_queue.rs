@@ -17,14 +17,19 @@ impl TareQueue {
         })
     }
 
+    /// Returns true before the first frame of the tare.
+    pub(super) fn is_empty(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
     /// Adds a frame. Returns true once the tare is complete.
     ///
     /// # Errors
     /// Returns an error if the frame does not fit the view or the frames before it, or if the tare would take too much
-    /// memory.
+    /// memory. After an error of its size, the tare is made of the frames that follow.
     pub(super) fn add(&mut self, frame: Frame, view: &View) -> Result<bool, FrameError> {
-        self.tare.check_memory(frame.values().len())?;
         self.tare.add_frame(&frame, view)?;
+        self.tare.check_memory(frame.values().len())?;
         self.waiting.push(frame);
         Ok(self.tare.missing() == 0)
     }
