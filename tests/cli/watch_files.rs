@@ -594,7 +594,11 @@ fn a_recording_on_a_full_disk_ends_with_its_last_whole_record() {
     // More frames than are kept in memory.
     let run = finish(child, stream(0..6000).as_bytes());
     assert_eq!(run.status, Some(1), "{}", run.stderr);
-    assert!(run.stderr.contains("cannot record: File too large"));
+    let reason = format!("{}: cannot record: File too large", file.display());
+    let said = format!("standard input: {reason}; the answers go on\nerror: {reason}\n");
+    assert_eq!(run.stderr, said);
+    let last = lines(&run.stdout).pop().expect("answers");
+    assert_eq!(last["frame"], 5999, "{last}");
     let bytes = fs::read(&file).expect("it is there");
     let records = (bytes.len() - 256) / 48;
     // The limit is nine blocks, each of 512 bytes or more.

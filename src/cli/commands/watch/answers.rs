@@ -83,6 +83,12 @@ impl Answers {
         self.end(reports)
     }
 
+    /// Notes that frames are not recorded any more. Returns false if answers cannot be written either.
+    pub(super) fn go_on_alone(&mut self) -> bool {
+        (self.is_recorded, self.may_give_up) = (false, false);
+        matches!(self.output, Output::Open(_))
+    }
+
     /// Leaves out the frame of this number, whose size does not fit, and reports the first one.
     pub(super) fn leave_out(
         &mut self,

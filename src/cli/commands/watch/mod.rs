@@ -3,7 +3,8 @@
 //! Every frame is recorded before it is answered. A live source that is recorded is never held up: if the reader of the
 //! answers is slow, some frames get no answer, and their number is reported. Otherwise answers wait, as in any
 //! pipeline. If the reader is gone, as in `| head -1`, or answers cannot be written, a recording continues; without a
-//! recording the command ends.
+//! recording the command ends. If the recording fails, as on a full disk, the answers go on; the error is reported at once,
+//! and is that of the command at its end.
 //!
 //! ```text
 //! $ taxel watch /dev/ttyUSB0 --at-least 20 --write grip.npy | jq .na
@@ -72,6 +73,8 @@ struct Watcher<'a> {
     /// The frames that wait for the tare; None if none is made any more.
     tare: Option<TareQueue>,
     recording: Option<WatchRecording<'a>>,
+    /// The error that ended the recording while the answers went on.
+    unrecorded: Option<CliError>,
     answers: Answers,
     /// The memory of a frame, reused for the next one.
     frame: Frame,
@@ -111,6 +114,7 @@ pub(crate) fn watch(
         tare: TareQueue::new(asked.processing.tare.unwrap_or_default()),
         answers: Answers::new(lines, is_live, recording.is_some()),
         recording,
+        unrecorded: None,
         frame: Frame::default(),
         size: None,
         failure: None,
@@ -222,16 +226,37 @@ impl Watcher<'_> {
                 self.reports.say(&format!("warning: {unused}"));
             }
         }
+        let (tare, rule) = (self.processing.tare.clone(), self.rule);
+        self.record(|recording, _| {
+            recording.describe(|metadata| {
+                metadata.tare = tare;
+                metadata.seconds_per_frame = info.seconds_per_frame;
+                metadata.unit.clone_from(&info.unit);
+                metadata.pitch_mm = info.pitch_mm;
+                metadata.rule = rule;
+            })
+        })
+    }
+
+    /// Writes to the recording, if there is one. If that fails, it ends; the answers go on if they can be written.
+    fn record(
+        &mut self,
+        write: impl FnOnce(&mut WatchRecording<'_>, &mut SourceReports<'_>) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
         let Some(recording) = &mut self.recording else {
             return Ok(());
         };
-        recording.describe(|metadata| {
-            metadata.tare.clone_from(&self.processing.tare);
-            metadata.seconds_per_frame = info.seconds_per_frame;
-            metadata.unit.clone_from(&info.unit);
-            metadata.pitch_mm = info.pitch_mm;
-            metadata.rule = self.rule;
-        })
+        let error = match write(recording, &mut self.reports) {
+            Err(error) if self.answers.go_on_alone() => error,
+            written => return written,
+        };
+        self.reports.say(&format!("{error}; the answers go on"));
+        if let Some(recording) = self.recording.take() {
+            // It fails for the same reason, which is kept.
+            let _ = recording.finish(true, &mut self.reports);
+        }
+        self.unrecorded = Some(error);
+        Ok(())
     }
 
     /// Takes a frame if it is one of the watched channel.
@@ -262,9 +287,7 @@ impl Watcher<'_> {
             self.reports
                 .say(&format!("{size} cells from frame {number} on"));
         }
-        if let Some(recording) = &mut self.recording {
-            recording.add(frame, time, &mut self.reports)?;
-        }
+        self.record(|recording, reports| recording.add(frame, time, reports))?;
         let mut own = std::mem::take(&mut self.frame);
         own.copy_from(frame);
         own.time = time;
@@ -294,9 +317,9 @@ impl Watcher<'_> {
         let (tare, waiting) = queue
             .finish()
             .map_err(|error| self.reports.refused(&error))?;
-        if let Some(recording) = &mut self.recording {
-            recording.describe(|metadata| metadata.tare = Some(tare.clone()))?;
-        }
+        self.record(|recording, _| {
+            recording.describe(|metadata| metadata.tare = Some(tare.clone()))
+        })?;
         self.processing.tare = Some(tare);
         if let Some(unknown) = processing::unknown_step(&self.processing) {
             self.reports.say(&format!("warning: {unknown}"));
@@ -314,9 +337,7 @@ impl Watcher<'_> {
 
     /// Handles a tick, ten times a second: flushes the recording, and reports dropped frames.
     fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
-        if let Some(recording) = &mut self.recording {
-            recording.tick()?;
-        }
+        self.record(|recording, _| recording.tick())?;
         self.reports.check_shape(counts)?;
         self.answers.tick(&mut self.reports)?;
         self.reports.tick(counts);
@@ -347,6 +368,7 @@ impl Watcher<'_> {
         });
         let written = self.answers.finish(&mut self.reports);
         recorded.unwrap_or(Ok(()))?;
+        self.unrecorded.map_or(Ok(()), Err)?;
         written?;
         failure.or(damage).map_or(Ok(()), Err)
     }
