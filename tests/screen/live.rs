@@ -91,6 +91,15 @@ fn a_recording_that_has_ended_stays_at_its_frame_and_plays_again_by_key() {
 }
 
 #[test]
+fn the_command_that_opens_the_page_knows_that_it_is_open() {
+    let mut page = watched(2, ":watch<Enter>");
+    shows(&page, &["frame 1", "this is the watched source"]);
+    hides(&page, &["no source yet"]);
+    page.frames(1);
+    then(&mut page, "<Esc>:watch<Enter>", &["frame 2"]);
+}
+
+#[test]
 fn keys_for_the_shades_say_what_they_do() {
     let mut page = watched(6, "g");
     shows(&page, &["the shades cover this frame's values"]);

@@ -36,6 +36,9 @@ use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork};
 /// The refusal before the first source.
 const NO_SOURCE: &str = "no source yet: ':watch SOURCE' watches a sensor or plays a recording";
 
+/// The notice if the page of the last source is to be opened and is open.
+const OPEN_ALREADY: &str = "this is the watched source; ':watch SOURCE' watches another one";
+
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
 /// is open.
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
@@ -115,6 +118,10 @@ fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
 /// there; frames that came meanwhile are not. One that has ended is not: the page shows the frame that it showed. The
 /// recording that was requested at the start is finished, and stays as it is.
 fn open(app: &mut App) -> Option<Effect> {
+    if topmost!(&app.dialogs, Live).is_some() {
+        inform(app, OPEN_ALREADY);
+        return None;
+    }
     let Some(mut page) = app.live.take() else {
         refuse(app, NO_SOURCE);
         return None;
