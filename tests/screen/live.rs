@@ -100,6 +100,28 @@ fn the_command_that_opens_the_page_knows_that_it_is_open() {
 }
 
 #[test]
+fn standard_input_is_not_offered_to_be_read_twice() {
+    let mut session = session("");
+    let request = WatchRequest::new("-");
+    session.send(Message::Live(LiveMessage::Watch(Arc::new(request))));
+    send_frames(&mut session, &[2, 2]);
+    let mut batch = FrameBatch::default();
+    batch.status.state = SourceState::Ended;
+    send(&mut session, LiveEvent::Arrived(Arc::new(batch)));
+    shows(
+        &session,
+        &["standard input", "ended; ", "Home: the first one"],
+    );
+    hides(&session, &["w: again", "w again"]);
+    then(
+        &mut session,
+        "w",
+        &["! standard input cannot be read twice", "  ended"],
+    );
+    then(&mut session, "<Home>", &["frozen, 1 frame behind"]);
+}
+
+#[test]
 fn keys_for_the_shades_say_what_they_do() {
     let mut page = watched(6, "g");
     shows(&page, &["the shades cover this frame's values"]);

@@ -21,6 +21,9 @@ pub enum LiveRefusal {
     /// No frame can come any more.
     #[error("the source has ended, so there is nothing to record")]
     SourceEnded,
+    /// The source is standard input, whose bytes are gone once they are read.
+    #[error("standard input cannot be read twice")]
+    ReadOnce,
     /// The source is still watched.
     #[error("the source has not ended yet")]
     NotEnded,

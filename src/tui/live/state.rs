@@ -497,10 +497,18 @@ impl Live {
         self.status.channels > 0
     }
 
-    /// Returns true if the source can be watched again: a recording at any time unless it is still being written, any
+    /// Checks that the source can be watched again: a recording at any time unless it is still being written, any
     /// other source after its end.
-    pub fn can_begin_again(&self) -> bool {
-        self.is_recording() && !self.status.follows || self.status.state.is_final()
+    ///
+    /// # Errors
+    /// Returns an error for a source that has not ended, and for standard input.
+    pub fn check_again(&self) -> Result<(), LiveRefusal> {
+        if self.request.source == "-" {
+            return Err(LiveRefusal::ReadOnce);
+        }
+        let is_possible =
+            self.is_recording() && !self.status.follows || self.status.state.is_final();
+        is_possible.then_some(()).ok_or(LiveRefusal::NotEnded)
     }
 
     /// Takes frames again, from the work of this number. The history begins anew with a recording, because the same

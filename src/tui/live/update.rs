@@ -143,8 +143,8 @@ fn open(app: &mut App) -> Option<Effect> {
 
 /// Watches the source of the open page again, if that is possible now.
 fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
-    if !page.can_begin_again() {
-        refuse(app, LiveRefusal::NotEnded.to_string());
+    if let Err(refused) = page.check_again() {
+        refuse(app, refused.to_string());
         return None;
     }
     app.works += 1;

@@ -65,7 +65,7 @@ impl Page for Live {
             Message::Live(LiveMessage::Record) => {
                 self.recording().name().is_some() || !self.status().state.is_final()
             }
-            Message::Live(LiveMessage::Again) => self.can_begin_again(),
+            Message::Live(LiveMessage::Again) => self.check_again().is_ok(),
             _ => true,
         }
     }
@@ -100,7 +100,7 @@ impl Page for Live {
         let troubles: Vec<String> = error.into_iter().chain(self.trouble()).collect();
         let text = match (&troubles[..], &self.status().note) {
             ([], Some(note)) => note.clone(),
-            ([], None) => return self.has_ended().then(|| (at_end(keymap), Role::Quiet)),
+            ([], None) => return Some((at_end(self, keymap)?, Role::Quiet)),
             (troubles, _) => troubles.join("; "),
         };
         Some((format!("! {text}"), Role::Error))
@@ -115,14 +115,21 @@ impl Page for Live {
     }
 }
 
-/// Returns what can be done after the end of the source.
-fn at_end(keymap: &Keymap) -> String {
+/// Returns what can be done after the end of the source; None before it.
+fn at_end(live: &Live, keymap: &Keymap) -> Option<String> {
+    if !live.has_ended() {
+        return None;
+    }
     let key = |action| keymap.label(Context::Live, action);
-    let (first, again) = (key(&action::FIRST), key(&action::WATCH_AGAIN));
-    let (earlier, close) = (key(&action::SCROLL_UP), key(&action::CANCEL));
-    format!(
-        "ended; {earlier}: earlier frames, {first}: the first one, {again}: again, {close}: close"
-    )
+    let (earlier, first) = (key(&action::SCROLL_UP), key(&action::FIRST));
+    let (again, close) = (key(&action::WATCH_AGAIN), key(&action::CANCEL));
+    let again = match live.check_again() {
+        Ok(()) => format!("{again}: again, "),
+        Err(_) => String::new(),
+    };
+    Some(format!(
+        "ended; {earlier}: earlier frames, {first}: the first one, {again}{close}: close"
+    ))
 }
 
 /// Returns the panes of the page.

@@ -1,5 +1,6 @@
 //! The reasons why a source on the live page gives no frame, in sentences. No flag can be typed on the page, so they
-//! also say where to give what is missing.
+//! also say where to give what is missing: after `:watch`, or in the shell for standard input, which can be read only
+//! once.
 
 use crate::acquire::{AcquireError, FrameSource};
 use crate::formats::recording::RecordingError;
@@ -30,7 +31,7 @@ pub(super) fn silence(source: &FrameSource, counts: &StreamCounts, what: &str) -
         let bytes = counted(counts.bytes, "byte");
         return format!("no frame yet: none in {bytes}; rows, columns or format?");
     }
-    let hint = refusal.map_or("", hint);
+    let hint = refusal.map_or("", |refusal| hint(source, refusal));
     format!("no frame for more than 2 s: {what}{hint}")
 }
 
@@ -41,7 +42,7 @@ pub(super) fn reason_at_end(source: &FrameSource, counts: &StreamCounts) -> Opti
         (NoFrameReason::Refused(StreamRefusal::Unknown), FrameSource::File(_)) => {
             return Some(RecordingError::Unknown.to_string());
         }
-        (NoFrameReason::Refused(refusal), _) => hint(refusal),
+        (NoFrameReason::Refused(refusal), source) => hint(source, refusal),
         (NoFrameReason::Undecoded { reason: None, .. }, _) => "; rows, columns or format?",
         _ => "",
     };
@@ -49,10 +50,16 @@ pub(super) fn reason_at_end(source: &FrameSource, counts: &StreamCounts) -> Opti
 }
 
 /// Returns the end of a message that says where to give what a stream needs.
-fn hint(refusal: StreamRefusal) -> &'static str {
-    match refusal {
-        StreamRefusal::Unknown => FORMAT_HINT,
-        refusal if refusal.is_of_size() => SIZE_HINT,
+fn hint(source: &FrameSource, refusal: StreamRefusal) -> &'static str {
+    match (refusal, source) {
+        (StreamRefusal::Unknown, FrameSource::Standard) => {
+            "; start again in the shell, with --format lines"
+        }
+        (StreamRefusal::Unknown, _) => FORMAT_HINT,
+        (refusal, FrameSource::Standard) if refusal.is_of_size() => {
+            "; start again in the shell, with --rows R --columns C"
+        }
+        (refusal, _) if refusal.is_of_size() => SIZE_HINT,
         _ => "",
     }
 }
@@ -60,6 +67,18 @@ fn hint(refusal: StreamRefusal) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn standard_input_is_not_read_again_by_watch() {
+        let counts = StreamCounts {
+            bytes: 9,
+            unshaped: Some(4),
+            ..StreamCounts::default()
+        };
+        let said = reason_at_end(&FrameSource::Standard, &counts);
+        let end = "start again in the shell, with --rows R --columns C";
+        assert!(said.is_some_and(|said| said.ends_with(end)));
+    }
 
     #[test]
     fn a_file_without_a_frame_is_not_asked_for_its_baud() {
