@@ -1038,6 +1038,38 @@ fn a_broken_description_beside_a_recording_is_reported() {
 }
 
 #[test]
+fn a_note_about_a_recording_stays_until_a_key_is_pressed() {
+    let mut page = watched(0, "");
+    let mut batch = FrameBatch::default();
+    batch.status.note = Some("the file was truncated or rewritten".to_owned());
+    batch.status.notes = 1;
+    let again = |batch: &FrameBatch| LiveEvent::Arrived(Arc::new(batch.clone()));
+    send(&mut page, again(&batch));
+    shows(&page, &["! the file was truncated or rewritten"]);
+    batch.status.state = SourceState::Ended;
+    send(&mut page, again(&batch));
+    shows(&page, &["! the file was truncated or rewritten"]);
+    then(&mut page, "#", &["ended; Left: earlier frames"]);
+    batch.status.notes = 2;
+    send(&mut page, again(&batch));
+    shows(&page, &["! the file was truncated or rewritten"]);
+}
+
+#[test]
+fn the_hint_at_the_end_leaves_room_for_the_taxels() {
+    let mut page = watched(20, "");
+    for ((width, height), hint) in [
+        ((80, 24), "Home: the first one, w: again, Esc: close"),
+        ((60, 14), "ended; w: again, Esc: close"),
+        ((20, 6), "\nended"),
+    ] {
+        page.resize(width, height);
+        shows(&page, &[hint]);
+    }
+    hides(&page, &["w: again", "earlier frames"]);
+}
+
+#[test]
 fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("tall.npy");

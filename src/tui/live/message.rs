@@ -135,11 +135,19 @@ pub struct FeedStatus {
     pub recorded_in: Option<String>,
     /// Why the recording ended early.
     pub record_error: Option<String>,
-    /// The first oddity found in a recording that is played back.
+    /// The first oddity found in a recording that is played back, or why a file is read from its start again.
     pub note: Option<String>,
+    /// The number of notes so far.
+    pub notes: u64,
 }
 
 impl FeedStatus {
+    /// Replaces the note.
+    pub(in crate::tui) fn set_note(&mut self, note: String) {
+        self.note = Some(note);
+        self.notes += 1;
+    }
+
     /// Takes the counts of lost frames so far.
     pub(in crate::tui) fn note_dropped(&mut self, counts: &StreamCounts) {
         self.lost = counts.dropped;

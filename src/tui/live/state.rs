@@ -45,6 +45,8 @@ pub struct Live {
     status: FeedStatus,
     /// The gaps between frames that the user has already seen.
     seen_gaps: SourceGaps,
+    /// The number of notes of the source that the user has already seen.
+    seen_notes: u64,
     /// Whether no more frames are taken from the source.
     stopped: bool,
     /// The layer of the frame that is shown.
@@ -79,6 +81,7 @@ impl Live {
             cursor: FrameCursor::new(request.history_bytes),
             status: FeedStatus::default(),
             seen_gaps: SourceGaps::default(),
+            seen_notes: 0,
             stopped: false,
             layer: HeatLayer::Tared,
             display: LiveDisplay::default(),
@@ -174,9 +177,16 @@ impl Live {
         &self.recording
     }
 
-    /// Notes that the user has seen the gaps so far.
-    pub fn see_gaps(&mut self) {
+    /// Notes that the user has seen the gaps and the note so far.
+    pub fn see_notices(&mut self) {
         self.seen_gaps = self.status.gaps;
+        self.seen_notes = self.status.notes;
+    }
+
+    /// Returns the note of the source, such as on an oddity of a recording, until the user has seen it.
+    pub fn unseen_note(&self) -> Option<&str> {
+        let is_new = self.status.notes > self.seen_notes;
+        self.status.note.as_deref().filter(|_| is_new)
     }
 
     /// Returns why a requested recording is missing or leaves out frames, why no frames come, and which gaps the user
@@ -536,7 +546,9 @@ impl Live {
         self.read();
         self.status.state = SourceState::Waiting;
         self.status.gaps = SourceGaps::default();
+        self.status.note = None;
         self.seen_gaps = SourceGaps::default();
+        self.seen_notes = 0;
         self.names.restart(number);
     }
 

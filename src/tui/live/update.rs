@@ -160,7 +160,7 @@ pub(in crate::tui) fn in_live(
     message: Message,
 ) -> Option<Effect> {
     let mut effect = None;
-    page.see_gaps();
+    page.see_notices();
     match message {
         Message::Cancel | Message::Quit => {
             page.stop();

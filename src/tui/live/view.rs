@@ -95,12 +95,12 @@ impl Page for Live {
         None
     }
 
-    fn remark(&self, keymap: &Keymap, _: Rect) -> Option<(String, Role)> {
+    fn remark(&self, keymap: &Keymap, area: Rect) -> Option<(String, Role)> {
         let error = self.error().map(ToString::to_string);
         let troubles: Vec<String> = error.into_iter().chain(self.trouble()).collect();
-        let text = match (&troubles[..], &self.status().note) {
-            ([], Some(note)) => note.clone(),
-            ([], None) => return Some((at_end(self, keymap)?, Role::Quiet)),
+        let text = match (&troubles[..], self.unseen_note()) {
+            ([], Some(note)) => note.to_owned(),
+            ([], None) => return Some((at_end(self, keymap, area)?, Role::Quiet)),
             (troubles, _) => troubles.join("; "),
         };
         Some((format!("! {text}"), Role::Error))
@@ -115,8 +115,9 @@ impl Page for Live {
     }
 }
 
-/// Returns what can be done after the end of the source; None before it.
-fn at_end(live: &Live, keymap: &Keymap) -> Option<String> {
+/// Returns what can be done after the end of the source, as far as there is room for it on a page of this area; None
+/// before the end.
+fn at_end(live: &Live, keymap: &Keymap, area: Rect) -> Option<String> {
     if !live.has_ended() {
         return None;
     }
@@ -127,9 +128,13 @@ fn at_end(live: &Live, keymap: &Keymap) -> Option<String> {
         Ok(()) => format!("{again}: again, "),
         Err(_) => String::new(),
     };
-    Some(format!(
-        "ended; {earlier}: earlier frames, {first}: the first one, {again}{close}: close"
-    ))
+    let forms = [
+        format!("ended; {earlier}: earlier frames, {first}: the first one, {again}{close}: close"),
+        format!("ended; {again}{close}: close"),
+    ];
+    let most = usize::from(area.height / 8).max(1);
+    let fits = |text: &String| write::broken(text, area.width.into()).len() <= most;
+    Some(forms.into_iter().find(fits).unwrap_or("ended".to_owned()))
 }
 
 /// Returns the panes of the page.

@@ -230,14 +230,15 @@ impl FrameFeed {
             }),
             AcquireEvent::Lost(error) => self.change(|pending| pending.lose(error)),
             AcquireEvent::Note(note) => self.change(|pending| {
-                let first = &mut pending.status().note;
-                first.get_or_insert_with(|| note.to_string());
+                if pending.status().note.is_none() {
+                    pending.status().set_note(note.to_string());
+                }
             }),
             AcquireEvent::Back { gap } => self.change(|pending| pending.back_after(gap)),
             AcquireEvent::Follows => self.change(|pending| pending.status().follows = true),
             AcquireEvent::Anew(how) => self.change(|pending| {
                 // A note rather than a state: the next frame would replace a state at once.
-                pending.status().note = Some(format!("the file {how}"));
+                pending.status().set_note(format!("the file {how}"));
             }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
                 let reason = no_frame::reason_at_end(&source::named(&request.source), counts);
@@ -424,7 +425,7 @@ mod tests {
         }
         let twice = "the connection was lost 2 times, for 6 s in all; 7.9 s of frames are missing";
         assert_eq!(page.trouble().as_deref(), Some(twice));
-        page.see_gaps();
+        page.see_notices();
         assert_eq!(page.trouble(), None);
         assert_eq!(page.status().gaps.count, 2);
     }
