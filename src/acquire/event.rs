@@ -161,13 +161,14 @@ pub enum AcquireEvent<'a> {
 
 #[cfg(feature = "tui")]
 impl AcquireEvent<'_> {
-    /// Returns the words for [`Self::Silent`].
+    /// Returns the words for [`Self::Silent`]; `has_baud` tells whether the source may be a serial line.
     pub(crate) fn silence(
+        has_baud: bool,
         bytes_per_second: f64,
         counts: &StreamCounts,
         has_vanished: bool,
     ) -> String {
-        let silence = counts.silence(bytes_per_second);
+        let silence = counts.silence(bytes_per_second, has_baud);
         if has_vanished {
             return format!("{silence}; its file was moved or removed");
         }

@@ -6,6 +6,7 @@ use crate::formats::recording::format::RecordingFormat;
 use crate::formats::system_error::system_reason;
 #[cfg(feature = "acquire")]
 use crate::frame::FrameSize;
+use crate::frame::MAX_FRAME_SIDE;
 use crate::parameter::number::counted;
 
 /// The error for a recording that cannot be read, or not to its end.
@@ -45,13 +46,21 @@ pub enum RecordingError {
     /// A table without a header, which does not say how its values are arranged: some numbers of a line may not be
     /// values.
     #[error(
-        "{} a line, but no rows and columns (a frame number and a time may be among the numbers)",
-        counted(*numbers, "number")
+        "{} a line, but no rows and columns{} (a frame number and a time may be among the numbers)",
+        counted(*numbers, "number"),
+        most_of(*numbers)
     )]
     Columns {
         /// The number of numbers in a line.
         numbers: u64,
     },
+}
+
+/// Returns how large rows and columns may be, for a line that is too long to be a row.
+fn most_of(numbers: u64) -> String {
+    let is_long = numbers > MAX_FRAME_SIDE.into();
+    let most = is_long.then(|| format!(", each at most {MAX_FRAME_SIDE}"));
+    most.unwrap_or_default()
 }
 
 /// Returns the formats that this build reads, for the message about any other file.

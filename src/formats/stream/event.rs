@@ -109,8 +109,8 @@ pub struct StreamCounts {
     pub dropped: u64,
     /// The beginning of the last dropped frame, up to 40 characters; None if none of its bytes are known.
     pub sample: Option<String>,
-    /// The reason why the last dropped frame is invalid, if the format shows it: JSON lines do, and numbers if rows
-    /// and columns were given, or if a single value stands above a frame.
+    /// The reason why the last dropped frame is invalid, if the format shows it: JSON lines do, and numbers if a row has
+    /// too many or too few of them, or if a single value stands above a frame.
     pub reason: Option<String>,
     /// If rows and columns are missing, the number of values that a frame seems to have; 0 if not even that is known.
     pub unshaped: Option<u64>,
@@ -138,8 +138,9 @@ impl StreamCounts {
         }
     }
 
-    /// Returns the reason why no frame has arrived for some time, given the bytes per second in that time.
-    pub fn silence(&self, bytes_per_second: f64) -> String {
+    /// Returns the reason why no frame has arrived for some time, given the bytes per second in that time and whether
+    /// the source has a baud rate, which may be wrong.
+    pub fn silence(&self, bytes_per_second: f64, has_baud: bool) -> String {
         if let Some(refusal) = self.refusal() {
             return refusal.to_string();
         }
@@ -151,7 +152,15 @@ impl StreamCounts {
         // Round up, so that a byte now and then is not shown as 0.
         let rate = grouped(bytes_per_second.ceil() as u64);
         match (self.bytes, bytes_per_second > 0.0) {
-            (_, true) => format!("{rate} B/s, none of it a frame; baud, rows, columns or format?"),
+            (_, true) => match &self.reason {
+                Some(reason) => {
+                    format!("{rate} B/s, none of it a frame; the last one dropped: {reason}")
+                }
+                None => {
+                    let baud = if has_baud { "baud, " } else { "" };
+                    format!("{rate} B/s, none of it a frame; {baud}rows, columns or format?")
+                }
+            },
             (0, _) => "nothing has come yet; is it sending?".to_owned(),
             _ => "the source has gone silent".to_owned(),
         }
@@ -263,10 +272,14 @@ mod tests {
             ..StreamCounts::default()
         };
         assert_eq!(counts.refusal(), Some(StreamRefusal::Cut));
-        assert_eq!(counts.silence(0.0), StreamRefusal::Cut.to_string());
+        assert_eq!(counts.silence(0.0, false), StreamRefusal::Cut.to_string());
         counts.frames = 1;
         assert_eq!(counts.refusal(), None);
-        assert_eq!(counts.silence(0.0), "the source has gone silent");
+        assert_eq!(counts.silence(0.0, false), "the source has gone silent");
+        counts.reason = Some("row 2 has 1 number, expected 2".to_owned());
+        let said =
+            "8 B/s, none of it a frame; the last one dropped: row 2 has 1 number, expected 2";
+        assert_eq!(counts.silence(8.0, true), said);
     }
 
     #[test]

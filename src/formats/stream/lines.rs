@@ -73,14 +73,25 @@ struct Block {
     broken: bool,
     /// The beginning of that row, or of the first row if none is invalid.
     sample: Vec<u8>,
-    /// The number of numbers in that row; None if it has anything else, or is not invalid.
-    broken_count: Option<usize>,
+    /// What is wrong with that row, if it has numbers only; None otherwise.
+    wrong: Option<WrongRow>,
     /// Whether the first line is a single value, which may be the time of the frame.
     begins_alone: bool,
     /// Whether the line below a single value has several numbers.
     is_below_value: bool,
     /// The decimal commas that its timestamps may have.
     commas: DecimalCommas,
+}
+
+/// A row with the wrong number of numbers.
+#[derive(Clone, Copy, Debug)]
+struct WrongRow {
+    /// The number of the row in its block, from 1.
+    row: u16,
+    /// The number of its numbers.
+    found: usize,
+    /// The number of numbers in the rows above it.
+    expected: usize,
 }
 
 impl Block {
@@ -209,7 +220,11 @@ impl LinesDecoder {
         if self.kind == LineKind::Frame && self.current.rows == 0 && !self.may_be_row(found) {
             self.current.values.truncate(before);
             self.size.pass_torn();
-            self.current.broken_count = found;
+            self.current.wrong = found.map(|found| WrongRow {
+                row: 1,
+                found,
+                expected: self.size.present().map_or(found, FrameSize::cells),
+            });
             if std::mem::replace(&mut self.begun, true) {
                 self.lose(1, line, counts);
             }
@@ -224,7 +239,14 @@ impl LinesDecoder {
         if self.current.broken || found != Some(expected) || self.current.rows > MAX_FRAME_SIDE {
             self.current.values.truncate(before);
             if !self.current.broken {
-                self.note_row(line, found);
+                let row = self.current.rows;
+                let wrong = found.filter(|&found| found != expected);
+                let wrong = wrong.map(|found| WrongRow {
+                    row,
+                    found,
+                    expected,
+                });
+                self.note_row(line, wrong);
             }
             self.current.broken = true;
             // No frame of a known size has that many rows.
@@ -258,37 +280,58 @@ impl LinesDecoder {
         self.parted && count.is_some() && count == columns
     }
 
-    /// Keeps the beginning of a row, and the number of its numbers if that is wrong.
-    fn note_row(&mut self, line: &[u8], wrong: Option<usize>) {
+    /// Keeps the beginning of a row, and what is wrong with it.
+    fn note_row(&mut self, line: &[u8], wrong: Option<WrongRow>) {
         self.current.sample.clear();
         self.current.sample.extend(line.iter().take(64));
-        self.current.broken_count = wrong;
+        self.current.wrong = wrong;
     }
 
-    /// Counts dropped frames, with a sample; and with the reason, if a single value stands above a frame, or if rows
-    /// and columns were given and a line has another number of numbers.
+    /// Counts dropped frames, with a sample and the reason, if it is known.
     fn lose(&self, frames: u64, sample: &[u8], counts: &mut StreamCounts) {
         counts.drop_frames(frames, sample);
+        counts.reason = self.reason();
+    }
+
+    /// Returns why the current block is not a frame: a single value stands above it, or a row has another number of
+    /// numbers than the rows above it or than was given, or too many. None if something else is wrong.
+    fn reason(&self) -> Option<String> {
         if self.current.is_below_value {
-            let mut reason = moment::ABOVE_ROWS.to_owned();
-            if !self.parted {
-                reason += ", and end each frame with an empty line";
-            }
-            counts.reason = Some(reason);
-            return;
+            let end = if self.parted {
+                ""
+            } else {
+                ", and end each frame with an empty line"
+            };
+            return Some(format!("{}{end}", moment::ABOVE_ROWS));
         }
-        let named = self.size.named().zip(self.current.broken_count);
-        counts.reason = named.map(|(size, found)| {
-            let found = counted(found as u64, "number");
-            let (columns, cells) = (size.columns(), size.cells());
-            match size.rows() {
-                1 => format!("{found}, expected {cells}"),
-                _ => format!(
-                    "{found}, expected {cells} for a frame of {}, or {columns} for a row",
-                    size.in_words()
-                ),
-            }
-        });
+        let numbers = |count: usize| counted(count as u64, "number");
+        let Some(WrongRow {
+            row,
+            found,
+            expected,
+        }) = self.current.wrong
+        else {
+            let columns = self
+                .current
+                .values
+                .len()
+                .checked_div(self.current.rows.into())?;
+            let is_wide = !self.current.broken && columns > MAX_FRAME_SIDE.into();
+            let columns = numbers(columns);
+            return is_wide.then(|| format!("{columns} a row, expected at most {MAX_FRAME_SIDE}"));
+        };
+        let Some(size) = self.size.named() else {
+            let found = numbers(found);
+            return Some(format!("row {row} has {found}, expected {expected}"));
+        };
+        let (found, columns, cells) = (numbers(found), size.columns(), size.cells());
+        Some(match size.rows() {
+            1 => format!("{found}, expected {cells}"),
+            _ => format!(
+                "{found}, expected {cells} for a frame of {}, or {columns} for a row",
+                size.in_words()
+            ),
+        })
     }
 
     /// Counts an invalid line at once if, as far as is known, no empty line separates frames.
@@ -408,7 +451,7 @@ impl LinesDecoder {
         if !torn.trim_ascii().is_empty() {
             self.current.rows = self.current.rows.saturating_add(1);
             self.current.broken = true;
-            self.current.broken_count = None;
+            self.current.wrong = None;
             self.current.sample = torn.iter().take(64).copied().collect();
         }
         // Only lines and no empty one: they are frames, or the rows of a single frame.
@@ -576,7 +619,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reason_gives_a_wrong_line_length_if_rows_and_columns_were_given() {
+    fn the_reason_gives_a_wrong_line_length() {
         let reason = |text: &str, shape| {
             let mut decoder = LinesDecoder::new(shape, true, FrameClock::default());
             let mut counts = StreamCounts::default();
@@ -597,7 +640,11 @@ mod tests {
             reason(timed, Some(FrameSize::of(4, 1))).as_deref(),
             Some(expected)
         );
-        assert_eq!(reason("1 2\n1\n\n", None), None);
+        let expected = "row 2 has 1 number, expected 2";
+        assert_eq!(reason("1 2\n1\n\n", None).as_deref(), Some(expected));
+        let wide = "1 ".repeat(600) + "\n\n";
+        let expected = "600 numbers a row, expected at most 512";
+        assert_eq!(reason(&wide, None).as_deref(), Some(expected));
         for (time, shape) in [
             ("0.1", None),
             ("12:00:00.25", None),

@@ -48,7 +48,7 @@ use crate::cli::commands::watch::check::{check, check_readable};
 use crate::cli::commands::watch::recording::WatchRecording;
 use crate::cli::commands::watch::reports::SourceReports;
 use crate::cli::commands::watch::tare_queue::TareQueue;
-use crate::cli::error::{CliError, note_advice};
+use crate::cli::error::CliError;
 use crate::cli::input::processing;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
@@ -196,7 +196,7 @@ impl Watcher<'_> {
             AcquireEvent::Tick(counts) => self.tick(counts),
             AcquireEvent::Ended(counts) => self.reports.end(counts),
             event => {
-                if let Some(text) = remark(event) {
+                if let Some(text) = self.reports.remark(event) {
                     self.reports.say(&text);
                 }
                 Ok(())
@@ -383,20 +383,4 @@ impl Watcher<'_> {
         let reason = self.gate.no_frame_reason()?;
         Some(self.reports.refused(&reason))
     }
-}
-
-/// Returns the note about an oddity of the source.
-fn remark(event: AcquireEvent<'_>) -> Option<String> {
-    Some(match event {
-        AcquireEvent::Silent {
-            bytes_per_second,
-            counts,
-            has_vanished,
-        } => AcquireEvent::silence(bytes_per_second, counts, has_vanished),
-        AcquireEvent::Lost(error) => AcquireEvent::lost(error),
-        AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
-        AcquireEvent::Note(note) => format!("warning: {note}{}", note_advice(note)),
-        AcquireEvent::Anew(how) => how.to_string(),
-        _ => return None,
-    })
 }

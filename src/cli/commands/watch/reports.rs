@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use crate::acquire::{AcquireError, AcquireOptions, FrameSource};
-use crate::cli::error::{CliError, stream_advice};
+use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource};
+use crate::cli::error::{CliError, note_advice, stream_advice};
 use crate::formats::recording::RecordingError;
 use crate::formats::stream::{NoFrameReason, StreamCounts, StreamFormat, StreamRefusal};
 use crate::formats::value::counted;
@@ -44,6 +44,25 @@ impl<'a> SourceReports<'a> {
     pub(super) fn say(&mut self, text: &str) {
         let line = format!("{}: {text}", self.source.name());
         (self.note)(&line);
+    }
+
+    /// Returns the note about an oddity of the source; None for any other event.
+    pub(super) fn remark(&self, event: AcquireEvent<'_>) -> Option<String> {
+        Some(match event {
+            AcquireEvent::Silent {
+                bytes_per_second,
+                counts,
+                has_vanished,
+            } => {
+                let has_baud = self.source.unused_baud().is_none();
+                AcquireEvent::silence(has_baud, bytes_per_second, counts, has_vanished)
+            }
+            AcquireEvent::Lost(error) => AcquireEvent::lost(error),
+            AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
+            AcquireEvent::Note(note) => format!("warning: {note}{}", note_advice(note)),
+            AcquireEvent::Anew(how) => how.to_string(),
+            _ => return None,
+        })
     }
 
     /// Returns an error of the source with this reason.

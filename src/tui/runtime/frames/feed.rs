@@ -218,7 +218,8 @@ impl FrameFeed {
                 has_vanished,
             } => self.change(|pending| {
                 let source = source::named(&request.source);
-                let what = AcquireEvent::silence(bytes_per_second, counts, has_vanished);
+                let has_baud = source.unused_baud().is_none();
+                let what = AcquireEvent::silence(has_baud, bytes_per_second, counts, has_vanished);
                 let why = no_frame::silence(&source, counts, &what);
                 pending.status().state = SourceState::Silent(why);
             }),

@@ -90,7 +90,7 @@ mod tests {
         let said = "no frame yet: none in 272 bytes; rows, columns or format?";
         // The message stays the same when nothing more comes.
         for rate in [136.0, 0.0] {
-            assert_eq!(silence(&file, &counts, &counts.silence(rate)), said);
+            assert_eq!(silence(&file, &counts, &counts.silence(rate, false)), said);
         }
     }
 }
