@@ -240,6 +240,12 @@ pub(crate) enum CliError {
         /// The folder that `--library` names.
         name: String,
     },
+    /// Nothing in the library can be changed.
+    #[error("{name}: the library is read-only")]
+    ReadOnlyLibrary {
+        /// The folder of the library.
+        name: String,
+    },
     /// Some shapes of the library are damaged. Each has been listed.
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes {

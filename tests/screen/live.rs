@@ -122,6 +122,22 @@ fn standard_input_is_not_offered_to_be_read_twice() {
 }
 
 #[test]
+fn the_first_and_the_last_frame_say_that_there_is_no_other() {
+    let mut page = watched(3, "<Home>");
+    then(
+        &mut page,
+        "<Left>",
+        &["frame 0", "no earlier frame in the history"],
+    );
+    then(
+        &mut page,
+        "<End><Right>",
+        &["frame 2", "no later frame yet"],
+    );
+    hides(&watched(3, "<Left>"), &["no earlier"]);
+}
+
+#[test]
 fn keys_for_the_shades_say_what_they_do() {
     let mut page = watched(6, "g");
     shows(&page, &["the shades cover this frame's values"]);
@@ -392,7 +408,8 @@ fn a_tare_by_key_is_made_of_frames_of_the_present_size() {
     let mut page = watched(0, "");
     send_frames(&mut page, &[2, 2, 2, 3, 3, 3, 3]);
     then(&mut page, "t", &["tare of the last 4 frames"]);
-    then(&mut page, "<Home>t", &["tare of the last 1 frame"]);
+    then(&mut page, "<Home><Right>t", &["tare of the 2 frames up to"]);
+    then(&mut page, "<Home>t", &["tare of frame 0"]);
 }
 
 #[test]
@@ -788,7 +805,7 @@ fn a_source_that_has_ended_cannot_be_recorded() {
         "r",
         &[
             "ended",
-            "! the source has ended, so there is nothing to record",
+            "! the source has ended, so there is nothing to record; w, then r, records it",
         ],
     );
     hides(&page, &["r record"]);

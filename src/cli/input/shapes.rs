@@ -170,6 +170,13 @@ impl Shelf {
 
     /// Returns the message about an error of the library. For an unknown name, it suggests a similar one.
     pub(crate) fn refused(&self, error: LibraryError) -> CliError {
+        if let LibraryError::System(refused) = &error
+            && refused.error.kind() == ErrorKind::ReadOnlyFilesystem
+        {
+            let folder = self.folder.as_ref().unwrap_or(&refused.path);
+            let name = folder.to_string_lossy().into_owned();
+            return CliError::ReadOnlyLibrary { name };
+        }
         if !matches!(
             error,
             LibraryError::Unknown { .. } | LibraryError::NotInTrash { .. }
@@ -217,7 +224,7 @@ impl Shelf {
             Err(LibraryError::Exists { name, .. }) => return Err(CliError::Taken { name }),
             saved => saved,
         };
-        saved?;
+        saved.map_err(|error| self.refused(error))?;
         Ok(library.stored_name(&shape.name)?)
     }
 }
@@ -225,6 +232,17 @@ impl Shelf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::storage::FileError;
+
+    /// The lock or the temporary file is the first that cannot be written, but does not matter to the user.
+    #[test]
+    fn a_read_only_library_is_called_so() {
+        let shelf = Shelf::new(None, false);
+        let (doing, lock) = ("open the lock", Path::new("ro/.lock"));
+        let refused = FileError::new(doing, lock, ErrorKind::ReadOnlyFilesystem.into());
+        let said = shelf.refused(refused.into()).to_string();
+        assert!(said.ends_with(": the library is read-only"), "{said}");
+    }
 
     #[test]
     fn shipped_shapes_need_no_folder() {

@@ -289,7 +289,8 @@ impl LinesDecoder {
 
     /// Counts dropped frames, with a sample and the reason, if it is known.
     fn lose(&self, frames: u64, sample: &[u8], counts: &mut StreamCounts) {
-        counts.drop_frames(frames, sample);
+        // The carriage return of CR LF belongs to the end of the line.
+        counts.drop_frames(frames, sample.trim_ascii_end());
         counts.reason = self.reason();
     }
 
@@ -377,7 +378,7 @@ impl LinesDecoder {
             }
             self.give(counts, sink);
         } else {
-            counts.drop_frames(1, &self.current.sample);
+            counts.drop_frames(1, self.current.sample.trim_ascii_end());
         }
     }
 
@@ -663,6 +664,16 @@ mod tests {
         }
         assert_eq!(reason("12:00:00.25 1\n1 2\n3 4\n\n", None), None);
         assert_eq!(reason("1 x\n1 2\n\n", Some(FrameSize::of(2, 2))), None);
+    }
+
+    #[test]
+    fn a_sample_ends_with_its_line() {
+        let mut decoder = LinesDecoder::new(None, true, FrameClock::default());
+        let mut counts = StreamCounts::default();
+        for line in ["1 2\r", "3\r", "\r"] {
+            decoder.line(line.as_bytes(), &mut counts, &mut |_| ());
+        }
+        assert_eq!(counts.sample.as_deref(), Some("3"));
     }
 
     #[test]

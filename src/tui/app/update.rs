@@ -285,7 +285,11 @@ fn at_question(app: &mut App, question: Question, message: &Message) -> Option<E
         return effect;
     }
     if *message == Message::Save {
-        refuse(app, "there is nothing to save first");
+        let text = match question.prompt {
+            Some(_) => "this question has to be answered first",
+            None => "there is nothing to save first",
+        };
+        refuse(app, text);
     }
     let Question {
         yes, no, prompt, ..

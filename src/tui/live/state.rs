@@ -430,10 +430,13 @@ impl Live {
     }
 
     /// Shows the frame that is `by` frames later in the history, or earlier if `by` is negative, and stays there.
-    pub fn scrub(&mut self, by: i64) {
+    /// Returns false if there is no frame further in that direction.
+    pub fn scrub(&mut self, by: i64) -> bool {
+        let before = self.cursor.shown().map(|shown| shown.number);
         if self.cursor.scrub(by) {
             self.read();
         }
+        self.cursor.shown().map(|shown| shown.number) != before
     }
 
     /// Shows the oldest frame of the history, and stays there.

@@ -174,7 +174,11 @@ pub(in crate::tui) fn in_live(
             }
             None => refuse_imprint(app, &page),
         },
-        Message::Scroll(by) => page.scrub(by.into()),
+        Message::Scroll(by) => {
+            if !page.scrub(by.into()) {
+                inform(app, at_edge(by));
+            }
+        }
         Message::ScrollTo(Endpoint::First) => page.to_oldest(),
         Message::ScrollTo(Endpoint::Last) => page.to_newest(),
         Message::SwitchPane => page.display.only_panel ^= true,
@@ -189,6 +193,15 @@ pub(in crate::tui) fn in_live(
     }
     app.dialogs.push(Dialog::Live(page));
     effect
+}
+
+/// Returns the notice if there is no frame further back or, with a positive number, further on.
+fn at_edge(by: i16) -> &'static str {
+    if by < 0 {
+        "no earlier frame in the history"
+    } else {
+        "no later frame yet"
+    }
 }
 
 /// Returns the shown imprint as a drawn one; None without one. The sensor has the size of the frame, and its pitch in
@@ -243,10 +256,7 @@ fn refuse_imprint(app: &mut App, page: &Live) {
 fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Tare => match page.tare_now() {
-            Ok(frames) => {
-                let frames = counted(frames, "frame");
-                inform(app, format!("tare of the last {frames}"));
-            }
+            Ok(frames) => inform(app, tare_of(page, frames)),
             Err(refused) => refuse(app, refused.to_string()),
         },
         LiveMessage::NoTare if page.drop_tare() => inform(app, "tare removed"),
@@ -273,7 +283,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         }
         LiveMessage::Record => match record(page) {
             Ok(effect) => return Some(effect),
-            Err(refused) => refuse(app, refused.to_string()),
+            Err(refused) => refuse_recording(app, page, &refused),
         },
         LiveMessage::Mark => mark(app, page),
         // The next one may be a model of the user.
@@ -287,6 +297,28 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::AtLeast(_) => {}
     }
     None
+}
+
+/// Shows why nothing is recorded, and which keys watch the source again and record it, if that is possible.
+fn refuse_recording(app: &mut App, page: &Live, refused: &LiveRefusal) {
+    let key = |action| app.keymap().label(Context::Live, action);
+    let (again, record) = (key(&action::WATCH_AGAIN), key(&action::RECORD));
+    let how = match page.check_again() {
+        Ok(()) => format!("; {again}, then {record}, records it"),
+        Err(_) => String::new(),
+    };
+    refuse(app, format!("{refused}{how}"));
+}
+
+/// Returns the notice about a tare of this number of frames, up to the shown one.
+fn tare_of(page: &Live, frames: u64) -> String {
+    let number = page.frame().filter(|_| page.cursor.frozen().is_some());
+    match (number.map(|frame| frame.number), frames) {
+        (Some(number), 1) => format!("tare of frame {number}"),
+        (Some(number), _) => format!("tare of the {frames} frames up to frame {number}"),
+        (None, 1) => "tare of 1 frame".to_owned(),
+        (None, _) => format!("tare of the last {}", counted(frames, "frame")),
+    }
 }
 
 /// Shows the next layer, and says why if it looks like the one before.

@@ -4,6 +4,7 @@
 //! once.
 
 use crate::description::{DESCRIPTORS, Descriptor};
+use crate::figure::Figure;
 use crate::formats::{StoredShape, value};
 use crate::parameter::Parameter;
 use crate::parameter::number::short;
@@ -169,8 +170,9 @@ fn edit_picture(app: &mut App) -> bool {
     true
 }
 
-/// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own. A shipped
-/// shape cannot be replaced, so a new name is proposed for it, as for a drawing without a name.
+/// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own, unless the
+/// name gives the sizes of a figure that has other sizes by now. A shipped shape cannot be replaced, so a new name is
+/// proposed for it, as for a drawing without a name.
 fn save(app: &mut App) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to save: the matrix is empty");
@@ -182,15 +184,30 @@ fn save(app: &mut App) {
     let own = app
         .stored()
         .filter(|stored| stored.owner == ShapeOrigin::Own);
-    let name = own.map_or_else(|| proposed_name(app), |stored| stored.name.clone());
+    let name = match own {
+        Some(stored) => match outdated(app, &stored.name) {
+            Some(present) => free_name(app, present),
+            None => stored.name.clone(),
+        },
+        None => free_name(app, name_of_origin(app)),
+    };
     let dialog = NameDialog::proposing(&name);
     app.dialogs.push(Dialog::Name(dialog));
 }
 
-/// Returns a name for a document that has no name of its own: the figure with its sizes, the picture, the shape or the
-/// frame that it comes from, or "drawing". A number follows if the name was used before: "drawing 2".
-fn proposed_name(app: &App) -> String {
-    let name = name_of_origin(app);
+/// Returns the name of the present figure if the document is stored under the name of the figure that it was.
+fn outdated(app: &App, stored: &str) -> Option<String> {
+    let name = |document: &Document| match &document.source {
+        Some(Source::Figure(figure)) => Some(name_of_figure(figure)),
+        _ => None,
+    };
+    let then = name(&app.history.origin().saved)?;
+    let now = name(app.history.present())?;
+    (then == stored && now != then).then_some(now)
+}
+
+/// Returns a name; a number follows if it was used before: "drawing 2".
+fn free_name(app: &App, name: String) -> String {
     let (mut free, mut number) = (name.clone(), 2);
     while app.history.knows(&free) {
         free = format!("{name} {number}");
@@ -199,21 +216,14 @@ fn proposed_name(app: &App) -> String {
     free
 }
 
-/// Returns a name that says where the document comes from.
+/// Returns a name for a document that has no name of its own: the figure with its sizes, the picture, the shape or the
+/// frame that it comes from, or "drawing".
 fn name_of_origin(app: &App) -> String {
     if let Some(stored) = app.stored() {
         return format!("{} copy", stored.name);
     }
     match &app.history.present().source {
-        Some(Source::Figure(figure)) => {
-            let size = |&parameter: &Parameter| figure.get(parameter).map(short);
-            let sizes: Vec<String> = figure.kind().sizes().iter().filter_map(size).collect();
-            let wall = figure
-                .get(Parameter::Thickness)
-                .filter(|_| figure.has_hole());
-            let wall = wall.map_or(String::new(), |wall| format!(" wall {}", short(wall)));
-            format!("{} {}{wall}", figure.kind().name(), sizes.join(" x "))
-        }
+        Some(Source::Figure(figure)) => name_of_figure(figure),
         Some(Source::Picture(picture)) => picture
             .name()
             .map_or_else(|| "picture".to_owned(), |name| format!("{name} moved")),
@@ -222,6 +232,17 @@ fn name_of_origin(app: &App) -> String {
             proposed.unwrap_or("drawing").to_owned()
         }
     }
+}
+
+/// Returns the kind of a figure with its sizes.
+fn name_of_figure(figure: &Figure) -> String {
+    let size = |&parameter: &Parameter| figure.get(parameter).map(short);
+    let sizes: Vec<String> = figure.kind().sizes().iter().filter_map(size).collect();
+    let wall = figure
+        .get(Parameter::Thickness)
+        .filter(|_| figure.has_hole());
+    let wall = wall.map_or(String::new(), |wall| format!(" wall {}", short(wall)));
+    format!("{} {}{wall}", figure.kind().name(), sizes.join(" x "))
 }
 
 /// Switches the mouse: either it sets taxels, or the terminal selects text with it. A terminal gives the mouse either

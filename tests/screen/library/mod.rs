@@ -24,6 +24,23 @@ fn mouse(session: &mut Session, kind: MouseKind, column: u16, row: u16) {
 }
 
 #[test]
+fn the_sizes_in_a_proposed_name_are_those_of_the_present_figure() {
+    let mut session = session("f<Enter>s");
+    shows(&session, &["Save as: ellipse 4 x 4"]);
+    then(
+        &mut session,
+        "<Enter>f<Tab>5<Enter>s",
+        &["Save as: ellipse 5 x 4"],
+    );
+    // A name of the user's own stays.
+    then(
+        &mut session,
+        "mine<Enter>f<Tab>6<Enter>s",
+        &["Save as: mine"],
+    );
+}
+
+#[test]
 fn the_proposed_name_of_a_second_drawing_is_free() {
     let mut session = session("<Space>s<Enter>n<Right><Space>s");
     shows(&session, &["Save as: drawing 2"]);
