@@ -804,6 +804,27 @@ fn a_threshold_out_of_range_names_what_is_allowed() {
     );
 }
 
+/// The threshold then applies to multiplied values, so the answer says that they are.
+#[test]
+fn an_answer_says_that_a_gain_was_applied() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("touch.jsonl");
+    std::fs::write(&path, "{\"frame\":[[5,1]]}\n").expect("written");
+    let run = |line: &str| taxel(&format!("{line} {} --at-least 3", path.display()), "2,4\n");
+    for line in ["frames --all --json", "watch --once"] {
+        assert_eq!(answers(&run(line))[0].get("gain"), None, "{line}");
+        let answer = &answers(&run(&format!("{line} --gain -")))[0];
+        assert_eq!(
+            (&answer["gain"], &answer["max"], &answer["imprint"][0]),
+            (&true.into(), &5.into(), &"##".into()),
+            "{line}"
+        );
+    }
+    let text = run("frames --all --gain - --tare 1").stdout;
+    let said = "sum 6, max 5, tare of 1 frame, gain applied\n";
+    assert!(text.contains(said), "{text}");
+}
+
 /// A mask and a gain can be read from standard input like from a file, but not both of them.
 #[test]
 fn a_mask_and_a_gain_may_come_from_standard_input() {

@@ -233,6 +233,8 @@ struct Selection {
     rule: SetRule,
     /// The number of frames of the tare, 0 without one; only for the answers.
     tare: u64,
+    /// Whether the tared values are multiplied by a gain; only for the answers.
+    gain: bool,
     /// Whether values are shown in shades, above the imprint and in drawings.
     heat: bool,
 }
@@ -277,6 +279,7 @@ impl Selection {
             channel,
             rule,
             tare: processing.tare.as_ref().map_or(0, Tare::frames),
+            gain: processing.gain.is_some(),
             heat: asked.heat,
         };
         Ok((selection, processing))
@@ -453,6 +456,7 @@ impl Selection {
             processed: *processed,
             rule: Some(self.rule),
             tare: self.tare,
+            gain: self.gain,
         };
         let mut line = json::ascii(&answer).into_bytes();
         match &mut output.namer {
@@ -487,6 +491,9 @@ impl Selection {
         let mut values = format!("sum {}{unit}, max {max}{unit}", short(processed.sum));
         if self.tare > 0 {
             values += &format!(", tare of {}", counted(self.tare, "frame"));
+        }
+        if self.gain {
+            values += ", gain applied";
         }
         vec![title, values, self.rule_text(&unit)]
     }

@@ -13,7 +13,7 @@ use crate::frame::{Frame, Processed, Rule, SetRule};
 /// ```
 /// `sum` and `max` are those of the recorded values, in the recording's unit, before tare and gain; the imprint is
 /// made after both. Without a rule, `rule`, `imprint` and `na` are null. With a tare, `tare` is the number of frames
-/// of which it was made.
+/// of which it was made; with a gain, `gain` is true.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct FrameAnswer<'a> {
@@ -27,10 +27,13 @@ pub struct FrameAnswer<'a> {
     pub rule: Option<SetRule>,
     /// The number of frames of which the tare was made; 0 without a tare.
     pub tare: u64,
+    /// Whether the tared values were multiplied by a gain.
+    pub gain: bool,
 }
 
 impl<'a> FrameAnswer<'a> {
-    /// Makes the answer for a frame and its processed form, without a channel, a rule or a tare.
+    /// Makes the answer for a frame and its processed form, without a channel, a rule, a tare or a
+    /// gain.
     pub fn new(frame: &'a Frame, processed: Processed<'a>) -> Self {
         Self {
             frame,
@@ -38,6 +41,7 @@ impl<'a> FrameAnswer<'a> {
             processed,
             rule: None,
             tare: 0,
+            gain: false,
         }
     }
 }
@@ -54,6 +58,9 @@ impl Serialize for FrameAnswer<'_> {
         map.serialize_entry("max", &self.processed.max.map(Shortest))?;
         if self.tare > 0 {
             map.serialize_entry("tare", &self.tare)?;
+        }
+        if self.gain {
+            map.serialize_entry("gain", &true)?;
         }
         map.serialize_entry("rule", &self.rule)?;
         let imprint = self.processed.imprint.as_ref();
@@ -122,6 +129,7 @@ mod tests {
             processed: processing.run(&frame).expect("it fits"),
             rule: None,
             tare: 0,
+            gain: false,
         };
         assert_eq!(
             json::text(&answer),

@@ -60,6 +60,7 @@ impl Answers {
             return Ok(());
         };
         let tare = processing.tare.as_ref().map_or(0, Tare::frames);
+        let gain = processing.gain.is_some();
         let processed = match processing.run(frame) {
             Ok(processed) => processed,
             Err(error) if self.answered > 0 && error.is_of_size() => {
@@ -75,6 +76,7 @@ impl Answers {
             processed,
             rule,
             tare,
+            gain,
         };
         let line = json::ascii(&answer) + "\n";
         if lines.send((line.into_bytes(), processed.imprint), self.may_give_up) {
