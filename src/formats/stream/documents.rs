@@ -125,7 +125,7 @@ impl RosDecoder {
                     self.end(line, counts, sink);
                 }
             }
-            RosLine::Wrong(_) => self.broken = true,
+            RosLine::Wrong(_) | RosLine::Unended => self.broken = true,
             RosLine::Whole => self.end(line, counts, sink),
         }
         self.begun |= trimmed == b"---";

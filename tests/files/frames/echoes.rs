@@ -51,6 +51,22 @@ fn an_array_may_continue_with_a_negative_number() {
 }
 
 #[test]
+fn a_second_array_in_a_message_is_a_missing_end() {
+    for (text, line) in [
+        ("array('H', [1, 2])\narray('H', [3, 4])\n", 2),
+        ("array('H', [1, 2,\narray('H', [3, 4])\n---\n", 2),
+        ("data:\n- 1\n- 2\ndata:\n- 3\n- 4\n---\n", 4),
+    ] {
+        for shape in [(1, 2), (2, 2)] {
+            let found = recorded(text.as_bytes(), Some(shape));
+            let error = found.error.map(|error| error.to_string());
+            let expected = format!("line {line}: found another array, expected '---' before it");
+            assert_eq!((found.frames.len(), error), (0, Some(expected)), "{text}");
+        }
+    }
+}
+
+#[test]
 fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
     let text = b"rows,1,4,columns,4,4,0,1,2,3,4\n";
     for (named, found) in [

@@ -289,6 +289,18 @@ fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
         &[5, 6, 7, 8, 255],
     ]
     .concat();
+    // The end of a message is missing, so two arrays are in one.
+    let ros = [1, 2, 3, 4].map(|value| format!("array('H', [{value}, 0])\n---\n"));
+    let ros = ros.concat().replace("[2, 0])\n---\n", "[2, 0])\n");
+    for shape in [(1, 2), (1, 4)] {
+        let given = options(Some(shape)).with_format(StreamFormat::Ros2);
+        let (found, counts) = decoded(given, ros.as_bytes(), &mut Random::new(3));
+        let expected = if shape == (1, 2) { 2 } else { 0 };
+        assert_eq!(
+            (found.len(), counts.dropped),
+            (expected, 3 - expected as u64)
+        );
+    }
     let given = options(Some((2, 2))).with_format(StreamFormat::Matsense);
     let (found, counts) = decoded(
         given,

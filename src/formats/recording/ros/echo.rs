@@ -14,7 +14,8 @@
 //! - 12
 //! ---
 //! ```
-//! Notices of `ros2 topic echo` between messages, for example about a lost message, are skipped. Values before the
+//! Notices of `ros2 topic echo` between messages, for example about a lost message, are skipped. A second array in a
+//! message shows that the `---` between two messages is missing. Values before the
 //! offset of a layout (`data_offset`) are not cells. Rows and columns are the first two sizes of the layout, if all
 //! others are 1; otherwise they must be given. Source: the output of the program.
 
@@ -54,6 +55,8 @@ pub(in crate::formats) enum RosLine {
     Cut,
     /// The field with this number, from 1, is not a number.
     Wrong(usize),
+    /// Another array begins: the end of the message before it is missing.
+    Unended,
 }
 
 /// The most values of a message that are kept, one more than any frame has.
@@ -141,6 +144,10 @@ impl RosMessage {
             self.offset_of(offset);
             return RosLine::More;
         }
+        let bracket = line.iter().position(|&byte| byte == b'[');
+        if !self.values.is_empty() && (bracket.is_some() || line == b"data:") {
+            return RosLine::Unended;
+        }
         if line == b"data:" {
             self.open = true;
             return RosLine::More;
@@ -154,7 +161,6 @@ impl RosMessage {
                 RosLine::Wrong(1)
             };
         }
-        let bracket = line.iter().position(|&byte| byte == b'[');
         match bracket {
             Some(start) => self.list(&line[start + 1..]),
             None if self.open && line != b"-" => self.list(line),
@@ -364,6 +370,10 @@ pub(in crate::formats::recording) fn read(
             RosLine::Whole => None,
             RosLine::Cut => {
                 let text = "the echo leaves out values ('...'): record it with --full-length";
+                Some(RecordingError::in_line(number, text))
+            }
+            RosLine::Unended => {
+                let text = "found another array, expected '---' before it";
                 Some(RecordingError::in_line(number, text))
             }
             RosLine::Wrong(column) => {
