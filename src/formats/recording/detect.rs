@@ -17,6 +17,7 @@ use crate::formats::recording::numpy::{archive, array};
 #[cfg(feature = "mcap")]
 use crate::formats::recording::ros::mcap;
 use crate::formats::recording::ros::{MCAP_MAGIC, echo};
+use crate::formats::recording::table::cell_names::is_first_cell;
 use crate::formats::recording::table::delimited;
 use crate::formats::recording::table::layout::EarlierLayout;
 use crate::formats::recording::text::lines::is_blank;
@@ -33,7 +34,7 @@ const LOOKED_AT: usize = 1 << 16;
 const CHUNK: usize = 1 << 16;
 
 /// Returns the format of a recording, from its first 64 KiB; None if it is not a recording. A text of numbers counts
-/// as a table, except a single column, since many other files are one.
+/// as a table, except a single column without the name of a cell, since many other files are one.
 pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
     recognised_with(start, ReadOptions::default())
 }
@@ -76,7 +77,8 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
         _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
         _ if moment::is_alone(row) => return None,
-        _ if is_table(row) || options.size.is_some() && is_number(row) => RecordingFormat::Csv,
+        _ if is_table(row) || is_cell_name(row) => RecordingFormat::Csv,
+        _ if options.size.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,
     })
 }
@@ -150,6 +152,13 @@ fn is_column(text: &[u8]) -> bool {
 /// Returns true if a line is a single number, or a word for a cell without a value.
 fn is_number(line: &[u8]) -> bool {
     Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
+}
+
+/// Returns true if a line is the name of the only cell of a sensor.
+fn is_cell_name(line: &[u8]) -> bool {
+    let is_word = |&byte: &u8| byte.is_ascii_alphanumeric() || b"_[]".contains(&byte);
+    let name = line.trim_ascii();
+    name.iter().all(is_word) && str::from_utf8(name).is_ok_and(is_first_cell)
 }
 
 /// Returns true if the first line of a text is a timestamp or a single number, which may be one.

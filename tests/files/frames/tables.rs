@@ -76,6 +76,22 @@ fn a_first_line_with_a_text_is_a_frame_if_the_next_one_has_a_text_there() {
 }
 
 #[test]
+fn a_sensor_of_one_cell_needs_no_rows_and_columns() {
+    for (text, expected) in [
+        ("t,S0_0\n0,5\n1,6\n", [Some(0.0), Some(1.0)]),
+        ("S0_0\n5\n6\n", [None, None]),
+    ] {
+        let found = frames(text, None);
+        let expected = expected.into_iter().zip([5.0, 6.0]);
+        let expected = expected.map(|(time, value)| (None, time, vec![value]));
+        assert_eq!(found, expected.collect::<Vec<_>>(), "{text}");
+    }
+    for text in ["x1\n5\n6\n", "v1.1\n5\n6\n", "S0_0\ntext\n"] {
+        assert!(recorded(text.as_bytes(), None).error.is_some(), "{text}");
+    }
+}
+
+#[test]
 fn an_index_of_pandas_is_not_a_cell() {
     let text = ",0,1,2,3\n0,1,2,3,4\n1,5,6,7,8\n";
     let expected = [

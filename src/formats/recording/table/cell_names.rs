@@ -59,6 +59,12 @@ fn split<const N: usize>(name: &str) -> Option<(String, [u32; N])> {
     Some((format!("{rest}{skeleton}"), numbers))
 }
 
+/// Returns true if a name is that of the first cell of a sensor: `S0_0` or `r1c1`.
+pub(in crate::formats::recording) fn is_first_cell(name: &str) -> bool {
+    let is_first = matches!(split::<2>(name), Some((_, [0, 0] | [1, 1])));
+    is_first && name.starts_with(char::is_alphabetic)
+}
+
 /// Returns true if a pattern such as `pad_col#_row#` names the column before the row. Without words for both, the row
 /// comes first.
 fn is_column_first(skeleton: &str) -> bool {

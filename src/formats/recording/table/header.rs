@@ -4,14 +4,15 @@
 use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::table::cell_names::{NamedCells, cells};
+use crate::formats::recording::table::cell_names::{NamedCells, cells, is_first_cell};
 use crate::formats::recording::table::clock::TimeFields;
 use crate::formats::recording::text::lines::{TextLines, is_blank};
 use crate::formats::recording::text::separator::{Separator, is_comment, is_none};
 use crate::formats::recording::time::field_role::{
-    FieldRole, is_named_time, rest_of_second, role, time_unit,
+    FieldRole, is_named_time, rest_of_second, role, roles, time_unit,
 };
 use crate::formats::recording::time::moment;
+use crate::frame::FrameSize;
 
 /// The number of lines that are compared with the first one, or with each other if no header names the numbers beside
 /// the cells.
@@ -96,7 +97,7 @@ impl<'a> TableHeader<'a> {
     /// Finds the cells that the names in line `number` describe.
     pub(super) fn new(names: Vec<&'a str>, number: u64) -> Self {
         Self {
-            cells: cells(&names),
+            cells: cells(&names).or_else(|| only_cell(&names)),
             names,
             number,
             units: None,
@@ -154,6 +155,19 @@ impl<'a> TableHeader<'a> {
         let has_first = |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == first.field);
         Some(*times.iter().find(has_first).unwrap_or(first))
     }
+}
+
+/// Returns the cell of a sensor that has only one: the only field without another role, if its name is that of a first
+/// cell. Among other fields, such a name may be chance.
+fn only_cell(names: &[&str]) -> Option<NamedCells> {
+    if names.len() > MOST_BESIDE {
+        return None;
+    }
+    let roles = roles(names);
+    let mut others = (0..names.len()).filter(|&field| roles[field].is_none());
+    let (cell, only) = (others.next()?, others.next().is_none());
+    let is_cell = only && is_first_cell(names[cell]);
+    is_cell.then(|| NamedCells::Grid(FrameSize::SMALLEST, vec![cell]))
 }
 
 /// Returns true if a line with words is a frame like the next line, with a date or a label beside its cells: words
@@ -279,6 +293,26 @@ mod tests {
             let header = TableHeader::new(names.to_vec(), 1);
             let found = [0, 1].map(|others| header.count_from_0(others));
             assert_eq!(found, [alone, after_another], "{names:?}");
+        }
+    }
+
+    #[test]
+    fn a_sensor_of_one_cell_has_a_name_like_any_other() {
+        for (names, cell) in [
+            (&["t", "S0_0"][..], Some(1)),
+            (&["frame", "r1c1", "time"], Some(1)),
+            (&["", "pad[0][0]"], Some(1)),
+            (&["S0_0"], Some(0)),
+            // Another field may be the cell, or it is not the first cell.
+            (&["x1", "S0_0"], None),
+            (&["t", "force", "run_1_1"], None),
+            (&["t", "S0_1"], None),
+            (&["t", "S0"], None),
+            (&["", "1.1"], None),
+        ] {
+            let header = TableHeader::new(names.to_vec(), 1);
+            let expected = cell.map(|cell| NamedCells::Grid(FrameSize::SMALLEST, vec![cell]));
+            assert_eq!(header.cells, expected, "{names:?}");
         }
     }
 

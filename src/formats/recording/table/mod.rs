@@ -11,7 +11,7 @@
 
 mod clock;
 
-mod cell_names;
+pub(super) mod cell_names;
 
 mod unnamed_fields;
 
