@@ -90,6 +90,42 @@ fn the_last_unit_of_tekscan_is_used_and_metres_are_converted() {
 }
 
 #[test]
+fn a_unit_of_tekscan_is_not_empty_and_not_in_comments() {
+    for (header, unit) in [
+        ("UNITS\n", None),
+        ("UNITS,,\n", None),
+        ("UNITS kPa\nCOMMENTS:\nUNITS fake\n", Some("kPa")),
+        (
+            "COMMENTS the pad\nUNITS fake\nCOMMENTS\nUNITS kPa\n",
+            Some("kPa"),
+        ),
+    ] {
+        let text = format!("ROWS 1\nCOLS 2\n{header}ASCII_DATA @@\nFrame 1\n1,2\n\n@@\n");
+        let found = recorded(text.as_bytes(), None);
+        assert_eq!(error(&found), None, "{header}");
+        assert_eq!(found.channels[0].unit.as_deref(), unit, "{header}");
+    }
+}
+
+#[test]
+fn the_times_of_tekscan_count_from_the_first_frame() {
+    for (titles, times) in [
+        (["7, 0.25,,", "8, 0.5,,", "9"], [0.0, 0.25, 1.0]),
+        (["11", "12", "14"], [0.0, 0.5, 1.5]),
+        (["11", "12, 5.5", "13, 6.25"], [0.0, 0.5, 1.25]),
+    ] {
+        let frames = titles.map(|title| format!("Frame {title}\n1,2\n\n"));
+        let text = format!(
+            "ROWS 1\nCOLS 2\nSECONDS_PER_FRAME 0.5\nASCII_DATA @@\n{}@@\n",
+            frames.concat()
+        );
+        let found = recorded(text.as_bytes(), None);
+        let found: Vec<_> = found.frames.iter().map(|frame| frame.time).collect();
+        assert_eq!(found, times.map(Some), "{titles:?}");
+    }
+}
+
+#[test]
 fn a_pitch_is_rounded_and_one_that_no_sensor_has_is_unknown() {
     let tekscan = |pitch: &str, unit: &str| {
         format!(

@@ -1,8 +1,8 @@
 //! Tekscan's ASCII export (I-Scan, F-Scan): a header of keys, then the frames, row by row.
 //!
 //! `COMMENTS` may run over several lines that look like keys or frames. Keys above the comments count where they
-//! first occur, so `ROWS`, `COLS` and others are taken from their first line; `UNITS` is below the comments, so its
-//! last line counts. Frames begin only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad
+//! first occur, so `ROWS`, `COLS` and others are taken from their first line; `UNITS` is usually below the comments, so
+//! its last line counts, unless there is one above them. Frames begin only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad
 //! lines with commas. `B` means that the sensor has no cell there.
 //! ```text
 //! DATA_TYPE MOVIE
@@ -18,8 +18,8 @@
 //!
 //! @@
 //! ```
-//! The title of a frame may have more fields: `Frame 2, 0.1,, date time,,,Raw Sum=,,307` gives its time in seconds
-//! and the sum of its raw values, which is checked if the values are raw. Other keys are ignored; `NOISE_THRESHOLD`
+//! The title of a frame may have more fields: `Frame 2, 0.1,, date time,,,Raw Sum=,,307` gives its time in seconds,
+//! which is counted from the first frame, and the sum of its raw values, which is checked if the values are raw. Other keys are ignored; `NOISE_THRESHOLD`
 //! is one of them, since it says what was cut off while recording, not what counts as touched. Source: exports of
 //! I-Scan and F-Scan.
 
@@ -34,9 +34,9 @@ use crate::formats::recording::side::stated;
 use crate::formats::recording::text::lines::{TextLines, is_blank, text, unpadded};
 use crate::formats::recording::text::number;
 use crate::formats::recording::text::row::{self, Field};
-use crate::formats::recording::text::separator::Separator;
+use crate::formats::recording::text::separator::{Separator, decimal};
 use crate::formats::recording::time::unit::TimeUnit;
-use crate::formats::seconds::of_label;
+use crate::formats::seconds::{of_label, since};
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
 use crate::quote::shortened;
@@ -44,7 +44,8 @@ use crate::quote::shortened;
 /// The largest difference between two sums that is not an error.
 const ROUNDING: f64 = 0.5;
 
-/// The content of the header; of each key the first value counts, except that the last `UNITS` counts.
+/// The content of the header; of each key the first value counts, except that the last `UNITS` counts if none is above
+/// the comments.
 #[derive(Default)]
 struct TekscanHeader {
     /// `ROWS`.
@@ -57,6 +58,8 @@ struct TekscanHeader {
     column_spacing: Option<f64>,
     /// The unit, the start and the time step of the channel.
     info: ChannelInfo,
+    /// Whether the unit is above `COMMENTS`; None before these.
+    has_unit: Option<bool>,
 }
 
 impl TekscanHeader {
@@ -83,7 +86,12 @@ impl TekscanHeader {
                 self.info.seconds_per_frame =
                     seconds.and_then(|seconds| TimeUnit::Seconds.step_in_seconds(seconds));
             }
-            b"UNITS" => self.info.unit = Some(text(value)),
+            b"UNITS" if self.has_unit != Some(true) => {
+                self.info.unit = Some(text(value)).filter(|unit| !unit.is_empty());
+            }
+            b"COMMENTS" | b"COMMENTS:" => {
+                self.has_unit.get_or_insert(self.info.unit.is_some());
+            }
             b"TIME" if self.info.start.is_none() => self.info.start = Some(text(value)),
             _ => {}
         }
@@ -92,7 +100,7 @@ impl TekscanHeader {
 }
 
 /// Reads a distance between cells with its unit, in mm: `1.27 mm`, `0.5 centimeters`, `1.27e-003 meters` or
-/// `0.05 in.`. None without a unit, since it may be any, so the pitch stays unknown.
+/// `0.05 in.`; the decimal sign may be a comma. None without a unit, since it may be any, so the pitch stays unknown.
 fn spacing(value: &[u8]) -> Option<f64> {
     let value = text(value);
     let value = value.trim();
@@ -106,7 +114,9 @@ fn spacing(value: &[u8]) -> Option<f64> {
         .filter(|(_, letter)| letter.is_alphabetic());
     let (end, _) = letters.find(|&(at, _)| !is_exponent(at))?;
     let (length, unit) = value.split_at(end);
-    let length = number::read(length.trim_end().as_bytes())?;
+    let Field::Value(length) = decimal(length.trim_end().as_bytes()) else {
+        return None;
+    };
     LengthUnit::of_name(unit)?.pitch_in_mm(length)
 }
 
@@ -160,7 +170,7 @@ fn frames(
     let mut frame = Frame::new(size);
     let is_raw = |unit: &String| unit.eq_ignore_ascii_case("raw");
     let is_raw = info.unit.as_ref().is_some_and(is_raw);
-    let mut first = None;
+    let (mut first, mut start) = (None, None);
     for number in 0.. {
         if !lines.advance_to_content()? {
             let message = "ends here, expected another frame or '@@'";
@@ -174,7 +184,12 @@ fn frames(
         frame.number = number;
         frame.label = Some(title.label);
         let by_label = of_label(title.label, &mut first, info.seconds_per_frame);
-        frame.time = title.time.or(by_label);
+        // If earlier titles have no time, the first one that has counts from the first frame by its label.
+        let stated = title.time.map(|time| {
+            let start = *start.get_or_insert_with(|| by_label.map_or(time, |label| time - label));
+            since(start, time)
+        });
+        frame.time = stated.or(by_label);
         values(lines, &mut frame)?;
         let sum = title.sum.filter(|_| is_raw);
         if let Some(note) = sum.and_then(|sum| odd_sum(&frame, sum)) {
@@ -226,7 +241,7 @@ fn odd_sum(frame: &Frame, stated: f64) -> Option<RecordingNote> {
 struct FrameTitle {
     /// The number after `Frame`, from 1.
     label: i64,
-    /// The time in seconds since the start, if it is given; otherwise it follows from the time step in the header.
+    /// The time in seconds, if it is given; otherwise it follows from the time step in the header.
     time: Option<f64>,
     /// `Raw Sum`: the sum of the sensor's own numbers.
     sum: Option<f64>,
@@ -277,6 +292,7 @@ mod tests {
             ("1.27e-003 meters", Some(1.27)),
             ("1.27E-3m", Some(1.27)),
             ("0.127 cm", Some(1.27)),
+            ("0,5 cm", Some(5.0)),
             ("0.57 cm", Some(5.7)),
             ("1e-13 m", None),
             ("1e308 in", None),
