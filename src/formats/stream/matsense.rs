@@ -42,10 +42,12 @@ struct Parts {
     framing: Framing,
     /// The number of cells in a frame.
     cells: usize,
-    /// The cells of the current frame so far.
+    /// The cells of the current frame so far, or the bytes since the end of the last one.
     values: Vec<u8>,
-    /// Whether the last byte was inside a frame.
-    inside: bool,
+    /// Whether the start or the end of a frame has been seen; what precedes it is dropped.
+    begun: bool,
+    /// Whether a bracketed frame has been opened.
+    opened: bool,
     /// Whether the last byte was an [`ESCAPE`].
     escaped: bool,
     /// Whether the frame has too many cells or an unknown escape.
@@ -72,7 +74,8 @@ impl Parts {
             framing,
             cells,
             values: Vec::new(),
-            inside: framing == Framing::Ended && from_start,
+            begun: framing == Framing::Ended && from_start,
+            opened: false,
             escaped: false,
             broken: false,
             dropped: 0,
@@ -83,30 +86,31 @@ impl Parts {
     fn byte(&mut self, byte: u8) -> Part {
         match self.framing {
             Framing::Ended if byte == END => {
-                let inside = std::mem::replace(&mut self.inside, true);
-                self.end(inside)
+                let is_frame = std::mem::replace(&mut self.begun, true);
+                self.end(is_frame)
             }
             Framing::Ended => self.value(byte),
             Framing::Bracketed => self.bracketed(byte),
         }
     }
 
-    /// Takes the next byte of a bracketed stream. A frame is torn if another one opens before it is closed.
+    /// Takes the next byte of a bracketed stream. A frame is torn if another one opens before it is closed, or if it is
+    /// closed but was not opened.
     fn bracketed(&mut self, byte: u8) -> Part {
         match byte {
             OPEN => {
-                // The frame before it was not closed.
-                let torn = self.inside && !self.values.is_empty();
-                self.values.clear();
-                (self.inside, self.escaped, self.broken) = (true, false, false);
-                if torn { Part::Dropped } else { Part::More }
+                (self.begun, self.escaped) = (true, false);
+                self.opened = true;
+                // The frame before it was not closed, or not opened.
+                self.end(false)
             }
             CLOSE => {
-                self.broken |= self.escaped;
-                let inside = std::mem::replace(&mut self.inside, false);
-                self.end(inside)
+                self.broken |= std::mem::take(&mut self.escaped);
+                self.begun = true;
+                let is_frame = std::mem::take(&mut self.opened);
+                self.end(is_frame)
             }
-            ESCAPE if self.inside && !self.escaped => {
+            ESCAPE if self.opened && !self.escaped => {
                 self.escaped = true;
                 Part::More
             }
@@ -123,9 +127,9 @@ impl Parts {
         }
     }
 
-    /// Adds a cell, if the start of the frame was seen.
+    /// Adds a cell, or a byte between two frames.
     fn value(&mut self, byte: u8) -> Part {
-        if self.inside {
+        if self.begun {
             if self.values.len() < self.cells {
                 self.values.push(byte);
             } else {
@@ -142,14 +146,15 @@ impl Parts {
         self.framing == Framing::Ended && (*part == Part::Dropped || brackets())
     }
 
-    /// Ends a frame. Its values stay until the next byte.
-    fn end(&mut self, inside: bool) -> Part {
-        let whole = !std::mem::take(&mut self.broken) && self.values.len() == self.cells;
-        let is_empty = self.values.is_empty();
-        match (inside, whole) {
-            (true, true) => Part::Whole,
-            (true, false) if !is_empty => Part::Dropped,
-            _ => Part::More,
+    /// Ends a frame, or bytes that are not a frame. Its values stay until the next byte.
+    fn end(&mut self, is_frame: bool) -> Part {
+        let is_broken = std::mem::take(&mut self.broken);
+        if is_frame && !is_broken && self.values.len() == self.cells {
+            Part::Whole
+        } else if self.values.is_empty() {
+            Part::More
+        } else {
+            Part::Dropped
         }
     }
 }
@@ -194,7 +199,7 @@ impl MatsenseDecoder {
                 if undecided && part == Part::Whole {
                     waiting.push(parts.values.clone());
                 } else if undecided {
-                    parts.dropped += u64::from(!waiting.is_empty());
+                    parts.dropped += 1;
                 } else if part == Part::Whole {
                     give(&mut self.frame, &parts.values, counts, sink);
                 } else {
@@ -254,7 +259,7 @@ impl MatsenseDecoder {
             self.decide(usize::from(brackets), counts, sink);
         }
         for (parts, _) in &mut self.candidates {
-            if parts.inside && !parts.values.is_empty() {
+            if !parts.values.is_empty() {
                 counts.drop_frames(1, &parts.values);
                 parts.values.clear();
             }
@@ -326,6 +331,30 @@ mod tests {
             stream.remove(at * 5);
             let (frames, _) = decoded(&stream, FrameSize::of(2, 2), true);
             assert_eq!(frames.len(), 8, "{at}");
+        }
+    }
+
+    #[test]
+    fn damaged_frames_are_counted_wherever_they_are() {
+        let whole = b"\x5b\x01\x02\x03\x04\x5d".to_vec();
+        let wanted = vec![vec![1.0, 2.0, 3.0, 4.0]; 3];
+        for damaged in [
+            &b"\x5b\x01\x5c\x09\x03\x04\x5d"[..],
+            b"\x5b\x01\x02\x5d",
+            b"\x5b\x01\x02",
+        ] {
+            for at in 0..3 {
+                let mut frames = vec![&whole[..]; 3];
+                frames.insert(at, damaged);
+                let found = decoded(&frames.concat(), FrameSize::of(2, 2), false);
+                assert_eq!(found, (wanted.clone(), 1), "{damaged:?} {at}");
+            }
+        }
+        // Frames that lack a bracket, and what precedes the first boundary.
+        for (between, dropped) in [(&b"\x01\x02\x03\x04\x5d"[..], 1), (b"\x01\x02\x03", 1)] {
+            let stream = [between, &whole, between, &whole, &whole].concat();
+            let found = decoded(&stream, FrameSize::of(2, 2), false);
+            assert_eq!(found, (wanted.clone(), dropped), "{between:?}");
         }
     }
 
