@@ -19,6 +19,10 @@ const TOGETHER: f64 = 0.1;
 /// bursts last about as long.
 const GAP: f64 = 1.0;
 
+/// The largest deviation of a burst from the mean, as a share of it, of frames that come evenly. A clock that counts
+/// hundredths of a second deviates that much from a tenth.
+const UNEVEN: f64 = 0.1;
+
 /// A measurement of the rate of the last frames.
 #[derive(Clone, Debug)]
 pub(crate) struct FrameRate {
@@ -28,6 +32,8 @@ pub(crate) struct FrameRate {
     most: usize,
     /// The burst that has not ended: the time of its first frame, and its number of frames.
     open: Option<(f64, u32)>,
+    /// The number of frames that were earlier than the open burst.
+    falls: usize,
 }
 
 /// A burst: frames that came at about the same time.
@@ -45,6 +51,7 @@ impl FrameRate {
             bursts: VecDeque::new(),
             most,
             open: None,
+            falls: 0,
         }
     }
 
@@ -64,6 +71,7 @@ impl FrameRate {
                 }
                 self.bursts.push_back(Burst { frames, seconds });
             }
+            self.falls += usize::from(seconds < 0.0);
         }
         self.open = Some((time, 1));
     }
@@ -71,15 +79,33 @@ impl FrameRate {
     /// Returns the mean time from a frame to the next, in seconds, without gaps. None if all frames have come in one
     /// burst: their times do not show the rate.
     pub(crate) fn seconds_per_frame(&self) -> Option<f64> {
-        let mut lengths: Vec<f64> = self.bursts.iter().map(|burst| burst.seconds).collect();
-        lengths.sort_by(f64::total_cmp);
-        let median = lengths.get(lengths.len().saturating_sub(1) / 2)?;
-        let longest = GAP.max(3.0 * median);
-        let usual = self.bursts.iter().filter(|burst| burst.seconds <= longest);
-        let (frames, seconds) = usual.fold((0.0, 0.0), |(frames, seconds), burst| {
+        let (frames, seconds) = self.usual().fold((0.0, 0.0), |(frames, seconds), burst| {
             (frames + f64::from(burst.frames), seconds + burst.seconds)
         });
         Some(to_nanoseconds(seconds / frames)).filter(|&step| step > 0.0)
+    }
+
+    /// Returns the mean time from a frame to the next, like [`Self::seconds_per_frame`], if frames came evenly; None if
+    /// times between gaps differ, or if most times are gaps or go back.
+    pub(crate) fn even_seconds_per_frame(&self) -> Option<f64> {
+        let step = self.seconds_per_frame()?;
+        let is_even = |burst: &Burst| {
+            let expected = f64::from(burst.frames) * step;
+            (burst.seconds - expected).abs() <= UNEVEN * expected
+        };
+        let usual = self.usual().count();
+        let breaks = self.bursts.len() - usual + self.falls;
+        (self.usual().all(is_even) && breaks < usual).then_some(step)
+    }
+
+    /// Returns the bursts without gaps.
+    fn usual(&self) -> impl Iterator<Item = &Burst> {
+        let mut lengths: Vec<f64> = self.bursts.iter().map(|burst| burst.seconds).collect();
+        lengths.sort_by(f64::total_cmp);
+        let median = lengths.get(lengths.len().saturating_sub(1) / 2);
+        let longest = median.map_or(GAP, |median| GAP.max(3.0 * median));
+        let bursts = self.bursts.iter();
+        bursts.filter(move |burst| burst.seconds <= longest)
     }
 }
 
@@ -137,6 +163,23 @@ mod tests {
         );
         let steady = (0..1000).map(|frame| f64::from(frame) * 0.02);
         assert_eq!(step(steady), Some(0.02));
+    }
+
+    #[test]
+    fn an_even_rate_needs_equal_steps() {
+        let even = |times: &[f64]| {
+            let mut rate = FrameRate::over(4096);
+            times.iter().for_each(|&time| rate.add(time));
+            rate.even_seconds_per_frame()
+        };
+        assert_eq!(even(&[0.0, 0.1, 5.0, 5.2, 90.0]), None);
+        assert_eq!(even(&[0.0, 1.0, -0.5]), None);
+        assert_eq!(even(&[0.0, 0.25, 40.0]), None);
+        assert_eq!(even(&[0.0, 0.25, 0.5, 40.0]), Some(0.25));
+        // Rounded to hundredths.
+        let rounded = [0.0, 0.14, 0.29, 0.43, 0.57, 0.71, 0.86, 1.0];
+        assert_eq!(even(&rounded), Some(0.142_857_143));
+        assert_eq!(even(&[]), None);
     }
 
     #[test]

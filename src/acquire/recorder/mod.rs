@@ -75,6 +75,8 @@ pub struct FrameRecorder {
     reason: Option<String>,
     /// The measurement of the rate of frames.
     rate: FrameRate,
+    /// Whether frames carry times, so that they are not only those of arrival.
+    carries_times: bool,
 }
 
 /// The state of the names of array and metadata.
@@ -127,6 +129,7 @@ impl FrameRecorder {
             left_out: 0,
             reason: None,
             rate: FrameRate::over(MOST_BURSTS),
+            carries_times: false,
             array: RecordArray::new(file),
         })
     }
@@ -257,6 +260,7 @@ impl FrameRecorder {
         }
         if let Some(time) = time {
             self.rate.add(time);
+            self.carries_times |= frame.time.is_some();
         }
         let (first, last) = self.numbers.unwrap_or((frame.number, frame.number));
         let first = if frame.number < last { 0 } else { first };
@@ -334,7 +338,13 @@ impl FrameRecorder {
         let synced = synced.map_err(|error| self.refused(error));
         let synced = self.noted(synced);
         let stated = self.metadata.seconds_per_frame;
-        self.metadata.seconds_per_frame = stated.or_else(|| self.rate.seconds_per_frame());
+        self.metadata.seconds_per_frame = stated.or_else(|| {
+            if self.carries_times {
+                self.rate.even_seconds_per_frame()
+            } else {
+                self.rate.seconds_per_frame()
+            }
+        });
         self.metadata.ended = Some(true);
         self.metadata.ended_by = self.reason.take();
         let described = self.write_metadata().or_else(|error| match error {
@@ -499,6 +509,26 @@ mod tests {
             recorder.finish().expect("finished");
             let beside = metadata_beside(&path).expect("there").expect("read");
             assert_eq!(beside.seconds_per_frame, Some(expected));
+        }
+    }
+
+    #[test]
+    fn times_that_the_source_gives_have_a_step_only_if_they_are_even() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for (name, times, expected) in [
+            ("a.npy", [0.0, 0.25, 0.5, 0.75], Some(0.25)),
+            ("b.npy", [0.0, 0.1, 5.0, 5.2], None),
+        ] {
+            let path = folder.path().join(name);
+            let mut recorder = begun(&path);
+            for time in times.map(Some) {
+                let mut frame = Frame::default();
+                frame.time = time;
+                recorder.add(&frame, time).expect("recorded");
+            }
+            recorder.finish().expect("finished");
+            let beside = metadata_beside(&path).expect("there").expect("read");
+            assert_eq!(beside.seconds_per_frame, expected);
         }
     }
 
