@@ -384,6 +384,9 @@ fn topics_and_their_sensors_are_channels() {
     );
     let last = found.frames.last().expect("frames");
     assert_eq!((last.number, last.time), (2, Some(0.5)));
+    // The times of the log count from 1970.
+    let starts = found.channels.iter().map(|info| info.start.as_deref());
+    assert!(starts.eq([Some("2001-09-09T01:46:40Z"); 4]));
     // A file that was not closed: whole messages, then the error.
     let open = recorded(&bytes[..bytes.len() - 80], Some((4, 5)));
     assert!(open.frames.len() >= 11, "{}", open.frames.len());

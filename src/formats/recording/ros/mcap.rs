@@ -6,7 +6,7 @@
 //!
 //! The messages that have frames are listed in [`message`](super::message); other messages are skipped. A
 //! sensor of a tactile state is the channel `TOPIC#SENSOR`. The time is that of the log, from the first message with
-//! a frame on.
+//! a frame on; if it counts from 1970, it gives the start of the recording.
 
 use std::collections::HashMap;
 use std::io::Read;
@@ -25,6 +25,7 @@ use crate::formats::recording::ros::message::{
 };
 use crate::formats::recording::ros::records::{McapRecord, each_record};
 use crate::formats::recording::side::{arranged, changed, matrix_size};
+use crate::formats::recording::time::moment;
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::parameter::number::counted;
 
@@ -190,9 +191,11 @@ impl McapState<'_, '_> {
         let named = self.options.size.filter(|asked| asked.cells() == found);
         let size = size.or(named);
         check_name(name)?;
+        let start = *self.start.get_or_insert(self.time);
         let info = || ChannelInfo {
             size,
             values: Some(found as u64),
+            start: date_time(start),
             ..ChannelInfo::default()
         };
         let channel = self.channels.index_of(Some(name), info);
@@ -200,7 +203,6 @@ impl McapState<'_, '_> {
         for info in self.channels.take_new() {
             (self.sink)(RecordingEvent::Channel(info))?;
         }
-        let start = *self.start.get_or_insert(self.time);
         #[expect(clippy::cast_precision_loss, reason = "a difference in nanoseconds")]
         let seconds = (i128::from(self.time) - i128::from(start)) as f64 / 1e9;
         self.frame.time = Some(seconds);
@@ -246,5 +248,57 @@ impl McapState<'_, '_> {
             None => self.frame.reset(FrameSize::SMALLEST),
         }
         Ok(())
+    }
+}
+
+/// Returns the date and time in UTC, `2024-05-01T12:00:00.125Z`, of a time in nanoseconds since 1970; None up to 2001,
+/// since such numbers are hardly dates: they may count from the start of a machine.
+fn date_time(nanoseconds: u64) -> Option<String> {
+    const LEAST: u64 = 1_000_000_000_000_000_000;
+    if nanoseconds < LEAST {
+        return None;
+    }
+    let (seconds, fraction) = (nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
+    let (days, clock) = (seconds / 86_400, seconds % 86_400);
+    let days = i32::try_from(days).ok()?;
+    // A year has 366 days at most, so this one is not too late.
+    let year = (1970 + days / 366..).find(|year| moment::day(year + 1, 1, 1) > days)?;
+    let month = (1..=12).rfind(|&month| moment::day(year, month, 1) <= days)?;
+    let of_month = days - moment::day(year, month, 1) + 1;
+    let (hours, minutes, seconds) = (clock / 3600, clock / 60 % 60, clock % 60);
+    let fraction = format!(".{fraction:09}");
+    let fraction = fraction.trim_end_matches('0').trim_end_matches('.');
+    Some(format!(
+        "{year}-{month:02}-{of_month:02}T{hours:02}:{minutes:02}:{seconds:02}{fraction}Z"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nanoseconds_since_1970_are_dates() {
+        for text in [
+            "2001-09-09T01:46:40Z",
+            "2023-11-14T22:13:20.000000001Z",
+            "2024-02-29T23:59:59.5Z",
+            "2024-12-31T00:00:00Z",
+            "2025-01-01T12:30:00.125Z",
+        ] {
+            let (whole, rest) = text.split_at(19);
+            let fraction = rest.trim_matches(['.', 'Z']);
+            let fraction: u64 = format!("{fraction:0<9}").parse().expect("a number");
+            let seconds = moment::read(whole.as_bytes()).expect("a moment").seconds;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "whole and after 1970"
+            )]
+            let nanoseconds = seconds as u64 * 1_000_000_000 + fraction;
+            assert_eq!(date_time(nanoseconds).as_deref(), Some(text));
+        }
+        assert_eq!(date_time(999_999_999_999_999_999), None);
+        assert!(date_time(u64::MAX).is_some_and(|text| text.starts_with("2554-07-21T")));
     }
 }
