@@ -344,6 +344,11 @@ fn rows_and_columns_in_the_recording_override_the_flags() {
     let expected = "it states 4 rows and 5 columns; --rows and --columns have no effect\n";
     assert!(run.stderr.ends_with(expected), "{}", run.stderr);
     assert_eq!(frames("tekscan.asf", "--rows 4 --columns 5").stderr, "");
+    // Of several channels, the chosen one counts.
+    let image = frames("topics.mcap", "--channel /image --rows 3 --columns 1");
+    assert!(image.stderr.ends_with(expected), "{}", image.stderr);
+    let tip = frames("topics.mcap", "--channel /state#tip --rows 3 --columns 1");
+    assert_eq!(tip.stderr, "");
 }
 
 #[test]

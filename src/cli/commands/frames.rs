@@ -108,7 +108,8 @@ pub(crate) fn frames(
     {
         (output.notes)(&format!("warning: {warning}"));
     }
-    if let Some(unused) = scan.unused_size(asked.processing.size) {
+    let wanted = asked.processing.channel.as_deref();
+    if let Some(unused) = scan.unused_size(asked.processing.size, wanted) {
         (output.notes)(&format!("warning: {}: {unused}", recording.name()));
     }
     let damage = scan.error.take().map(|error| recording.damaged(error));
@@ -119,7 +120,7 @@ pub(crate) fn frames(
         list(&scan, &recording, asked, &mut output)?;
         return damage.map_or(Ok(()), Err);
     };
-    let channel = scan.channel(&recording, asked.processing.channel.as_deref())?;
+    let channel = scan.channel(&recording, wanted)?;
     let listed = &scan.channels[channel];
     let tare = processing::unused_tare(&asked.processing, &listed.info, &processing.view);
     tare.inspect(|unused| (output.notes)(&format!("warning: {}: {unused}", recording.name())));

@@ -93,9 +93,17 @@ impl Scan {
         lines
     }
 
-    /// Returns a warning if the given rows and columns differ from those that the recording states.
-    pub(super) fn unused_size(&self, given: Option<FrameSize>) -> Option<String> {
-        let stated = self.channels.iter().find_map(|channel| channel.info.size)?;
+    /// Returns a warning if the given rows and columns differ from those that the recording states, for the channel
+    /// that is asked for if there is one.
+    pub(super) fn unused_size(
+        &self,
+        given: Option<FrameSize>,
+        asked: Option<&str>,
+    ) -> Option<String> {
+        let channels = self.channels.iter().map(|channel| &channel.info);
+        let mut chosen =
+            channels.filter(|info| asked.is_none_or(|asked| info.shown_name() == asked));
+        let stated = chosen.find_map(|info| info.size)?;
         (given? != stated).then(|| {
             let rows = counted(stated.rows(), "row");
             let columns = counted(stated.columns(), "column");
