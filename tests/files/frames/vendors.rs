@@ -466,6 +466,37 @@ fn xsensor_exports_are_read_with_any_quotes_colons_and_units() {
 }
 
 #[test]
+fn the_time_of_xsensor_continues_past_midnight() {
+    let of = |dates: [&str; 2], clocks: [&str; 2]| {
+        let mut text = xsensor(clocks);
+        for date in dates {
+            text = text.replacen("Date, 2022 Aug 16", date, 1);
+        }
+        let found = recorded(text.as_bytes(), None);
+        assert_eq!((error(&found), notes(&found).len()), (None, 0), "{dates:?}");
+        found.frames[2].time
+    };
+    let midnight = ["23:59:59.5", "00:00:00.5"];
+    let halves = ["11:59:59.500 PM", "01:00:00.500 AM"];
+    for dates in [
+        ["Date, 2022 Aug 31", "Date, 2022 Sep 1"],
+        ["Date, 8/31/2022", "Date, 9/1/2022"],
+        ["Date, 31.08.2022", "Date, 01.09.2022"],
+        // Dates that cannot be read, and none.
+        ["Date, the last", "Date, the first"],
+        ["", ""],
+    ] {
+        assert_eq!(of(dates, midnight), Some(1.0), "{dates:?}");
+        assert_eq!(of(dates, halves), Some(3601.0), "{dates:?}");
+    }
+    let later = of(
+        ["Date, 8/31/2022", "Date, 9/1/2022"],
+        ["10:00:00", "11:00:00"],
+    );
+    assert_eq!(later, Some(90_000.0));
+}
+
+#[test]
 fn an_xsensor_export_that_ends_inside_a_frame_is_reported_as_damaged() {
     let text = xsensor(["08:21:17.9", "08:21:18.4"]);
     let last = text.rfind("FRAME").expect("a frame");

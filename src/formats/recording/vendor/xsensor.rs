@@ -19,7 +19,9 @@
 //! ```
 //! Versions of the software differ in how they write a key (`FRAME`, `Frame:`), in quotes around fields, and in units
 //! (`Sensel Width (mm)`); a comma within a field may be the decimal sign. The time of a frame is the difference
-//! between clock times, even past midnight, or between times in seconds. `Threshold` is the least value that
+//! between dates and clock times, or between times in seconds. Of a date such as `8/9/2022`, day and month are in the
+//! order in which less time has passed since the first frame. Without dates, or with others that cannot be read, a clock
+//! that falls by more than half a day has passed midnight. `Threshold` is the least value that
 //! XSENSOR's own software counts as touched, so it is the threshold of the recording. Averages and areas are ignored:
 //! they follow from the values. Source: an export of XSENSOR's software of 2022.
 
@@ -35,7 +37,7 @@ use crate::formats::recording::text::number;
 use crate::formats::recording::text::number::whole;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::{Separator, decimal};
-use crate::formats::recording::time::moment;
+use crate::formats::recording::time::moment::{self, DAY, Midnights, Moment};
 use crate::formats::seconds::since;
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
@@ -95,8 +97,10 @@ struct XsensorState {
     date: Option<String>,
     /// `Time` of the frame, such as `08:21:17.982`, or `1.25` in seconds.
     clock: Option<String>,
-    /// The time of the first frame: the day, and the seconds of the day.
-    start: Option<(i32, f64)>,
+    /// The date of the first frame, if it has one, and its seconds.
+    start: Option<(Option<String>, f64)>,
+    /// The midnights passed so far, for dates that cannot be read.
+    midnights: Midnights,
     /// The block that is being read.
     block: XsensorBlock,
     /// `Rows` of the current sensor.
@@ -345,9 +349,7 @@ impl XsensorState {
         sink: &mut Sink<'_>,
         line: u64,
     ) -> Result<(), EarlyEnd> {
-        let moment = self.moment();
-        let start = self.start.or(moment);
-        self.start = start;
+        let time = self.time();
         let info = || ChannelInfo {
             size: self.size(),
             unit: self.unit.clone(),
@@ -363,12 +365,7 @@ impl XsensorState {
         }
         channels.number(channel, frame);
         frame.label = self.label;
-        frame.time = moment
-            .zip(start)
-            .map(|((day, seconds), (first_day, first_seconds))| {
-                let days = f64::from(day - first_day) * 86_400.0;
-                since(first_seconds, days + seconds)
-            });
+        frame.time = time;
         self.sensors += 1;
         sink(RecordingEvent::Frame(frame))
     }
@@ -383,62 +380,114 @@ impl XsensorState {
         })
     }
 
-    /// Returns the time of the frame: the day, and the seconds of the day. None if the clock is neither three numbers
-    /// nor a number of seconds, or if they are too large; a date that cannot be read counts as the same day.
-    fn moment(&self) -> Option<(i32, f64)> {
-        let (clock, half) = moment::half_day(self.clock.as_ref()?);
-        let parts = clock.split(':');
-        let parts: Option<Vec<f64>> = parts
-            .map(|part| number::read(part.trim().as_bytes()))
-            .collect();
-        let date = self.date.as_ref();
-        let day = date.and_then(|date| days(date)).unwrap_or(1);
-        let (day, seconds) = match parts?[..] {
-            [hours, minutes, seconds] => {
-                let hours = match half.zip(whole(hours)) {
-                    None => hours,
-                    Some((half, shown)) => half.hours(i32::try_from(shown).ok()?)?.into(),
-                };
-                (day, hours * 3600.0 + minutes * 60.0 + seconds)
+    /// Returns the time of the frame in seconds since the first one. None if the clock is neither three numbers nor a
+    /// number of seconds, or if they are too large.
+    fn time(&mut self) -> Option<f64> {
+        let (seconds, is_clock) = seconds(self.clock.as_ref()?)?;
+        let date = self.date.as_ref().filter(|_| is_clock);
+        let (first_date, first) = self.start.get_or_insert_with(|| (date.cloned(), seconds));
+        let days = first_date.as_ref().zip(date);
+        let days = days.and_then(|(first, own)| days_between(first, own));
+        let own = match days {
+            Some(days) => f64::from(days) * DAY + seconds,
+            None if is_clock => {
+                let is_dated = false;
+                self.midnights.seconds(Moment { seconds, is_dated })
             }
-            // Seconds count from the start of the recording, not from midnight.
-            [seconds] => (1, seconds),
-            _ => return None,
+            None => seconds,
         };
-        seconds.is_finite().then_some((day, seconds))
+        Some(since(*first, own))
     }
 }
 
-/// Returns the number of a day such as `2022 Aug 16`.
-fn days(date: &str) -> Option<i32> {
+/// Returns the seconds of a clock such as `08:21:17.982` or `8:21:17.982 AM`, and true; of a number of seconds, which
+/// count from the start of the recording rather than from midnight, the number and false. None for anything else.
+fn seconds(clock: &str) -> Option<(f64, bool)> {
+    let (clock, half) = moment::half_day(clock);
+    let parts = clock.split(':');
+    let parts: Option<Vec<f64>> = parts
+        .map(|part| number::read(part.trim().as_bytes()))
+        .collect();
+    let (seconds, is_clock) = match parts?[..] {
+        [hours, minutes, seconds] => {
+            let hours = match half.zip(whole(hours)) {
+                None => hours,
+                Some((half, shown)) => half.hours(i32::try_from(shown).ok()?)?.into(),
+            };
+            (hours * 3600.0 + minutes * 60.0 + seconds, true)
+        }
+        [seconds] => (seconds, false),
+        _ => return None,
+    };
+    seconds.is_finite().then_some((seconds, is_clock))
+}
+
+/// Returns the days from one date to another; None if either cannot be read. If the order of day and month is not
+/// certain, it is the one in which less time has passed, since later frames are hardly earlier.
+fn days_between(first: &str, date: &str) -> Option<i32> {
+    let pairs = days(first).into_iter().zip(days(date));
+    let differences = pairs.filter_map(|(first, own)| Some(own? - first?));
+    differences.min_by_key(|days| (*days < 0, days.abs()))
+}
+
+/// Returns the number of a day such as `2022 Aug 16`, `16 August 2022`, `2022-08-16`, `8/16/2022` or `16.8.2022`: with
+/// the month before the day, then with the day before the month. Both are the same if the date shows the order.
+fn days(date: &str) -> [Option<i32>; 2] {
     /// The first three letters of each month, so that full names match, too.
     const MONTHS: [&str; 12] = [
         "jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec",
     ];
-    let mut words = date.split_whitespace();
-    let number = |word: Option<&str>, most: i32| {
-        let number = word?.parse().ok()?;
+    let words = date.split(|end: char| !end.is_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    let number = |word: &str, most: i32| {
+        let number = word.parse().ok()?;
         (1..=most).contains(&number).then_some(number)
     };
-    let year = number(words.next(), 9999)?;
-    let name = words.next()?.to_ascii_lowercase();
-    let mut months = (1..).zip(MONTHS);
-    let (month, _) = months.find(|(_, start)| name.starts_with(start))?;
-    let day = number(words.next(), 31)?;
-    Some(moment::day(year, month, day))
+    let month = |word: &str| {
+        let name = word.to_ascii_lowercase();
+        let mut months = (1..).zip(MONTHS);
+        let named = months.find(|(_, start)| name.starts_with(start));
+        named.map_or_else(|| number(word, 12), |(month, _)| Some(month))
+    };
+    let of = |year: &str, named: &str, of_month: &str| {
+        let year = number(year, 9999).filter(|_| year.len() == 4)?;
+        Some(moment::day(year, month(named)?, number(of_month, 31)?))
+    };
+    match words[..] {
+        [year, month, day, ..] if year.len() == 4 => [of(year, month, day); 2],
+        [one, other, year] => {
+            let orders = [of(year, one, other), of(year, other, one)];
+            let [month_first, day_first] = orders;
+            [month_first.or(day_first), day_first.or(month_first)]
+        }
+        _ => [None; 2],
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::days;
+    use super::days_between;
 
     #[test]
-    fn months_are_words() {
-        assert_eq!(days("2022 Aug 31").map(|day| day + 1), days("2022 Sep 1"));
-        assert_eq!(
-            days("2021 Dec 31").map(|day| day + 1),
-            days("2022 January 1")
-        );
-        assert_eq!(days("16.8.2022"), None);
+    fn dates_are_read_in_any_order() {
+        for (first, second, days) in [
+            ("2022 Aug 31", "2022 Sep 1", Some(1)),
+            ("2021 Dec 31", "2022 January 1", Some(1)),
+            ("31 August 2022", "1 Sep. 2022", Some(1)),
+            ("Aug 31, 2022", "Sep 1, 2022", Some(1)),
+            ("2022-08-31", "2022/09/01", Some(1)),
+            ("8/31/2022", "9/1/2022", Some(1)),
+            ("31.8.2022", "1.9.2022", Some(1)),
+            // Either order is possible.
+            ("8/9/2022", "8/10/2022", Some(1)),
+            ("8/9/2022", "9/9/2022", Some(1)),
+            ("8/9/2022", "8/9/2022", Some(0)),
+            ("2022 Aug 31", "2022 Aug 30", Some(-1)),
+            ("August", "2022 Aug 31", None),
+            ("8/31/22", "9/1/22", None),
+            ("31/31/2022", "9/1/2022", None),
+        ] {
+            assert_eq!(days_between(first, second), days, "{first}, {second}");
+        }
     }
 }
