@@ -193,6 +193,13 @@ pub enum RecordingNote {
         /// The unit: `nanoseconds`.
         unit: &'static str,
     },
+    /// The first time that cannot be read; its frame has none.
+    Time {
+        /// The number of the frame, from 0.
+        frame: u64,
+        /// The text in place of the time, shortened if it is long.
+        text: String,
+    },
     /// Bytes that belong to no frame.
     Garbled {
         /// The number of frames that were dropped.
@@ -256,6 +263,10 @@ impl fmt::Display for RecordingNote {
                     "the times have no unit and are taken as {unit} since 1970"
                 )
             }
+            Self::Time { frame, text } => write!(
+                f,
+                "frame {frame}: {text:?} cannot be read as a time; such frames have none"
+            ),
             Self::Garbled { frames } => {
                 let frames = counted(*frames, "frame");
                 write!(f, "{frames} dropped (torn, short, long or garbled)")

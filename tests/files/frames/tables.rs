@@ -330,6 +330,14 @@ fn times(text: &str) -> (Vec<Option<f64>>, Vec<String>) {
 }
 
 #[test]
+fn a_time_that_cannot_be_read_is_noted_once() {
+    let (times, notes) = times("time;r0c0;r0c1\n0;1;2\n1.000,5;3;4\n2.000,5;3;4\n;3;4\n3;1;2\n");
+    assert_eq!(times, [Some(0.0), None, None, None, Some(3.0)]);
+    let expected = "frame 1: \"1.000,5\" cannot be read as a time; such frames have none";
+    assert_eq!(notes, [expected]);
+}
+
+#[test]
 fn a_time_in_two_columns_is_their_sum() {
     for [seconds, rest] in [
         ["header.stamp.secs", "header.stamp.nsecs"],

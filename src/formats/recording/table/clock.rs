@@ -1,11 +1,14 @@
 //! Reads the times of a table's frames, as seconds since the first one.
 
+use crate::formats::recording::event::RecordingNote;
+use crate::formats::recording::text::lines;
 use crate::formats::recording::text::row::Field;
 use crate::formats::recording::text::separator::Separator;
 use crate::formats::recording::time::exact::Time;
 use crate::formats::recording::time::frame_clock::FrameClock;
 use crate::formats::recording::time::moment;
 use crate::formats::recording::time::unit::TimeUnit;
+use crate::quote::shortened;
 
 /// The fields of a line that hold its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +49,9 @@ pub(super) struct TableClock {
     /// The unit of the rest of a second.
     rest: Option<TimeUnit>,
     /// The clock of the frames.
-    pub(super) clock: FrameClock,
+    clock: FrameClock,
+    /// Whether a time could not be read, and its text until it is noted.
+    unread: Option<Option<String>>,
 }
 
 impl TableClock {
@@ -58,16 +63,35 @@ impl TableClock {
             separator,
             rest: fields.and_then(|fields| fields.rest).map(|(_, unit)| unit),
             clock,
+            unread: None,
         }
+    }
+
+    /// Returns once for a table a note about a time of frame `frame` that could not be read, and once about a unit that
+    /// was derived from the size of a time.
+    pub(super) fn take_note(&mut self, frame: u64) -> Option<RecordingNote> {
+        let unread = self.unread.as_mut().and_then(Option::take);
+        let unread = unread.map(|text| RecordingNote::Time { frame, text });
+        unread.or_else(|| self.clock.take_note())
     }
 
     /// Returns the seconds from the first time to this one; None if there is no time, or a text that cannot be read.
     pub(super) fn seconds(&mut self, text: TimeText<'_>) -> Option<f64> {
         let field = text.time?;
+        let time = self.time(field, text.rest);
+        if time.is_none() && !matches!(self.separator.value(field), Field::NoCell) {
+            let text = || Some(shortened(&lines::text(field)));
+            self.unread.get_or_insert_with(text);
+        }
+        Some(self.clock.since_first(time?))
+    }
+
+    /// Reads the time in a field, with the rest of its second; None if either cannot be read.
+    fn time(&mut self, field: &[u8], rest: Option<&[u8]>) -> Option<Time> {
         let time = match self.separator.value(field) {
             Field::Value(number) => {
                 let time = self.clock.number(field, number);
-                match (self.rest, text.rest) {
+                match (self.rest, rest) {
                     (Some(unit), Some(rest)) => match self.separator.value(rest) {
                         Field::Value(number) => time.plus(Time::read(rest, number, unit)),
                         _ => return None,
@@ -78,7 +102,7 @@ impl TableClock {
             Field::Wrong => self.clock.moment(moment::read(field)?),
             Field::NoCell => return None,
         };
-        Some(self.clock.since_first(time))
+        Some(time)
     }
 }
 

@@ -215,7 +215,7 @@ fn frames(
             }
         };
         frame.time = clock.seconds(time);
-        if let Some(note) = clock.clock.take_note() {
+        if let Some(note) = clock.take_note(frame.number) {
             sink(RecordingEvent::Note(&note))?;
         }
         sink(RecordingEvent::Frame(&frame))?;
