@@ -223,6 +223,11 @@ pub enum RecordingNote {
     },
     /// A picture that is left out because it is the maximum of the others (zebris).
     Maximum,
+    /// A printed window that reaches beyond the sensor (emed).
+    Window {
+        /// The frame, the end of its window, and the size of the sensor.
+        complaint: String,
+    },
     /// Metadata beside the recording that is ignored, because it is broken or cannot be read.
     Metadata {
         /// The path of the metadata, and the error in it.
@@ -287,7 +292,7 @@ impl fmt::Display for RecordingNote {
             Self::Maximum => f.write_str(
                 "the picture [Data] is the maximum of the numbered ones and is left out",
             ),
-            Self::Metadata { complaint } => f.write_str(complaint),
+            Self::Metadata { complaint } | Self::Window { complaint } => f.write_str(complaint),
         }
     }
 }

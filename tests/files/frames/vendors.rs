@@ -308,6 +308,27 @@ fn the_header_of_emed_gives_the_pitch_and_the_time_of_a_picture() {
 }
 
 #[test]
+fn a_window_of_emed_beyond_the_sensor_is_noted() {
+    for (matrix, expected) in [
+        ("8x5", None),
+        (
+            "8x4",
+            Some("ends in row 5 and column 8, but the sensor has 4 rows and 8 columns"),
+        ),
+        (
+            "7x5",
+            Some("ends in row 5 and column 8, but the sensor has 5 rows and 7 columns"),
+        ),
+    ] {
+        let text = emed_header(1).replace("20x30", matrix) + LEFT;
+        let found = recorded(text.as_bytes(), None);
+        assert_eq!((error(&found), found.frames.len()), (None, 1), "{matrix}");
+        let expected = expected.map(|text| format!("frame 0 (label 1): its window {text}"));
+        assert_eq!(notes(&found), Vec::from_iter(expected), "{matrix}");
+    }
+}
+
+#[test]
 fn a_picture_of_emed_without_rows_is_damaged() {
     let header = emed_header(1).replace("  Force[N]=sum*sensor_area in row/column", "");
     let found = recorded(format!("{header}\t7\t8\n\n").as_bytes(), None);

@@ -50,6 +50,8 @@ const MOST_PAGES: usize = 16;
 /// The content of the headers so far; a value holds until another page changes it.
 #[derive(Default)]
 struct EmedState {
+    /// The columns and rows of the whole sensor.
+    sensor: Option<[f64; 2]>,
     /// The area of a cell, by which pressures become forces.
     area_cm2: Option<f64>,
     /// The size of a cell along x and along y.
@@ -356,6 +358,11 @@ impl EmedState {
 
     /// Reads a line of the header, which may hold several values.
     fn line(&mut self, line: &str) {
+        if let Some((columns, rest)) = after(line, "Matrix:")
+            && let Some((rows, _)) = after(rest, "x")
+        {
+            self.sensor = Some([columns, rows]);
+        }
         if let Some((area, _)) = after(line, "Sensor area:") {
             self.area_cm2 = Some(area);
         }
@@ -450,10 +457,30 @@ impl EmedState {
         }
         frame.time = of_label(first.label, &mut self.first_label, self.seconds);
         self.frames += 1;
+        if let Some(note) = self.window_beyond(&frame) {
+            sink(RecordingEvent::Note(&note))?;
+        }
         for note in self.odd_sums(&frame, &pages) {
             sink(RecordingEvent::Note(&note))?;
         }
         sink(RecordingEvent::Frame(&frame))
+    }
+
+    /// Returns a note if the window of a picture reaches beyond the sensor: then one of the two is wrong.
+    fn window_beyond(&self, frame: &Frame) -> Option<RecordingNote> {
+        let ([columns, rows], corner) = self.sensor.zip(frame.first)?;
+        // Rows and columns are counted from 1.
+        let row = corner.row.saturating_add(u32::from(frame.rows()) - 1);
+        let column = corner.column.saturating_add(u32::from(frame.columns()) - 1);
+        let label = frame.label?;
+        let is_beyond = f64::from(row) > rows || f64::from(column) > columns;
+        is_beyond.then(|| RecordingNote::Window {
+            complaint: format!(
+                "frame {} (label {label}): its window ends in row {row} and column {column}, but the sensor has {rows} \
+                 rows and {columns} columns",
+                frame.number
+            ),
+        })
     }
 
     /// Returns notes about the forces of rows, of columns and of all cells that differ from those of the values. The
