@@ -341,11 +341,11 @@ Reads an imprint in any format that 'taxel describe' reads, or lines of JSON,
 each {\"imprint\":[\"..##\",...]}, {\"touches\":[[...],[...]]} for several touches
 of one shape, or {\"frame\":[[0,12],...],\"at_least\":10} for the values of a
 sensor with a threshold as for 'taxel batch'. The answer to a line is one line.
-It copies label, time and channel, and frame if that is a number; other keys are
-ignored. An imprint at the rim may be cut off and is never 'certain'. With
---noise, even an imprint that no shape leaves gets an answer: taxel compares it
-with every imprint of the model in every place on the matrix. With --expect, the
-exit status is 3 if the answer is another shape, or is tied, rejected or
+It copies frame, label, time and channel, but not the values of a sensor; other
+keys are ignored. An imprint at the rim may be cut off and is never 'certain'.
+With --noise, even an imprint that no shape leaves gets an answer: taxel compares
+it with every imprint of the model in every place on the matrix. With --expect,
+the exit status is 3 if the answer is another shape, or is tied, rejected or
 unknown; if some lines cannot be answered, it is 1.
 
 Built-in models: 'figures', the seven figures at their default sizes;
