@@ -809,19 +809,19 @@ fn the_message_says_why_lines_of_numbers_are_not_frames() {
         assert!(said.contains(expected), "{said}");
     }
     let ragged = "1 2 3\n4 5\n6 7 8 9\n\n".repeat(3);
-    let said = refused("watch - --once", ragged);
+    let said = failure("watch - --once", ragged);
     assert!(
         said.contains("the last one dropped: row 2 has 2 numbers, expected 3"),
         "{said}"
     );
     let wide = ("1 ".repeat(600) + "\n").repeat(2) + "\n";
-    let said = refused("watch - --once", wide.repeat(3));
+    let said = failure("watch - --once", wide.repeat(3));
     let expected = "the last one dropped: 600 numbers a row, expected at most 512";
     assert!(said.contains(expected), "{said}");
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("wide.txt");
     fs::write(&file, wide.repeat(3)).expect("written");
-    let said = refused(&format!("frames {}", file.display()), "");
+    let said = failure(&format!("frames {}", file.display()), "");
     let expected = "600 numbers a line, but no rows and columns, each at most 512 (";
     assert!(said.contains(expected), "{said}");
     let timed = "0.1\n1 2\n3 4\n\n0.2\n1 2\n3 4\n\n";

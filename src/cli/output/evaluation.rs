@@ -439,8 +439,7 @@ mod tests {
         ] {
             ranges = ranges.with(axis, range.parse().expect("a range"));
         }
-        let (poses_of, part) = ((Anchor::Centre, ranges), (Shard::WHOLE, poses));
-        let head = ModelHead::new(shapes, Sensor::default(), poses_of, part);
+        let head = ModelHead::new(shapes, Sensor::default(), Anchor::Centre, ranges, poses);
         let key = ("####\n####".parse().ok(), vec![ShapeCount::new(0, poses)]);
         let limit = Evaluation::of(&Model::from_parts(head, &[key]).expect("a model"));
         let text = json::text(&EvaluationJson {
