@@ -79,7 +79,14 @@ impl RuleRecord {
             (Some(threshold), None, None, None) => made(Rule::at_least(threshold)),
             (None, Some(percent), None, None) => made(Rule::percent(percent)),
             (None, None, Some(low), Some(high)) => made(Rule::hysteresis(low, high)),
-            _ => Err("expected one threshold: at_least, percent, or low and high".to_owned()),
+            (None, None, None, None) => {
+                Err("no threshold, expected at_least, percent, or low and high".to_owned())
+            }
+            (None, None, Some(_), None) => Err("low without high, expected both".to_owned()),
+            (None, None, None, Some(_)) => Err("high without low, expected both".to_owned()),
+            _ => Err(
+                "several thresholds, expected one: at_least, percent, or low and high".to_owned(),
+            ),
         }
     }
 
@@ -173,8 +180,12 @@ mod tests {
         let both = "{\"low\":9,\"high\":20,\"least\":2}";
         assert_eq!(imprint(both, frame).as_deref(), Ok("##.\n.##"));
         let wrong = |rule: &str, frame: &str| imprint(rule, frame).expect_err("it is refused");
-        assert!(wrong("{}", frame).contains("expected one threshold"));
-        assert!(wrong("{\"low\":1}", frame).contains("expected one threshold"));
+        assert!(wrong("{}", frame).starts_with("no threshold, expected at_least"));
+        assert_eq!(
+            wrong("{\"low\":1}", frame),
+            "low without high, expected both"
+        );
+        assert!(wrong("{\"low\":1,\"percent\":5}", frame).starts_with("several thresholds"));
         assert!(wrong("{\"percent\":0}", frame).contains("above 0"));
         assert_eq!(
             wrong("{\"at_least\":1}", "[[1, 2], [3]]"),

@@ -274,7 +274,7 @@ fn other_format(found: &str, expected: &str) -> String {
         (Some(found), Some(expected)) if found != expected => {
             format!("{found}, expected {expected}")
         }
-        _ => format!("format: {found:?} is not known here, expected {expected:?}"),
+        _ => format!("format: {found:?} is unknown to this version, which reads {expected:?}"),
     }
 }
 
@@ -286,7 +286,7 @@ pub enum ArchiveError {
     #[error("{}", system_reason(.0))]
     Io(io::Error),
     /// Not a zip, or a broken one.
-    #[error("not a readable archive of arrays: {0}")]
+    #[error("cannot be read as an atlas or a model, an .npz file written by taxel: {0}")]
     Zip(String),
     /// The archive is too long for the address space of this program.
     #[error("an archive of {}; this {}-bit program reads at most {}", counted(*length, "byte"), usize::BITS, grouped(*longest))]
@@ -366,7 +366,7 @@ mod tests {
         let broken = broken.expect("two bytes are no archive");
         assert_eq!(
             broken.to_string(),
-            "not a readable archive of arrays: cut short, damaged, or a file of another kind"
+            "cannot be read as an atlas or a model, an .npz file written by taxel: cut short, damaged, or a file of another kind"
         );
         assert!(broken.source().is_none());
     }

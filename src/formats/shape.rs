@@ -161,7 +161,7 @@ impl<'de> Deserialize<'de> for FormatRecord {
             Ok(Self)
         } else {
             Err(D::Error::custom(format_args!(
-                "{:?} is not known here, expected {FORMAT:?}",
+                "{:?} is unknown to this version, which reads {FORMAT:?}",
                 shortened(&format)
             )))
         }

@@ -65,7 +65,7 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
         ),
         (
             "[frames]\npercent = 5\nat_least = 9\n",
-            "2:1: expected one threshold: at_least, percent, or low and high, found percent",
+            "line 2, column 1: expected one threshold: at_least, percent, or low and high, found at_least and percent",
         ),
         (
             "[frames]\npercent = 0\n",

@@ -176,7 +176,7 @@ fn a_bad_shape_is_reported_with_line_and_column() {
     bad(
         "shape/1",
         "shape/2",
-        "line 3, column 27: format: \"taxel-shape/2\" is not known here, expected \"taxel-shape/1\"",
+        "line 3, column 27: format: \"taxel-shape/2\" is unknown to this version, which reads \"taxel-shape/1\"",
     );
     bad(
         "\"name\"",

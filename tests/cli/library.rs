@@ -285,7 +285,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     assert_eq!(
         lines,
         [
-            "bad\u{e9}           broken   FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is not known here, expected \"taxel-shape/1\"",
+            "bad\u{e9}           broken   FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is unknown to this version, which reads \"taxel-shape/1\"",
             "dir            broken   FOLDER/dir.json: is a folder, expected a regular file",
             "good           own        4 × 3    6       1      1",
         ]
@@ -295,7 +295,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     let all = taxel::storage::shipped::names().count() + 3;
     assert_eq!(
         run.stdout.replace(&folder, "FOLDER"),
-        "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is not known here, expected \"taxel-shape/1\"\n\
+        "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is unknown to this version, which reads \"taxel-shape/1\"\n\
          broken: dir: FOLDER/dir.json: is a folder, expected a regular file\n\
          left over: FOLDER/a:b.json: not a shape: shapes cannot have this name\n\
          left over: FOLDER/notes.txt: not a shape: its name is not NAME.json\n"
@@ -310,7 +310,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     let run = shelf.run("library|check|--json", "");
     assert_eq!(
         run.stdout.replace(&folder, "FOLDER"),
-        "[{\"finding\":\"broken\",\"name\":\"bad\\u00e9\",\"reason\":\"FOLDER/bad\\u00e9.json: line 1, column 26: format: \\\"taxel-shape/9\\\" is not known here, expected \\\"taxel-shape/1\\\"\"},\
+        "[{\"finding\":\"broken\",\"name\":\"bad\\u00e9\",\"reason\":\"FOLDER/bad\\u00e9.json: line 1, column 26: format: \\\"taxel-shape/9\\\" is unknown to this version, which reads \\\"taxel-shape/1\\\"\"},\
          {\"finding\":\"broken\",\"name\":\"dir\",\"reason\":\"FOLDER/dir.json: is a folder, expected a regular file\"},\
          {\"finding\":\"left over\",\"path\":\"FOLDER/a:b.json\",\"reason\":\"not a shape: shapes cannot have this name\"},\
          {\"finding\":\"left over\",\"path\":\"FOLDER/notes.txt\",\"reason\":\"not a shape: its name is not NAME.json\"}]\n"

@@ -394,6 +394,21 @@ fn models_can_be_named_listed_and_shown() {
     }
     let card = place.json("model show parts --json");
     assert_eq!(card["shapes"][1]["name"], "b");
+    place.done(
+        "model train washer --zoom-x 0.5:1:0.25 --positions 2 --angle 0 --out zoomed.npz --quiet",
+    );
+    let zoomed = place.done("model show zoomed.npz");
+    assert!(
+        zoomed.contains(", angle 0, zoom_x 0.5:1:0.25\n"),
+        "{zoomed}"
+    );
+    let run = place.run("frames zoomed.npz", "");
+    let kind = "zoomed.npz: an atlas or a model of taxel, expected Tekscan ASCII, ";
+    assert!(
+        run.stderr.starts_with(&format!("error: {kind}")),
+        "{}",
+        run.stderr
+    );
     assert_eq!(card["ranges"]["x0"], "7:7.9:0.1");
     assert_eq!(card["hash"].as_str().map(str::len), Some(32));
     let list = place.done("model list --json");
@@ -697,7 +712,7 @@ fn damaged_models_are_refused() {
         assert_eq!(run.status, Some(1));
         assert!(
             run.stderr
-                .contains("bad.npz: not a readable archive of arrays"),
+                .contains("bad.npz: cannot be read as an atlas or a model"),
             "{}",
             run.stderr
         );

@@ -253,6 +253,14 @@ fn sizes_that_fit_on_no_sensor_are_omitted() {
         "",
     );
     assert_eq!(run.status, Some(1), "{}", run.stderr);
+    let only = "model separate rectangles.jsonl --threshold 0.4:0.6:0.2 --want 0.9 --positions 2 --angle 0 --quiet";
+    let text = place.done(only);
+    assert!(text.ends_with(" %\n  no other scale was tried\n"), "{text}");
+    refused(
+        &place.run("model separate figures washer --scale 1 --quiet", ""),
+        1,
+        "figures: a model; give one model or several shapes, not both",
+    );
     misused("model separate a.npz", "the following required arguments");
     misused(
         "model separate a.npz --scale 1 --pitch 1",

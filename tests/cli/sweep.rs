@@ -513,7 +513,7 @@ fn damaged_archives_are_refused() {
         assert_eq!(run.status, Some(1), "{name}");
         assert!(
             run.stderr
-                .contains("bad.npz: not a readable archive of arrays"),
+                .contains("bad.npz: cannot be read as an atlas or a model"),
             "{name}: {}",
             run.stderr
         );

@@ -515,19 +515,19 @@ fn the_description_of_a_recording_is_read_with_it() {
         ),
         (
             "{\"format\":\"taxel-touch/1\",\"ru",
-            "touch.json: line 1, column 29: the end ",
+            "touch.json: line 1, column 29: the text ends ",
         ),
         (
             "{\"format\":\"taxel-touch/2\"}",
-            "touch.json: format: \"taxel-touch/2\" is not known here, expected \"taxel-touch/1\"; its threshold",
+            "touch.json: format: \"taxel-touch/2\" is unknown to this version, which reads \"taxel-touch/1\"; the recording's threshold",
         ),
         (
             "",
-            "touch.json: does not belong to the recording; its threshold",
+            "touch.json: empty or not written by taxel; the recording's threshold",
         ),
         (
             "{\"format\":1}",
-            "touch.json: does not belong to the recording",
+            "touch.json: empty or not written by taxel",
         ),
     ] {
         fs::write(file.with_extension("json"), text).expect("written");
@@ -538,7 +538,7 @@ fn the_description_of_a_recording_is_read_with_it() {
     fs::remove_file(&beside).expect("removed");
     warns_of(
         path,
-        "touch.json: missing; its threshold and tare are unknown",
+        "touch.json: missing; the recording's threshold and tare are unknown",
     );
     std::os::unix::fs::symlink(&beside, &beside).expect("made");
     warns_of(path, "touch.json: cannot read: ");

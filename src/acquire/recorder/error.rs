@@ -20,7 +20,7 @@ pub enum RecorderError {
         error: io::Error,
     },
     /// The file exists already.
-    #[error("{} already exists", path.display())]
+    #[error("{:?} already exists", path.to_string_lossy())]
     Exists {
         /// The file.
         path: PathBuf,
@@ -55,7 +55,7 @@ pub enum RecorderError {
 }
 
 /// The consequence of missing metadata.
-const UNKNOWN: &str = "its threshold and tare are unknown";
+const UNKNOWN: &str = "the recording's threshold and tare are unknown";
 
 /// The error for metadata beside an array that is missing or cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -90,7 +90,7 @@ pub enum MetadataFileError {
         path: PathBuf,
     },
     /// The array was recorded by taxel, but the file beside it is empty or something other than metadata.
-    #[error("{}: does not belong to the recording; {UNKNOWN}", path.display())]
+    #[error("{}: empty or not written by taxel; {UNKNOWN}", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,

@@ -161,8 +161,13 @@ Examples:
 /// `taxel completions`: where each shell looks for them.
 pub(crate) const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
+bash reads that file if its package bash-completion is installed; otherwise, put
+'source <(taxel completions bash)' into ~/.bashrc. zsh needs the line
+'fpath+=~/.zfunc' in ~/.zshrc, above the one that runs compinit. Then start a
+new shell.
+
   taxel completions bash > ~/.local/share/bash-completion/completions/taxel
-  taxel completions zsh > ~/.zfunc/_taxel    # a folder of your fpath
+  taxel completions zsh > ~/.zfunc/_taxel
   taxel completions fish > ~/.config/fish/completions/taxel.fish";
 
 /// `taxel man`: how to read and install the pages.

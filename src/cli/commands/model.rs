@@ -35,7 +35,7 @@ use crate::cli::threads;
 use crate::formats::value::{counted, grouped, percent};
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
-use crate::pose::{Anchor, Axis, Ranges};
+use crate::pose::{Anchor, Axis, DecimalRange, Ranges};
 use crate::quote::did_you_mean;
 use crate::recognition::{Evaluation, Model, NamedShape, Training, TrainingError};
 use crate::sensor::Sensor;
@@ -175,10 +175,10 @@ fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
 }
 
 /// Describes the grid of a training in a line, such as
-/// `16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5`. Zooms are left out: a
-/// training has one of each.
+/// `16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5`. A zoom of 1 is left out.
 fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
-    let axes = Axis::ALL.into_iter().filter(|axis| !axis.is_zoom());
+    let is_unzoomed = |axis: Axis| axis.is_zoom() && ranges[axis] == DecimalRange::whole(1);
+    let axes = Axis::ALL.into_iter().filter(|&axis| !is_unzoomed(axis));
     let axes = axes.map(|axis| format!("{} {}", axis.name(), ranges[axis]));
     format!(
         "{} × {} sensor, threshold {}, {} at {}",

@@ -7,7 +7,7 @@
 //! standard error names them. Errors are reported before the first training where possible: a set that fits at no
 //! size, a file that exists.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::separate::SeparateArguments;
@@ -27,6 +27,7 @@ use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::formats::{DrawingFormat, Name};
 use crate::memory::MemoryGuard;
 use crate::pose::{Axis, DecimalRange, Ranges};
+use crate::quote::shortened_message;
 use crate::recognition::{CellPositions, Model, Separation, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::ModelChoice;
@@ -201,6 +202,15 @@ fn set(
             .positions(positions)
             .angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
         return Ok((separation, model.sensor().threshold()));
+    }
+    let no_shape = |name: &str| shelf.imprint(name).is_err();
+    let is_only_model =
+        |what: &&OsString| is_model(what, shelf) && what.to_str().is_none_or(no_shape);
+    if let Some(model) = asked.set.what.iter().find(is_only_model) {
+        return Err(CliError::Set {
+            place: shortened_message(&model.to_string_lossy()),
+            error: "a model; give one model or several shapes, not both".to_owned(),
+        });
     }
     let mut separation = Separation::new(shape_set::read(&asked.set, shelf)?)?
         .angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));

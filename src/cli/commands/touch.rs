@@ -44,7 +44,7 @@ pub(crate) fn touch(
     let pitch = pitch.of(Some(&sensor));
     let mut made = vec![source.to_string()];
     let beyond = report::beyond(source, &sensor);
-    let mut notes: Vec<String> = beyond.into_iter().collect();
+    let mut done = Vec::new();
     let shape = |name| StoredShape {
         name,
         sensor,
@@ -52,22 +52,22 @@ pub(crate) fn touch(
         source: Some(source.clone()),
     };
     let begin = |export: &Export| export.begin(&imprint, Some(source), &made[0], pitch);
-    let instead = kept.keep(begin, shape, shelf, &mut notes)?;
-    Ok(match (instead, form) {
-        (Some(answer), _) => Touched { answer, notes },
-        (None, Form::Json(_)) => Touched {
-            answer: report::json(&imprint).into_bytes(),
-            notes,
-        },
+    let instead = kept.keep(begin, shape, shelf, &mut done)?;
+    let answer = match (instead, form) {
+        (Some(content), _) => content,
+        (None, Form::Json(_)) => report::json(&imprint).into_bytes(),
         (None, Form::Table(_)) => {
-            made.extend(notes);
+            made.extend(beyond);
             made.push(report::size(&imprint, Some(&sensor), pitch));
-            Touched {
+            made.extend(done);
+            return Ok(Touched {
                 answer: report::table(&imprint, &made, pitch, charset).into_bytes(),
                 notes: Vec::new(),
-            }
+            });
         }
-    })
+    };
+    let notes = beyond.into_iter().chain(done).collect();
+    Ok(Touched { answer, notes })
 }
 
 /// Looks up a shape and returns it as a picture with the given values, with its sensor.

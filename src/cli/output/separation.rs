@@ -1,7 +1,7 @@
 //! The errors of a set at several sizes and thresholds: as a table and a plot for people, and as JSON.
 //!
 //! ```text
-//! scale     threshold    error  certain       keys  sensor
+//! scale     threshold    error  certain   imprints  sensor
 //! 0.5             0.5   44.9 %   12.5 %         20  16 × 16
 //! 1               0.5    6.0 %   77.3 %        117  16 × 16
 //! ```
@@ -15,7 +15,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{number, percent_fine};
+use crate::cli::output::evaluation::number;
 use crate::cli::output::plot;
 use crate::formats::json;
 use crate::formats::separation::{SeparationCurve, SizeWords, short};
@@ -33,7 +33,7 @@ pub(crate) fn text(
     charset: Charset,
 ) -> String {
     let mut text = format!(
-        "{:<9} threshold    error  certain       keys  sensor\n",
+        "{:<9} threshold    error  certain   imprints  sensor\n",
         axis.name()
     );
     for point in curves.iter().flat_map(|curve| &curve.points) {
@@ -83,7 +83,7 @@ pub(crate) fn all_found(
     wanted: f64,
 ) -> String {
     let sentences = curves.iter().map(|curve| {
-        let found = found(axis, sizes, curve, wanted);
+        let found = found(axis, sizes.step(), curve, wanted);
         if curves.len() > 1 {
             format!("threshold {}: {found}", short(curve.threshold))
         } else {
@@ -95,7 +95,7 @@ pub(crate) fn all_found(
 
 /// Returns what a search found, and how it searched. The steps are named because the error is not monotonic in the
 /// size: a size between two that were tried may reach the wanted error as well.
-fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: f64) -> String {
+fn found(axis: SizeAxis, step: f64, curve: &SeparationCurve, wanted: f64) -> String {
     let words = SizeWords::of(axis);
     let SizeWords {
         noun,
@@ -112,10 +112,14 @@ fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: 
     let mut text = format!(
         "the {extreme} {noun} with an error of at most {wanted} is {}{unit}: {}\n",
         short(smallest.point.value),
-        percent_fine(smallest.point.error())
+        percent(smallest.point.error())
     );
+    if curve.points.len() == 1 {
+        let _ = writeln!(text, "  no other {noun} was tried");
+        return text;
+    }
     if smallest.step > 0.0 {
-        let (coarse, fine) = (short(sizes.step()), short(smallest.step));
+        let (coarse, fine) = (short(step), short(smallest.step));
         let _ = writeln!(
             text,
             "  tried from the {extreme} on in steps of {coarse}{unit}, then of {fine}{unit} before the first that reaches it"

@@ -251,10 +251,12 @@ impl Config {
             places.push((row.key, byte));
         }
         let conflict = self.sensors.conflict();
-        let found = conflict.and_then(|(key, expected)| {
+        let found = conflict.and_then(|(key, expected, other)| {
             let place = places.iter().find(|(own, _)| *own == key)?;
-            let row = rows().find(|row| row.key == key)?;
-            let (expected, found) = (expected.to_owned(), row.name.to_owned());
+            let name = |key| rows().find(|row| row.key == key).map(|row| row.name);
+            let names = other.and_then(name).into_iter().chain(name(key));
+            let found = names.collect::<Vec<_>>().join(" and ");
+            let expected = expected.to_owned();
             Some((place.1, Wrong::Value { expected, found }))
         });
         found.map_or(Ok(()), Err)

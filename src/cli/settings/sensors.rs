@@ -189,17 +189,22 @@ impl SensorSettings {
         }
     }
 
-    /// Returns the first key that conflicts with the others or lacks one, and what was expected.
-    pub(crate) fn conflict(&self) -> Option<(SensorKey, &'static str)> {
+    /// Returns the first key that conflicts with the others or lacks one, what was expected, and the key with which it
+    /// conflicts, if there is one.
+    pub(crate) fn conflict(&self) -> Option<(SensorKey, &'static str, Option<SensorKey>)> {
         let has = |key: SensorKey| self.get(key).is_some();
         let pair = |one: SensorKey, other: SensorKey, why| {
             let found = [(one, other), (other, one)].into_iter();
             let mut lone = found.filter(|&(own, other)| has(own) && !has(other));
-            lone.next().map(|(own, _)| (own, why))
+            lone.next().map(|(own, _)| (own, why, None))
         };
         let rules = [SensorKey::AtLeast, SensorKey::Percent, SensorKey::Low];
-        let second = rules.into_iter().filter(|&key| has(key)).nth(1);
-        let rule = || second.map(|key| (key, "one threshold: at_least, percent, or low and high"));
+        let mut given = rules.into_iter().filter(|&key| has(key));
+        let two = given.next().zip(given.next());
+        let rule = || {
+            let why = "one threshold: at_least, percent, or low and high";
+            two.map(|(first, second)| (second, why, Some(first)))
+        };
         let low = self
             .number(SensorKey::Low)
             .zip(self.number(SensorKey::High));
@@ -211,7 +216,7 @@ impl SensorSettings {
         )
         .or_else(|| pair(SensorKey::Low, SensorKey::High, "low and high together"))
         .or_else(rule)
-        .or_else(|| order().then_some((SensorKey::Low, "a number at most that of high")))
+        .or_else(|| order().then_some((SensorKey::Low, "a number at most that of high", None)))
     }
 
     /// Returns the rule for imprints.

@@ -184,7 +184,9 @@ impl RecordingMetadata {
                 let found = shortened_message(&own.format);
                 return Some(Err(MetadataError::Value {
                     key: "format",
-                    message: format!("{found:?} is not known here, expected {FORMAT:?}"),
+                    message: format!(
+                        "{found:?} is unknown to this version, which reads {FORMAT:?}"
+                    ),
                 }));
             }
             Ok(own) => own.format == FORMAT,
@@ -418,7 +420,7 @@ mod tests {
         let error = newer.expect("metadata").expect_err("another version");
         assert_eq!(
             error.to_string(),
-            "format: \"taxel-touch/2\" is not known here, expected \"taxel-touch/1\""
+            "format: \"taxel-touch/2\" is unknown to this version, which reads \"taxel-touch/1\""
         );
         let unit = wrong("\"unit\":3");
         let expected = "line 1, column 34: found the number 3, expected a string";

@@ -254,7 +254,7 @@ fn broken_files_are_listed_and_reported_without_affecting_others() {
         (
             "newer",
             &good.replace("shape/1", "shape/2"),
-            "format: \"taxel-shape/2\" is not known here, expected \"taxel-shape/1\"",
+            "format: \"taxel-shape/2\" is unknown to this version, which reads \"taxel-shape/1\"",
         ),
         (
             "ragged",

@@ -140,7 +140,18 @@ fn is_office_document(archive: &ZipArchive<impl Read + Seek>) -> bool {
     names.any(|name| name.is_ok_and(|name| is_office(&name)))
 }
 
-/// Returns all arrays with their headers.
+/// Returns true if the archive begins as taxel writes atlases and models: with a header of bytes, then with the rows of
+/// imprints, or their heights.
+fn is_atlas_or_model(arrays: &[ArchiveArray]) -> bool {
+    let [header, second, ..] = arrays else {
+        return false;
+    };
+    header.name == "header"
+        && header.header.shape.len() == 1
+        && matches!(&*second.name, "rows" | "height")
+}
+
+/// Returns all arrays with their headers. An atlas or a model is refused.
 fn arrays(archive: &mut ZipArchive<impl Read + Seek>) -> Result<Vec<ArchiveArray>, RecordingError> {
     if archive.len() > MOST_ARRAYS {
         let message = format!("more than {MOST_ARRAYS} files in the archive");
@@ -159,6 +170,10 @@ fn arrays(archive: &mut ZipArchive<impl Read + Seek>) -> Result<Vec<ArchiveArray
             name,
             header,
         });
+    }
+    if is_atlas_or_model(&arrays) {
+        let kind = "an atlas or a model of taxel";
+        return Err(RecordingError::Foreign { kind });
     }
     Ok(arrays)
 }
