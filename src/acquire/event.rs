@@ -212,13 +212,13 @@ pub enum AcquireError {
 impl AcquireError {
     /// Creates the error for a source that cannot be opened.
     pub(super) fn opening(error: io::Error) -> Self {
-        let doing = "open it";
+        let doing = "open";
         Self::Io { doing, error }
     }
 
     /// Creates the error for a source that cannot be read any further.
     pub(super) fn reading(error: io::Error) -> Self {
-        let doing = "read it";
+        let doing = "read";
         Self::Io { doing, error }
     }
 }

@@ -60,7 +60,7 @@ pub(crate) enum CliError {
         error: InputError,
     },
     /// A source of frames without a byte.
-    #[error("{name} is empty")]
+    #[error("{name}: empty, expected frames of a sensor")]
     Empty {
         /// The name of the source.
         name: String,
@@ -285,7 +285,7 @@ pub(crate) enum CliError {
         failure: runner::ScriptFailure,
     },
     /// `--record` names a file that exists already.
-    #[error("{name} already exists and is not replaced; {free} is free")]
+    #[error("{name:?} already exists and is not replaced; {free} is free")]
     Recorded {
         /// Its name.
         name: String,

@@ -107,7 +107,7 @@ impl UnfinishedFile {
     /// Returns the system's error.
     pub fn handle(&self) -> Result<File, FileError> {
         let handle = self.output.get_ref().file().try_clone();
-        handle.map_err(|error| FileError::new("open it", &self.path, error))
+        handle.map_err(|error| FileError::new("open", &self.path, error))
     }
 
     /// Writes a part of the content.

@@ -70,7 +70,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
 
 /// Opens a file, but does not follow a link or wait for the writer of a pipe.
 fn open(path: &Path) -> Result<File, LibraryError> {
-    let refused = |error| FileError::new("open it", path, error).into();
+    let refused = |error| FileError::new("open", path, error).into();
     #[cfg(unix)]
     {
         use std::os::unix::fs::OpenOptionsExt;

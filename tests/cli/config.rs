@@ -33,35 +33,51 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
     for (text, expected) in [
         (
             "# a comment\n  colour = 'never'\n",
-            "2:3: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; did you mean \"color\"?",
+            "line 2, column 3: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; did you mean \"color\"?",
         ),
         (
             "theme = 'blue'",
-            "1:9: expected one of \"auto\", \"dark\", \"light\", \"mono\", found \"blue\"",
+            "line 1, column 9: expected one of \"auto\", \"dark\", \"light\", \"mono\", found \"blue\"",
+        ),
+        (
+            "theme = 3",
+            "line 1, column 9: expected text in quotes, found integer",
+        ),
+        (
+            "color = 256",
+            "line 1, column 9: expected text in quotes, found integer",
+        ),
+        (
+            "mouse = 'no'",
+            "line 1, column 9: expected true or false, found string",
         ),
         ("theme = 3", "1:9: expected text in quotes, found integer"),
         ("color = 256", "1:9: expected text in quotes, found integer"),
         ("mouse = 'no'", "1:9: expected true or false, found string"),
         (
             "library = 'shapes'",
-            "1:11: expected a path that starts with / or ~/, found \"shapes\"",
+            "line 1, column 11: expected a path that starts with / or ~/, found \"shapes\"",
+        ),
+        (
+            "sensor = 16",
+            "line 1, column 10: expected a table, found integer",
         ),
         ("sensor = 16", "1:10: expected a table, found integer"),
         (
             "[sensor]\ncolumns = 16\nzoom = 2\n",
-            "3:1: unknown key \"zoom\", expected one of columns, rows, threshold, pitch",
+            "line 3, column 1: unknown key \"zoom\", expected one of columns, rows, threshold, pitch",
         ),
         (
             "[source]\nbaud = 12\n",
-            "2:8: expected a whole number from 50 to 20000000, found \"12\"",
+            "line 2, column 8: expected a whole number from 50 to 20000000, found \"12\"",
         ),
         (
             "[source]\nformat = 'csv'\n",
-            "2:10: expected one of \"auto\", \"lines\", \"jsonl\", \"ros2\", \"flexitac\", \"matsense\", found \"csv\"",
+            "line 2, column 10: expected one of \"auto\", \"lines\", \"jsonl\", \"ros2\", \"flexitac\", \"matsense\", found \"csv\"",
         ),
         (
             "[source]\nrows = 16\n",
-            "2:1: expected rows and columns together, found rows",
+            "line 2, column 1: expected rows and columns together, found rows",
         ),
         (
             "[frames]\npercent = 5\nat_least = 9\n",
@@ -69,42 +85,42 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
         ),
         (
             "[frames]\npercent = 0\n",
-            "2:11: expected a number above 0, up to 100, found \"0\"",
+            "line 2, column 11: expected a number above 0, up to 100, found \"0\"",
         ),
         (
             "[frames]\nlow = 5\nhigh = 4\n",
-            "2:1: expected a number at most that of high, found low",
+            "line 2, column 1: expected a number at most that of high, found low",
         ),
         (
             "[sensor]\nrows = 65\n",
-            "2:8: rows: 65 is above 64 (allowed: 1 to 64)",
+            "line 2, column 8: rows: 65 is above 64 (allowed: 1 to 64)",
         ),
         (
             "[sensor]\npitch = nan\n",
-            "2:9: pitch_mm: NaN is not a number (allowed: above 0, up to 1000)",
+            "line 2, column 9: pitch_mm: NaN is not a number (allowed: above 0, up to 1000)",
         ),
         (
             "[sensor]\ncolumns = 0x10\n",
-            "2:11: expected a decimal number, found \"0x10\"",
+            "line 2, column 11: expected a decimal number, found \"0x10\"",
         ),
         (
             "[frames]\nleast = 1e308\n",
-            "2:9: expected a whole number from 1 to 4096, found \"1e308\"",
+            "line 2, column 9: expected a whole number from 1 to 4096, found \"1e308\"",
         ),
         (
             "[keys.matrx]\nx = 'toggle'\n",
             &format!(
-                "1:7: unknown key \"matrx\", expected one of {}; did you mean \"matrix\"?",
+                "line 1, column 7: unknown key \"matrx\", expected one of {}; did you mean \"matrix\"?",
                 contexts()
             ),
         ),
         (
             "[keys.matrix]\nxy = 'toggle'\n",
-            "2:1: \"xy\" is not one key, expected one as in x, <Tab>, <C-x>",
+            "line 2, column 1: \"xy\" is not a key that can be bound, expected one such as x, <Tab> or <C-x>",
         ),
         (
             "[keys.matrix]\n'<A-x>' = 'toggle'\n",
-            "2:1: \"<A-x>\" is not one key, expected one as in x, <Tab>, <C-x>",
+            "line 2, column 1: \"<A-x>\" is not a key that can be bound, expected one such as x, <Tab> or <C-x>",
         ),
     ] {
         invalid(text, expected);
@@ -126,23 +142,23 @@ fn unknown_actions_and_duplicate_keys_are_named() {
     for (text, expected) in [
         (
             "[keys.matrix]\nx = 'togle'\n",
-            format!("2:5: {actions}, found \"togle\"; did you mean \"toggle\"?"),
+            format!("line 2, column 5: {actions}, found \"togle\"; did you mean \"toggle\"?"),
         ),
         (
             "[keys.matrix]\nx = 'fly'\n",
-            format!("2:5: {actions}, found \"fly\""),
+            format!("line 2, column 5: {actions}, found \"fly\""),
         ),
         (
             "[keys.matrix]\nx = 'toggle'\n\"x\" = 'quit'\n",
-            "3:1: key \"x\" is given twice".to_owned(),
+            "line 3, column 1: key \"x\" is given twice".to_owned(),
         ),
         (
             "theme = 'dark'\ntheme = 'light'\n",
-            "2:1: key \"theme\" is given twice".to_owned(),
+            "line 2, column 1: key \"theme\" is given twice".to_owned(),
         ),
         (
             "[sensor]\nrows = 8\n[sensor]\n",
-            "3:2: key \"sensor\" is given twice".to_owned(),
+            "line 3, column 2: key \"sensor\" is given twice".to_owned(),
         ),
     ] {
         invalid(text, &expected);
@@ -153,23 +169,23 @@ fn unknown_actions_and_duplicate_keys_are_named() {
 fn surprising_changes_of_keys_are_refused_with_their_places() {
     invalid(
         "[keys.matrix]\n'<CR>' = 'toggle'\n'<Enter>' = 'undo'\n",
-        "3:1: <Enter> is bound twice here",
+        "line 3, column 1: <Enter> is bound twice here",
     );
     invalid(
         "[keys.matrix]\nx = 'undo'\nd = 'toggle'\n",
-        "3:1: d is the only key of \"delete\" here; give the action another key first",
+        "line 3, column 1: d is the only key of \"delete\" here; give the action another key first",
     );
     invalid(
         "keys.matrix.x = 'increase'\n",
-        "1:17: \"increase\" is not an action of [keys.matrix]; 'taxel config' lists them",
+        "line 1, column 17: \"increase\" is not an action of [keys.matrix]; 'taxel config' lists them",
     );
     invalid(
         "[keys.list]\nj = 'scroll-down'\n",
-        "2:1: j types text here; choose a key like <C-x>",
+        "line 2, column 1: j types text here; choose a key like <C-x>",
     );
     invalid(
         "[keys.everywhere]\n'<C-c>' = 'none'\n",
-        "2:1: <C-c> always closes what is open and cannot be changed",
+        "line 2, column 1: <C-c> always closes what is open and cannot be changed",
     );
 }
 

@@ -297,8 +297,8 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
         run.stdout.replace(&folder, "FOLDER"),
         "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is unknown to this version, which reads \"taxel-shape/1\"\n\
          broken: dir: FOLDER/dir.json: is a folder, expected a regular file\n\
-         left over: FOLDER/a:b.json: not a shape: shapes cannot have this name\n\
-         left over: FOLDER/notes.txt: not a shape: its name is not NAME.json\n"
+         other file: FOLDER/a:b.json: not a shape: shapes cannot have this name\n\
+         other file: FOLDER/notes.txt: not a shape: its name is not NAME.json\n"
     );
     assert_eq!(
         (run.status, run.stderr),
@@ -312,8 +312,8 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
         run.stdout.replace(&folder, "FOLDER"),
         "[{\"finding\":\"broken\",\"name\":\"bad\\u00e9\",\"reason\":\"FOLDER/bad\\u00e9.json: line 1, column 26: format: \\\"taxel-shape/9\\\" is unknown to this version, which reads \\\"taxel-shape/1\\\"\"},\
          {\"finding\":\"broken\",\"name\":\"dir\",\"reason\":\"FOLDER/dir.json: is a folder, expected a regular file\"},\
-         {\"finding\":\"left over\",\"path\":\"FOLDER/a:b.json\",\"reason\":\"not a shape: shapes cannot have this name\"},\
-         {\"finding\":\"left over\",\"path\":\"FOLDER/notes.txt\",\"reason\":\"not a shape: its name is not NAME.json\"}]\n"
+         {\"finding\":\"other file\",\"path\":\"FOLDER/a:b.json\",\"reason\":\"not a shape: shapes cannot have this name\"},\
+         {\"finding\":\"other file\",\"path\":\"FOLDER/notes.txt\",\"reason\":\"not a shape: its name is not NAME.json\"}]\n"
     );
     assert_eq!(run.status, Some(1));
     let json = shelf.does("library|list|--json", "");

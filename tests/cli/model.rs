@@ -297,7 +297,7 @@ fn shards_and_threads_give_the_same_bytes() {
         "merge part-1.npz part-2.npz part-3.npz --out ./part-1.npz --force",
         "",
     );
-    let message = "part-1.npz: is one of the shards; write to another file";
+    let message = "part-1.npz: one of the shards; write to another file";
     refused(&run, 1, message);
     assert!(!names(place.0.path()).contains(&"no.npz".to_owned()));
 }
@@ -427,7 +427,7 @@ fn models_can_be_named_listed_and_shown() {
         1,
         "figures is built in and cannot be deleted",
     );
-    assert_eq!(place.done("model delete parts"), "deleted: parts\n");
+    assert_eq!(place.done("model delete parts"), "deleted parts\n");
     refused(
         &place.run("model delete parts", ""),
         1,
@@ -496,7 +496,7 @@ fn meaningless_sets_are_refused_in_one_sentence() {
     for (input, message) in [
         (
             format!("{{\"name\":\"a\",{disc}}}\n{{{disc}}}\n"),
-            "standard input, line 2: name: missing; every shape of a set needs one",
+            "standard input: line 2: name: missing; every shape of a set needs one",
         ),
         (
             format!("{{\"name\":\"a\",{disc}}}\n\n{{\"name\":\"a\",{disc}}}\n"),
@@ -504,20 +504,20 @@ fn meaningless_sets_are_refused_in_one_sentence() {
         ),
         (
             "{\"name\":\"a\"".to_owned(),
-            "standard input, line 1: column 11: ",
+            "standard input: line 1, column 11: ",
         ),
         (
             "{\"name\":\"a\",\"figure\":\"ellipse\",\"radius_x\":3}".to_owned(),
-            "standard input, line 1: radius_y",
+            "standard input: line 1: radius_y",
         ),
         (
             "{\"name\":\"a\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3,\"sensor\":{}}"
                 .to_owned(),
-            "standard input, line 1: ",
+            "standard input: line 1: ",
         ),
         (
             "{\"name\":\"a\",\"picture\":\"no such\"}".to_owned(),
-            "standard input, line 1: picture",
+            "standard input: line 1: picture",
         ),
         (
             "\n \n".to_owned(),
@@ -680,7 +680,7 @@ fn a_shape_of_a_set_has_no_pose() {
             "zoom_y",
         ),
     ] {
-        let at = format!("standard input, line 1: {key}");
+        let at = format!("standard input: line 1: {key}");
         refused_at("model train -", &format!("{{{shape}}}\n"), &at);
     }
     let words = "model train --shape 'a=ellipse radius_x=3 radius_y=2 x0=1'";

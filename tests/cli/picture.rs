@@ -113,7 +113,7 @@ fn a_batch_reports_unknown_names() {
         answers[2]
     );
     assert!(
-        answers[3].contains("bad.json: line 1, column 1: the end"),
+        answers[3].contains("bad.json: line 1, column 1: the text ends"),
         "{}",
         answers[3]
     );

@@ -27,13 +27,9 @@ fn messages_name_the_script_and_the_line() {
         (
             "Source nofile.csv",
             1,
-            "line 1: nofile.csv: cannot open it: no such file or folder",
+            "line 1: nofile.csv: cannot open: no such file or folder",
         ),
-        (
-            "Source src",
-            1,
-            "line 1: src: cannot open it: it is a folder",
-        ),
+        ("Source src", 1, "line 1: src: cannot open: it is a folder"),
         (
             "Frames 1",
             1,

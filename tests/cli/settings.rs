@@ -171,7 +171,7 @@ fn a_broken_settings_file_is_reported_and_nothing_is_started() {
     let folder = home.path();
     let file = folder.join(".config/taxel/config.toml");
     let message = format!(
-        "error: {}:2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; did you mean \"color\"?\n",
+        "error: {}: line 2, column 1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; did you mean \"color\"?\n",
         file.display()
     );
     for line in [

@@ -421,7 +421,7 @@ fn the_memory_of_a_merge_is_limited_and_printed() {
     );
     assert_eq!(lines[2..], [format!("written: {}", path("m.npz"))]);
     let run = merge(&format!("--atlas {one} --force"));
-    let expected = format!("error: {one}: is one of the shards; write to another file\n");
+    let expected = format!("error: {one}: one of the shards; write to another file\n");
     assert_eq!((run.status, run.stderr), (Some(1), expected));
     let run = taxel(
         &format!("merge {one} {} --atlas {}", path("m.npz"), path("no.npz")),

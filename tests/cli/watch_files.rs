@@ -402,7 +402,7 @@ fn a_file_without_frames_that_no_longer_grows_ends_at_its_end() {
     super::refused(
         &taxel(&format!("watch {name}"), ""),
         1,
-        &format!("{name} is empty"),
+        &format!("{name}: empty, expected frames of a sensor"),
     );
 }
 

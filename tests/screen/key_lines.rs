@@ -104,7 +104,7 @@ fn the_menu_shows_the_keys_of_the_page() {
         ),
         (
             "f<CR>:explore --angle 0<CR>/na>=999<CR>",
-            "j find",
+            "j jump",
             "compare",
         ),
         // The map shows no descriptor.

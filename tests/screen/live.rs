@@ -176,14 +176,11 @@ fn an_unreadable_source_or_a_missing_model_opens_no_page() {
     let keys = ":watch nowhere.csv<Enter>";
     shows(
         keys,
-        &["! nowhere.csv: cannot open it: no such", ":watch nowhere"],
+        &["! nowhere.csv: cannot open: no such", ":watch nowhere"],
     );
     hides(keys, &["no frame yet"]);
     let keys = ":watch tcp://robot<Enter>";
-    shows(
-        keys,
-        &["! tcp://robot: cannot open it: expected tcp://HOST"],
-    );
+    shows(keys, &["! tcp://robot: cannot open: expected tcp://HOST"]);
     let keys = ":watch tests/scripts/touch.csv --model nope<Enter>".replace(' ', "<Space>");
     shows(
         &keys,
@@ -209,8 +206,8 @@ fn keys_raise_and_lower_the_threshold_and_change_its_unit() {
     shows(&watched(6, "+"), &["threshold  50", "NA         37"]);
     shows(&watched(6, "++"), &["threshold  51"]);
     shows(&watched(6, "+-"), &["threshold  49"]);
-    shows(&watched(6, "+%"), &["threshold  63 % of the peak"]);
-    shows(&watched(6, "+%+"), &["threshold  68 % of the peak"]);
+    shows(&watched(6, "+%"), &["threshold  63 % of max"]);
+    shows(&watched(6, "+%+"), &["threshold  68 % of max"]);
     // Back to exactly the same threshold, also from a peak below it.
     let threshold = |keys: &str| {
         let screen = watched(6, keys).screen();
@@ -263,7 +260,7 @@ fn changing_the_unit_uses_the_values_that_the_threshold_applies_to() {
     };
     // The values that are shown do not matter: tared values, raw ones, or the imprint.
     let expected = threshold("t+%");
-    assert!(expected.ends_with("% of the peak"), "{expected}");
+    assert!(expected.ends_with("% of max"), "{expected}");
     assert_eq!([threshold("t+v%"), threshold("t+vv%")], [&*expected; 2]);
     let expected = threshold("t+%%");
     assert_eq!([threshold("t+%v%"), threshold("t+%vv%")], [&*expected; 2]);
@@ -311,7 +308,7 @@ fn the_progress_of_a_tare_is_shown() {
 fn a_recording_of_too_few_frames_for_the_tare_is_an_error() {
     let mut page = set(|request| request.tare = 9);
     page.frames(20);
-    let lacking = "! frames for the tare: found 8, expected 9";
+    let lacking = "! the tare needs 9 frames, but there are only 8";
     shows(&page, &["frame 7", "ended", "tare       none", lacking]);
     then(&mut page, "<Left>", &["frame 6", lacking]);
     then(&mut page, "<End>t", &["tare of the last 8 frames"]);
@@ -324,7 +321,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     page.frames(3);
     shows(
         &page,
-        &["frame 2", "4 × noise", "tare: 3 of 6 frames", "peak  "],
+        &["frame 2", "4 × noise", "tare: 3 of 6 frames", "max  "],
     );
     hides(&page, &["no frame yet", "needs a tare"]);
     let not_yet = "! no imprint before the tare: 3 of 6 frames";
@@ -332,7 +329,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     page.frames(3);
     shows(&page, &["frame 5", "tare       6 frames"]);
     let needed = "! a threshold from noise needs a tare of at least two frames";
-    then(&mut page, "T<Left>", &["frame 4", "peak  ", needed]);
+    then(&mut page, "T<Left>", &["frame 4", "max  ", needed]);
     let refused = "! no imprint: a threshold from noise needs a tare";
     then(&mut page, "<Enter>", &[refused]);
     then(&mut page, "m", &["frame 4: marked"]);
@@ -341,7 +338,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     // The recording ends before the tare is made.
     let mut page = set(|request| by_noise(request, 9));
     page.frames(20);
-    shows(&page, &["frame 7", "! frames for the tare: found 8"]);
+    shows(&page, &["frame 7", "! the tare needs 9 frames"]);
     then(&mut page, "<Enter>", &[refused]);
 }
 
@@ -583,12 +580,12 @@ fn a_narrow_title_keeps_unusual_states() {
     let mut page = watched(6, "p<Left>m");
     shows(
         &page,
-        &["touch.csv  frame 4  0.4 s  frozen, 1 frame behind  raw  peak held  marked"],
+        &["touch.csv  frame 4  0.4 s  frozen, 1 frame behind  raw  max held  marked"],
     );
     for (columns, title) in [
         (
             66,
-            "touch.csv  frame 4  frozen, 1 frame behind  peak held  marked",
+            "touch.csv  frame 4  frozen, 1 frame behind  max held  marked",
         ),
         (50, "touch.csv  frame 4  frozen, 1 frame behind"),
         (36, "touch.csv  frozen, 1 frame behind"),
@@ -610,18 +607,18 @@ fn a_narrow_title_mentions_maxima_and_recording() {
     let mut page = started(world, &format!(":watch {}<Enter>", path.display()));
     page.frames(2);
     then(&mut page, "r", &["recording in touch-1.npy"]);
-    then(&mut page, "p", &["peak held"]);
+    then(&mut page, "p", &["max held"]);
     page.frames(1);
     for (size, title) in [
         (
             (80, 24),
-            "a-recording-of-the-left…  frame 2  recording  peak held  columns 0-47, rows 8-47",
+            "a-recording-of-the-left-…  frame 2  recording  max held  columns 0-47, rows 8-47",
         ),
         (
             (60, 20),
-            "a-recording-of-the-left-hand…  frame 2  recording  peak held",
+            "a-recording-of-the-left-hand.…  frame 2  recording  max held",
         ),
-        ((40, 12), "a-recording-of-th…  recording  peak held"),
+        ((40, 12), "a-recording-of-the…  recording  max held"),
     ] {
         page.resize(size.0, size.1);
         let screen = page.screen();
@@ -649,11 +646,11 @@ fn the_sum_is_that_of_the_shown_values() {
     page.frames(1);
     then(&mut page, "t", &["tare of the last 1 frame"]);
     page.frames(1);
-    shows(&page, &["tared", "sum        5", "peak       3 at 1, 0"]);
+    shows(&page, &["tared", "sum        5", "max        3 at 1, 0"]);
     then(
         &mut page,
         "vv",
-        &["raw", "sum        16", "peak       9 at 1, 0"],
+        &["raw", "sum        16", "max        9 at 1, 0"],
     );
 }
 
@@ -661,9 +658,9 @@ fn the_sum_is_that_of_the_shown_values() {
 fn the_peak_of_each_cell_is_held() {
     let mut page = watched(1, "p");
     page.frames(7);
-    shows(&page, &["peak held", "frame 7"]);
+    shows(&page, &["max held", "frame 7"]);
     then(&mut page, "p", &["frame 7"]);
-    hides(&page, &["peak held"]);
+    hides(&page, &["max held"]);
 }
 
 #[test]
@@ -919,7 +916,7 @@ fn watch_accepts_the_flags_of_the_command_line() {
             "two by three.csv",
             "frame 2",
             "threshold  4",
-            "peak       7 at 2, 1",
+            "max        7 at 2, 1",
         ],
     );
     then(&mut page, "<Esc>", &[]);
@@ -1010,11 +1007,11 @@ fn frames_of_an_earlier_watch_do_not_have_the_present_marks() {
 #[test]
 fn a_tare_set_by_the_user_stays_when_the_page_is_reopened() {
     let mut page = watched(6, "tp");
-    shows(&page, &["tare       6 frames", "peak held"]);
+    shows(&page, &["tare       6 frames", "max held"]);
     then(&mut page, "<Esc>w", &[]);
     page.frames(1);
     shows(&page, &["tare       6 frames", "frame 0"]);
-    hides(&page, &["peak held"]);
+    hides(&page, &["max held"]);
 }
 
 #[test]
@@ -1030,7 +1027,7 @@ fn values_far_below_1_have_shades_and_fine_steps() {
     std::fs::write(&path, "time,r0c0,r0c1\n0.0,0.000001,0.0000042\n").expect("written");
     let mut page = session(&format!(":watch {}<Enter>", path.display()));
     page.frames(1);
-    shows(&page, &["5e-6", "peak       0.0000042 at 1, 0"]);
+    shows(&page, &["5e-6", "max        0.0000042 at 1, 0"]);
     then(&mut page, "+", &["threshold  2.5e-6"]);
 }
 
@@ -1140,13 +1137,13 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
 
 #[test]
 fn the_marks_on_taxels_are_explained() {
-    shows(&watched(6, "+"), &["marks      • imprint edge"]);
-    shows(&watched(6, "+#"), &["marks      • active taxel"]);
-    hides(&watched(6, "+v"), &["marks"]);
-    hides(&watched(6, ""), &["marks"]);
+    shows(&watched(6, "+"), &["legend     • imprint edge"]);
+    shows(&watched(6, "+#"), &["legend     • active taxel"]);
+    hides(&watched(6, "+v"), &["legend"]);
+    hides(&watched(6, ""), &["legend"]);
     let mut low = watched(6, "+");
     low.resize(80, 16);
-    shows(&low, &["marks      • near imprint"]);
+    shows(&low, &["legend     • near imprint"]);
 }
 
 #[test]

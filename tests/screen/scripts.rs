@@ -280,7 +280,7 @@ fn a_script_sets_options_and_shapes() {
         assert!(sensor.contains(part), "{sensor}");
     }
     let script = format!(
-        "Set leftover {PAIR}\nExpect /unsaved work from last time: pair, 2 taxels/\nKeys y\nExpect /brought back/\n\
+        "Set leftover {PAIR}\nExpect /unsaved work from last time: pair, 2 taxels/\nKeys y\nExpect /restored/\n\
          Expect /NA 2 in all/\nKeys u\nExpect /nothing to undo/"
     );
     output(&script, false).expect("it holds");

@@ -433,7 +433,7 @@ not exist. --json prints an array on one line, with an object for each finding;
 without findings it is empty:
   {"finding":"broken","name":"ring","reason":"..."}
   {"finding":"name","name":"Ring","reason":"..."}
-  {"finding":"left over","path":"shapes/notes.txt","reason":"..."}
+  {"finding":"other file","path":"shapes/notes.txt","reason":"..."}
 
 Examples:
   taxel library check

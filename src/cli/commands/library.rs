@@ -291,8 +291,8 @@ enum Finding {
     #[serde(rename = "name")]
     Name { name: String, reason: String },
     /// A file that is not a shape.
-    #[serde(rename = "left over")]
-    LeftOver { path: String, reason: &'static str },
+    #[serde(rename = "other file")]
+    OtherFile { path: String, reason: &'static str },
     /// Unsaved work that cannot be read.
     #[serde(rename = "damaged")]
     Damaged { path: String, reason: String },
@@ -303,7 +303,7 @@ impl fmt::Display for Finding {
         match self {
             Self::Broken { name, reason } => write!(f, "broken: {name}: {reason}"),
             Self::Name { name, reason } => write!(f, "name: {name}: {reason}"),
-            Self::LeftOver { path, reason } => write!(f, "left over: {path}: {reason}"),
+            Self::OtherFile { path, reason } => write!(f, "other file: {path}: {reason}"),
             Self::Damaged { reason, .. } => write!(f, "damaged: unsaved work: {reason}"),
         }
     }
@@ -374,7 +374,7 @@ pub(crate) fn check(
     leftovers.retain(|(path, _)| !damaged.iter().any(|(own, _)| own == path));
     findings.extend(leftovers.into_iter().map(|(path, reason)| {
         let path = path.display().to_string();
-        Finding::LeftOver { path, reason }
+        Finding::OtherFile { path, reason }
     }));
     let files = damaged.len();
     findings.extend(damaged.into_iter().map(|(path, error)| Finding::Damaged {

@@ -85,7 +85,7 @@ fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
         if let Some(path) = files.iter().find(own) {
             return Err(CliError::Shard {
                 path: path.clone(),
-                reason: "is one of the shards; write to another file".to_owned(),
+                reason: "one of the shards; write to another file".to_owned(),
             });
         }
     }

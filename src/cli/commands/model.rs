@@ -498,7 +498,7 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
         let said = match &model {
             Ok(model) => {
                 let shapes = counted(model.shapes().len() as u64, "shape");
-                let keys = counted(model.keys().len() as u64, "key");
+                let keys = counted(model.keys().len() as u64, "distinct imprint");
                 match model.shard() {
                     Shard::WHOLE => {
                         let error = percent(Evaluation::of(model).error());
@@ -532,7 +532,7 @@ pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
                 CliError::BuiltInModel { name }
             })
         }
-        deleted => Ok(format!("deleted: {}\n", deleted?)),
+        deleted => Ok(format!("deleted {}\n", deleted?)),
     }
 }
 

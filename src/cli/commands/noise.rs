@@ -297,9 +297,14 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
     let touches = table.first().map_or(0, |row| row.rate.touches);
     let _ = writeln!(
         text,
-        "{} a row, seed {seed}; held: {} that some shape leaves without noise",
+        "{} a row, seed {seed}\nheld: touches whose {} without noise, too\n\
+         claimed: the mean probability of the answers",
         counted(touches, "touch"),
-        if given { "values" } else { "imprints" }
+        if given {
+            "values some shape has"
+        } else {
+            "imprint some shape leaves"
+        }
     );
     text
 }

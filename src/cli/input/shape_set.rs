@@ -21,7 +21,7 @@ use crate::figure::Figure;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::ending::has_ending;
 use crate::formats::system_error::system_reason;
-use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
+use crate::formats::{NamedShapeError, ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
 use crate::quote::shortened;
 use crate::recognition::NamedShape;
@@ -165,8 +165,15 @@ fn lines(
             continue;
         }
         let shape = named_shape(line, lookup);
-        let place = || format!("{name}, line {}", index + 1);
-        shapes.push(shape.map_err(|error| refused(place(), error.to_string()))?);
+        shapes.push(shape.map_err(|error| {
+            let place = format!("{name}: line {}", index + 1);
+            match error {
+                NamedShapeError::Json { column, message } => {
+                    refused(format!("{place}, column {column}"), message)
+                }
+                error => refused(place, error.to_string()),
+            }
+        })?);
     }
     if shapes.len() == before {
         let error = "no shapes, expected a line of JSON for each";

@@ -5,7 +5,7 @@
 //! ```text
 //! 10,000 poses: x0 5:5.99:0.01, y0 5:5.99:0.01
 //! 393 distinct imprints, 376 up to shifts, 58 up to quarter turns and mirror images too
-//! 0 poses partly off the sensor, 0 poses without an imprint; 0.03 s
+//! 0 poses cut off by the sensor, 0 poses without an imprint; 0.03 s
 //!
 //!                         min       mean        max         sd  …
 //! na                  35.0000    37.6952    40.0000     1.2792  …
@@ -88,7 +88,7 @@ impl<'a> SweepSummary<'a> {
             number(self.classes.1)
         ));
         line(&format!(
-            "{} partly off the sensor, {} without an imprint; {:.2} s",
+            "{} cut off by the sensor, {} without an imprint; {:.2} s",
             counted(*partly_off, "pose"),
             counted(atlas.empty_poses(), "pose"),
             self.took.as_secs_f64()

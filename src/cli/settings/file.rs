@@ -8,7 +8,7 @@
 //! assert_eq!(config.sensor_entries()[0].line, 3);
 //! let error = Config::read("theme = 'light'\ncolour = 'never'\n").unwrap_err();
 //! assert_eq!(error.to_string(),
-//!     "2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; \
+//!     "line 2, column 1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; \
 //!      did you mean \"color\"?");
 //! ```
 
@@ -76,7 +76,7 @@ pub struct Config {
 
 /// An error in the settings file, with its line and column.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{line}:{column}: {wrong}")]
+#[error("line {line}, column {column}: {wrong}")]
 pub struct ConfigError {
     /// The line, from 1.
     pub line: usize,

@@ -11,7 +11,7 @@
 //!
 //! Empty environment variables count as unset, as is usual for `NO_COLOR`. The user's own file is read for every
 //! command whose output depends on settings. An error in the file is an error of the command, with its place:
-//! `~/.config/taxel/config.toml:3:9: …`.
+//! `~/.config/taxel/config.toml: line 3, column 9: …`.
 
 use std::ffi::OsString;
 use std::fmt;
@@ -84,8 +84,8 @@ impl Loaded {
         }
         let text = String::from_utf8(bytes).map_err(|_| failure("not UTF-8".to_owned()))?;
         let config = Config::read(&text).map_err(|error| CliError::Settings {
-            place: format!("{name}:{}:{}", error.line, error.column),
-            message: error.wrong.to_string(),
+            place: name.to_string(),
+            message: error.to_string(),
         })?;
         Ok(Self {
             path: Some(path),

@@ -93,6 +93,10 @@ fn refused(start: &[u8]) -> RecordingError {
         None if is_bitmap(start) => RecordingError::Foreign {
             kind: "a PBM or PGM image (taxel describe reads PBM, and PGM with two shades)",
         },
+        None if start.is_empty() => RecordingError::damaged("empty, expected a recording"),
+        None if is_imprint(start) => RecordingError::Foreign {
+            kind: "an imprint as text (taxel describe reads it)",
+        },
         None if is_column(start) => RecordingError::Shape { values: 1 },
         None => match numbers_below_text(start) {
             Some(_) if begins_with_time(start) => RecordingError::in_line(1, moment::ABOVE_ROWS),
@@ -137,6 +141,13 @@ fn numbers_below_text(text: &[u8]) -> Option<u64> {
 /// Returns true if a file is a black-and-white or grey image of netpbm.
 fn is_bitmap(start: &[u8]) -> bool {
     matches!(start, [b'P', b'1' | b'2' | b'4' | b'5', blank, ..] if blank.is_ascii_whitespace())
+}
+
+/// Returns true if a text consists of the taxels of an imprint.
+fn is_imprint(text: &[u8]) -> bool {
+    let text = without_mark(text).trim_ascii();
+    let is_taxel = |byte: &u8| b"#.\r\n".contains(byte);
+    !text.is_empty() && text.iter().all(is_taxel)
 }
 
 /// Returns true if a text consists of numbers, one per line.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! 175 distinct up to shifts, 105 up to quarter turns and mirror images too
-//! poses partly off the sensor: 316  without imprint: 32
+//! poses cut off by the sensor: 316  without imprint: 32
 //! 1 of 23              min   mean    max     sd        the number of the chosen descriptor, and columns
 //! > na                   1 22.405     29 7.3052        a row for each descriptor
 //! ```
@@ -184,7 +184,7 @@ fn totals(results: &Results, width: usize) -> [String; 2] {
     [
         write::first_fitting(&[&classes[0], &classes[1]], width).to_owned(),
         format!(
-            "poses partly off the sensor: {}  without imprint: {}",
+            "poses cut off by the sensor: {}  without imprint: {}",
             grouped(result.partly_off),
             grouped(result.atlas.empty_poses())
         ),

@@ -223,10 +223,10 @@ actions! {
         NUDGE_RIGHT "nudge-right" ["nudge right"] Message::Nudge(Arrow::Right);
         NUDGE_UP "nudge-up" ["nudge up"] Message::Nudge(Arrow::Up);
         NUDGE_DOWN "nudge-down" ["nudge down"] Message::Nudge(Arrow::Down);
-        TURN_LEFT "turn-left" [] Message::Turn(-1.0), "turn the shape left by 1 degree";
-        TURN_RIGHT "turn-right" [] Message::Turn(1.0), "turn the shape right by 1 degree";
-        TURN_LEFT_10 "turn-left-10" [] Message::Turn(-10.0), "turn the shape left by 10 degrees";
-        TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10.0), "turn the shape right by 10 degrees";
+        TURN_LEFT "turn-left" [] Message::Turn(-1.0), "turn the shape counter-clockwise by 1 degree";
+        TURN_RIGHT "turn-right" [] Message::Turn(1.0), "turn the shape clockwise by 1 degree";
+        TURN_LEFT_10 "turn-left-10" [] Message::Turn(-10.0), "turn the shape counter-clockwise by 10 degrees";
+        TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10.0), "turn the shape clockwise by 10 degrees";
         ZOOM_IN "zoom-in" ["zoom in"] Message::Zoom(1);
         ZOOM_OUT "zoom-out" ["zoom out"] Message::Zoom(-1);
         ZOOM_CENTRE "zoom-centre" [] Message::ZoomCentre;

@@ -75,7 +75,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             ShiftArrow(Up) => NUDGE_UP, ShiftArrow(Down) => NUDGE_DOWN]
             "" "move the shape by a step, without holding it";
         [Char('<') => TURN_LEFT, Char('>') => TURN_RIGHT]
-            "turn" "turn the shape by 1 degree, left, right";
+            "turn" "turn it by 1 degree, counter-clockwise, clockwise";
         [Char('(') => TURN_LEFT_10, Char(')') => TURN_RIGHT_10] "" "turn it by 10 degrees";
         [Char('z') => ZOOM_IN, Char('Z') => ZOOM_OUT]
             "" "zoom a picture in, out, by the current step";
@@ -106,7 +106,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     Form {
         [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
-            "" "choose the kind (or by its letter); move, change field";
+            "" "choose the kind (or type its letter); move; next field";
         [PageUp => INCREASE, PageDown => DECREASE]
             "step" "to the next 0.01 (from 10 on 0.1), the next degree";
         [Ctrl('d') => DEFAULTS] "defaults" "the defaults, not what was accepted last";
@@ -152,7 +152,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     }
 
     Compare {
-        [Tab => NEXT, BackTab => PREVIOUS] "view" "differences, the first, the second";
+        [Tab => NEXT, BackTab => PREVIOUS] "view" "show the differences, the first, or the second";
         [LEFT => LEFT, RIGHT => RIGHT, UP => SCROLL_UP, DOWN => SCROLL_DOWN]
             "scroll" "scroll, if not everything fits";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten rows up, down";
@@ -234,7 +234,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             Char('v') => SORT_BY_VALUE]
             "" "sort by 1st pose, poses, pieces, holes, value";
         [Char('=') => COMPARE] "compare" "compare it with the imprint on the matrix";
-        [Char('j') => FIND] "find" "jump to the imprint that is on the matrix";
+        [Char('j') => FIND] "jump" "jump to the imprint that is on the matrix";
         [Char('g') => FOLLOW] "map" "go to its first pose on the map";
     }
 
@@ -281,7 +281,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('/') => FILTER, Char('f') => FILTER]
             "filter" "show only imprints that fit, such as na>=40 holes=0";
         [Enter => ACCEPT] "to matrix" "put the selected imprint onto the matrix";
-        [Char('j') => FIND] "find" "jump to the imprint that is on the matrix";
+        [Char('j') => FIND] "jump" "jump to the imprint that is on the matrix";
         [Char('g') => FOLLOW] "map" "go to its first pose on the map";
     }
 
@@ -376,7 +376,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "tare" "subtract the median of the last 30 frames; no tare";
         [Char('+') => THRESHOLD_UP, Char('=') => THRESHOLD_UP, Char('-') => THRESHOLD_DOWN]
             "threshold" "the threshold up, down";
-        [Char('%') => PERCENT] "" "a threshold in percent of the peak, or in the unit";
+        [Char('%') => PERCENT] "" "a threshold in percent of the maximum, or in the unit";
         [Char(' ') => FREEZE] "freeze" "freeze this frame, or follow the source again";
         [LEFT => SCROLL_UP, RIGHT => SCROLL_DOWN, UP => SCROLL_UP, DOWN => SCROLL_DOWN]
             "scrub" "to an earlier, a later frame";
@@ -385,14 +385,14 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [ShiftArrow(Left) => WINDOW_LEFT, ShiftArrow(Right) => WINDOW_RIGHT,
             ShiftArrow(Up) => WINDOW_UP, ShiftArrow(Down) => WINDOW_DOWN]
             "other taxels" "see other taxels, if not all fit on the screen";
-        [Char('c') => FOLLOW_CONTACT] "" "see the taxels of the contact again";
-        [Char('p') => PEAK_HOLD] "peak" "hold the peak of each cell, or release it";
+        [Char('c') => FOLLOW_CONTACT] "" "scroll back to the contact";
+        [Char('p') => PEAK_HOLD] "hold" "hold the largest value of each cell, or release it";
         [Char('v') => NEXT_LAYER] "view" "raw values, tared values, the imprint";
         [Char('#') => NUMBERS] "" "values as numbers, or in shades";
-        [Char('g') => OWN_RANGE] "" "shades cover this frame's values, or all so far";
+        [Char('g') => OWN_RANGE] "" "scale the shades to this frame, or to all so far";
         [Char('i') => PANEL] "" "only the numbers, or the taxels as well";
         [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
-        [Char('w') => WATCH_AGAIN] "again" "play a recording again; a stream after its end";
+        [Char('w') => WATCH_AGAIN] "again" "play again; reopen a stream that has ended";
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
         [Char('n') => NAME_SHAPE] "name" "name the shape by the next model, or by none";
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";

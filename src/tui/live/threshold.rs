@@ -8,7 +8,7 @@ use crate::tui::live::reading::{nine_digits, round_up};
 pub(super) fn text(rule: Rule, unit: &str) -> String {
     match rule {
         Rule::AtLeast(threshold) => format!("{}{unit}", measured(threshold, 7)),
-        Rule::Percent(percent) => format!("{} % of the peak", fitting(percent, 5)),
+        Rule::Percent(percent) => format!("{} % of max", fitting(percent, 5)),
         Rule::Hysteresis { low, high } => {
             format!("{} to {}{unit}", measured(low, 7), measured(high, 7))
         }

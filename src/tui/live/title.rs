@@ -85,7 +85,7 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
     if live.cursor.holds_peak() {
         // A frozen frame is shown as it came, without the held peak.
         let rank = if live.cursor.frozen().is_none() { 1 } else { 4 };
-        say(rank, "peak held".to_owned(), Role::Focus);
+        say(rank, "max held".to_owned(), Role::Focus);
     }
     if live.is_marked() {
         say(4, "marked".to_owned(), Role::Focus);

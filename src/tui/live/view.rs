@@ -289,17 +289,17 @@ fn of_values(
     let mut say = |label, text: String| lines.push(PanelLine::new(label, text));
     say("range", scale(theme, live.range(), &unit));
     if let Some(marks) = marks {
-        say("marks", marks);
+        say("legend", marks);
     }
     // Small sums of large values are rounding errors, not measured values.
     let is_small = live.range().1 < 0.1;
     let value = if is_small { measured } else { fitting };
     say("sum", format!("{}{unit}", value(reading.sum, 9)));
-    let peak = reading
+    let max = reading
         .max
         .map(|(largest, (column, row))| format!("{}{unit} at {column}, {row}", value(largest, 9)));
-    let peak = peak.unwrap_or_else(|| theme.none().to_owned());
-    lines.push(PanelLine::up_to("peak", peak, " at "));
+    let max = max.unwrap_or_else(|| theme.none().to_owned());
+    lines.push(PanelLine::up_to("max", max, " at "));
     let cells = counted(cells(&reading.values) as u64, "cell");
     let (columns, rows) = (reading.values.columns(), reading.values.rows());
     let size = format!("{columns} × {rows}, {cells}");
@@ -450,7 +450,7 @@ fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
     match set.from {
         RuleOrigin::File => PanelLine::up_to(label, format!("{text}, of the file"), ", of"),
         RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => {
-            PanelLine::up_to(label, text, " of the peak")
+            PanelLine::up_to(label, text, " of max")
         }
     }
 }

@@ -164,10 +164,10 @@ fn on_removed(app: &mut App, name: String) {
 /// Puts unsaved work of an earlier run onto the matrix.
 fn on_recovered(app: &mut App, shape: &StoredShape) {
     let document = Document::of_shape(shape);
-    let origin = DocumentOrigin::unsaved(&document).called("unsaved work brought back");
+    let origin = DocumentOrigin::unsaved(&document).called("unsaved work restored");
     resume(app, origin, document);
     let save = app.key_of(&action::SAVE);
-    inform(app, format!("brought back; {save} saves it"));
+    inform(app, format!("restored; {save} saves it"));
 }
 
 /// Handles unsaved work that was moved to the trash, and offers what is left.

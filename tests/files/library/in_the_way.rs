@@ -248,9 +248,13 @@ fn broken_files_are_listed_and_reported_without_affecting_others() {
         (
             "cut",
             &good[..good.len() / 2],
-            "line 15, column 20: imprint: the end inside a string, expected a closing quote",
+            "line 15, column 20: imprint: the text ends inside a string, expected a closing quote",
         ),
-        ("empty", "", "line 1, column 1: the end, expected a value"),
+        (
+            "empty",
+            "",
+            "line 1, column 1: the text ends, expected a value",
+        ),
         (
             "newer",
             &good.replace("shape/1", "shape/2"),

@@ -109,7 +109,7 @@ fn keys_are_drawn_at_once_while_a_picture_is_under_way() {
     let questions = watched.asks_after(1);
     watched.sends(2..5);
     watched.program.types(b"p");
-    watched.program.shows("peak held");
+    watched.program.shows("max held");
     watched.program.shows("frame 1 ");
     assert_eq!(watched.program.questions(), questions);
     // The newest frame comes next.
@@ -135,7 +135,7 @@ fn a_terminal_that_does_not_answer_is_only_asked_a_few_times() {
     watched.program.answers = true;
     watched.program.answer();
     watched.program.types(b"p");
-    watched.program.shows("peak held");
+    watched.program.shows("max held");
     assert_eq!(watched.asks_after(6), 4);
     watched.ends();
 }

@@ -279,7 +279,7 @@ fn leaving_the_page_says_what_was_recorded() {
 fn a_device_that_is_not_a_serial_line_is_refused_at_once() {
     let mut program = Program::start(&Start::default());
     program.types(b":watch /dev/urandom\r");
-    program.shows("! cannot open it: it is not a serial line");
+    program.shows("! cannot open: it is not a serial line");
     program.types(b"\x1b");
     program.shows("? Help");
     program.types(b"q");
@@ -559,13 +559,13 @@ fn is_refused(folder: &Path, arguments: &str, said: &str) {
 fn a_source_that_cannot_be_opened_opens_no_page() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    let missing = "error: nope.csv: cannot open it: no such file or folder";
+    let missing = "error: nope.csv: cannot open: no such file or folder";
     is_refused(folder, "nope.csv", missing);
     let connection = "; a connection is written tcp://robot:7000";
     is_refused(folder, "robot:7000", connection);
-    let is_folder = "error: .: cannot open it: it is a folder";
+    let is_folder = "error: .: cannot open: it is a folder";
     is_refused(folder, ".", is_folder);
-    let no_port = "error: tcp://robot: cannot open it: expected tcp://HOST:PORT";
+    let no_port = "error: tcp://robot: cannot open: expected tcp://HOST:PORT";
     is_refused(folder, "tcp://robot", no_port);
 }
 
@@ -649,7 +649,7 @@ fn a_recording_that_cannot_be_started_opens_no_page() {
     let folder = folder.path();
     fs::write(folder.join("touch.txt"), frames(0..3)).expect("written");
     fs::write(folder.join("old.npy"), "mine").expect("written");
-    let there = "error: old.npy already exists; --force replaces it";
+    let there = "error: \"old.npy\" already exists; --force replaces it";
     is_refused(folder, "touch.txt --write old.npy", there);
     let missing = "error: no/new.npy: cannot record: no such folder";
     is_refused(folder, "touch.txt --write no/new.npy", missing);
@@ -721,7 +721,7 @@ fn unsaved_work_from_last_time_does_not_prevent_recording() {
         program.shows("a.npy: 3 frames recorded");
         program.types(answer);
         program.shows(if answer == b"y" {
-            "brought back"
+            "restored"
         } else {
             "in the trash"
         });

@@ -72,7 +72,7 @@ fn a_record_shows_the_same_screens() {
     program.shows("There is unsaved work from last time: lost, 3 taxels");
     // Keys, and a text that is then on the screen.
     let acts: [(&[u8], &str); 10] = [
-        (b"y", "brought back"),
+        (b"y", "restored"),
         (b"fr\t3.57\x1b[D\x7f\r", "rectangle length 3.70"),
         (
             b"\x1b[<0;4;3M\x1b[<32;14;3M\x1b[<32;14;7M\x1b[<0;14;7m",
@@ -247,10 +247,10 @@ fn a_record_does_not_replace_a_file() {
     };
     let output = run(&file);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    let shown = file.display();
+    let shown = file.display().to_string();
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        told.starts_with(&format!("error: {shown} already exists")),
+        told.starts_with(&format!("error: {shown:?} already exists")),
         "{told}"
     );
     assert!(told.contains("walk-3.taxel is free"), "{told}");
