@@ -152,7 +152,7 @@ impl MemoryGuard {
     pub(crate) fn message(&self) -> String {
         let allowed = self.allowed.unwrap_or(MemorySize(0)).min(ADDRESSABLE);
         let advice = self.advice;
-        format!("stopped: it needs more memory than the {allowed} that it may use; {advice}")
+        format!("stopped: needs more memory than the {allowed} allowed; {advice}")
     }
 
     /// Returns the message about shards that cannot be merged within the limit.
@@ -161,7 +161,7 @@ impl MemoryGuard {
         let allowed = self.allowed.unwrap_or(MemorySize(0)).min(ADDRESSABLE);
         let advice = self.advice;
         format!(
-            "stopped: what is merged needs more than half of the {allowed} of memory that it may use, and writing it needs \
+            "stopped: the merged imprints need more than half of the {allowed} of memory allowed, and writing them needs \
              the other half; {advice}"
         )
     }
@@ -196,7 +196,7 @@ impl MemoryGuard {
 
     fn refusal(&self, needed: MemorySize, allowed: MemorySize) -> String {
         let advice = self.advice;
-        format!("it needs about {needed} of memory and may use {allowed}; {advice}")
+        format!("about {needed} of memory needed, but only {allowed} allowed; {advice}")
     }
 }
 

@@ -60,10 +60,7 @@ pub enum FilterError {
         name: String,
     },
     /// There is no number after a sign.
-    #[error(
-        "{before}: expected a number after it, found {found:?}{}",
-        advice(found)
-    )]
+    #[error("{before}: expected a number after it{}", advice(found))]
     Number {
         /// The name and the sign.
         before: String,
@@ -72,9 +69,14 @@ pub enum FilterError {
     },
 }
 
-/// Returns the end of a message about a number with a decimal comma.
+/// Returns the end of a message: the text in place of a number, if there is one, and how to write a decimal comma.
 fn advice(found: &str) -> String {
-    number::with_point(found).map_or_else(String::new, |number| format!("; write {number}"))
+    let point = number::with_point(found);
+    let advice = point.map_or_else(String::new, |number| format!("; write {number}"));
+    match found {
+        "" => String::new(),
+        found => format!(", found {found:?}{advice}"),
+    }
 }
 
 /// The quantity that a condition compares.
@@ -383,10 +385,7 @@ mod tests {
         for text in ["na>3, holes=0", "na>3 , holes=0", "na>3 Or holes=0"] {
             assert!(error(text).contains("conditions side by side"), "{text}");
         }
-        assert_eq!(
-            error("na>="),
-            "na>=: expected a number after it, found \"\""
-        );
+        assert_eq!(error("na>="), "na>=: expected a number after it");
         assert_eq!(
             error("na>=4holes=0"),
             "na>=: expected a number after it, found \"4holes=0\""

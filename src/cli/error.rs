@@ -14,6 +14,7 @@ use crate::formats::recording::{RecordingError, RecordingNote};
 use crate::formats::stream::StreamRefusal;
 use crate::formats::system_error::{system_reason, write_reason};
 use crate::formats::value::counted;
+use crate::frame::FrameError;
 use crate::parameter::ParameterError;
 use crate::parameter::number::short;
 use crate::pose::GridError;
@@ -129,7 +130,7 @@ pub(crate) enum CliError {
         remedy: &'static str,
     },
     /// A file name with the wrong extension for its content.
-    #[error("{name}: {what} is written as {expected}")]
+    #[error("{name}: expected a name that ends in {expected}, for {what}")]
     Ending {
         /// The file name.
         name: String,
@@ -139,7 +140,7 @@ pub(crate) enum CliError {
         expected: &'static str,
     },
     /// A model would get the name of a built-in one, and never be used.
-    #[error("{name} is the name of a built-in model; choose another")]
+    #[error("{name} is the name of a built-in model; choose another name")]
     BuiltInSet {
         /// The name.
         name: Name,
@@ -181,10 +182,12 @@ pub(crate) enum CliError {
         imprint: MatrixSize,
     },
     /// A name that no shape of the model has.
-    #[error("--expect: the model has no shape named {name:?}{near}")]
+    #[error("--expect: the model has no shape named {name:?}, but {shapes}{near}")]
     NotInModel {
         /// The name.
         name: String,
+        /// The names of the model's shapes, or the first of them.
+        shapes: String,
         /// The end of the message: a shape with a similar name.
         near: String,
     },
@@ -263,9 +266,9 @@ pub(crate) enum CliError {
     /// The settings file cannot be read, or has an error.
     #[error("{place}: {message}")]
     Settings {
-        /// The file's name, with line and column if they are known.
+        /// The file's name.
         place: String,
-        /// The reason.
+        /// The reason, with line and column if they are known.
         message: String,
     },
     /// A script cannot be read.
@@ -347,6 +350,16 @@ pub(crate) enum CliError {
         path: PathBuf,
         /// The reason why it is refused.
         reason: String,
+    },
+    /// Several shards are missing.
+    #[error("{count} of {of} shards are missing: {numbers}")]
+    MissingShards {
+        /// The number of missing shards.
+        count: u64,
+        /// The number of all shards.
+        of: u32,
+        /// The numbers of the first of them.
+        numbers: String,
     },
     /// The shards are not from one grid, or some are missing or given twice.
     #[error(transparent)]
@@ -439,12 +452,23 @@ pub(crate) fn note_advice(note: &RecordingNote) -> &'static str {
     }
 }
 
+/// Returns the end of a message about a frame that says which flag helps; may be empty.
+pub(crate) fn frame_advice(error: &FrameError) -> &'static str {
+    match error {
+        FrameError::NoTare => ", such as --tare 30",
+        _ => "",
+    }
+}
+
 /// Returns the message about ranges. A number out of range is named by its flag, as in [`CliError::Range`].
 fn with_flag(error: &GridError) -> String {
     match error {
         GridError::Parameter(error @ ParameterError::Range { value, .. }) => {
             let flag = error.parameter().flag();
             format!("--{flag} {} {}", short(*value), error.complaint())
+        }
+        GridError::Zoom { .. } => {
+            "--zoom-x and --zoom-y are for pictures only (--picture)".to_owned()
         }
         error => error.to_string(),
     }

@@ -51,7 +51,7 @@ pub enum ArrayError {
 impl fmt::Display for ArrayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Header => f.write_str("no header of a numpy array, version 1 to 3"),
+            Self::Header => f.write_str("not a numpy array: expected a header of version 1 to 3"),
             Self::Type { found } => {
                 write!(f, "type {found:?}, expected bool, whole numbers or floats")
             }
@@ -280,10 +280,13 @@ mod tests {
         };
         let small =
             |code: &str, shape: &str, numbers: &[u8]| file(1, &header(code, false, shape), numbers);
-        wrong(b"", "no header of a numpy array, version 1 to 3");
+        wrong(
+            b"",
+            "not a numpy array: expected a header of version 1 to 3",
+        );
         wrong(
             &file(4, "{}", b""),
-            "no header of a numpy array, version 1 to 3",
+            "not a numpy array: expected a header of version 1 to 3",
         );
         wrong(
             &small("<U1", "(1, 1)", b"1"),

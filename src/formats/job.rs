@@ -4,7 +4,7 @@
 use serde::de::{Deserialize, Deserializer, MapAccess};
 
 use crate::formats::framed::{FrameRows, RULE_KEYS, RuleRecord};
-use crate::formats::json::{WithoutNan, message};
+use crate::formats::json::{WithoutNan, message_of_line};
 use crate::formats::record::{
     KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
 };
@@ -87,7 +87,7 @@ impl Job {
             let read = serde_json::from_slice(&without_nan.line);
             read.map_err(|error| JobError::Json {
                 column: without_nan.column(error.column().max(1)),
-                message: message(&error),
+                message: message_of_line(line, &error, JobLine::EXPECTED),
             })?
         };
         if let Some(frame) = &line.frame {

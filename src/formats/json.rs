@@ -129,6 +129,17 @@ pub(crate) fn message(error: &serde_json::Error) -> String {
     shortened_message(&plain(&error.to_string()))
 }
 
+/// Returns what is wrong with a line that should be a JSON object: its [`message`], or that it is not JSON at all.
+/// `expected` describes the object.
+pub(crate) fn message_of_line(line: &[u8], error: &serde_json::Error, expected: &str) -> String {
+    match message(error) {
+        text if text == VALUE && !line.trim_ascii_start().starts_with(b"{") => {
+            format!("not JSON, expected {expected}")
+        }
+        text => text,
+    }
+}
+
 /// Rewrites a message of the parser in our words. Messages that are ours already are returned as they are.
 pub(crate) fn plain(text: &str) -> String {
     let text = text.rfind(" at line ").map_or(text, |end| &text[..end]);
@@ -157,18 +168,21 @@ pub(crate) fn plain(text: &str) -> String {
 const PARSER: [(&str, &str); 20] = [
     ("expected ident", VALUE),
     ("expected value", VALUE),
-    ("EOF while parsing a value", "the end, expected a value"),
+    (
+        "EOF while parsing a value",
+        "the text ends, expected a value",
+    ),
     (
         "EOF while parsing a string",
-        "the end inside a string, expected a closing quote",
+        "the text ends inside a string, expected a closing quote",
     ),
     (
         "EOF while parsing an object",
-        "the end inside an object, expected '}'",
+        "the text ends inside an object, expected '}'",
     ),
     (
         "EOF while parsing a list",
-        "the end inside a list, expected ']'",
+        "the text ends inside a list, expected ']'",
     ),
     ("expected `:`", "expected ':' after a key"),
     ("expected `,` or `}`", "expected ',' or '}'"),
@@ -261,12 +275,15 @@ mod tests {
             message(&read.expect_err("no object of numbers"))
         };
         for (text, expected) in [
-            ("", "the end, expected a value"),
+            ("", "the text ends, expected a value"),
             ("nonsense", VALUE),
             ("{\"a\":nonsense}", VALUE),
             ("{\"a\":x}", VALUE),
-            ("{", "the end inside an object, expected '}'"),
-            ("{\"a", "the end inside a string, expected a closing quote"),
+            ("{", "the text ends inside an object, expected '}'"),
+            (
+                "{\"a",
+                "the text ends inside a string, expected a closing quote",
+            ),
             ("{\"a\" 1}", "expected ':' after a key"),
             ("{\"a\":1 2}", "expected ',' or '}'"),
             ("{1:2}", "expected a key in double quotes"),
@@ -296,7 +313,7 @@ mod tests {
             assert_eq!(object(text), expected, "{text}");
         }
         let list = serde_json::from_str::<Vec<u8>>("[1").expect_err("no list");
-        assert_eq!(message(&list), "the end inside a list, expected ']'");
+        assert_eq!(message(&list), "the text ends inside a list, expected ']'");
         assert_eq!(
             plain("side: 99 is out of range"),
             "side: 99 is out of range"

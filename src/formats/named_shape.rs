@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 use serde::de::{Deserialize, Deserializer, MapAccess};
 
 use crate::figure::FigureKind;
-use crate::formats::json::message;
+use crate::formats::json::message_of_line;
 use crate::formats::record::{
     ImprintOrName, KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
 };
@@ -38,11 +38,8 @@ pub enum NamedShapeError {
     #[error(transparent)]
     Record(#[from] RecordError),
     /// Words that are not a shape.
-    #[error("{found:?}: expected NAME=KIND KEY=NUMBER … or NAME=picture SHAPE")]
-    Words {
-        /// The text that was given.
-        found: String,
-    },
+    #[error("expected NAME=KIND KEY=NUMBER … or NAME=picture SHAPE")]
+    Words,
     /// A word of a figure that is not a value.
     #[error("{found:?}: expected KEY=NUMBER, such as radius_x=3")]
     Word {
@@ -109,9 +106,10 @@ pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
 /// assert_eq!((disc.name.as_str(), disc.weight), ("disc", 1));
 /// ```
 pub fn named_shape(line: &[u8], lookup: &ShapeLookup<'_>) -> Result<NamedShape, NamedShapeError> {
-    let line: Line<'_> = serde_json::from_slice(line).map_err(|error| NamedShapeError::Json {
+    let read = serde_json::from_slice(line);
+    let line: Line<'_> = read.map_err(|error| NamedShapeError::Json {
         column: error.column().max(1),
-        message: message(&error),
+        message: message_of_line(line, &error, Line::EXPECTED),
     })?;
     let name = line.name.ok_or(NamedShapeError::Name)?;
     line.record.no_sensor("shape")?;
@@ -138,14 +136,11 @@ pub fn named_shape_of_words(
     text: &str,
     lookup: &ShapeLookup<'_>,
 ) -> Result<NamedShape, NamedShapeError> {
-    let error = || NamedShapeError::Words {
-        found: shortened(text),
-    };
-    let (name, rest) = text.split_once('=').ok_or_else(error)?;
+    let (name, rest) = text.split_once('=').ok_or(NamedShapeError::Words)?;
     let rest = rest.trim();
     let (kind, values) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
     if name.trim().is_empty() || kind.is_empty() {
-        return Err(error());
+        return Err(NamedShapeError::Words);
     }
     let mut record = Record::default();
     if kind == "picture" {

@@ -48,6 +48,13 @@ pub enum FrameError {
         /// The allowed range.
         allowed: &'static str,
     },
+    /// The lower of two thresholds is above the higher one.
+    Order {
+        /// The lower threshold.
+        low: f64,
+        /// The higher threshold.
+        high: f64,
+    },
     /// A value times the gain of its cell is beyond ±[`LARGEST_VALUE`](crate::frame::LARGEST_VALUE).
     Product {
         /// The value, after the tare.
@@ -123,13 +130,14 @@ impl fmt::Display for FrameError {
                 let found = short(*found);
                 write!(f, "{what}: {found} is out of range (allowed: {allowed})")
             }
+            Self::Order { low, high } => {
+                write!(f, "low {} is above high {}", short(*low), short(*high))
+            }
             Self::Product { value, gain } => write!(
                 f,
                 "the value {value:e} times its gain {gain:e} is too large, expected at most 1e300"
             ),
-            Self::Tare { frames, wanted } => {
-                write!(f, "frames for the tare: found {frames}, expected {wanted}")
-            }
+            Self::Tare { frames, wanted } => f.write_str(&too_few(*frames, *wanted)),
             Self::TareSize { most } => {
                 write!(
                     f,
@@ -141,6 +149,13 @@ impl fmt::Display for FrameError {
             }
         }
     }
+}
+
+/// Returns the message that a tare needs more frames than there are.
+fn too_few(frames: u64, wanted: u64) -> String {
+    let wanted = counted(wanted, "frame");
+    let verb = if frames == 1 { "is" } else { "are" };
+    format!("the tare needs {wanted}, but there {verb} only {frames}")
 }
 
 impl std::error::Error for FrameError {}

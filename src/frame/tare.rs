@@ -310,7 +310,7 @@ mod tests {
         let few = TareFrames::new(3).finish();
         assert_eq!(
             few.map_err(|error| error.to_string()),
-            Err("frames for the tare: found 0, expected 3".to_owned())
+            Err("the tare needs 3 frames, but there are only 0".to_owned())
         );
         let many = TareFrames::new(1 << 40).add(&Matrix::filled(MatrixSize::of(64, 64), 0.0));
         assert_eq!(many, Err(FrameError::TareSize { most: 8192 }));

@@ -34,7 +34,7 @@ const MAX_UNITS: i64 = 999_999_999_999_999;
 /// let range: DecimalRange = "5:5.99:0.01".parse()?;
 /// assert_eq!((range.count(), range.value(0), range.value(37), range.last()), (100, 5.0, 5.37, 5.99));
 /// assert_eq!(range.to_string(), "5:5.99:0.01");
-/// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0: expected one above 0");
+/// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0 is not above 0");
 /// # Ok::<(), taxel::pose::RangeError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -381,21 +381,21 @@ pub enum RangeError {
     },
     /// A number has more digits than are exact.
     #[error(
-        "\"{text}\" has too many digits: with the same number of decimals everywhere, each number may have 15 digits, \
-         {MAX_PLACES} of them after the point"
+        "\"{text}\" has too many digits: at most {MAX_PLACES} after the point, and 15 in all once each number has as many \
+         decimals as the longest"
     )]
     Digits {
         /// The whole range, shortened.
         text: String,
     },
     /// The step is not above 0.
-    #[error("step {step}: expected one above 0")]
+    #[error("step {step} is not above 0")]
     Step {
         /// The step as given, shortened.
         step: String,
     },
     /// The end lies before the start.
-    #[error("{start}:{end}:{step} ends before it starts, expected an end from {start} on")]
+    #[error("{start}:{end}:{step}: the end is below the start, expected {start} or more")]
     Backwards {
         /// The start as given, shortened.
         start: String,
@@ -405,7 +405,7 @@ pub enum RangeError {
         step: String,
     },
     /// There are too many values.
-    #[error("{} values, at most {}", grouped(*count), grouped(MAX_VALUES))]
+    #[error("a range of {} values; at most {} are allowed", grouped(*count), grouped(MAX_VALUES))]
     Many {
         /// The number of values.
         count: u64,
@@ -420,8 +420,14 @@ impl RangeError {
             Self::Number { .. } => "not a number".to_owned(),
             Self::Digits { .. } => format!("at most 15 digits, {MAX_PLACES} decimals"),
             Self::Step { .. } => "expected a step above 0".to_owned(),
-            Self::Backwards { start, .. } => format!("expected an end from {start} on"),
-            Self::Many { .. } => self.to_string(),
+            Self::Backwards { start, .. } => format!("expected an end of {start} or more"),
+            Self::Many { count } => {
+                format!(
+                    "{} values, at most {}",
+                    grouped(*count),
+                    grouped(MAX_VALUES)
+                )
+            }
         }
     }
 }

@@ -46,8 +46,8 @@ pub enum GivenError {
         /// The given text.
         found: String,
     },
-    /// A descriptor that says where the imprint lies.
-    #[error("{key} says where the imprint lies, not what it is; expected one of {}", ShapeDescriptor::keys().join(", "))]
+    /// A descriptor that depends on the position of the imprint.
+    #[error("{key} depends on the position of the imprint; expected one of {}", ShapeDescriptor::keys().join(", "))]
     OfPlace {
         /// The key of the descriptor.
         key: &'static str,
@@ -178,7 +178,7 @@ impl std::fmt::Display for Rounding {
 /// // The perimeter helps, but the whole imprint says more.
 /// assert!(error("na")? > error("na,p")?);
 /// assert!(error("na,p")? > Evaluation::of(&model).error());
-/// // The centre of gravity says where the imprint lies, not what it is.
+/// // The centre of gravity depends on the position of the imprint.
 /// assert!(error("na,cg").is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -162,7 +162,7 @@ pub enum ModelError {
         found: usize,
     },
     /// A name that two shapes have.
-    #[error("name {name:?} is given twice; each shape needs its own")]
+    #[error("two shapes are named {name:?}; give each its own name")]
     Name {
         /// The name.
         name: String,

@@ -166,13 +166,13 @@ pub enum LibraryError {
     #[error("the trash is empty")]
     TrashEmpty,
     /// The shape comes with the program and cannot be changed.
-    #[error("{name:?} is shipped with taxel; it can be copied under another name")]
+    #[error("{name:?} comes with taxel and cannot be replaced; choose another name")]
     Shipped {
         /// The name of the shape.
         name: String,
     },
     /// The shape comes with the program and cannot be deleted.
-    #[error("{name:?} is shipped with taxel and cannot be deleted")]
+    #[error("{name:?} comes with taxel and cannot be deleted")]
     NotDeletable {
         /// The name of the shape.
         name: String,

@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::fs::{self, File, Metadata};
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::io::{ErrorKind, Read};
+use std::io::{Error, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use crate::formats::shape::MAX_BYTES;
@@ -64,7 +64,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
     let mut content = Vec::with_capacity(length);
     file.take(length as u64)
         .read_to_end(&mut content)
-        .map_err(|error| FileError::new("read it", path, error))?;
+        .map_err(|error| FileError::new("read", path, error))?;
     Ok(content)
 }
 
@@ -107,6 +107,9 @@ pub(crate) fn names(folder: &Path) -> Result<Vec<OsString>, FileError> {
                 if error.kind() == ErrorKind::NotADirectory && file_above(folder).is_some() =>
             {
                 return Ok(Vec::new());
+            }
+            Err(error) if error.kind() == ErrorKind::NotADirectory => {
+                return Err(refuse(Error::new(error.kind(), "it is a file")));
             }
             files => break files.map_err(refuse)?,
         }

@@ -92,13 +92,13 @@ fn bad_lines_are_answered_in_their_places() {
     let expected = [
         POINT_ANSWER.to_owned(),
         error(
-            "2: column 2: expected a value: a string in double quotes, a number, a list or an object",
+            "2: column 2: not JSON, expected an object with a figure, a picture, an imprint or a frame",
         ),
         error("4: side: 99 is above 16 (allowed: above 0, up to 16)"),
         error("5: picture: no shape named \\\"gasket\\\""),
         error("6: column 12: figure: not UTF-8, or an escape of no character"),
         error(
-            "7: column 1: expected a value: a string in double quotes, a number, a list or an object",
+            "7: column 1: not JSON, expected an object with a figure, a picture, an imprint or a frame",
         ),
         error(
             "9: figure: \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",
@@ -252,7 +252,11 @@ fn a_frame_with_a_threshold_is_described() {
         "{}",
         lines[0]
     );
-    assert!(lines[1].contains("expected one threshold"), "{}", lines[1]);
+    assert!(
+        lines[1].contains("no threshold, expected at_least"),
+        "{}",
+        lines[1]
+    );
     assert!(
         lines[2].contains("expected exactly one of the keys"),
         "{}",

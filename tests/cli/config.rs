@@ -51,9 +51,6 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
             "mouse = 'no'",
             "line 1, column 9: expected true or false, found string",
         ),
-        ("theme = 3", "1:9: expected text in quotes, found integer"),
-        ("color = 256", "1:9: expected text in quotes, found integer"),
-        ("mouse = 'no'", "1:9: expected true or false, found string"),
         (
             "library = 'shapes'",
             "line 1, column 11: expected a path that starts with / or ~/, found \"shapes\"",
@@ -62,7 +59,6 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
             "sensor = 16",
             "line 1, column 10: expected a table, found integer",
         ),
-        ("sensor = 16", "1:10: expected a table, found integer"),
         (
             "[sensor]\ncolumns = 16\nzoom = 2\n",
             "line 3, column 1: unknown key \"zoom\", expected one of columns, rows, threshold, pitch",
@@ -126,10 +122,10 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
         invalid(text, expected);
     }
     for (text, place) in [
-        ("theme = \n", "1:"),
-        ("é = 1 =\n", "1:"),
-        ("[sensor\n", "1:"),
-        ("x = 'a\n", "1:"),
+        ("theme = \n", "line 1, "),
+        ("é = 1 =\n", "line 1, "),
+        ("[sensor\n", "line 1, "),
+        ("x = 'a\n", "line 1, "),
     ] {
         let error = Config::read(text).expect_err(text).to_string();
         assert!(error.starts_with(place), "{text}: {error}");
@@ -138,7 +134,7 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
 
 #[test]
 fn unknown_actions_and_duplicate_keys_are_named() {
-    let actions = "expected an action of 'taxel config', or \"none\"";
+    let actions = "expected an action that 'taxel config' lists, or \"none\"";
     for (text, expected) in [
         (
             "[keys.matrix]\nx = 'togle'\n",

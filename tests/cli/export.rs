@@ -92,7 +92,7 @@ fn a_figure_is_exported_and_its_table_is_still_printed() {
     let folder = Folder::new();
     let table = taxel(RING, "").stdout;
     let run = folder.run(&format!("{RING} --export ring.svg"));
-    let line = "wall 2.00\n";
+    let line = "NA 36 in all\n";
     assert_eq!(
         run,
         said(&table.replace(line, &format!("{line}written: ring.svg\n")))
@@ -130,10 +130,9 @@ fn imprints_are_exported_through_standard_input_and_output() {
     let run = taxel("export - - --format pbm-plain", "1,0,1\n1,1,1\n");
     assert_eq!(run, said(plain));
     assert_eq!(taxel("export - - --format txt", plain), said("#.#\n###\n"));
-    refused(
-        &taxel("figure ellipse --export - --format txt --json", ""),
-        2,
-        "--json has no effect with '--export -', which writes to standard output in its place",
+    misused(
+        "figure ellipse --export - --format txt --json",
+        "the argument '--json' cannot be used with '--export -': both write to standard output",
     );
     let run = taxel(
         "figure hexagon --export - --format csv --columns 4 --rows 1",

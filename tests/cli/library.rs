@@ -150,10 +150,10 @@ fn an_existing_shape_is_only_replaced_with_force() {
     assert!(shelf.does("library|show|one", "").contains("NA 6 in all"));
     shelf.does(&format!("library|save|ONE|{other}|--force"), "");
     assert!(shelf.does("library|show|one", "").contains("NA 1 in all"));
-    let shipped = "\"washer\" is shipped with taxel; it can be copied under another name";
+    let shipped = "\"washer\" comes with taxel and cannot be replaced; choose another name";
     shelf.refuses("library|save|washer|key|--force", shipped);
     shelf.refuses("figure|hexagon|--save|washer|--force", shipped);
-    let undeletable = "\"washer\" is shipped with taxel and cannot be deleted";
+    let undeletable = "\"washer\" comes with taxel and cannot be deleted";
     shelf.refuses("library|delete|washer", undeletable);
     shelf.refuses(
         "library|restore|washer",
@@ -169,7 +169,8 @@ fn figures_are_saved_with_their_sensor_and_source() {
         "",
     );
     assert!(
-        touched.contains("\nsaved as mine\n20 × 16 taxels of 2.5 mm, threshold 0.5"),
+        touched.contains("\n20 × 16 taxels of 2.5 mm, threshold 0.5, NA ")
+            && touched.contains(" in all\nsaved as mine\n"),
         "{touched}"
     );
     let shown = shelf.does("library|show|mine", "");

@@ -207,7 +207,7 @@ fn confusion_is_evaluated_for_descriptors_pairs_and_classifiers() {
     assert!(given("").ends_with(advice) && !given("--round cg_cd=0.1").contains("fingerprint"));
     misused(
         "model confusion m.npz --given na,cg",
-        "invalid value 'na,cg' for '--given <KEY,...>': cg says where the imprint lies",
+        "invalid value 'na,cg' for '--given <KEY,...>': cg depends on the position",
     );
     misused(
         "model confusion m.npz --round cg_cd=0",
@@ -246,7 +246,7 @@ fn messages_and_files_match_the_request() {
     refused(
         &run,
         1,
-        "all.svg: the table of all classifiers is written as .csv",
+        "all.svg: expected a name that ends in .csv, for the table of all classifiers",
     );
     // With noise: from the whole imprint, and from descriptors.
     let noisy = "model confusion m.npz --noise 0:0.04:0.02 --dead 0,4 --touches 50 --quiet";
@@ -290,8 +290,10 @@ fn shards_and_threads_give_the_same_bytes() {
     );
     let run = place.run("merge part-1.npz part-3.npz --out no.npz", "");
     refused(&run, 1, "shard 2/3 is missing");
+    let run = place.run("merge part-2.npz --out no.npz", "");
+    refused(&run, 1, "2 of 3 shards are missing: 1, 3");
     let run = place.run("merge part-1.npz one.npz --out no.npz", "");
-    let message = "one.npz: shard 1/1 belongs to another training";
+    let message = "one.npz: shard 1/1, but part-1.npz is shard 1/3: not the same study";
     refused(&run, 1, message);
     let run = place.run(
         "merge part-1.npz part-2.npz part-3.npz --out ./part-1.npz --force",
@@ -387,13 +389,11 @@ fn models_can_be_named_listed_and_shown() {
     let card = place.done("model show parts");
     for line in [
         "16 × 16 sensor, threshold 0.4, centre at x0 7:7.9:0.1, y0 7:7.9:0.1, angle 0:355:5",
-        "  d: rectangle length 4.20, width 4.20, recognised in 100.0 %",
+        "  d: rectangle length 4.20, width 4.20, named right in 100.0 % of its touches",
         "7,200 poses each",
     ] {
         assert!(card.lines().any(|own| own == line), "{line}\n{card}");
     }
-    let card = place.json("model show parts --json");
-    assert_eq!(card["shapes"][1]["name"], "b");
     place.done(
         "model train washer --zoom-x 0.5:1:0.25 --positions 2 --angle 0 --out zoomed.npz --quiet",
     );
@@ -409,6 +409,8 @@ fn models_can_be_named_listed_and_shown() {
         "{}",
         run.stderr
     );
+    let card = place.json("model show parts --json");
+    assert_eq!(card["shapes"][1]["name"], "b");
     assert_eq!(card["ranges"]["x0"], "7:7.9:0.1");
     assert_eq!(card["hash"].as_str().map(str::len), Some(32));
     let list = place.done("model list --json");
@@ -500,7 +502,7 @@ fn meaningless_sets_are_refused_in_one_sentence() {
         ),
         (
             format!("{{\"name\":\"a\",{disc}}}\n\n{{\"name\":\"a\",{disc}}}\n"),
-            "name \"a\" is given twice; each shape needs its own",
+            "two shapes are named \"a\"; give each its own name",
         ),
         (
             "{\"name\":\"a\"".to_owned(),
@@ -740,8 +742,8 @@ fn damaged_models_are_refused() {
         refused(&place.run(line, "#\n"), 1, untrained);
     }
     for (one, other, message) in [
-        ("atlas", "m", "m.npz: is a model, but atlas.npz is an atlas"),
-        ("m", "atlas", "atlas.npz: is an atlas, but m.npz is a model"),
+        ("atlas", "m", "m.npz: a model, but atlas.npz is an atlas"),
+        ("m", "atlas", "atlas.npz: an atlas, but m.npz is a model"),
     ] {
         refused(
             &place.run(&format!("merge {one}.npz {other}.npz --out all.npz"), ""),
@@ -965,7 +967,7 @@ fn the_name_of_a_built_in_set_is_preferred_to_a_file_of_that_name() {
     let train = format!("model train --shape a=hexagon {COARSE} --name");
     for name in ["figures", "Figures-30", "shapes"] {
         let run = place.run(&format!("{train} {name}"), "");
-        let message = format!("{name} is the name of a built-in model; choose another");
+        let message = format!("{name} is the name of a built-in model; choose another name");
         refused(&run, 1, &message);
     }
 }
@@ -1014,13 +1016,17 @@ fn files_that_cannot_be_used_are_refused_before_any_work() {
     place.write("model.csv", "kept");
     let merge = "merge part-1.npz part-2.npz --out model.csv --force --quiet";
     let run = place.run(merge, "");
-    refused(&run, 1, "model.csv: a model is written as .npz");
+    refused(
+        &run,
+        1,
+        "model.csv: expected a name that ends in .npz, for a model",
+    );
     assert_eq!(place.read("model.csv"), b"kept");
     // An atlas has other keys than a model.
     place.done("sweep rectangle --length 3 --width 2 --angle 0 --atlas atlas.npz --quiet");
     let run = place.run("merge atlas.npz part-2.npz --out all.npz --quiet", "");
     assert_eq!(run.status, Some(1));
-    let kinds = "part-2.npz: is a model, but atlas.npz is an atlas";
+    let kinds = "part-2.npz: a model, but atlas.npz is an atlas";
     assert!(run.stderr.contains(kinds), "{}", run.stderr);
     misused(
         "model confusion figures --test half-step --csv",
@@ -1135,7 +1141,11 @@ fn impossible_requests_are_refused_with_the_reason() {
     let place = Place::new();
     let train = format!("model train parts.jsonl {COARSE}");
     let run = place.run(&format!("{train} --out model.txt"), "");
-    refused(&run, 1, "model.txt: a model is written as .npz");
+    refused(
+        &run,
+        1,
+        "model.txt: expected a name that ends in .npz, for a model",
+    );
     place.done(&format!("{train} --name parts"));
     // A name that differs only in case is the same name.
     let run = place.run(&format!("{train} --name Parts"), "");

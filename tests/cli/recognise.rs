@@ -80,7 +80,7 @@ fn answers_for_people_show_names_bars_and_differences() {
         ("0", "noise 0: only the imprint itself is looked up"),
         (
             "0.01",
-            "noise 0.01: every imprint of the model is compared in every place",
+            "noise 0.01: compared with every imprint of the model in every place",
         ),
     ] {
         let text = place.done(&format!("recognise bar.txt --model r --noise {noise}"));
@@ -218,7 +218,7 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     refused(
         &place.run("recognise square.txt --model r --expect disc", ""),
         1,
-        "--expect: the model has no shape named \"disc\"",
+        "--expect: the model has no shape named \"disc\", but a, b, c, d",
     );
     refused(
         &place.run("recognise square.txt --model nobody", ""),

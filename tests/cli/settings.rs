@@ -329,7 +329,7 @@ fn settings_for_frames_are_used() {
     for command in ["frames --all", "watch --once"] {
         let line = |tare| format!("{command} {samples}/tekscan.asf --json --at-least 9 {tare}");
         let said = |tare| run(&mut at_home(&line(tare), few.path())).stderr;
-        let lacking = "frames for the tare: found 3, expected 9";
+        let lacking = "the tare needs 9 frames, but there are only 3";
         let of_settings = format!("{lacking} (tare under [frames] in the settings");
         assert!(said("").contains(&of_settings), "{}", said(""));
         let of_flag = said("--tare 9");

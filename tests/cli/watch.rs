@@ -85,7 +85,7 @@ fn a_stream_is_a_filter_in_a_pipeline() {
     assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
     assert!(
         run.stderr
-            .ends_with("frames for the tare: found 2, expected 3\n"),
+            .ends_with("the tare needs 3 frames, but there are only 2\n"),
         "{}",
         run.stderr
     );

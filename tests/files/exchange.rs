@@ -210,7 +210,7 @@ fn errors_name_the_format_and_the_place() {
         ),
         (
             b"\x93NUMPY\x01",
-            "NPY: no header of a numpy array, version 1 to 3",
+            "NPY: not a numpy array: expected a header of version 1 to 3",
         ),
     ] {
         assert_eq!(told(bytes), Err(message.to_owned()));

@@ -608,7 +608,7 @@ fn sets_and_descriptors_that_make_no_sense_are_refused() {
     let twice = vec![NamedShape::new("disc", disc), NamedShape::new("disc", disc)];
     assert_eq!(
         error(twice),
-        "name \"disc\" is given twice; each shape needs its own"
+        "two shapes are named \"disc\"; give each its own name"
     );
     let weightless = vec![NamedShape::new("disc", disc).weighted(0)];
     assert_eq!(
@@ -625,7 +625,7 @@ fn sets_and_descriptors_that_make_no_sense_are_refused() {
         given("na,colour")
             .starts_with("descriptor \"colour\" is unknown, expected one of na, nae, ce, p, f,")
     );
-    assert!(given("cg").starts_with("cg says where the imprint lies, not what it is"));
+    assert!(given("cg").starts_with("cg depends on the position of the imprint"));
     for text in ["cg_cd", "cg_cd=0", "cg_cd=-1", "cg_cd=x", "cg_cd=nan"] {
         assert!(text.parse::<Rounding>().is_err(), "{text}");
     }

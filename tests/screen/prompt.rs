@@ -411,7 +411,7 @@ fn a_refused_prompt_stays_open() {
         ("delete nope", "! no shape named \"nope\""),
         (
             "delete arrow",
-            "! \"arrow\" is shipped with taxel and cannot be deleted",
+            "! \"arrow\" comes with taxel and cannot be deleted",
         ),
         ("move 0 -100", "! y0: -96 is below -16"),
         (

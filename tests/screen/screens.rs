@@ -521,7 +521,7 @@ fn a_number_of_two_digits_is_never_shown_in_part() {
             );
         }
     }
-    shows("f<Enter>cc", &["a single digit is tens"]);
+    shows("f<Enter>cc", &["one digit stands for tens"]);
 }
 
 #[test]

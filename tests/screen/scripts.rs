@@ -193,7 +193,7 @@ fn malformed_commands_are_reported_with_their_line() {
             "Signal KILL",
             "line 1: signal \"KILL\" is unknown, expected one of HUP",
         ),
-        ("Wait now", "line 1: Wait stands alone"),
+        ("Wait now", "line 1: Wait takes no argument"),
         (
             "Screen\nSize 10x10",
             "line 2: Size and Set must come before",

@@ -429,6 +429,9 @@ fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
                 FrameError::Rule { allowed, .. } => {
                     format!("is out of range (allowed: {allowed})")
                 }
+                FrameError::Order { high, .. } => {
+                    format!("is above --high {}", number::short(high))
+                }
                 error => format!("is not allowed: {error}"),
             };
             CliError::Range {

@@ -160,12 +160,12 @@ Examples:
 
 /// `taxel completions`: where each shell looks for them.
 pub(crate) const COMPLETIONS_EXAMPLES: &str = "\
-Examples:
 bash reads that file if its package bash-completion is installed; otherwise, put
 'source <(taxel completions bash)' into ~/.bashrc. zsh needs the line
 'fpath+=~/.zfunc' in ~/.zshrc, above the one that runs compinit. Then start a
 new shell.
 
+Examples:
   taxel completions bash > ~/.local/share/bash-completion/completions/taxel
   taxel completions zsh > ~/.zfunc/_taxel
   taxel completions fish > ~/.config/fish/completions/taxel.fish";

@@ -69,11 +69,8 @@ impl Kept {
         let path = matches.get_one::<PathBuf>("export");
         if path.is_some_and(|path| path.as_os_str() == "-") {
             if matches.get_flag("json") {
-                return Err(CliError::Unused {
-                    flag: "json",
-                    reason: "with '--export -', which writes to standard output in its place"
-                        .to_owned(),
-                });
+                let message = "the argument '--json' cannot be used with '--export -': both write to standard output";
+                return Err(misused(command, name, message));
             }
             // Only `taxel frames` has this flag.
             if let Ok(Some(true)) = matches.try_get_one::<bool>("all") {

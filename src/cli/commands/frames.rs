@@ -14,7 +14,7 @@
 //!
 //!                                                        plain.csv, frame 0
 //!                                                        sum 42, max 9
-//!                                                        active: 3 or more (by flag)
+//!                                                        active: 3 or more (from a flag)
 //! ```
 //! A damage does not stop the command at once: everything before it is listed or answered, then it is reported as the
 //! error.
@@ -31,7 +31,7 @@ use crate::cli::commands::export::{Begun, Exported};
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::commands::noise_report;
 use crate::cli::commands::recording_scan::Scan;
-use crate::cli::error::CliError;
+use crate::cli::error::{CliError, frame_advice};
 use crate::cli::input::processing;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
@@ -43,7 +43,7 @@ use crate::cli::settings::pitch::Pitch;
 use crate::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, RecordingError};
 use crate::formats::value::counted;
 use crate::formats::{Name, StoredShape, json};
-use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, SetRule, Tare};
+use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, RuleOrigin, SetRule, Tare};
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::parameter::number::short;
@@ -370,7 +370,7 @@ impl Selection {
             }
             let processed = processing.run(frame).map_err(|error| CliError::Frames {
                 name: name.clone(),
-                message: error.to_string(),
+                message: error.to_string() + frame_advice(&error),
             })?;
             self.give(&name, frame, &processed, listed, answered, output)?;
             answered = true;
@@ -408,6 +408,7 @@ impl Selection {
         let mut lines = titles.clone();
         if let Form::Table(_) = output.form {
             lines.extend(without_pitch);
+            lines.push(report::size(&imprint, None, pitch));
         }
         let begin = |export: &Export| {
             let export = export.numbered(frame.number);
@@ -424,7 +425,6 @@ impl Selection {
                 self.line((frame, processed), &imprint, listed, output)
             }
             (None, Form::Table(_)) => {
-                lines.push(report::size(&imprint, None, pitch));
                 let gap = if again { "\n" } else { "" };
                 let map = heat.map_or_else(String::new, |values| {
                     let unit = unit(&listed.info);
@@ -500,7 +500,7 @@ impl Selection {
     }
 
     /// Returns the threshold in words, with its origin:
-    /// `active: 20 kPa or more, in pieces of 3 taxels or more (by flag)`.
+    /// `active: 20 kPa or more, in pieces of 3 taxels or more (from a flag)`.
     fn rule_text(&self, unit: &str) -> String {
         let mut text = match self.rule.rule {
             Rule::AtLeast(threshold) => format!("active: {}{unit} or more", short(threshold)),
@@ -513,13 +513,18 @@ impl Selection {
                 short(high)
             ),
             Rule::Noise(deviations) => {
-                format!("active: {} deviations of noise or more", short(deviations))
+                let deviations = short(deviations);
+                format!("active: {deviations} standard deviations above the tare, or more")
             }
         };
         if self.rule.least > 1 {
             text += &format!(", in pieces of {} taxels or more", self.rule.least);
         }
-        text + &format!(" (by {})", self.rule.from.name())
+        let article = match self.rule.from {
+            RuleOrigin::File | RuleOrigin::Settings => "the",
+            _ => "a",
+        };
+        text + &format!(" (from {article} {})", self.rule.from.name())
     }
 }
 

@@ -4,10 +4,11 @@
 //! one shard. The most memory this can take follows from the sizes of the files and is printed before; the memory it
 //! took is printed after:
 //! ```text
-//! 8 files of 155.2M: at most 682.8M of memory
+//! 8 files, 155.2M: merging needs at most 682.8M of memory
 //! merged: 212,907 imprints, 402.3M of memory
 //! ```
 
+use std::collections::HashSet;
 use std::fmt;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -74,6 +75,16 @@ impl Part {
             reason: error.to_string(),
         }
     }
+
+    /// Returns the error that the file is a shard of another number of shards than the first one.
+    fn other_study(&self, first: &Self) -> CliError {
+        self.refused(&format_args!(
+            "shard {}, but {} is shard {}: not the same study",
+            self.shard,
+            first.path.display(),
+            first.shard
+        ))
+    }
 }
 
 /// Refuses to replace one of the shards by the result: the shards could not be merged again.
@@ -92,6 +103,9 @@ fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
     Ok(())
 }
 
+/// The most missing shards that a message lists.
+const MOST_LISTED: usize = 10;
+
 /// Refuses a mixture of atlases and models.
 fn check_one_kind(parts: &[Part]) -> Result<(), CliError> {
     let noun = |part: &Part| match part.format.as_str() {
@@ -103,13 +117,36 @@ fn check_one_kind(parts: &[Part]) -> Result<(), CliError> {
     };
     match others.iter().find(|part| noun(part) != noun(first)) {
         Some(other) => Err(other.refused(&format_args!(
-            "is {}, but {} is {}; give the shards of one sweep or of one training",
+            "{}, but {} is {}; give the shards of one sweep or of one training",
             noun(other),
             first.path.display(),
             noun(first),
         ))),
         None => Ok(()),
     }
+}
+
+/// Refuses shards of which two or more are missing, and lists these. The merge names a single one, and reports shards
+/// of different numbers of shards.
+fn check_all_there(parts: &[Part]) -> Result<(), CliError> {
+    let Some(of) = parts.first().map(|part| part.shard.of()) else {
+        return Ok(());
+    };
+    if parts.iter().any(|part| part.shard.of() != of) {
+        return Ok(());
+    }
+    let given: HashSet<u32> = parts.iter().map(|part| part.shard.number()).collect();
+    let count = u64::from(of) - given.len() as u64;
+    if count < 2 {
+        return Ok(());
+    }
+    let missing = (1..=of).filter(|number| !given.contains(number));
+    let mut numbers: Vec<String> = missing.take(MOST_LISTED).map(|it| it.to_string()).collect();
+    if count > MOST_LISTED as u64 {
+        numbers.push("…".to_owned());
+    }
+    let numbers = numbers.join(", ");
+    Err(CliError::MissingShards { count, of, numbers })
 }
 
 /// Merges the shards in `files`, writes the atlas or the model, and returns the summary to print.
@@ -137,6 +174,7 @@ pub(crate) fn merge(
         check_model_file(wanted)?;
     }
     parts.sort_by_key(|part| part.shard.number());
+    check_all_there(&parts)?;
     let memory = MemoryGuard::new(
         wanted.memory,
         "allow more (--memory), or merge on a machine that has more",
@@ -190,7 +228,9 @@ fn bound(parts: &[Part], memory: &MemoryGuard) -> Result<String, CliError> {
         .check_bytes(MemorySize(least))
         .map_err(CliError::Memory)?;
     let (files, sum) = (counted(parts.len() as u64, "file"), MemorySize(sum));
-    Ok(format!("{files} of {sum}: at most {most} of memory"))
+    Ok(format!(
+        "{files}, {sum}: merging needs at most {most} of memory"
+    ))
 }
 
 /// Stops a merge that comes near to the limit of memory.
@@ -215,9 +255,14 @@ fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError>
     for part in parts {
         let shard = load_atlas(&part.path)?;
         merge.add(shard).map_err(|error| match error {
-            MergeError::Foreign { .. } | MergeError::Order(ShardOrderError::Twice { .. }) => {
-                part.refused(&error)
+            MergeError::Foreign { .. } if part.shard.of() != parts[0].shard.of() => {
+                part.other_study(&parts[0])
             }
+            MergeError::Foreign { difference, .. } => part.refused(&format_args!(
+                "differs from {} in {difference}",
+                parts[0].path.display()
+            )),
+            MergeError::Order(ShardOrderError::Twice { .. }) => part.refused(&error),
             other => other.into(),
         })?;
         within(memory)?;
@@ -235,9 +280,14 @@ fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model
             fits_in_table("confusion matrix", model.shapes().len())?;
         }
         merge.add(&model).map_err(|error| match error {
-            ModelError::Foreign { .. } | ModelError::Shards(ShardOrderError::Twice { .. }) => {
-                part.refused(&error)
+            ModelError::Foreign { .. } if part.shard.of() != parts[0].shard.of() => {
+                part.other_study(&parts[0])
             }
+            ModelError::Foreign { .. } => part.refused(&format_args!(
+                "belongs to another training than {}",
+                parts[0].path.display()
+            )),
+            ModelError::Shards(ShardOrderError::Twice { .. }) => part.refused(&error),
             other => TrainingError::from(other).into(),
         })?;
         within(memory)?;

@@ -4,8 +4,8 @@
 //! shape leaves it. `show` prints a description, the model's card:
 //! ```text
 //! 16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5
-//!   disc: ellipse radius_x 2.40, radius_y 2.40, recognised in 96.0 %
-//!   block: rectangle length 4.50, width 4.30, recognised in 99.1 %
+//!   disc: ellipse radius_x 2.40, radius_y 2.40, named right in 96.0 % of its touches
+//!   block: rectangle length 4.50, width 4.30, named right in 99.1 % of its touches
 //! 1,800 poses each
 //! …
 //! hash 2888dcc5d50ce3389fbcb40d256ae2ab
@@ -341,8 +341,7 @@ pub(crate) fn show(
         };
         text += &format!("  {}: {}{weight}", shape.name, described(shape));
         if let Some(recall) = limit.recall(index) {
-            text += ", recognised in ";
-            text += &percent(recall);
+            text += &format!(", named right in {} of its touches", percent(recall));
         }
         text.push('\n');
     }
@@ -376,10 +375,11 @@ fn never_certain(model: &Model) -> String {
     let never = model.never_certain();
     let names = never.iter().map(|&shape| &*model.shapes()[shape].name);
     match names.collect::<Vec<_>>().join(", ") {
-        none if none.is_empty() => {
-            "never certain: none; each shape leaves imprints of its own\n".to_owned()
+        none if none.is_empty() => "every shape leaves imprints that no other leaves\n".to_owned(),
+        names => {
+            let whose = if never.len() == 1 { "its" } else { "their" };
+            format!("never certain: {names}; other shapes leave all {whose} imprints, too\n")
         }
-        names => format!("never certain: {names}; other shapes leave all their imprints, too\n"),
     }
 }
 

@@ -75,6 +75,9 @@ pub(crate) fn recognise(
     }
 }
 
+/// The most shapes of a model that a message lists.
+const MOST_LISTED: usize = 10;
+
 /// Checks that a model has a shape of this name.
 ///
 /// # Errors
@@ -84,8 +87,13 @@ fn check_expected(name: &str, shapes: &[NamedShape]) -> Result<(), CliError> {
         return Ok(());
     }
     let names = shapes.iter().map(|shape| shape.name.as_str());
+    let mut listed: Vec<&str> = names.clone().take(MOST_LISTED).collect();
+    if listed.len() < shapes.len() {
+        listed.push("…");
+    }
     Err(CliError::NotInModel {
         name: name.to_owned(),
+        shapes: listed.join(", "),
         near: did_you_mean(name, names),
     })
 }

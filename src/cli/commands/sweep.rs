@@ -234,7 +234,7 @@ fn kept(
     if !file.is_archive() {
         return Err(CliError::Ending {
             name,
-            what: "an atlas for --resume",
+            what: "an atlas that --resume keeps",
             expected: ".npz",
         });
     }

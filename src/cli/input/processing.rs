@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::cli::arguments::frames::ProcessingArguments;
-use crate::cli::error::CliError;
+use crate::cli::error::{CliError, frame_advice};
 use crate::cli::input::recording::{RecordingFile, dead_cells};
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingError, RecordingEvent};
@@ -128,7 +128,7 @@ pub(crate) fn unknown_step(processing: &Processing) -> Option<&'static str> {
 /// which is subtracted from then on.
 ///
 /// # Errors
-/// Returns an error if the channel has fewer frames than wanted: `frames for the tare: found 3, expected 5`.
+/// Returns an error if the channel has fewer frames than wanted: `the tare needs 5 frames, but there are only 3`.
 pub(crate) fn tare(
     recording: &mut RecordingFile,
     (channel, wanted): (usize, u64),
@@ -168,6 +168,6 @@ pub(crate) fn peak(
         peak.add(frame.number, processed.tared_sum);
         Ok::<_, FrameError>(ControlFlow::Continue(()))
     })?;
-    added.map_err(|error| recording.refused(&error))?;
+    added.map_err(|error| recording.refused(&(error.to_string() + frame_advice(&error))))?;
     Ok(peak.number())
 }

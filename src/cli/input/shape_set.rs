@@ -34,7 +34,7 @@ const MAX_SET: u64 = 64 << 20;
 /// Reads the shapes of a set, in the order of the arguments.
 ///
 /// # Errors
-/// Returns [`CliError::Set`] with the place of a shape that cannot be read, such as `parts.jsonl, line 3`, and the
+/// Returns [`CliError::Set`] with the place of a shape that cannot be read, such as `parts.jsonl: line 3`, and the
 /// errors of files and the library.
 pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let lookup = |name: &str| {

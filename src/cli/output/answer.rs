@@ -217,8 +217,8 @@ impl AnswerText<'_> {
 fn compared(method: SearchMethod) -> &'static str {
     match method {
         SearchMethod::Exact => "only the imprint itself is looked up",
-        SearchMethod::OneFlip => "imprints that differ by at most one taxel are looked up",
-        SearchMethod::Scan => "every imprint of the model is compared in every place",
+        SearchMethod::OneFlip => "compared with imprints that differ by at most one taxel",
+        SearchMethod::Scan => "compared with every imprint of the model in every place",
     }
 }
 

@@ -133,6 +133,14 @@ impl NamedBy {
         }
     }
 
+    /// Returns what makes a touch certain.
+    fn certain(self) -> &'static str {
+        match self {
+            Self::Descriptors => "  no other shape has the same values",
+            Self::Imprint | Self::Classifier => "  no other shape leaves the same imprint",
+        }
+    }
+
     /// Returns what the method tells apart, with the number of it.
     fn distinct(self, number: u64) -> String {
         match self {
@@ -174,9 +182,9 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     line("wrong", touches - right, named.remark());
     // Another classifier does not know when it is certain.
     if named != NamedBy::Classifier {
-        line("certain", *certain, "  only one shape can leave them");
+        line("certain", *certain, named.certain());
     }
-    line("tied", *tied, "  given the first of the tied names");
+    line("tied", *tied, "  the first of the tied shapes is named");
     line("in top two", *right_in_top_two, "");
     let _ = writeln!(
         text,
@@ -188,7 +196,7 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
 
 /// Returns the matrix: a row for each true shape, a column for each name, the diagonal in brackets, zero as a dot;
 /// recall on the right, precision below. Columns are numbered. The first one begins after the longest name. A column
-/// is as wide as its largest number with brackets, so that the diagonal does not shift its row. Precision is `-` for
+/// is as wide as its largest number with brackets, so that the diagonal does not shift its row. Precision is `–` for
 /// a name that is never given.
 pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
     let labels = &evaluation.labels;
@@ -233,7 +241,7 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
     for (column, width) in widths.iter().enumerate() {
         let precision = match evaluation.precision(column) {
             Some(share) => format!("{:.0}%", 100.0 * share),
-            None => "-".to_owned(),
+            None => "–".to_owned(),
         };
         let width = (width - 1).saturating_sub(std::mem::take(&mut first));
         let _ = write!(text, " {precision:>width$} ");
@@ -405,7 +413,7 @@ pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) ->
         let _ = write!(text, "{:>numbers$} {label}", row + 1);
         for (column, error) in errors.iter().enumerate() {
             let cell = if row == column {
-                String::from("-")
+                String::from("–")
             } else {
                 format!("{:.2}", 100.0 * error)
             };

@@ -120,7 +120,7 @@ pub enum Wrong {
     #[error(transparent)]
     Sensor(#[from] ParameterError),
     /// A text that does not denote one key.
-    #[error("{0:?} is not one key, expected one as in x, <Tab>, <C-x>")]
+    #[error("{0:?} is not a key that can be bound, expected one such as x, <Tab> or <C-x>")]
     Key(String),
     /// A key that cannot be bound like this.
     #[error(transparent)]
@@ -409,7 +409,7 @@ fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal
 fn no_action(context: Context, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let names = actions(context).into_iter().chain(["none"]);
     let near = did_you_mean(found, names);
-    let expected = "an action of 'taxel config', or \"none\"".to_owned();
+    let expected = "an action that 'taxel config' lists, or \"none\"".to_owned();
     let found = format!("{:?}{near}", shortened_message(found));
     (value.span().start, Wrong::Value { expected, found })
 }

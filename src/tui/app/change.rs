@@ -279,6 +279,13 @@ pub(in crate::tui) fn turn(app: &mut App, clockwise: f64) {
 
 /// Makes a picture larger or smaller by a step.
 pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
+    if app.history.present().source.is_none() && app.reading().imprint.is_empty() {
+        let picture = app.key_of(&action::PICTURE);
+        return refuse(
+            app,
+            format!("nothing to zoom: press {picture} for a stored shape"),
+        );
+    }
     let Some(source) = movable(app) else { return };
     let by = f64::from(direction) * app.step.length();
     let (Some(x), Some(y)) = (source.get(Parameter::ZoomX), source.get(Parameter::ZoomY)) else {

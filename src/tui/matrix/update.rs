@@ -268,7 +268,7 @@ fn next_display(app: &mut App) {
         }
         Display::Shades => (
             Display::Percent,
-            "coverage in percent; a single digit is tens: 5 is 50 to 59 %",
+            "coverage in percent; one digit stands for tens: 5 is 50 to 59 %",
         ),
         Display::Percent => (Display::Imprint, "active taxels"),
     };

@@ -206,7 +206,7 @@ impl Panel<'_> {
         self.text(limit, Role::Quiet);
         if let Some((unknown, tried)) = trained.unknown_between {
             let text = format!(
-                "off the grid, {} of {} random poses leave unknown imprints",
+                "between the trained poses, {} of {} touches are unknown",
                 percent_of(unknown.into(), tried.into()),
                 grouped(tried)
             );
@@ -411,7 +411,7 @@ fn pose_lines(whose: &str, pose: &PoseEstimate) -> [String; 3] {
         let (mean, spread) = (decimal(half_up(mean), 0), spread_of(spread, 1));
         (
             format!("angle {mean}° ± {spread}°{turn}"),
-            format!("95 % in {first}°..{last}°; {poses}"),
+            format!("95 % of {poses}: {first}°..{last}°"),
         )
     });
     [position, angle, poses]

@@ -188,7 +188,10 @@ fn alone(name: &str, rest: &str, command: ScriptCommand) -> Result<ScriptCommand
     if rest.is_empty() {
         return Ok(command);
     }
-    Err(format!("{name} stands alone, found {:?}", shortened(rest)))
+    Err(format!(
+        "{name} takes no argument, found {:?}",
+        shortened(rest)
+    ))
 }
 
 /// Reads what to click on: a text in quotes or a position.

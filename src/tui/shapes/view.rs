@@ -117,7 +117,7 @@ fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
     Some(
         match (dialog.undeletable(), dialog.total(), dialog.purpose()) {
             _ if !dialog.is_listed() => "the library is being read".to_owned(),
-            (Some(name), ..) => format!("{name} is shipped with taxel and cannot be deleted"),
+            (Some(name), ..) => format!("{name} comes with taxel and cannot be deleted"),
             (_, 0, ListPurpose::Delete) => "there are no shapes of your own".to_owned(),
             (_, 0, _) => "the library is empty".to_owned(),
             _ => {

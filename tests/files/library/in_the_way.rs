@@ -122,7 +122,7 @@ fn a_library_path_that_is_not_a_folder_is_reported() {
         assert_eq!(refusal(kept, &scratch), message);
     }
     let library = Library::open(scratch.path("file"));
-    let message = "FOLDER/file: cannot read the folder: not a folder";
+    let message = "FOLDER/file: cannot read the folder: it is a file";
     assert_eq!(refusal(library.list(), &scratch), message);
     let folder = scratch.path("a/b/c");
     let library = Library::open(folder.clone());

@@ -106,7 +106,7 @@ fn names_that_differ_only_in_case_are_the_same() {
             scratch.library.save(&shape("WASHER", 1), Expected::Nothing),
             &scratch
         ),
-        "\"WASHER\" is shipped with taxel; it can be copied under another name"
+        "\"WASHER\" comes with taxel and cannot be replaced; choose another name"
     );
     assert!(scratch.library.load("WASHER").is_ok());
 }

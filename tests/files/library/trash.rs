@@ -106,7 +106,7 @@ fn the_last_fifty_deleted_shapes_are_kept() {
 #[test]
 fn shipped_shapes_cannot_be_deleted() {
     let scratch = Scratch::new();
-    let message = "\"Washer\" is shipped with taxel and cannot be deleted";
+    let message = "\"Washer\" comes with taxel and cannot be deleted";
     assert_eq!(refusal(scratch.library.delete("Washer"), &scratch), message);
     assert_eq!(
         refusal(scratch.library.delete("nothing"), &scratch),

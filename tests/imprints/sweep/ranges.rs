@@ -25,22 +25,22 @@ fn ranges_are_exact_or_refused() {
         );
     }
     let refused = |text: &str| range(text).expect_err("no range").to_string();
-    assert_eq!(refused("1:2:0.00"), "step 0.00: expected one above 0");
+    assert_eq!(refused("1:2:0.00"), "step 0.00 is not above 0");
     assert_eq!(
         refused("2:1:0.1"),
-        "2:1:0.1 ends before it starts, expected an end from 2 on"
+        "2:1:0.1: the end is below the start, expected 2 or more"
     );
-    assert_eq!(refused("1:2:-0.1"), "step -0.1: expected one above 0");
+    assert_eq!(refused("1:2:-0.1"), "step -0.1 is not above 0");
     assert_eq!(refused("2:1:-1"), refused("1:2:-1"));
     assert_eq!(
         refused("9999999999999999"),
-        "\"9999999999999999\" has too many digits: with the same number of decimals everywhere, each number may have 15 \
-         digits, 12 of them after the point"
+        "\"9999999999999999\" has too many digits: at most 12 after the point, and 15 in all once each number has as many \
+         decimals as the longest"
     );
     assert_eq!(
         refused("0:1e9:1e-9"),
-        "\"0:1e9:1e-9\" has too many digits: with the same number of decimals everywhere, each number may have 15 digits, \
-         12 of them after the point"
+        "\"0:1e9:1e-9\" has too many digits: at most 12 after the point, and 15 in all once each number has as many \
+         decimals as the longest"
     );
     assert_eq!(
         refused("1:2"),
@@ -85,7 +85,7 @@ fn ranges_are_exact_or_refused() {
     }
     assert_eq!(
         refused("0:10:0.000001"),
-        "10,000,001 values, at most 1,000,000"
+        "a range of 10,000,001 values; at most 1,000,000 are allowed"
     );
 }
 

@@ -389,10 +389,10 @@ fn the_shape_whose_name_was_typed_comes_first() {
 /// Only the user's own shapes are listed for deletion: for another name, the list says why it is missing.
 #[test]
 fn the_list_says_that_a_shipped_shape_cannot_be_deleted() {
-    let why = "washer is shipped with taxel and cannot be\ndeleted";
+    let why = "washer comes with taxel and cannot be\ndeleted";
     shows("dwasher", &[why]);
     shows("<Space>smine<Enter>dWash", &[why]);
-    hides("<Space>smine<Enter>dmi", &["is shipped"]);
+    hides("<Space>smine<Enter>dmi", &["comes with taxel"]);
     shows("<Space>smine<Enter>dzzz", &["no name contains this"]);
 }
 

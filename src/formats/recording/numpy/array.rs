@@ -42,7 +42,8 @@ const LARGEST_FORTRAN: u64 = 1 << 28;
 /// # Errors
 /// Returns an error if the header is not of version 1 to 3, or is longer than 1 MiB.
 pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
-    let wrong = || RecordingError::damaged("no header of a numpy array, version 1 to 3");
+    let wrong =
+        || RecordingError::damaged("not a numpy array: expected a header of version 1 to 3");
     let mut start = [0; 8];
     let mut whole = |bytes: &mut [u8]| match input.read_exact(bytes) {
         Err(error) if error.kind() == ErrorKind::UnexpectedEof => Err(wrong()),

@@ -614,7 +614,8 @@ fn named_cells(
         }
         Some(NamedCells::Incomplete(size, found)) => {
             let found = counted(found as u64, "cell");
-            let message = format!("the header names {found} of {}", size.in_words());
+            let (size, cells) = (size.in_words(), size.cells());
+            let message = format!("the header names {found}, but {size} have {cells}");
             Err(RecordingError::in_line(number, message))
         }
         None => {
