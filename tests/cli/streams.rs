@@ -68,9 +68,16 @@ fn output_is_ascii_if_the_locale_is_not_utf_8() {
 }
 
 #[test]
-fn the_help_is_the_same_by_flag_and_by_command() {
+fn the_help_is_the_same_by_flag_and_by_command_and_shorter_by_its_short_flag() {
     let whole = taxel("--help", "").stdout;
-    assert_eq!(taxel("-h", "").stdout, whole);
+    for command in ["", "figure ", "library save "] {
+        let (short, whole) = ["-h", "--help"]
+            .map(|flag| taxel(&format!("{command}{flag}"), "").stdout)
+            .into();
+        let flags = short.strip_suffix("\n'--help' also explains and gives examples.\n");
+        assert!(whole.starts_with(flags.expect("it says where the rest is")));
+        assert!(whole.contains("Examples:") && !short.contains("Examples:"));
+    }
     assert_eq!(taxel("help", "").stdout, whole);
     assert_eq!(
         taxel("help figure", "").stdout,

@@ -89,7 +89,7 @@ pub(crate) fn command() -> Command {
         .help("Recording; '-' for standard input");
     let frame =
         option("frame", "N", "Frame N of the channel, from 0").value_parser(whole::<u64>(0..));
-    let label = option("label", "L", "The frame that the recording itself labels L")
+    let label = option("label", "L", "The frame with the label L in the recording")
         .allow_hyphen_values(true)
         .value_parser(whole::<i64>(..));
     let peak = switch(
@@ -146,7 +146,7 @@ fn keeping() -> [Arg; 4] {
             52,
         )),
         "force" => arg.help(parameters::wrapped(
-            "Replace an existing shape, or existing files of these names, but never the recording",
+            "Replace existing shapes and files, but never the recording",
             52,
         )),
         _ => arg,

@@ -242,12 +242,12 @@ pub(crate) const MODEL_TRAIN_EXAMPLES: &str = "\
 A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
   {\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}
   {\"name\":\"ring\",\"picture\":\"washer\"}
-Of a stored shape, only the taxels matter, not its pitch and threshold: a taxel
-is one cell. By default, every shape is touched at 100 x 100 positions inside
-one cell and at every whole degree. The sensor is the smallest that holds all
-shapes, at least 16 x 16; taxel prints its size. Poses that the sensor would cut
-off are refused, since a cut imprint depends on the rim; --allow-cut takes them.
-'taxel merge' puts shards together.
+Only the taxels of a stored shape count, not its pitch or threshold; a taxel is
+one cell. By default, every shape is touched at 100 x 100 positions inside one
+cell and at every whole degree. The sensor is the smallest that holds all
+shapes, at least 16 x 16; taxel prints its size. It refuses poses that the
+sensor would cut off, since a cut imprint depends on the rim; --allow-cut
+permits them. 'taxel merge' puts shards together.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -319,9 +319,10 @@ standard error lists them. With --pitch, a taxel of a stored shape is 1 mm; the
 shape's own pitch and threshold are ignored.
 
 --want tries scales from the smallest up, or pitches from the coarsest down,
-until one reaches the error, and then tenths of a step before that one. The
-error is not monotonic, so --want also prints how many of the larger scales, or
-finer pitches, miss it again. With --csv, its answer goes to standard error.
+until one reaches the error, and then tenths of a step before that one. A larger
+shape is not always easier to name, so --want also prints how many of the larger
+scales, or finer pitches, miss it again. With --csv, its answer goes to standard
+error.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
@@ -334,7 +335,7 @@ pub(crate) const MODEL_TOUCHES_EXAMPLES: &str = "\
 Touches each shape again and again in random poses and multiplies probabilities,
 until one shape has the probability of --until. Prints the mean number of
 touches with its standard error; the same seed gives the same numbers. A run
-ends after 10,000 touches, and then its shape has no mean.
+ends after 10,000 touches; its shape then gets no mean.
 
 Examples:
   taxel model touches parts

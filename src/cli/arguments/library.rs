@@ -35,7 +35,7 @@ pub(crate) enum LibraryCommand {
     Restore(Name),
     /// Print the library's folder.
     Path,
-    /// Read every shape and report what is damaged or left over; true for JSON.
+    /// Read every shape and report damaged ones and other files; true for JSON.
     Check(bool),
 }
 
@@ -86,7 +86,14 @@ pub(super) fn command() -> Command {
         .subcommand(delete.arg(name("Name of the shape")))
         .subcommand(restore.arg(name("Name of the shape")))
         .subcommand(command("path", "Print the library's folder", PATH_EXAMPLES))
-        .subcommand(command("check", "Check every file", CHECK_EXAMPLES).arg(json()))
+        .subcommand(
+            command(
+                "check",
+                "Find broken shapes and stray files",
+                CHECK_EXAMPLES,
+            )
+            .arg(json()),
+        )
 }
 
 impl LibraryCommand {

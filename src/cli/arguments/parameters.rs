@@ -73,7 +73,7 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         unit => format!("{}, ", unit.name()),
     };
     let also = match parameter {
-        Parameter::Pitch => "; tables and drawings then show mm, too, JSON does not",
+        Parameter::Pitch => "; adds mm to tables and drawings, not to JSON",
         _ => "",
     };
     let range = Sensor::default().range(parameter);

@@ -72,6 +72,7 @@ pub(crate) fn script() -> Command {
         .help("Script to run; '-' for standard input");
     let keys = Arg::new("keys")
         .short('k')
+        .long("keys")
         .value_name("KEYS")
         .help("Keys to press first; without a script, print the screen");
     let styles = switch("styles", "Add a grid of style letters to screens");

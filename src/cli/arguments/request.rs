@@ -6,9 +6,9 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::ArgMatches;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
+use clap::{ArgMatches, Command};
 
 use crate::cli::arguments::advice::with_tips;
 use crate::cli::arguments::export::Export;
@@ -84,13 +84,24 @@ pub(crate) enum Request {
     Man(Option<PathBuf>),
 }
 
+/// Leaves out the texts below the flags in the help of a command and of its subcommands: `-h` prints usage and flags
+/// only.
+fn without_notes(command: Command) -> Command {
+    command
+        .after_help("'--help' also explains and gives examples.")
+        .mut_subcommands(without_notes)
+}
+
 /// Reads the arguments, the first of which is the program's own name, and the settings.
 ///
 /// # Errors
 /// Returns [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`]
 /// for values out of range.
 pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
-    let mut command = groups::grouped(definitions::all());
+    let is_short = arguments.iter().any(|argument| argument == "-h");
+    let all = definitions::all();
+    let all = if is_short { without_notes(all) } else { all };
+    let mut command = groups::grouped(all);
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => {
@@ -179,9 +190,8 @@ fn of_screen(matches: &ArgMatches) -> Option<String> {
 }
 
 /// Returns the message about a flag of the screen before the command `name`.
-fn too_early(flag: &str, name: &str, command: &clap::Command) -> String {
-    let has_flag =
-        |own: &clap::Command| own.get_arguments().any(|own| own.get_long() == Some(flag));
+fn too_early(flag: &str, name: &str, command: &Command) -> String {
+    let has_flag = |own: &Command| own.get_arguments().any(|own| own.get_long() == Some(flag));
     if command.find_subcommand(name).is_some_and(has_flag) {
         format!("'--{flag}' must come after '{name}'; before it, it is a flag of the screen")
     } else {
@@ -200,7 +210,7 @@ fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, CliError
 fn request(
     name: &str,
     own: &ArgMatches,
-    command: &mut clap::Command,
+    command: &mut Command,
     settings: &Effective,
 ) -> Result<Request, CliError> {
     let what = || required::<OsString>(own, "what");
