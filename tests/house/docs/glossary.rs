@@ -473,9 +473,10 @@ fn diagonals() -> String {
         canvas.put(f64::from(rect.left) + along, y, '\\');
         canvas.put(f64::from(rect.right) - along, y, '/');
     }
+    let values = ring.value("diagonals");
+    let (first, second) = values.split_once(", ").expect("two directions");
     let worked = format!(
-        "Fig. 1: atan({height} / {width}) and 180° − atan({height} / {width}), {}.",
-        ring.value("diagonals")
+        "Fig. 1: atan({height} / {width}) = {first}° and 180° − atan({height} / {width}) = {second}.",
     );
     block(&canvas.lines(), &worked)
 }
