@@ -450,7 +450,14 @@ fn man_pages_say_the_same_as_the_help() {
         let name = format!("taxel {command}").trim().replace(' ', "-");
         let file = pages.join(format!("{name}.1"));
         let page = fs::read_to_string(&file).expect("a page");
-        for heading in ["NAME", "SYNOPSIS", "DESCRIPTION", "EXAMPLES"] {
+        for heading in [
+            "NAME",
+            "SYNOPSIS",
+            "DESCRIPTION",
+            "\"EXIT STATUS\"",
+            "EXAMPLES",
+            "\"SEE ALSO\"",
+        ] {
             assert!(page.contains(&format!("\n.SH {heading}\n")), "{page}");
         }
         if !groff {

@@ -22,6 +22,7 @@ Lengths are in cells: 1 is the side of a cell of the sensor. x runs to the
 right, y down.
 Exit status: 0 success, 1 wrong input, 2 wrong command line, 3 not the expected
 answer, 128 + n ended by signal n.
+Settings: 'taxel config'. Environment and files: 'taxel man | man -l -'.
 
 Examples:
   taxel
@@ -187,14 +188,20 @@ pub(crate) const ENVIRONMENT: &str = "
                    ASCII only, unless the locale is UTF-8
   COLUMNS, LINES   the size of a terminal that does not report it
   RAYON_NUM_THREADS
-                   threads of a command without --jobs, at most 8 per core";
+                   threads of a command without --jobs, at most 8 per core
+  XDG_CONFIG_HOME, XDG_DATA_HOME, XDG_CACHE_HOME
+                   the folders in place of ~/.config, ~/.local/share, ~/.cache";
 
 /// The files, for the manual page; `--help` leaves them out.
 pub(crate) const FILES: &str = "
   ~/.config/taxel/config.toml
                    settings; 'taxel config' prints all of them
   ~/.local/share/taxel/library
-                   the shapes, one JSON file each";
+                   the shapes, one JSON file each
+  ~/.local/share/taxel/models
+                   your models
+  ~/.cache/taxel/models
+                   trained built-in models; may be deleted";
 
 /// `taxel sweep`: ranges and their defaults.
 pub(crate) const SWEEP_EXAMPLES: &str = "\

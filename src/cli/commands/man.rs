@@ -1,7 +1,7 @@
 //! `taxel man`: the help of every command as a manual page.
 //!
-//! A page has the same texts as the help, in the sections NAME, SYNOPSIS, DESCRIPTION, OPTIONS, SUBCOMMANDS and
-//! EXAMPLES; the program's own page also has ENVIRONMENT and FILES. In the text below the flags, indented lines are
+//! A page has the same texts as the help, in the sections NAME, SYNOPSIS, DESCRIPTION, OPTIONS, SUBCOMMANDS, EXIT
+//! STATUS, EXAMPLES and SEE ALSO; the program's own page also has ENVIRONMENT and FILES. In the text below the flags, indented lines are
 //! kept as they are and others are filled; `Examples:` starts the section of that name.
 
 use std::io;
@@ -12,7 +12,7 @@ use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
 
 use crate::cli::arguments::definitions;
-use crate::cli::arguments::help::{ENVIRONMENT, FILES};
+use crate::cli::arguments::help::{ENVIRONMENT, EXAMPLES, FILES};
 use crate::cli::commands::export;
 use crate::cli::error::CliError;
 use crate::formats::value::counted;
@@ -92,14 +92,21 @@ fn page(command: &Command) -> io::Result<Vec<u8>> {
     let after = command.get_after_help().map(ToString::to_string);
     let after = after.unwrap_or_default();
     let (notes, examples) = after.split_once("Examples:\n").unwrap_or((&after, ""));
+    // A command with exit statuses of its own has them in its help; the others have those of the program.
+    let (notes, own) = without_exit_status(notes);
+    let status = own.or_else(|| without_exit_status(EXAMPLES).1);
     roff.control("PP", []);
-    filled(&mut roff, notes);
+    filled(&mut roff, &notes);
     roff.to_writer(&mut page)?;
     man.render_options_section(&mut page)?;
     if command.has_subcommands() {
         man.render_subcommands_section(&mut page)?;
     }
     let mut roff = Roff::new();
+    if let Some(status) = status {
+        roff.control("SH", ["EXIT STATUS"]);
+        filled(&mut roff, &status);
+    }
     if name(command) == "taxel" {
         for (heading, text) in [("ENVIRONMENT", ENVIRONMENT), ("FILES", FILES)] {
             roff.control("SH", [heading]);
@@ -108,8 +115,36 @@ fn page(command: &Command) -> io::Result<Vec<u8>> {
     }
     roff.control("SH", ["EXAMPLES"]);
     filled(&mut roff, examples);
+    roff.control("SH", ["SEE ALSO"])
+        .text([roman(see_also(command).join(", "))]);
     roff.to_writer(&mut page)?;
     Ok(page)
+}
+
+/// Splits the sentence about the exit status from the notes of a command; the sentence ends with `.` at the end of a
+/// line.
+fn without_exit_status(notes: &str) -> (String, Option<String>) {
+    let Some((before, rest)) = notes.split_once("Exit status: ") else {
+        return (notes.to_owned(), None);
+    };
+    let (status, after) = rest.split_once(".\n").unwrap_or((rest, ""));
+    (format!("{before}{after}"), Some(format!("{status}.")))
+}
+
+/// Returns the pages above that of a command, `taxel(1)` first, or for the program those of its commands.
+fn see_also(command: &Command) -> Vec<String> {
+    let own = name(command);
+    let above: Vec<String> = own
+        .match_indices('-')
+        .map(|(end, _)| format!("{}(1)", &own[..end]))
+        .collect();
+    if above.is_empty() {
+        let below = command.get_subcommands();
+        return below
+            .map(|command| format!("{}(1)", name(command)))
+            .collect();
+    }
+    above
 }
 
 /// Writes a text: paragraphs, which are filled and end at an empty line, and indented lines, which are kept as they
