@@ -169,7 +169,9 @@ mod tests {
     fn an_even_rate_needs_equal_steps() {
         let even = |times: &[f64]| {
             let mut rate = FrameRate::over(4096);
-            times.iter().for_each(|&time| rate.add(time));
+            for &time in times {
+                rate.add(time);
+            }
             rate.even_seconds_per_frame()
         };
         assert_eq!(even(&[0.0, 0.1, 5.0, 5.2, 90.0]), None);

@@ -231,8 +231,9 @@ impl Orphan {
 /// starting, so it counts as empty.
 fn files_of(library: &Library) -> Vec<PathBuf> {
     let folder = InnerFolder::of(library.folder(), JOURNAL);
-    let paths = folder.and_then(|folder| Ok(folder.paths()?));
-    let mut paths = paths.unwrap_or_default();
+    let Ok(Ok(mut paths)) = folder.map(|folder| folder.paths()) else {
+        return Vec::new();
+    };
     paths.retain(|path| is_journal(path));
     paths
 }

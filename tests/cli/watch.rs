@@ -99,7 +99,7 @@ fn a_stream_is_a_filter_in_a_pipeline() {
     );
     // The lines are numbers, but do not make up a frame.
     let run = taxel("watch -", "1 2\n3\n\n");
-    let numbers = "7 bytes but no frame; check --rows, --columns and --format";
+    let numbers = "7 bytes but no frame; the last one dropped: row 2 has 1 number, expected 2";
     assert!(run.stderr.contains(numbers), "{}", run.stderr);
     // Recordings are not streams, except those that programs and boards also send.
     for (name, format) in [

@@ -333,7 +333,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     let refused = "! no imprint: a threshold from noise needs a tare";
     then(&mut page, "<Enter>", &[refused]);
     then(&mut page, "m", &["frame 4: marked"]);
-    then(&mut page, "t", &["tare of the last 5 frames"]);
+    then(&mut page, "t", &["tare of the 5 frames up to frame 4"]);
     hides(&page, &["needs a tare"]);
     // The recording ends before the tare is made.
     let mut page = set(|request| by_noise(request, 9));
@@ -513,7 +513,7 @@ fn a_frame_that_has_left_the_history_is_distinguished_from_no_frame() {
         &["! this frame is no longer in the history"],
     );
     then(&mut page, "m", &["frame 1: marked"]);
-    then(&mut page, "<End>t", &["tare of the last 1 frame"]);
+    then(&mut page, "<End>t", &["tare of 1 frame"]);
 }
 
 #[test]
@@ -572,7 +572,7 @@ fn a_frozen_frame_is_the_shown_one_even_if_it_is_not_confirmed() {
     report(&mut withdrawn, &[], ProvisionalChange::Gone);
     shows(&withdrawn, &["frame 1", "frozen"]);
     then(&mut frozen(), "<Left>", &["frame 1", "frozen"]);
-    then(&mut frozen(), "t", &["tare of the last 2 frames"]);
+    then(&mut frozen(), "t", &["tare of the 2 frames up to frame 1"]);
 }
 
 #[test]
@@ -644,7 +644,7 @@ fn the_sum_is_that_of_the_shown_values() {
     std::fs::write(&path, "time,r0c0,r0c1\n0.0,5,6\n0.1,7,9\n").expect("written");
     let mut page = session(&format!(":watch {}<Enter>", path.display()));
     page.frames(1);
-    then(&mut page, "t", &["tare of the last 1 frame"]);
+    then(&mut page, "t", &["tare of 1 frame"]);
     page.frames(1);
     shows(&page, &["tared", "sum        5", "max        3 at 1, 0"]);
     then(

@@ -356,10 +356,10 @@ of one shape, or {\"frame\":[[0,12],...],\"at_least\":10} for the values of a
 sensor with a threshold as for 'taxel batch'. The answer to a line is one line.
 It copies frame, label, time and channel, but not the values of a sensor; other
 keys are ignored. An imprint at the rim may be cut off and is never 'certain'.
-With --noise, even an imprint that no shape leaves gets an answer: taxel compares
-it with every imprint of the model in every place on the matrix. With --expect,
-the exit status is 3 if the answer is another shape, or is tied, rejected or
-unknown; if some lines cannot be answered, it is 1.
+With --noise, even an imprint that no shape leaves gets an answer: it is
+compared with every imprint of the model in every place on the matrix. With
+--expect, the exit status is 3 if the answer is another shape, or is tied,
+rejected or unknown; if some lines cannot be answered, it is 1.
 
 Built-in models: 'figures', the seven figures at their default sizes;
 'figures-30', the same figures at about 30 cells each; 'shapes', the shapes that

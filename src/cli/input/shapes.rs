@@ -171,6 +171,7 @@ impl Shelf {
     /// Returns the message about an error of the library. For an unknown name, it suggests a similar one.
     pub(crate) fn refused(&self, error: LibraryError) -> CliError {
         if let LibraryError::System(refused) = &error
+            && !refused.is_in_place()
             && refused.error.kind() == ErrorKind::ReadOnlyFilesystem
         {
             let folder = self.folder.as_ref().unwrap_or(&refused.path);

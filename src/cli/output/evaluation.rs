@@ -433,7 +433,6 @@ mod tests {
     use crate::pose::{Anchor, Axis, Ranges};
     use crate::recognition::{Model, ModelHead, NamedShape, ShapeCount};
     use crate::sensor::Sensor;
-    use crate::sweep::Shard;
 
     #[test]
     fn counts_beyond_64_bits_are_texts_wherever_they_stand() {

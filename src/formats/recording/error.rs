@@ -58,9 +58,11 @@ pub enum RecordingError {
 
 /// Returns how large rows and columns may be, for a line that is too long to be a row.
 fn most_of(numbers: u64) -> String {
-    let is_long = numbers > MAX_FRAME_SIDE.into();
-    let most = is_long.then(|| format!(", each at most {MAX_FRAME_SIDE}"));
-    most.unwrap_or_default()
+    if numbers > MAX_FRAME_SIDE.into() {
+        format!(", each at most {MAX_FRAME_SIDE}")
+    } else {
+        String::new()
+    }
 }
 
 /// Returns the formats that this build reads, for the message about any other file.

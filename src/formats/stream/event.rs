@@ -152,15 +152,14 @@ impl StreamCounts {
         // Round up, so that a byte now and then is not shown as 0.
         let rate = grouped(bytes_per_second.ceil() as u64);
         match (self.bytes, bytes_per_second > 0.0) {
-            (_, true) => match &self.reason {
-                Some(reason) => {
-                    format!("{rate} B/s, none of it a frame; the last one dropped: {reason}")
-                }
-                None => {
-                    let baud = if has_baud { "baud, " } else { "" };
-                    format!("{rate} B/s, none of it a frame; {baud}rows, columns or format?")
-                }
-            },
+            (_, true) => {
+                let why = match (&self.reason, has_baud) {
+                    (Some(reason), _) => &format!("the last one dropped: {reason}"),
+                    (None, true) => "baud, rows, columns or format?",
+                    (None, false) => "rows, columns or format?",
+                };
+                format!("{rate} B/s, none of it a frame; {why}")
+            }
             (0, _) => "nothing has come yet; is it sending?".to_owned(),
             _ => "the source has gone silent".to_owned(),
         }

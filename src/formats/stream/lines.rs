@@ -73,7 +73,7 @@ struct Block {
     broken: bool,
     /// The beginning of that row, or of the first row if none is invalid.
     sample: Vec<u8>,
-    /// What is wrong with that row, if it has numbers only; None otherwise.
+    /// The length of that row and the expected one, if it has only numbers; None otherwise.
     wrong: Option<WrongRow>,
     /// Whether the first line is a single value, which may be the time of the frame.
     begins_alone: bool,
@@ -92,6 +92,18 @@ struct WrongRow {
     found: usize,
     /// The number of numbers in the rows above it.
     expected: usize,
+}
+
+impl WrongRow {
+    /// Describes a row of `found` numbers; None if that is the expected number, or if it has anything else.
+    fn of(row: u16, found: Option<usize>, expected: usize) -> Option<Self> {
+        let found = found.filter(|&found| found != expected)?;
+        Some(Self {
+            row,
+            found,
+            expected,
+        })
+    }
 }
 
 impl Block {
@@ -220,11 +232,8 @@ impl LinesDecoder {
         if self.kind == LineKind::Frame && self.current.rows == 0 && !self.may_be_row(found) {
             self.current.values.truncate(before);
             self.size.pass_torn();
-            self.current.wrong = found.map(|found| WrongRow {
-                row: 1,
-                found,
-                expected: self.size.present().map_or(found, FrameSize::cells),
-            });
+            let cells = self.size.present().map(FrameSize::cells);
+            self.current.wrong = cells.and_then(|cells| WrongRow::of(1, found, cells));
             if std::mem::replace(&mut self.begun, true) {
                 self.lose(1, line, counts);
             }
@@ -239,13 +248,7 @@ impl LinesDecoder {
         if self.current.broken || found != Some(expected) || self.current.rows > MAX_FRAME_SIDE {
             self.current.values.truncate(before);
             if !self.current.broken {
-                let row = self.current.rows;
-                let wrong = found.filter(|&found| found != expected);
-                let wrong = wrong.map(|found| WrongRow {
-                    row,
-                    found,
-                    expected,
-                });
+                let wrong = WrongRow::of(self.current.rows, found, expected);
                 self.note_row(line, wrong);
             }
             self.current.broken = true;
@@ -662,7 +665,9 @@ mod tests {
             let advised = format!("# {frame}\n").repeat(3);
             assert_eq!(decoded(&advised, None), (vec![(2, 2, 1.0); 3], 0));
         }
-        assert_eq!(reason("12:00:00.25 1\n1 2\n3 4\n\n", None), None);
+        let expected = "row 2 has 2 numbers, expected 1";
+        let timed = "12:00:00.25 1\n1 2\n3 4\n\n";
+        assert_eq!(reason(timed, None).as_deref(), Some(expected));
         assert_eq!(reason("1 x\n1 2\n\n", Some(FrameSize::of(2, 2))), None);
     }
 

@@ -35,6 +35,17 @@ enum Framing {
     Bracketed,
 }
 
+/// The position of a byte in the stream.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum BytePosition {
+    /// Before the first start or end of a frame; what is there is dropped.
+    BeforeFrames,
+    /// In a frame.
+    InFrame,
+    /// Behind the end of a bracketed frame, but not in the next one.
+    BetweenFrames,
+}
+
 /// A splitter of bytes into frames of one kind.
 #[derive(Clone, Debug)]
 struct Parts {
@@ -44,10 +55,8 @@ struct Parts {
     cells: usize,
     /// The cells of the current frame so far, or the bytes since the end of the last one.
     values: Vec<u8>,
-    /// Whether the start or the end of a frame has been seen; what precedes it is dropped.
-    begun: bool,
-    /// Whether a bracketed frame has been opened.
-    opened: bool,
+    /// The position of the next byte.
+    position: BytePosition,
     /// Whether the last byte was an [`ESCAPE`].
     escaped: bool,
     /// Whether the frame has too many cells or an unknown escape.
@@ -74,8 +83,11 @@ impl Parts {
             framing,
             cells,
             values: Vec::new(),
-            begun: framing == Framing::Ended && from_start,
-            opened: false,
+            position: if framing == Framing::Ended && from_start {
+                BytePosition::InFrame
+            } else {
+                BytePosition::BeforeFrames
+            },
             escaped: false,
             broken: false,
             dropped: 0,
@@ -86,8 +98,8 @@ impl Parts {
     fn byte(&mut self, byte: u8) -> Part {
         match self.framing {
             Framing::Ended if byte == END => {
-                let is_frame = std::mem::replace(&mut self.begun, true);
-                self.end(is_frame)
+                let before = std::mem::replace(&mut self.position, BytePosition::InFrame);
+                self.end(before == BytePosition::InFrame)
             }
             Framing::Ended => self.value(byte),
             Framing::Bracketed => self.bracketed(byte),
@@ -99,18 +111,16 @@ impl Parts {
     fn bracketed(&mut self, byte: u8) -> Part {
         match byte {
             OPEN => {
-                (self.begun, self.escaped) = (true, false);
-                self.opened = true;
+                (self.position, self.escaped) = (BytePosition::InFrame, false);
                 // The frame before it was not closed, or not opened.
                 self.end(false)
             }
             CLOSE => {
                 self.broken |= std::mem::take(&mut self.escaped);
-                self.begun = true;
-                let is_frame = std::mem::take(&mut self.opened);
-                self.end(is_frame)
+                let before = std::mem::replace(&mut self.position, BytePosition::BetweenFrames);
+                self.end(before == BytePosition::InFrame)
             }
-            ESCAPE if self.opened && !self.escaped => {
+            ESCAPE if self.position == BytePosition::InFrame && !self.escaped => {
                 self.escaped = true;
                 Part::More
             }
@@ -129,7 +139,7 @@ impl Parts {
 
     /// Adds a cell, or a byte between two frames.
     fn value(&mut self, byte: u8) -> Part {
-        if self.begun {
+        if self.position != BytePosition::BeforeFrames {
             if self.values.len() < self.cells {
                 self.values.push(byte);
             } else {

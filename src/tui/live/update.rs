@@ -174,11 +174,7 @@ pub(in crate::tui) fn in_live(
             }
             None => refuse_imprint(app, &page),
         },
-        Message::Scroll(by) => {
-            if !page.scrub(by.into()) {
-                inform(app, at_edge(by));
-            }
-        }
+        Message::Scroll(by) => scrub(app, &mut page, by),
         Message::ScrollTo(Endpoint::First) => page.to_oldest(),
         Message::ScrollTo(Endpoint::Last) => page.to_newest(),
         Message::SwitchPane => page.display.only_panel ^= true,
@@ -195,12 +191,14 @@ pub(in crate::tui) fn in_live(
     effect
 }
 
-/// Returns the notice if there is no frame further back or, with a positive number, further on.
-fn at_edge(by: i16) -> &'static str {
-    if by < 0 {
-        "no earlier frame in the history"
-    } else {
-        "no later frame yet"
+/// Shows a later frame or, with a negative number, an earlier one; says so if there is none.
+fn scrub(app: &mut App, page: &mut Live, by: i16) {
+    if !page.scrub(by.into()) {
+        let text = match by {
+            ..0 => "no earlier frame in the history",
+            _ => "no later frame yet",
+        };
+        inform(app, text);
     }
 }
 
@@ -310,10 +308,11 @@ fn refuse_recording(app: &mut App, page: &Live, refused: &LiveRefusal) {
     refuse(app, format!("{refused}{how}"));
 }
 
-/// Returns the notice about a tare of this number of frames, up to the shown one.
+/// Returns the notice about a tare that was made just now of this number of frames. If the page stays at a frame, these
+/// end with it, and the notice says so.
 fn tare_of(page: &Live, frames: u64) -> String {
-    let number = page.frame().filter(|_| page.cursor.frozen().is_some());
-    match (number.map(|frame| frame.number), frames) {
+    let mark = page.tare.mark().filter(|_| !page.cursor.follows());
+    match (mark.and_then(|mark| mark.number), frames) {
         (Some(number), 1) => format!("tare of frame {number}"),
         (Some(number), _) => format!("tare of the {frames} frames up to frame {number}"),
         (None, 1) => "tare of 1 frame".to_owned(),

@@ -186,10 +186,10 @@ fn save(app: &mut App) {
         .filter(|stored| stored.owner == ShapeOrigin::Own);
     let name = match own {
         Some(stored) => match outdated(app, &stored.name) {
-            Some(present) => free_name(app, present),
+            Some(present) => free_name(app, &present),
             None => stored.name.clone(),
         },
-        None => free_name(app, name_of_origin(app)),
+        None => free_name(app, &name_of_origin(app)),
     };
     let dialog = NameDialog::proposing(&name);
     app.dialogs.push(Dialog::Name(dialog));
@@ -207,8 +207,8 @@ fn outdated(app: &App, stored: &str) -> Option<String> {
 }
 
 /// Returns a name; a number follows if it was used before: "drawing 2".
-fn free_name(app: &App, name: String) -> String {
-    let (mut free, mut number) = (name.clone(), 2);
+fn free_name(app: &App, name: &str) -> String {
+    let (mut free, mut number) = (name.to_owned(), 2);
     while app.history.knows(&free) {
         free = format!("{name} {number}");
         number += 1;

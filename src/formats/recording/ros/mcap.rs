@@ -261,8 +261,9 @@ fn date_time(nanoseconds: u64) -> Option<String> {
     let (seconds, fraction) = (nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
     let (days, clock) = (seconds / 86_400, seconds % 86_400);
     let days = i32::try_from(days).ok()?;
-    // A year has 366 days at most, so this one is not too late.
-    let year = (1970 + days / 366..).find(|year| moment::day(year + 1, 1, 1) > days)?;
+    // A year has 365 or 366 days.
+    let mut years = 1970 + days / 366..=1970 + days / 365;
+    let year = years.find(|year| moment::day(year + 1, 1, 1) > days)?;
     let month = (1..=12).rfind(|&month| moment::day(year, month, 1) <= days)?;
     let of_month = days - moment::day(year, month, 1) + 1;
     let (hours, minutes, seconds) = (clock / 3600, clock / 60 % 60, clock % 60);

@@ -50,8 +50,10 @@ pub(super) struct TableClock {
     rest: Option<TimeUnit>,
     /// The clock of the frames.
     clock: FrameClock,
-    /// Whether a time could not be read, and its text until it is noted.
-    unread: Option<Option<String>>,
+    /// Whether a time could not be read.
+    lacks_time: bool,
+    /// The text in place of the first such time, until it is noted.
+    unread: Option<String>,
 }
 
 impl TableClock {
@@ -63,6 +65,7 @@ impl TableClock {
             separator,
             rest: fields.and_then(|fields| fields.rest).map(|(_, unit)| unit),
             clock,
+            lacks_time: false,
             unread: None,
         }
     }
@@ -70,7 +73,7 @@ impl TableClock {
     /// Returns once for a table a note about a time of frame `frame` that could not be read, and once about a unit that
     /// was derived from the size of a time.
     pub(super) fn take_note(&mut self, frame: u64) -> Option<RecordingNote> {
-        let unread = self.unread.as_mut().and_then(Option::take);
+        let unread = self.unread.take();
         let unread = unread.map(|text| RecordingNote::Time { frame, text });
         unread.or_else(|| self.clock.take_note())
     }
@@ -79,9 +82,10 @@ impl TableClock {
     pub(super) fn seconds(&mut self, text: TimeText<'_>) -> Option<f64> {
         let field = text.time?;
         let time = self.time(field, text.rest);
-        if time.is_none() && !matches!(self.separator.value(field), Field::NoCell) {
-            let text = || Some(shortened(&lines::text(field)));
-            self.unread.get_or_insert_with(text);
+        let is_text = || !matches!(self.separator.value(field), Field::NoCell);
+        if time.is_none() && !self.lacks_time && is_text() {
+            self.lacks_time = true;
+            self.unread = Some(shortened(&lines::text(field)));
         }
         Some(self.clock.since_first(time?))
     }

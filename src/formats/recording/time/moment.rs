@@ -215,8 +215,6 @@ impl DecimalCommas {
         self.last.is_some()
     }
 }
-/// The seconds of a day.
-pub(in crate::formats::recording) const DAY: f64 = 86_400.0;
 
 /// Counts the midnights that clocks without a date pass: when the time falls by more than half a day.
 #[derive(Clone, Copy, Debug, Default)]
@@ -228,6 +226,7 @@ pub(in crate::formats) struct Midnights {
 impl Midnights {
     /// Returns the seconds of the next timestamp.
     pub(in crate::formats) fn seconds(&mut self, moment: Moment) -> f64 {
+        const DAY: f64 = 86_400.0;
         if moment.is_dated {
             return moment.seconds;
         }

@@ -37,7 +37,7 @@ use crate::formats::recording::text::number;
 use crate::formats::recording::text::number::whole;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::{Separator, decimal};
-use crate::formats::recording::time::moment::{self, DAY, Midnights, Moment};
+use crate::formats::recording::time::moment::{self, Midnights, Moment};
 use crate::formats::seconds::since;
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
@@ -389,7 +389,7 @@ impl XsensorState {
         let days = first_date.as_ref().zip(date);
         let days = days.and_then(|(first, own)| days_between(first, own));
         let own = match days {
-            Some(days) => f64::from(days) * DAY + seconds,
+            Some(days) => f64::from(days) * 86_400.0 + seconds,
             None if is_clock => {
                 let is_dated = false;
                 self.midnights.seconds(Moment { seconds, is_dated })
