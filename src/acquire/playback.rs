@@ -247,8 +247,8 @@ impl Player<'_, '_> {
         self.report(AcquireEvent::Tick(&self.counts.borrow()))
     }
 
-    /// Reports a tick, if one is due, at the end of a followed file, and whether it is silent. A file that has not grown may be a complete
-    /// recording. Returns `Break` if no more is wanted.
+    /// Reports a tick, if one is due, at the end of a followed file, and whether it is silent. A file that has not
+    /// grown may be a complete recording. Returns `Break` if no more is wanted.
     fn wait_for_more(&self, path: &Path, growth: &Growth) -> ControlFlow<()> {
         self.counts.borrow_mut().bytes = growth.bytes();
         self.tick()?;

@@ -278,7 +278,8 @@ impl Surroundings {
     /// Runs a subcommand of `taxel library`.
     ///
     /// # Errors
-    /// Returns [`CliError::Shapes`] or [`CliError::UnsavedWork`] if `check` finds damaged files, after it has printed all of them.
+    /// Returns [`CliError::Shapes`] or [`CliError::UnsavedWork`] if `check` finds damaged files, after it has printed
+    /// all of them.
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let is_list = matches!(asked, LibraryCommand::Names(_) | LibraryCommand::List(_));

@@ -220,8 +220,8 @@ impl Tare {
         &self.deviation
     }
 
-    /// Returns the step of the values, in the sensor's unit: the smallest difference between two of them. None if all are
-    /// equal, so that nothing shows it; then it counts as 1, which is too coarse if the sensor sends fractions.
+    /// Returns the step of the values, in the sensor's unit: the smallest difference between two of them. None if all
+    /// are equal, so that nothing shows it; then it counts as 1, which is too coarse if the sensor sends fractions.
     ///
     /// ```
     /// use taxel::prelude::*;

@@ -140,9 +140,9 @@ impl<T: Real> CellGrid<T> {
         self.locate(self.low.x).0..self.locate(self.high.x).0 + 1
     }
 
-    /// Takes the areas of the cells that [`Self::drawn`] returns, in pairs of rows from the first one on, and leaves the
-    /// grid empty. The areas are in [0, 1] up to a rounding error. The second row of the last pair may lie below the
-    /// others; then its areas are 0, up to a rounding error.
+    /// Takes the areas of the cells that [`Self::drawn`] returns, in pairs of rows from the first one on, and leaves
+    /// the grid empty. The areas are in [0, 1] up to a rounding error. The second row of the last pair may lie below
+    /// the others; then its areas are 0, up to a rounding error.
     pub(crate) fn take_pairs(
         &mut self,
         drawn: &Drawn,

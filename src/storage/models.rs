@@ -32,8 +32,8 @@ const ENDING: &str = "npz";
 /// The largest size of a cached model, in bytes.
 const MAX_CACHED: u64 = 64 << 20;
 
-/// The version of the algorithms that count the keys of a model. Increase it when the same training makes another model,
-/// so that no cached model of before is used.
+/// The version of the algorithms that count the keys of a model. Increase it when the same training makes another
+/// model, so that no cached model of before is used.
 const COUNTING: u32 = 1;
 
 /// Reads a model from a file.

@@ -510,7 +510,8 @@ fn the_description_of_a_recording_is_read_with_it() {
         serde_json::json!({"at_least": 9, "from": "flag"})
     );
     assert_eq!(plain.get("tare"), None);
-    // A description that is broken, of another version, empty or of another program is reported, and so is a missing one.
+    // A description that is broken, of another version, empty or of another program is reported, and so is a missing
+    // one.
     for (text, told) in [
         (
             "{\"format\":\"taxel-touch/1\",\"rule\":{\"percent\":0}}",

@@ -109,8 +109,8 @@ pub(super) fn is_array(path: &Path) -> bool {
 /// metadata beside it.
 ///
 /// # Errors
-/// Returns an error if the metadata is damaged, of another version or cannot be read; or if there is none although taxel
-/// has recorded the array.
+/// Returns an error if the metadata is damaged, of another version or cannot be read; or if there is none although
+/// taxel has recorded the array.
 pub fn metadata_beside(path: &Path) -> Option<Result<RecordingMetadata, MetadataFileError>> {
     if !is_array(path) {
         return None;

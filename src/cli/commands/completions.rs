@@ -113,8 +113,8 @@ fn named(all: &Command) -> impl Iterator<Item = Named<'_>> {
 
 /// The end of the script for bash, which adds names to clap's completions. `VALUES` is replaced by all flags with a
 /// value, which are not arguments of a command, `CASES` by [`cases_of_bash`], and `SETS` by the built-in models. The
-/// names are those of the folder that `--library` names on the line, or else of the user's library. A blank in a name is
-/// escaped, unless the word starts with a quotation mark, which is not part of the text that bash replaces.
+/// names are those of the folder that `--library` names on the line, or else of the user's library. A blank in a name
+/// is escaped, unless the word starts with a quotation mark, which is not part of the text that bash replaces.
 const NAMES_OF_BASH: &str = r#"
 _taxel_names() {
     _taxel "$@"
@@ -173,7 +173,8 @@ CASES        *) return 0 ;;
 complete -F _taxel_names -o bashdefault -o default taxel
 "#;
 
-/// The function for zsh that offers the names of some lists, or files. `$1` is what such a name belongs to. `SETS` is replaced by the built-in models.
+/// The function for zsh that offers the names of some lists, or files. `$1` is what such a name belongs to. `SETS` is
+/// replaced by the built-in models.
 const NAMES_OF_ZSH: &str = r#"(( $+functions[_taxel_names] )) ||
 _taxel_names() {
     local label=$1 list

@@ -122,8 +122,8 @@ impl Export {
 
 impl Kept {
     /// Keeps a touch: the file is written, then the shape is stored, then the file gets its name, which hardly ever
-    /// fails. So both are kept or neither. Notes of what was kept are added to `notes`. Returns the content for standard
-    /// output that takes the place of the answer, if any.
+    /// fails. So both are kept or neither. Notes of what was kept are added to `notes`. Returns the content for
+    /// standard output that takes the place of the answer, if any.
     ///
     /// # Errors
     /// Returns the errors of `begin`, of the library and of the file.

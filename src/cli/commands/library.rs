@@ -343,8 +343,8 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
 }
 
 /// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or a JSON
-/// array of objects, and [`CliError::Shapes`] if a shape is damaged or [`CliError::UnsavedWork`] if unsaved work is, to be
-/// reported after it.
+/// array of objects, and [`CliError::Shapes`] if a shape is damaged or [`CliError::UnsavedWork`] if unsaved work is, to
+/// be reported after it.
 ///
 /// # Errors
 /// Returns an error if the folder cannot be listed, and [`CliError::NoFolder`] if `--library` names one that does not

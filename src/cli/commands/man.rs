@@ -1,8 +1,8 @@
 //! `taxel man`: the help of every command as a manual page.
 //!
 //! A page has the same texts as the help, in the sections NAME, SYNOPSIS, DESCRIPTION, OPTIONS, SUBCOMMANDS, EXIT
-//! STATUS, EXAMPLES and SEE ALSO; the program's own page also has ENVIRONMENT and FILES. In the text below the flags, indented lines are
-//! kept as they are and others are filled; `Examples:` starts the section of that name.
+//! STATUS, EXAMPLES and SEE ALSO; the program's own page also has ENVIRONMENT and FILES. In the text below the flags,
+//! indented lines are kept as they are and others are filled; `Examples:` starts the section of that name.
 
 use std::io;
 use std::path::Path;

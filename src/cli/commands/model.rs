@@ -112,8 +112,8 @@ pub(crate) fn train(
     Ok(Summary::new(text, written))
 }
 
-/// Runs a training until it is done, memory runs short or `stopped` becomes true. `progress` starts to show the progress
-/// of a number of poses.
+/// Runs a training until it is done, memory runs short or `stopped` becomes true. `progress` starts to show the
+/// progress of a number of poses.
 ///
 /// # Errors
 /// Returns the error of the training, which is [`TrainingError::Stopped`] for both kinds of stop.

@@ -22,8 +22,8 @@ use crate::touch::Plane;
 pub(crate) struct Touched {
     /// For standard output: the imprint with its descriptors, or with `--export -` the exported file instead.
     pub(crate) answer: Vec<u8>,
-    /// For standard error: what the sensor cuts off, and what else was done, one line each. A table contains these lines
-    /// itself.
+    /// For standard error: what the sensor cuts off, and what else was done, one line each. A table contains these
+    /// lines itself.
     pub(crate) notes: Vec<String>,
 }
 

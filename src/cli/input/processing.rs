@@ -112,8 +112,8 @@ pub(crate) fn unused_tare(
     ))
 }
 
-/// Returns the warning that the threshold is one of noise, but the tare shows neither noise nor a step of the values, so
-/// that 1 is used; None otherwise.
+/// Returns the warning that the threshold is one of noise, but the tare shows neither noise nor a step of the values,
+/// so that 1 is used; None otherwise.
 pub(crate) fn unknown_step(processing: &Processing) -> Option<&'static str> {
     let tare = processing.tare.as_ref();
     let is_noise = matches!(processing.rule, Some(Rule::Noise(_)));

@@ -109,8 +109,8 @@ pub struct StreamCounts {
     pub dropped: u64,
     /// The beginning of the last dropped frame, up to 40 characters; None if none of its bytes are known.
     pub sample: Option<String>,
-    /// The reason why the last dropped frame is invalid, if the format shows it: JSON lines do, and numbers if a row has
-    /// too many or too few of them, or if a single value stands above a frame.
+    /// The reason why the last dropped frame is invalid, if the format shows it: JSON lines do, and numbers if a row
+    /// has too many or too few of them, or if a single value stands above a frame.
     pub reason: Option<String>,
     /// If rows and columns are missing, the number of values that a frame seems to have; 0 if not even that is known.
     pub unshaped: Option<u64>,

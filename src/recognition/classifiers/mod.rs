@@ -24,15 +24,15 @@ pub use knn::PoseSample;
 
 /// A classifier that uses descriptors or samples. The best classifier is the model itself.
 ///
-/// All of them name the same touches as the [`Evaluation`] of the model counts, in which a pose counts with the weight of
-/// its shape. They learn from poses, of which each shape has equally many: a weight does not change the mean, the
+/// All of them name the same touches as the [`Evaluation`] of the model counts, in which a pose counts with the weight
+/// of its shape. They learn from poses, of which each shape has equally many: a weight does not change the mean, the
 /// covariance, the sample or the templates of a shape. It is the prior of a Gaussian, and weights the mean of all
 /// covariances; [`Self::Z`], [`Self::Knn`] and [`Self::Template`] name the nearest shape, however likely it is.
 ///
 /// Means, deviations and covariances are those of all poses, exact except for rounding; samples are drawn with a seed.
 /// Features are numbers of the main region that do not change under shifts, each in units of its deviation over all
-/// touches. A direction counts as its cosine and its sine, both 0 if it does not exist. Other features that do not exist
-/// for some imprint, constants, and copies of others (NA and NAE of solid shapes) are left out.
+/// touches. A direction counts as its cosine and its sine, both 0 if it does not exist. Other features that do not
+/// exist for some imprint, constants, and copies of others (NA and NAE of solid shapes) are left out.
 ///
 /// Source: R. O. Duda, P. E. Hart and D. G. Stork, *Pattern Classification*, 2001, chapters 2 to 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -282,8 +282,8 @@ impl Live {
         self.cursor.rate().or_else(stated)
     }
 
-    /// Notes that frames are recorded in another file than the one in which the recording began. Returns a sentence about
-    /// that.
+    /// Notes that frames are recorded in another file than the one in which the recording began. Returns a sentence
+    /// about that.
     pub(super) fn follow_recording(&mut self, status: &FeedStatus) -> Option<String> {
         let before = self.recording.name()?.to_owned();
         let name = status.recorded_in.clone().filter(|name| *name != before)?;

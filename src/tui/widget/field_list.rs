@@ -1,7 +1,8 @@
 //! A list of text fields for parameters, one of which may have the focus: the state of every form.
 //!
-//! A form has its own type of [`FormField`], which says what its text may be: a number, a range. Above or below the fields
-//! there may be one more row that can have the focus, such as the kind of a figure; the form itself handles its keys.
+//! A form has its own type of [`FormField`], which says what its text may be: a number, a range. Above or below the
+//! fields there may be one more row that can have the focus, such as the kind of a figure; the form itself handles its
+//! keys.
 
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;

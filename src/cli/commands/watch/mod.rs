@@ -3,8 +3,8 @@
 //! Every frame is recorded before it is answered. A live source that is recorded is never held up: if the reader of the
 //! answers is slow, some frames get no answer, and their number is reported. Otherwise answers wait, as in any
 //! pipeline. If the reader is gone, as in `| head -1`, or answers cannot be written, a recording continues; without a
-//! recording the command ends. If the recording fails, as on a full disk, the answers go on; the error is reported at once,
-//! and is that of the command at its end.
+//! recording the command ends. If the recording fails, as on a full disk, the answers go on; the error is reported at
+//! once, and is that of the command at its end.
 //!
 //! ```text
 //! $ taxel watch /dev/ttyUSB0 --at-least 20 --write grip.npy | jq .na

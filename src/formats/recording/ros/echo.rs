@@ -85,8 +85,8 @@ impl RosMessage {
         &self.values[self.offset.min(self.values.len())..]
     }
 
-    /// Returns the rows and columns of the message: the `named` ones if they have as many cells, otherwise its own. If it
-    /// has none, the `named` ones are returned even if they do not fit. None if both are missing.
+    /// Returns the rows and columns of the message: the `named` ones if they have as many cells, otherwise its own. If
+    /// it has none, the `named` ones are returned even if they do not fit. None if both are missing.
     pub(in crate::formats) fn size_with(&self, named: Option<FrameSize>) -> Option<FrameSize> {
         arranged(self.cells().len(), self.size(), named).or(named)
     }

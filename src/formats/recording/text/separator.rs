@@ -168,8 +168,8 @@ impl Separator {
     }
 }
 
-/// Returns true if the comma at an index of a line may be the decimal sign of a time of day, as Python's `logging` writes
-/// it: it follows the whole seconds, and 3, 6 or 9 digits and another comma, or the end of the line, follow it.
+/// Returns true if the comma at an index of a line may be the decimal sign of a time of day, as Python's `logging`
+/// writes it: it follows the whole seconds, and 3, 6 or 9 digits and another comma, or the end of the line, follow it.
 pub(in crate::formats::recording) fn may_be_decimal_comma(line: &[u8], comma: usize) -> bool {
     let (before, after) = (&line[..comma], &line[comma + 1..]);
     let digits = after

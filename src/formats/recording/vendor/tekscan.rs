@@ -2,8 +2,8 @@
 //!
 //! `COMMENTS` may run over several lines that look like keys or frames. Keys above the comments count where they
 //! first occur, so `ROWS`, `COLS` and others are taken from their first line; `UNITS` is usually below the comments, so
-//! its last line counts, unless there is one above them. Frames begin only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad
-//! lines with commas. `B` means that the sensor has no cell there.
+//! its last line counts, unless there is one above them. Frames begin only after `ASCII_DATA @@`. Spreadsheet programs
+//! add a byte order mark and pad lines with commas. `B` means that the sensor has no cell there.
 //! ```text
 //! DATA_TYPE MOVIE
 //! ROWS 28
@@ -19,9 +19,9 @@
 //! @@
 //! ```
 //! The title of a frame may have more fields: `Frame 2, 0.1,, date time,,,Raw Sum=,,307` gives its time in seconds,
-//! which is counted from the first frame, and the sum of its raw values, which is checked if the values are raw. Other keys are ignored; `NOISE_THRESHOLD`
-//! is one of them, since it says what was cut off while recording, not what counts as touched. Source: exports of
-//! I-Scan and F-Scan.
+//! which is counted from the first frame, and the sum of its raw values, which is checked if the values are raw. Other
+//! keys are ignored; `NOISE_THRESHOLD` is one of them, since it says what was cut off while recording, not what counts
+//! as touched. Source: exports of I-Scan and F-Scan.
 
 use std::io::BufRead;
 

@@ -20,10 +20,10 @@
 //! Versions of the software differ in how they write a key (`FRAME`, `Frame:`), in quotes around fields, and in units
 //! (`Sensel Width (mm)`); a comma within a field may be the decimal sign. The time of a frame is the difference
 //! between dates and clock times, or between times in seconds. Of a date such as `8/9/2022`, day and month are in the
-//! order in which less time has passed since the first frame. Without dates, or with others that cannot be read, a clock
-//! that falls by more than half a day has passed midnight. `Threshold` is the least value that
-//! XSENSOR's own software counts as touched, so it is the threshold of the recording. Averages and areas are ignored:
-//! they follow from the values. Source: an export of XSENSOR's software of 2022.
+//! order in which less time has passed since the first frame. Without dates, or with others that cannot be read, a
+//! clock that falls by more than half a day has passed midnight. `Threshold` is the least value that XSENSOR's own
+//! software counts as touched, so it is the threshold of the recording. Averages and areas are ignored: they follow
+//! from the values. Source: an export of XSENSOR's software of 2022.
 
 use std::io::BufRead;
 
@@ -116,9 +116,9 @@ struct XsensorState {
 /// Reads a recording.
 ///
 /// # Errors
-/// Returns an error if a sensor has fewer or more rows than `Rows` says, or if the file was cut: inside a sensor, inside a
-/// group that states its number of cells, or before all sensors and groups of a frame. A cut between two frames cannot
-/// be told from the end.
+/// Returns an error if a sensor has fewer or more rows than `Rows` says, or if the file was cut: inside a sensor,
+/// inside a group that states its number of cells, or before all sensors and groups of a frame. A cut between two
+/// frames cannot be told from the end.
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
@@ -243,8 +243,8 @@ impl XsensorState {
         Ok(())
     }
 
-    /// Begins the cells below `SENSELS`. Returns true if they are the matrix of a sensor, and false if they are the list of
-    /// a group.
+    /// Begins the cells below `SENSELS`. Returns true if they are the matrix of a sensor, and false if they are the
+    /// list of a group.
     fn begin_cells(&mut self) -> bool {
         if let XsensorBlock::Group(group) = &mut self.block {
             group.found = Some(0);

@@ -22,8 +22,8 @@ pub(super) fn reason(error: &AcquireError) -> String {
     format!("{error}{hint}")
 }
 
-/// Returns the reason why no frame comes, given what is said of the silence. It stays true while the silence lasts: a page on which nothing changes
-/// sends nothing.
+/// Returns the reason why no frame comes, given what is said of the silence. It stays true while the silence lasts: a
+/// page on which nothing changes sends nothing.
 pub(super) fn silence(source: &FrameSource, counts: &StreamCounts, what: &str) -> String {
     let refusal = counts.refusal();
     // A file has no baud, and sends nothing.
