@@ -33,7 +33,7 @@ use crate::formats::recording::RecordedView;
 use crate::formats::recording::RecordingMetadata;
 use crate::formats::system_error::system_reason;
 use crate::frame::{Frame, FrameSize};
-use crate::storage::{Existing, FileError, FileId, FinishedFile, UnfinishedFile, persist_pair};
+use crate::storage::{Existing, FileId, FinishedFile, UnfinishedFile, persist_pair};
 
 /// The largest number of bursts over which the rate is measured: several minutes.
 const MOST_BURSTS: usize = 4096;
@@ -77,6 +77,8 @@ pub struct FrameRecorder {
     rate: FrameRate,
     /// Whether frames carry times, so that they are not only those of arrival.
     carries_times: bool,
+    /// The error if the files have their names, but their folder could not be synced.
+    unsynced: Option<RecorderError>,
 }
 
 /// The state of the names of array and metadata.
@@ -130,6 +132,7 @@ impl FrameRecorder {
             reason: None,
             rate: FrameRate::over(MOST_BURSTS),
             carries_times: false,
+            unsynced: None,
             array: RecordArray::new(file),
         })
     }
@@ -253,7 +256,7 @@ impl FrameRecorder {
             let begun = self.array.begin(found);
             begun.map_err(|error| self.refused(error))?;
         }
-        let synced = self.give_names()?;
+        self.give_names()?;
         if self.array.size() != Some(found) {
             self.left_out += 1;
             return Ok(());
@@ -269,28 +272,28 @@ impl FrameRecorder {
             self.leave_out_marks();
         }
         let added = self.array.add(frame, time);
-        added.map_err(|error| self.refused(error))?;
-        synced.map_err(refused)
+        added.map_err(|error| self.refused(error))
     }
 
-    /// Gives the files their names with the first frame. Returns an error inside if they have them, but their folder
-    /// cannot be synced: then they are recorded in all the same.
+    /// Gives the files their names with the first frame. If they have them, but their folder cannot be synced, frames
+    /// are recorded all the same, and [`Self::finish`] returns the error.
     ///
     /// # Errors
     /// Returns an error if the files did not get their names.
-    fn give_names(&mut self) -> Result<Result<(), FileError>, RecorderError> {
+    fn give_names(&mut self) -> Result<(), RecorderError> {
         if !matches!(self.names, Names::Waiting(..)) {
-            return Ok(Ok(()));
+            return Ok(());
         }
         let Names::Waiting(array, beside) = std::mem::replace(&mut self.names, Names::Refused)
         else {
-            return Ok(Ok(()));
+            return Ok(());
         };
         let (file, synced) = persist_pair(array, beside).map_err(refused)?;
         let id = FileId::of(&file).map_err(|error| self.refused(error))?;
         self.array.move_to(file);
         self.names = Names::Given(id);
-        Ok(synced)
+        self.unsynced = synced.err().map(refused);
+        Ok(())
     }
 
     /// Writes out the frames if they have waited too long; to be called now and then.
@@ -354,7 +357,10 @@ impl FrameRecorder {
         // Frames that could not be written are not tried again.
         self.array.give_up();
         written.and(synced).and(described)?;
-        Ok(self.array.records())
+        match self.unsynced.take() {
+            Some(error) => Err(error),
+            None => Ok(self.array.records()),
+        }
     }
 }
 
