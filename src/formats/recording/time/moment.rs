@@ -181,14 +181,16 @@ fn end_of_fraction(line: &[u8]) -> Option<usize> {
 }
 
 /// The search for decimal commas in timestamps of lines whose cells are separated by commas, too, as Python's `logging`
-/// writes them: `2024-05-01 12:00:00,125,7,3`. They are possible if all compared lines may have one, and the times
-/// with it do not fall.
+/// writes them: `2024-05-01 12:00:00,125,7,3`. They are possible if all compared lines may have one, the times with it
+/// do not fall, and more than one line comes in a second.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::formats) struct DecimalCommas {
     /// The seconds of the last line; None before the first line.
     last: Option<f64>,
     /// Whether a line shows that there are none.
     are_excluded: bool,
+    /// Whether two lines in turn are of one second. If none are, the timestamps may be in whole seconds.
+    share_seconds: bool,
     /// The midnights that were passed.
     midnights: Midnights,
 }
@@ -206,13 +208,14 @@ impl DecimalCommas {
         });
         let seconds = seconds.map(|moment| self.midnights.seconds(moment));
         let before = self.last.unwrap_or(f64::NEG_INFINITY);
+        self.share_seconds |= seconds.is_some_and(|seconds| seconds.floor() == before.floor());
         self.last = seconds.filter(|&seconds| seconds >= before);
         self.are_excluded = self.last.is_none();
     }
 
     /// Returns true if the compared lines may have decimal commas.
     pub(in crate::formats) fn are_possible(&self) -> bool {
-        self.last.is_some()
+        self.last.is_some() && self.share_seconds
     }
 }
 
@@ -352,8 +355,17 @@ mod tests {
             }
             commas.are_possible()
         };
-        assert!(are_possible(&["12:00:00,990,1", "12:00:01,000,1"]));
-        assert!(are_possible(&["7,23:59:59,990", "8,00:00:00,000"]));
+        assert!(are_possible(&[
+            "12:00:00,990,1",
+            "12:00:01,000,1",
+            "12:00:01,010,1"
+        ]));
+        assert!(are_possible(&[
+            "7,23:59:59,980",
+            "8,23:59:59,990",
+            "9,00:00:00,000"
+        ]));
+        assert!(!are_possible(&["12:00:00,125,1", "12:00:01,130,1"]));
         assert!(!are_possible(&["12:00:00,125,1", "12:00:00,124,1"]));
         assert!(!are_possible(&["12:00:00,125,1", "12:00:01,25,1"]));
         assert!(!are_possible(&[]));
