@@ -80,33 +80,38 @@ impl TableClock {
 
     /// Returns the seconds from the first time to this one; None if there is no time, or a text that cannot be read.
     pub(super) fn seconds(&mut self, text: TimeText<'_>) -> Option<f64> {
-        let field = text.time?;
-        let time = self.time(field, text.rest);
-        let is_text = || !matches!(self.separator.value(field), Field::NoCell);
-        if time.is_none() && !self.lacks_time && is_text() {
-            self.lacks_time = true;
-            self.unread = Some(shortened(&lines::text(field)));
+        match self.time(text.time?, text.rest) {
+            Ok(time) => Some(self.clock.since_first(time)),
+            Err(wrong) => {
+                let is_text = !matches!(self.separator.value(wrong), Field::NoCell);
+                if is_text && !std::mem::replace(&mut self.lacks_time, true) {
+                    self.unread = Some(shortened(&lines::text(wrong)));
+                }
+                None
+            }
         }
-        Some(self.clock.since_first(time?))
     }
 
-    /// Reads the time in a field, with the rest of its second; None if either cannot be read.
-    fn time(&mut self, field: &[u8], rest: Option<&[u8]>) -> Option<Time> {
+    /// Reads the time in a field, with the rest of its second.
+    ///
+    /// # Errors
+    /// Returns the field that cannot be read.
+    fn time<'a>(&mut self, field: &'a [u8], rest: Option<&'a [u8]>) -> Result<Time, &'a [u8]> {
         let time = match self.separator.value(field) {
             Field::Value(number) => {
                 let time = self.clock.number(field, number);
                 match (self.rest, rest) {
                     (Some(unit), Some(rest)) => match self.separator.value(rest) {
                         Field::Value(number) => time.plus(Time::read(rest, number, unit)),
-                        _ => return None,
+                        _ => return Err(rest),
                     },
                     _ => time,
                 }
             }
-            Field::Wrong => self.clock.moment(moment::read(field)?),
-            Field::NoCell => return None,
+            Field::Wrong => self.clock.moment(moment::read(field).ok_or(field)?),
+            Field::NoCell => return Err(field),
         };
-        Some(time)
+        Ok(time)
     }
 }
 
