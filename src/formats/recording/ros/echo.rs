@@ -145,7 +145,11 @@ impl RosMessage {
             return RosLine::More;
         }
         let bracket = line.iter().position(|&byte| byte == b'[');
-        if !self.values.is_empty() && (bracket.is_some() || line == b"data:") {
+        let begins_numbers = |start: usize| {
+            let first = line[start + 1..].trim_ascii_start().first();
+            first.is_some_and(|byte| byte.is_ascii_digit() || b"+-.".contains(byte))
+        };
+        if !self.values.is_empty() && (line == b"data:" || bracket.is_some_and(begins_numbers)) {
             return RosLine::Unended;
         }
         if line == b"data:" {
