@@ -139,7 +139,9 @@ impl Parts {
 
     /// Adds a cell, or a byte between two frames.
     fn value(&mut self, byte: u8) -> Part {
-        if self.position != BytePosition::BeforeFrames {
+        // A board may end its frames as lines.
+        let is_line_end = self.position == BytePosition::BetweenFrames && b"\r\n".contains(&byte);
+        if self.position != BytePosition::BeforeFrames && !is_line_end {
             if self.values.len() < self.cells {
                 self.values.push(byte);
             } else {
