@@ -77,7 +77,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
         _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
         _ if moment::is_alone(row) => return None,
-        _ if is_table(row) || is_cell_name(row) => RecordingFormat::Csv,
+        _ if is_table(row) || is_named_column(text) => RecordingFormat::Csv,
         _ if options.size.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,
     })
@@ -152,11 +152,7 @@ fn is_imprint(text: &[u8]) -> bool {
 
 /// Returns true if a text consists of numbers, one per line.
 fn is_column(text: &[u8]) -> bool {
-    let text = without_mark(text);
-    let lines = text.split(|&byte| byte == b'\n');
-    let mut rows = lines
-        .filter(|line| !is_blank(line) && !is_comment(line))
-        .peekable();
+    let mut rows = rows_of(text).peekable();
     rows.peek().is_some() && rows.all(is_number)
 }
 
@@ -165,11 +161,21 @@ fn is_number(line: &[u8]) -> bool {
     Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
 }
 
-/// Returns true if a line is the name of the only cell of a sensor.
-fn is_cell_name(line: &[u8]) -> bool {
+/// Returns true if a text begins with the name of the only cell of a sensor, and a number below it.
+fn is_named_column(text: &[u8]) -> bool {
     let is_word = |&byte: &u8| byte.is_ascii_alphanumeric() || b"_[]".contains(&byte);
-    let name = line.trim_ascii();
-    name.iter().all(is_word) && str::from_utf8(name).is_ok_and(is_first_cell)
+    let is_cell_name =
+        |name: &[u8]| name.iter().all(is_word) && str::from_utf8(name).is_ok_and(is_first_cell);
+    let mut rows = rows_of(text);
+    rows.next()
+        .is_some_and(|row| is_cell_name(row.trim_ascii()))
+        && rows.next().is_some_and(is_number)
+}
+
+/// Iterates over the lines of a text that are neither empty nor comments.
+fn rows_of(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let lines = without_mark(text).split(|&byte| byte == b'\n');
+    lines.filter(|line| !is_blank(line) && !is_comment(line))
 }
 
 /// Returns true if the first line of a text is a timestamp or a single number, which may be one.

@@ -147,6 +147,7 @@ fn is_atlas_or_model(arrays: &[ArchiveArray]) -> bool {
         return false;
     };
     header.name == "header"
+        && header.header.code == "|u1"
         && header.header.shape.len() == 1
         && matches!(&*second.name, "rows" | "height")
 }
