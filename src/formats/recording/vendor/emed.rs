@@ -52,6 +52,8 @@ const MOST_PAGES: usize = 16;
 struct EmedState {
     /// The columns and rows of the whole sensor.
     sensor: Option<[f64; 2]>,
+    /// The number of the first frame whose window reaches beyond the sensor.
+    first_beyond: Option<u64>,
     /// The area of a cell, by which pressures become forces.
     area_cm2: Option<f64>,
     /// The size of a cell along x and along y.
@@ -457,7 +459,10 @@ impl EmedState {
         }
         frame.time = of_label(first.label, &mut self.first_label, self.seconds);
         self.frames += 1;
-        if let Some(note) = self.window_beyond(&frame) {
+        if self.first_beyond.is_none()
+            && let Some(note) = self.window_beyond(&frame)
+        {
+            self.first_beyond = Some(frame.number);
             sink(RecordingEvent::Note(&note))?;
         }
         for note in self.odd_sums(&frame, &pages) {

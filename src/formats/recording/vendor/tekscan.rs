@@ -82,9 +82,9 @@ impl TekscanHeader {
                 self.column_spacing = spacing(value);
             }
             b"SECONDS_PER_FRAME" if self.info.seconds_per_frame.is_none() => {
-                let seconds = number::read(value);
-                self.info.seconds_per_frame =
-                    seconds.and_then(|seconds| TimeUnit::Seconds.step_in_seconds(seconds));
+                if let Field::Value(seconds) = decimal(value) {
+                    self.info.seconds_per_frame = TimeUnit::Seconds.step_in_seconds(seconds);
+                }
             }
             b"UNITS" if self.has_unit != Some(true) => {
                 self.info.unit = Some(text(value)).filter(|unit| !unit.is_empty());
