@@ -98,7 +98,8 @@ fn without_notes(command: Command) -> Command {
 /// Returns [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`]
 /// for values out of range.
 pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
-    let is_short = arguments.iter().any(|argument| argument == "-h");
+    let has = |flag: &str| arguments.iter().any(|argument| argument == flag);
+    let is_short = has("-h") && !has("--help");
     let all = definitions::all();
     let all = if is_short { without_notes(all) } else { all };
     let mut command = groups::grouped(all);
