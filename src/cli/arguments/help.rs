@@ -435,12 +435,13 @@ Examples:
 
 /// `taxel library check`.
 pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape and lists broken ones, shapes with another name inside
-their file, names that differ only in case, and other files in the folder. The
-exit status is 1 if a shape is broken, or if --library names a folder that does
-not exist. --json prints an array on one line, with an object for each finding;
-without findings it is empty:
+their file, names that differ only in case, damaged unsaved work, and other
+files in the folder. The exit status is 1 if a shape is broken or unsaved work
+damaged, or if --library names a folder that does not exist. --json prints an
+array on one line, with an object for each finding:
   {"finding":"broken","name":"ring","reason":"..."}
   {"finding":"name","name":"Ring","reason":"..."}
+  {"finding":"damaged","path":"shapes/.journal/4711-0.json","reason":"..."}
   {"finding":"other file","path":"shapes/notes.txt","reason":"..."}
 
 Examples:

@@ -304,7 +304,7 @@ impl fmt::Display for Finding {
             Self::Broken { name, reason } => write!(f, "broken: {name}: {reason}"),
             Self::Name { name, reason } => write!(f, "name: {name}: {reason}"),
             Self::OtherFile { path, reason } => write!(f, "other file: {path}: {reason}"),
-            Self::Damaged { reason, .. } => write!(f, "damaged: unsaved work: {reason}"),
+            Self::Damaged { path, reason } => write!(f, "damaged: unsaved work: {path}: {reason}"),
         }
     }
 }
@@ -377,9 +377,11 @@ pub(crate) fn check(
         Finding::OtherFile { path, reason }
     }));
     let files = damaged.len();
-    findings.extend(damaged.into_iter().map(|(path, error)| Finding::Damaged {
-        path: path.display().to_string(),
-        reason: shortened_message(&error.to_string()),
+    findings.extend(damaged.into_iter().map(|(path, error)| {
+        let path = path.display().to_string();
+        let (error, place) = (error.to_string(), format!("{path}: "));
+        let reason = shortened_message(error.strip_prefix(&place).unwrap_or(&error));
+        Finding::Damaged { path, reason }
     }));
     let text = if as_json {
         json::ascii(&findings) + "\n"
