@@ -119,6 +119,9 @@ fn standard_input_is_not_offered_to_be_read_twice() {
         &["! standard input cannot be read twice", "  ended"],
     );
     then(&mut session, "<Home>", &["frozen, 1 frame behind"]);
+    let refused = "! standard input cannot be read twice";
+    then(&mut session, ":watch -<Enter>", &[refused, "frozen"]);
+    then(&mut session, "<Esc>:watch -<Enter>", &[refused]);
 }
 
 #[test]

@@ -44,7 +44,7 @@ const OPEN_ALREADY: &str = "this is the watched source; ':watch SOURCE' watches 
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Watch(request) => Some(watch(app, request)),
-        LiveMessage::Source(source) => Some(check_source(app, source)),
+        LiveMessage::Source(source) => check_source(app, source),
         LiveMessage::Open => open(app),
         LiveMessage::AtLeast(rule) => {
             set_threshold(app, *rule);
@@ -77,9 +77,14 @@ pub(in crate::tui) fn set_aside(app: &mut App) {
 }
 
 /// Requests a check of a source; it is watched if it can be read.
-fn check_source(app: &App, source: &NamedSource) -> Effect {
+fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
     let request = source.request(&app.watch_settings);
-    Effect::File(FileRequest::Source(Arc::new(request)))
+    // A second page would have no bytes to read, and the first one and its history would be gone.
+    if request.source == "-" && page(app).is_some_and(|page| page.request().source == "-") {
+        refuse(app, LiveRefusal::ReadOnce.to_string());
+        return None;
+    }
+    Some(Effect::File(FileRequest::Source(Arc::new(request))))
 }
 
 /// Opens a page for a source, in place of the one before. Late reports of the source before have its own number, and
@@ -196,6 +201,7 @@ fn scrub(app: &mut App, page: &mut Live, by: i16) {
     if !page.scrub(by.into()) {
         let text = match by {
             ..0 => "no earlier frame in the history",
+            _ if page.has_ended() => "no later frame",
             _ => "no later frame yet",
         };
         inform(app, text);
@@ -290,7 +296,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             return Some(Effect::Library(LibraryRequest::Models));
         }
         LiveMessage::Again => return watch_again(app, page),
-        LiveMessage::Source(source) => return Some(check_source(app, source)),
+        LiveMessage::Source(source) => return check_source(app, source),
         // These are typed after `:`, and reach the page from there.
         LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::AtLeast(_) => {}
     }
