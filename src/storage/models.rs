@@ -33,7 +33,7 @@ const ENDING: &str = "npz";
 const MAX_CACHED: u64 = 64 << 20;
 
 /// The version of the algorithms that count the keys of a model. Increase it when the same training makes another
-/// model, so that no cached model of before is used.
+/// model, so that models cached before are not used.
 const COUNTING: u32 = 1;
 
 /// Reads a model from a file.

@@ -281,12 +281,12 @@ impl FrameRecorder {
     /// # Errors
     /// Returns an error if the files did not get their names.
     fn give_names(&mut self) -> Result<(), RecorderError> {
-        if !matches!(self.names, Names::Waiting(..)) {
-            return Ok(());
-        }
-        let Names::Waiting(array, beside) = std::mem::replace(&mut self.names, Names::Refused)
-        else {
-            return Ok(());
+        let (array, beside) = match std::mem::replace(&mut self.names, Names::Refused) {
+            Names::Waiting(array, beside) => (array, beside),
+            names => {
+                self.names = names;
+                return Ok(());
+            }
         };
         let (file, synced) = persist_pair(array, beside).map_err(refused)?;
         let id = FileId::of(&file).map_err(|error| self.refused(error))?;
@@ -328,8 +328,8 @@ impl FrameRecorder {
     /// the files that would have been replaced stay as they are.
     ///
     /// # Errors
-    /// Returns the system's error. Even then, the records in the file are complete, and the metadata says why it
-    /// ends there.
+    /// Returns the system's error, also if the folder could not be synced when the files got their names. Even then,
+    /// the records in the file are complete, and the metadata says why it ends there.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
         if !matches!(self.names, Names::Given(_)) {
             return Ok(0);

@@ -252,7 +252,7 @@ impl Watcher<'_> {
         };
         self.reports.say(&format!("{error}; the answers go on"));
         if let Some(recording) = self.recording.take() {
-            // It fails for the same reason, which is kept.
+            // Any error here follows from the first one, which is reported.
             let _ = recording.finish(true, &mut self.reports);
         }
         self.unrecorded = Some(error);

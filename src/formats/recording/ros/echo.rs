@@ -14,8 +14,8 @@
 //! - 12
 //! ---
 //! ```
-//! Notices of `ros2 topic echo` between messages, for example about a lost message, are skipped. A second array in a
-//! message shows that the `---` between two messages is missing. Values before the
+//! Notices of `ros2 topic echo` between messages, for example about a lost message, are skipped. A second list of
+//! numbers in a message shows that the `---` between two messages is missing. Values before the
 //! offset of a layout (`data_offset`) are not cells. Rows and columns are the first two sizes of the layout, if all
 //! others are 1; otherwise they must be given. Source: the output of the program.
 
@@ -55,7 +55,7 @@ pub(in crate::formats) enum RosLine {
     Cut,
     /// The field with this number, from 1, is not a number.
     Wrong(usize),
-    /// Another array begins: the end of the message before it is missing.
+    /// Another list of numbers begins: the end of the message before it is missing.
     Unended,
 }
 

@@ -248,9 +248,9 @@ fn of_numbers(
     }
 }
 
-/// Returns one of two arrangements of the same lines: in the second, a comma is the decimal sign of a timestamp. It is,
-/// if the number behind the comma is nothing but a time in the first arrangement, or if that has a time that stays the
-/// same beside the timestamp.
+/// Returns one of two arrangements of the same lines; in the second, a comma is the decimal sign of a timestamp. The
+/// second is right if the first takes the number behind the comma for nothing but a time, or if the time that the first
+/// finds never changes.
 ///
 /// # Errors
 /// Returns an error if both are possible.

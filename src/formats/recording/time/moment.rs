@@ -189,7 +189,7 @@ pub(in crate::formats) struct DecimalCommas {
     last: Option<f64>,
     /// Whether a line shows that there are none.
     are_excluded: bool,
-    /// Whether two lines in turn are of one second. If none are, the timestamps may be in whole seconds.
+    /// Whether two consecutive lines are in the same second. If none are, the timestamps may be in whole seconds.
     share_seconds: bool,
     /// The midnights that were passed.
     midnights: Midnights,
