@@ -2,6 +2,7 @@
 //! runner.
 
 use std::path::Path;
+use std::thread::ScopedJoinHandle;
 
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
@@ -138,53 +139,65 @@ fn every_script_shows_its_screens_on_a_terminal() {
         .expect("the folder is there")
         .flatten()
         .map(|file| file.path());
-    let mut count = 0;
-    for path in files.filter(|path| path.extension().is_some_and(|end| end == "taxel")) {
-        let script = std::fs::read_to_string(&path).expect("a script can be read");
-        let commands = read(&script).expect("the scripts are right");
-        // A script gets frames by its own commands; on a terminal, the tests in `live` show the same pages with a
-        // pipe.
-        let of_frames = |(_, command): &(_, ScriptCommand)| {
-            matches!(command, ScriptCommand::Source(_) | ScriptCommand::Frames(_))
-        };
-        if commands.iter().any(of_frames) {
-            continue;
-        }
-        let (mut size, mut options) = ((80, 24), Options::plain(false));
-        for (_, command) in &commands {
-            match command {
-                ScriptCommand::Set(ScriptSetting::Size(columns, rows)) => size = (*columns, *rows),
-                ScriptCommand::Set(ScriptSetting::Ascii(on)) => options.theme.ascii = *on,
-                ScriptCommand::Set(ScriptSetting::Mouse(on)) => options.mouse = *on,
-                ScriptCommand::Set(other) => panic!("{}: {other}", path.display()),
-                _ => {}
-            }
-        }
-        let variables = [
-            ("TERM", "xterm-256color"),
-            ("NO_COLOR", "1"),
-            ("LANG", if options.theme.ascii { "C" } else { "C.UTF-8" }),
-        ];
-        let command = [TAXEL, "--no-mouse"];
-        let program = Program::start(&Start {
-            command: &command[..if options.mouse { 1 } else { 2 }],
-            size,
-            variables: &variables,
-            ..Start::default()
-        });
-        let mut pair = Pair {
-            program,
-            session: started(options, size),
-        };
-        pair.program.agrees(&pair.session);
-        for (_, command) in &commands {
-            pair.act(command);
-        }
-        if pair.session.app().ended() {
-            pair.program.ends_well(0);
-        }
-        count += 1;
+    let scripts: Vec<_> = files
+        .filter(|path| path.extension().is_some_and(|end| end == "taxel"))
+        .collect();
+    // Four programs at a time, because each test mostly waits for its program.
+    let shown: usize = std::thread::scope(|scope| {
+        let quarters = scripts.chunks(scripts.len().div_ceil(4));
+        let running: Vec<_> = quarters
+            .map(|paths| scope.spawn(|| paths.iter().filter(|path| is_shown_alike(path)).count()))
+            .collect();
+        let counts = running.into_iter().map(ScopedJoinHandle::join);
+        counts.map(|count| count.expect("all screens agree")).sum()
+    });
+    println!("{shown} scripts show the same screens on a terminal");
+    assert!(shown >= 30);
+}
+
+/// Runs a script on the program, whose screens must equal those of the script runner. Returns false if the script gets
+/// frames by its own commands: on a terminal, the tests in `live` show the same pages with a pipe.
+fn is_shown_alike(path: &Path) -> bool {
+    let script = std::fs::read_to_string(path).expect("a script can be read");
+    let commands = read(&script).expect("the scripts are right");
+    let of_frames = |(_, command): &(_, ScriptCommand)| {
+        matches!(command, ScriptCommand::Source(_) | ScriptCommand::Frames(_))
+    };
+    if commands.iter().any(of_frames) {
+        return false;
     }
-    println!("{count} scripts show the same screens on a terminal");
-    assert!(count >= 30);
+    let (mut size, mut options) = ((80, 24), Options::plain(false));
+    for (_, command) in &commands {
+        match command {
+            ScriptCommand::Set(ScriptSetting::Size(columns, rows)) => size = (*columns, *rows),
+            ScriptCommand::Set(ScriptSetting::Ascii(on)) => options.theme.ascii = *on,
+            ScriptCommand::Set(ScriptSetting::Mouse(on)) => options.mouse = *on,
+            ScriptCommand::Set(other) => panic!("{}: {other}", path.display()),
+            _ => {}
+        }
+    }
+    let variables = [
+        ("TERM", "xterm-256color"),
+        ("NO_COLOR", "1"),
+        ("LANG", if options.theme.ascii { "C" } else { "C.UTF-8" }),
+    ];
+    let command = [TAXEL, "--no-mouse"];
+    let program = Program::start(&Start {
+        command: &command[..if options.mouse { 1 } else { 2 }],
+        size,
+        variables: &variables,
+        ..Start::default()
+    });
+    let mut pair = Pair {
+        program,
+        session: started(options, size),
+    };
+    pair.program.agrees(&pair.session);
+    for (_, command) in &commands {
+        pair.act(command);
+    }
+    if pair.session.app().ended() {
+        pair.program.ends_well(0);
+    }
+    true
 }
