@@ -54,6 +54,26 @@ pub enum RecorderError {
     },
 }
 
+impl RecorderError {
+    /// Returns an error with the same message and kind.
+    pub(super) fn copied(&self) -> Self {
+        match self {
+            Self::Io { path, error } => Self::Io {
+                path: path.clone(),
+                error: match error.raw_os_error() {
+                    Some(number) => io::Error::from_raw_os_error(number),
+                    None => io::Error::new(error.kind(), error.to_string()),
+                },
+            },
+            Self::Exists { path } => Self::Exists { path: path.clone() },
+            Self::Foreign { path } => Self::Foreign { path: path.clone() },
+            Self::Ending { path } => Self::Ending { path: path.clone() },
+            Self::Replaced { path } => Self::Replaced { path: path.clone() },
+            Self::IsSource { path } => Self::IsSource { path: path.clone() },
+        }
+    }
+}
+
 /// The consequence of missing metadata.
 const UNKNOWN: &str = "the recording's threshold and tare are unknown";
 

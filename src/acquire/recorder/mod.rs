@@ -16,11 +16,14 @@ mod record_array;
 
 mod metadata;
 
+mod naming;
+
 use std::io;
 use std::path::{Path, PathBuf};
 
 use error::refused;
 use metadata::{MetadataDraft, is_array, overwrite, prepared, read_beside};
+use naming::{NamedArray, NamingState};
 use record_array::{RecordArray, empty};
 
 pub use error::{MetadataFileError, RecorderError};
@@ -33,7 +36,7 @@ use crate::formats::recording::RecordedView;
 use crate::formats::recording::RecordingMetadata;
 use crate::formats::system_error::system_reason;
 use crate::frame::{Frame, FrameSize};
-use crate::storage::{Existing, FileId, FinishedFile, UnfinishedFile, persist_pair};
+use crate::storage::{Existing, FinishedFile, UnfinishedFile};
 
 /// The largest number of bursts over which the rate is measured: several minutes.
 const MOST_BURSTS: usize = 4096;
@@ -64,7 +67,7 @@ pub struct FrameRecorder {
     /// The handling of existing files when the recording gets its names.
     existing: Existing,
     metadata: RecordingMetadata,
-    names: Names,
+    naming: NamingState,
     array: RecordArray,
     /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have started again,
     /// as when a recording is played in a loop.
@@ -79,17 +82,6 @@ pub struct FrameRecorder {
     carries_times: bool,
     /// The error if the files have their names, but their folder could not be synced.
     unsynced: Option<RecorderError>,
-}
-
-/// The state of the names of array and metadata.
-#[derive(Debug)]
-enum Names {
-    /// The files get their names with the first frame: the array, and the metadata beside it.
-    Waiting(FinishedFile, FinishedFile),
-    /// The files have their names; the identity of the array.
-    Given(FileId),
-    /// The files did not get their names. The files of these names belong to something else, and stay as they are.
-    Refused,
 }
 
 impl FrameRecorder {
@@ -126,7 +118,7 @@ impl FrameRecorder {
             path: path.to_owned(),
             existing,
             metadata,
-            names: Names::Waiting(array, beside),
+            naming: NamingState::Waiting(array, beside),
             numbers: None,
             left_out: 0,
             reason: None,
@@ -149,7 +141,7 @@ impl FrameRecorder {
     /// Writes the metadata beside the file anew.
     ///
     /// # Errors
-    /// Returns the system's error.
+    /// Returns the system's error, or the reason why the files did not get their names.
     pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
         self.metadata.clone_from(metadata);
         self.metadata.ended = Some(false);
@@ -208,18 +200,19 @@ impl FrameRecorder {
         if file.path() != self.path.with_extension("json") {
             return None;
         }
-        match &mut self.names {
-            Names::Waiting(_, beside) => *beside = file.with_existing(self.existing),
-            Names::Given(array) => {
+        match &mut self.naming {
+            NamingState::Waiting(_, beside) => *beside = file.with_existing(self.existing),
+            NamingState::Given(array) => {
                 let (array, path) = (*array, self.path.clone());
                 return Some(PreparedMetadata { file, array, path });
             }
-            Names::Refused => {}
+            NamingState::Refused(_) => {}
         }
         None
     }
 
     fn write_metadata(&mut self) -> Result<(), RecorderError> {
+        self.naming.array()?;
         let file = self.draft().prepare()?;
         let file = self.take_metadata(file);
         file.map_or(Ok(()), PreparedMetadata::give_name)
@@ -244,7 +237,8 @@ impl FrameRecorder {
     /// Records a frame, with its time in seconds. A frame of another size than the first is left out and counted.
     ///
     /// # Errors
-    /// Returns an error if the frame cannot be written.
+    /// Returns an error if the frame cannot be written, or if the files did not get their names with the first frame:
+    /// then no later frame is recorded, either.
     pub fn add(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
         let added = self.take(frame, time);
         self.noted(added)
@@ -279,20 +273,12 @@ impl FrameRecorder {
     /// are recorded all the same, and [`Self::finish`] returns the error.
     ///
     /// # Errors
-    /// Returns an error if the files did not get their names.
+    /// Returns the reason why the files do not get their names, with each frame.
     fn give_names(&mut self) -> Result<(), RecorderError> {
-        let (array, beside) = match std::mem::replace(&mut self.names, Names::Refused) {
-            Names::Waiting(array, beside) => (array, beside),
-            names => {
-                self.names = names;
-                return Ok(());
-            }
-        };
-        let (file, synced) = persist_pair(array, beside).map_err(refused)?;
-        let id = FileId::of(&file).map_err(|error| self.refused(error))?;
-        self.array.move_to(file);
-        self.names = Names::Given(id);
-        self.unsynced = synced.err().map(refused);
+        if let Some(NamedArray { file, unsynced }) = self.naming.give()? {
+            self.array.move_to(file);
+            self.unsynced = unsynced;
+        }
         Ok(())
     }
 
@@ -309,9 +295,9 @@ impl FrameRecorder {
     /// Writes out all waiting frames, and waits until they are synced; for a source that pauses, perhaps for ever.
     ///
     /// # Errors
-    /// Returns the system's error.
+    /// Returns the system's error, or the reason why the files did not get their names.
     pub fn flush(&mut self) -> Result<(), RecorderError> {
-        if !matches!(self.names, Names::Given(_)) {
+        if self.naming.array()?.is_none() {
             return Ok(());
         }
         let written = self.array.write_out().and_then(|()| self.array.sync());
@@ -328,10 +314,11 @@ impl FrameRecorder {
     /// the files that would have been replaced stay as they are.
     ///
     /// # Errors
-    /// Returns the system's error, also if the folder could not be synced when the files got their names. Even then,
-    /// the records in the file are complete, and the metadata says why it ends there.
+    /// Returns the reason why the files did not get their names; there is no recording then. Otherwise returns the
+    /// system's error, also if the folder could not be synced when the files got their names. Even then, the records in
+    /// the file are complete, and the metadata says why it ends there.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
-        if !matches!(self.names, Names::Given(_)) {
+        if self.naming.array()?.is_none() {
             return Ok(0);
         }
         let written = self.array.write_out();
@@ -366,7 +353,7 @@ impl FrameRecorder {
 
 impl Drop for FrameRecorder {
     fn drop(&mut self) {
-        if matches!(self.names, Names::Given(_)) && !self.array.is_written_out() {
+        if matches!(self.naming, NamingState::Given(_)) && !self.array.is_written_out() {
             let _ = self.array.write_out();
         }
     }
@@ -574,6 +561,37 @@ mod tests {
         let added = recorder.add(&Frame::default(), None);
         assert!(matches!(added, Err(RecorderError::Exists { .. })));
         assert_eq!(std::fs::read_to_string(&beside).expect("read"), "mine");
+    }
+
+    #[test]
+    fn a_recorder_whose_files_did_not_get_their_names_says_so_again_and_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let below = folder.path().join("below");
+        std::fs::create_dir(&below).expect("made");
+        let names = [folder.path().join("a.npy"), below.join("b.npy")];
+        for (path, is_removed) in names.into_iter().zip([false, true]) {
+            let mut recorder = begun(&path);
+            let spoilt = if is_removed {
+                std::fs::remove_dir_all(&below)
+            } else {
+                std::fs::write(&path, "mine")
+            };
+            spoilt.expect("spoilt");
+            let add = |recorder: &mut FrameRecorder| recorder.add(&Frame::default(), None);
+            let first = add(&mut recorder).expect_err("refused").to_string();
+            let described = recorder.describe(&RecordingMetadata::default());
+            let later = [add(&mut recorder), described, recorder.flush()];
+            let finished = recorder.finish().map(drop);
+            for result in later.into_iter().chain([finished]) {
+                let message = result.expect_err("refused").to_string();
+                assert_eq!(message, first, "{}", path.display());
+            }
+        }
+        // Without a frame, there is no reason.
+        assert_eq!(
+            begun(&folder.path().join("c.npy")).finish().expect("none"),
+            0
+        );
     }
 
     #[test]
