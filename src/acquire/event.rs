@@ -201,7 +201,7 @@ pub enum AcquireError {
     /// The recording is damaged.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// Standard input or a FIFO holds a recording, which only a file can be.
+    /// The source of a stream begins like a recording that only a file can be.
     #[error("a recording ({}), not a stream", format.name())]
     NotStream {
         /// The format of the recording.

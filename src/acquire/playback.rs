@@ -56,7 +56,7 @@ pub(super) fn run(
         damage: RefCell::default(),
     };
     let format = format?;
-    if options.playback != Playback::Live || !format.is_appended_to() {
+    if options.playback != Playback::Live || !format.can_be_streamed() {
         player.play(file, format)
     } else {
         player.follow(path, file, format)
@@ -214,7 +214,7 @@ impl Player<'_, '_> {
             // The beginning of the new content may not be written yet.
             format = loop {
                 match File::open(path).and_then(|file| format_after(file, format)) {
-                    Ok(Some(found)) if found.is_appended_to() => break found,
+                    Ok(Some(found)) if found.can_be_streamed() => break found,
                     Ok(Some(other)) => return Err(replaced_by(other).into()),
                     Ok(None) | Err(_) if self.wait_for_more(path, &growth).is_break() => {
                         return Ok(());

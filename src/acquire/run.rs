@@ -50,7 +50,7 @@ use crate::acquire::{playback, stream};
 ///
 /// # Errors
 /// Returns an error if the source cannot be opened at first, cannot be read on and does not come back, is a damaged
-/// recording, or is standard input or a FIFO with a recording that is not a stream, such as NPY.
+/// recording, or is standard input or a FIFO with a recording that cannot be a stream, such as NPY.
 pub fn acquire(
     source: &FrameSource,
     options: &AcquireOptions,

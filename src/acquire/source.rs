@@ -183,6 +183,11 @@ impl FrameSource {
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
     }
+
+    /// Returns true if its first byte is the first one that was sent or written; false if it is joined anywhere.
+    pub(super) fn begins(&self) -> bool {
+        !self.comes_back()
+    }
 }
 
 /// Returns true if no file has that name.

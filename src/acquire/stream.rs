@@ -12,8 +12,8 @@ use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback
 use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
 use crate::acquire::ticker::{TICK, Ticker};
-use crate::formats::recording::{RecordingFormat, recognised};
-use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSink};
+use crate::formats::recording::{LOOKED_AT, recognised};
+use crate::formats::stream::{StreamCounts, StreamDecoder, StreamEvent, StreamOptions, StreamSink};
 
 /// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -23,7 +23,7 @@ const RETRY: Duration = Duration::from_secs(1);
 
 /// The times that are measured while a stream is read.
 struct StreamClock {
-    /// Whether frames arrive while they are read; false for a source that is read as fast as possible.
+    /// Whether the source is read as it comes; false if it is read as fast as possible.
     is_live: bool,
     /// Whether a frame without a time of its own gets the time of its arrival.
     timed: bool,
@@ -76,6 +76,7 @@ pub(super) fn run(
         options,
         stop,
         decoder: decoder_for(source, options),
+        start: StreamStart::new(source, options),
         clock: StreamClock::new(source, options),
         consumer,
     };
@@ -87,8 +88,37 @@ fn decoder_for(source: &FrameSource, options: &AcquireOptions) -> StreamDecoder 
     StreamDecoder::new(StreamOptions {
         format: options.format.or(options.stream_format),
         size: options.size.or(options.stream_size),
-        from_start: !source.comes_back(),
+        from_start: source.begins(),
     })
+}
+
+/// The first bytes of a source, as long as they may begin a recording that only a file can be.
+struct StreamStart(Option<Vec<u8>>);
+
+impl StreamStart {
+    /// Prepares for the first byte of a source. Where the bytes may begin anywhere, they do not show a recording, and a
+    /// format that the user names is not doubted.
+    fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
+        Self((source.begins() && options.format.is_none()).then(Vec::new))
+    }
+
+    /// Checks that the source does not begin like such a recording, given its next bytes and the counts of those before.
+    /// They may come in pieces of any size. With its first frame, the source is a stream.
+    ///
+    /// # Errors
+    /// Returns [`AcquireError::NotStream`].
+    fn check(&mut self, bytes: &[u8], counts: &StreamCounts) -> Result<(), AcquireError> {
+        self.0
+            .take_if(|start| counts.frames > 0 || start.len() >= LOOKED_AT);
+        let Some(start) = self.0.as_mut().filter(|_| !bytes.is_empty()) else {
+            return Ok(());
+        };
+        start.extend_from_slice(bytes);
+        match recognised(start).filter(|format| !format.can_be_streamed()) {
+            Some(format) => Err(AcquireError::NotStream { format }),
+            None => Ok(()),
+        }
+    }
 }
 
 /// A reader of a source of bytes.
@@ -97,6 +127,7 @@ struct StreamReader<'a, 'b> {
     options: &'a AcquireOptions,
     stop: &'a AtomicBool,
     decoder: StreamDecoder,
+    start: StreamStart,
     clock: StreamClock,
     consumer: &'a mut Consumer<'b>,
 }
@@ -114,7 +145,7 @@ impl StreamReader<'_, '_> {
         while !self.stop.load(Ordering::Relaxed) {
             let lost = match input.read(&mut bytes) {
                 Ok(ReadOutcome::Bytes(count)) => {
-                    self.check_start(&bytes[..count])?;
+                    self.start.check(&bytes[..count], self.decoder.counts())?;
                     match self.decode(&bytes[..count]) {
                         ControlFlow::Continue(()) => continue,
                         ControlFlow::Break(()) => return Ok(()),
@@ -127,6 +158,7 @@ impl StreamReader<'_, '_> {
                         return Ok(());
                     }
                     self.decoder.begin_anew();
+                    self.start = StreamStart::new(self.source, self.options);
                     self.clock.times.rejoin();
                     continue;
                 }
@@ -158,32 +190,6 @@ impl StreamReader<'_, '_> {
             let _ = (self.consumer)(AcquireEvent::Ended(self.decoder.counts()));
         }
         Ok(())
-    }
-
-    /// Checks that the first bytes of standard input or a FIFO do not begin a recording that only a file can be.
-    /// Tables, JSON lines, echoes and the bytes of boards can be streams, too; on other sources, the bytes may begin
-    /// anywhere. A format that the user names is not doubted.
-    ///
-    /// # Errors
-    /// Returns [`AcquireError::NotStream`].
-    fn check_start(&self, bytes: &[u8]) -> Result<(), AcquireError> {
-        let begins = matches!(self.source, FrameSource::Standard | FrameSource::Fifo(_));
-        if !begins || self.decoder.counts().bytes > 0 || self.options.format.is_some() {
-            return Ok(());
-        }
-        match recognised(bytes) {
-            Some(
-                format @ (RecordingFormat::Tekscan
-                | RecordingFormat::Xsensor
-                | RecordingFormat::Emed
-                | RecordingFormat::Zebris
-                | RecordingFormat::Npy
-                | RecordingFormat::Npz
-                | RecordingFormat::Popu
-                | RecordingFormat::Mcap),
-            ) => Err(AcquireError::NotStream { format }),
-            _ => Ok(()),
-        }
     }
 
     /// Opens the source. Returns None if no more is wanted meanwhile.
@@ -281,6 +287,7 @@ impl StreamReader<'_, '_> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
     use std::io::Write;
     use std::net::TcpListener;
 
@@ -360,6 +367,69 @@ mod tests {
         sender.join().expect("all was sent");
         assert!(result.is_ok());
         times
+    }
+
+    /// Reads a FIFO into which these pieces are written, each once the one before was read. Returns the result.
+    fn read_in_pieces(pieces: &[&[u8]]) -> Result<(), AcquireError> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&path).status();
+        assert!(made.expect("mkfifo starts").success());
+        let source = FrameSource::new(path.as_os_str());
+        let (mut writer, mut written, mut left) = (None, 0, pieces.iter());
+        let options = AcquireOptions::default();
+        run(&source, &options, &AtomicBool::new(false), &mut |event| {
+            if let AcquireEvent::Tick(counts) = event
+                && counts.bytes == written
+            {
+                let Some(piece) = left.next() else {
+                    writer = None;
+                    return ControlFlow::Continue(());
+                };
+                // The pipe is open for reading.
+                let open = || File::options().write(true).open(&path).expect("opened");
+                let writer = writer.get_or_insert_with(open);
+                writer.write_all(piece).expect("written");
+                written += piece.len() as u64;
+            }
+            ControlFlow::Continue(())
+        })
+    }
+
+    #[test]
+    fn a_recording_that_arrives_in_pieces_is_not_taken_for_a_stream() {
+        for (recording, format) in [
+            (&b"\x93NUMPY\x01\x00v\x00{'descr': '|u1', "[..], "npy"),
+            (b"DATA_TYPE MOVIE\nROWS 2\nCOLS 2\n", "tekscan"),
+            (b"FRAME,1\n,\nSENSOR,left\n,\nSENSELS,\n", "xsensor"),
+        ] {
+            let (start, rest) = recording.split_at(4);
+            let refused = read_in_pieces(&[start, rest]).expect_err("a recording");
+            let expected = format!("a recording ({format}), not a stream");
+            assert_eq!(refused.to_string(), expected);
+        }
+        // After its first frame, a stream may contain anything.
+        let stream = [&b"1 2\n\n3 4\n\n"[..], b"DATA_TYPE MOVIE\n"];
+        assert!(read_in_pieces(&stream).is_ok());
+    }
+
+    #[test]
+    fn a_file_that_becomes_a_recording_is_not_taken_for_a_stream() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("touch.npy");
+        std::fs::write(&path, b"\x93NUM").expect("written");
+        let source = FrameSource::File(path.clone());
+        let options = AcquireOptions::default();
+        let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
+            if let AcquireEvent::Tick(counts) = event
+                && counts.bytes == 4
+            {
+                let mut file = File::options().append(true).open(&path).expect("opened");
+                file.write_all(b"PY\x01\x00v\x00{").expect("written");
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(matches!(result, Err(AcquireError::NotStream { .. })));
     }
 
     #[test]

@@ -28,7 +28,7 @@ use crate::formats::recording::vendor::{emed, flexitac, tekscan, xsensor, zebris
 use crate::formats::stream::FLEXITAC_MARKER;
 
 /// The number of bytes at the start of a file that decide its format.
-const LOOKED_AT: usize = 1 << 16;
+pub(crate) const LOOKED_AT: usize = 1 << 16;
 
 /// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -254,7 +254,7 @@ pub(crate) fn format_after(
     // The text after the last of them has no end yet.
     let lines = start.split(|&byte| byte == b'\n').skip(1).count();
     Ok(match recognised(&start) {
-        Some(own) if own == before || !own.is_text_of_frames() => Some(own),
+        Some(own) if own == before || !own.is_text_stream() => Some(own),
         _ if may_hold_frame(&start, before) => Some(before),
         Some(own) => (lines > 1).then_some(own),
         None => (lines > 0 || start.len() == LOOKED_AT).then_some(before),

@@ -90,20 +90,27 @@ impl RecordingFormat {
         self != Self::Mcap || cfg!(feature = "mcap")
     }
 
-    /// Returns true if frames are appended to such a file as they are measured, as in a live stream, and can be read as
-    /// they arrive.
+    /// Returns true if frames in this format can be a stream, too: they are written one after the other as they are
+    /// measured, and can be read as they arrive. A file that they are appended to can be followed.
     #[cfg(feature = "acquire")]
-    pub(crate) fn is_appended_to(self) -> bool {
-        matches!(
-            self,
-            Self::Csv | Self::JsonLines | Self::Ros2 | Self::Flexitac
-        )
+    pub(crate) fn can_be_streamed(self) -> bool {
+        match self {
+            Self::Csv | Self::JsonLines | Self::Ros2 | Self::Flexitac => true,
+            Self::Tekscan
+            | Self::Xsensor
+            | Self::Emed
+            | Self::Zebris
+            | Self::Npy
+            | Self::Npz
+            | Self::Popu
+            | Self::Mcap => false,
+        }
     }
 
-    /// Returns true if frames are appended to such a file as lines of text.
+    /// Returns true if a stream in this format consists of lines of text.
     #[cfg(feature = "acquire")]
-    pub(crate) fn is_text_of_frames(self) -> bool {
-        self.is_appended_to() && self != Self::Flexitac
+    pub(crate) fn is_text_stream(self) -> bool {
+        self.can_be_streamed() && self != Self::Flexitac
     }
 }
 

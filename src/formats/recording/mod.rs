@@ -87,7 +87,7 @@ pub(crate) use channel_choice::no_channel;
 #[cfg(feature = "tui")]
 pub(crate) use detect::may_be_recording;
 #[cfg(all(feature = "acquire", unix))]
-pub(crate) use detect::{RecordingInput, format_after, format_of, read_as};
+pub(crate) use detect::{LOOKED_AT, RecordingInput, format_after, format_of, read_as};
 pub use detect::{read, recognised};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingNote};
