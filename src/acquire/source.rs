@@ -173,10 +173,14 @@ impl FrameSource {
         matches!(self, Self::File(path) if has_no_file(path))
     }
 
-    /// Returns true if all its frames arrive while they are read, and not as fast as possible: those in a file came
-    /// before.
+    /// Returns true if all its frames arrive while they are read. Those in a file came before, and standard input or a
+    /// FIFO that is read as fast as possible may hold a file.
     pub(crate) fn arrives(&self, playback: Playback) -> bool {
-        playback != Playback::Once && !matches!(self, Self::File(_))
+        match self {
+            Self::Tcp(_) | Self::Serial(_) => true,
+            Self::Standard | Self::Fifo(_) => playback != Playback::Once,
+            Self::File(_) => false,
+        }
     }
 
     /// Returns true if the source may come back after it was lost, so that taxel tries again.

@@ -432,6 +432,36 @@ mod tests {
         assert!(matches!(result, Err(AcquireError::NotStream { .. })));
     }
 
+    /// A connection and a serial line are live even if they are read only once; a pipe may hold a file.
+    #[test]
+    fn frames_of_a_live_source_have_times_of_arrival() {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = listener.local_addr().expect("its address").to_string();
+        let sender = std::thread::spawn(move || {
+            let (mut connection, _) = listener.accept().expect("a connection");
+            connection.write_all(b"?\n1 2\n3 4\n").expect("sent");
+        });
+        let options = AcquireOptions {
+            size: Some(FrameSize::of(2, 1)),
+            playback: Playback::Once,
+            ..AcquireOptions::default()
+        };
+        let (mut times, source) = (Vec::new(), FrameSource::Tcp(address));
+        let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
+            if let AcquireEvent::Frame { time, .. } = event {
+                times.push(time);
+            }
+            ControlFlow::Continue(())
+        });
+        sender.join().expect("all was sent");
+        assert!(result.is_ok());
+        assert_eq!((times.len(), times[0]), (2, Some(0.0)));
+        assert!(times[1].is_some());
+        let fifo = FrameSource::Fifo("pipe".into());
+        let live = [Playback::Live, Playback::Once].map(|playback| fifo.arrives(playback));
+        assert_eq!(live, [true, false]);
+    }
+
     #[test]
     fn the_times_of_a_source_go_on_over_a_gap() {
         let json = |time: f64| format!("{{\"time\":{time},\"frame\":[[1,2]]}}\n");
