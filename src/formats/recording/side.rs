@@ -37,11 +37,16 @@ pub(super) fn arranged(
 
 /// Returns the message for a frame with other rows and columns than those before it.
 pub(super) fn changed(size: FrameSize, before: FrameSize) -> String {
+    format!("{} as before", other_than(size, before))
+}
+
+/// Returns the message for a frame with other rows and columns than expected.
+pub(super) fn other_than(size: FrameSize, expected: FrameSize) -> String {
     format!(
-        "found {}, expected {} of {} as before",
+        "found {}, expected {} of {}",
         size.in_words(),
-        before.rows(),
-        before.columns()
+        expected.rows(),
+        expected.columns()
     )
 }
 

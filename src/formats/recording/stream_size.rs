@@ -4,6 +4,7 @@
 //! else, such as a version number, or the sensor may have been reconfigured: if no size was given, a size that
 //! arrives three times in succession becomes the size.
 
+use crate::formats::recording::side::{changed, other_than};
 use crate::frame::FrameSize;
 
 /// The number of successive frames after which another size becomes the size, if none was given.
@@ -46,12 +47,19 @@ impl StreamSize {
         self.present.filter(|_| self.is_named)
     }
 
-    /// Notes a whole frame of these rows and columns, and returns true if they are those of the stream.
-    pub(in crate::formats) fn admits(&mut self, own: FrameSize) -> bool {
+    /// Notes a whole frame of these rows and columns.
+    ///
+    /// # Errors
+    /// Returns why the frame is none of the stream, such as `found 3 rows of 2, expected 2 of 2`.
+    pub(in crate::formats) fn admit(&mut self, own: FrameSize) -> Result<(), String> {
         let size = *self.present.get_or_insert(own);
-        if own == size || self.is_named {
+        if own == size {
             self.other = None;
-            return own == size;
+            return Ok(());
+        }
+        if self.is_named {
+            self.other = None;
+            return Err(other_than(own, size));
         }
         let times = match self.other {
             Some((other, times)) if other == own => times + 1,
@@ -59,10 +67,10 @@ impl StreamSize {
         };
         if times < AGAIN {
             self.other = Some((own, times));
-            return false;
+            return Err(changed(own, size));
         }
         (self.present, self.other) = (Some(own), None);
-        true
+        Ok(())
     }
 
     /// Notes a frame that is not whole, which interrupts a succession of frames of another size.

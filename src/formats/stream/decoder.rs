@@ -349,6 +349,46 @@ mod tests {
     }
 
     #[test]
+    fn a_ros_message_that_is_dropped_has_a_reason() {
+        let list = |values: &str| format!("data: [{values}]\n");
+        let echo = |values: &str| list(values) + "---\n";
+        let whole = echo("1, 2");
+        for (text, reason) in [
+            (
+                list("1, 2") + &whole,
+                "found another array, expected '---' before it",
+            ),
+            (
+                whole.clone() + &echo("1, 2, 3"),
+                "found 3 values, expected 2",
+            ),
+            (
+                echo("1, x"),
+                "column 2: found something other than a number",
+            ),
+            (
+                "data:\n- 1\n".to_owned(),
+                "ends inside a message, expected '---'",
+            ),
+            (
+                whole + &echo("1, ..."),
+                "the echo leaves out values ('...'): run ros2 topic echo with --full-length",
+            ),
+        ] {
+            let options = StreamOptions::default()
+                .with_format(StreamFormat::Ros2)
+                .with_size(FrameSize::of(2, 1))
+                .from_start();
+            let mut decoder = StreamDecoder::new(options);
+            decoder.push(text.as_bytes(), &mut |_| {});
+            decoder.finish(&mut |_| {});
+            let counts = decoder.counts();
+            let found = (counts.dropped, counts.reason.as_deref());
+            assert_eq!(found, (1, Some(reason)), "{text}");
+        }
+    }
+
+    #[test]
     fn a_byte_order_mark_costs_no_frame() {
         for (text, frames) in [
             ("{\"frame\":[[1,2],[3,4]]}\n{\"frame\":[[5,6],[7,8]]}\n", 2),

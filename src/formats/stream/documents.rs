@@ -3,11 +3,12 @@
 //! Unlike a recording, a stream continues after a line or a message that is wrong, or of another size than earlier
 //! ones: it is dropped and counted.
 
+use crate::formats::recording::RecordingError;
 use crate::formats::recording::json::lines::{FrameLineError, JsonFrames};
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
+use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamRefusal, StreamSink};
 use crate::frame::{Frame, FrameSize};
 
 /// A decoder of JSON lines. Its channels and times continue after a gap.
@@ -81,8 +82,8 @@ pub(super) struct RosDecoder {
     message: RosMessage,
     /// Whether the start of the message was seen; a stream may be joined in the middle of one.
     begun: bool,
-    /// Whether anything in the message is wrong.
-    broken: bool,
+    /// The first mistake in the message.
+    mistake: Option<String>,
     /// Whether values are left out of the message.
     cut: bool,
     /// The frame made of the message.
@@ -97,7 +98,7 @@ impl RosDecoder {
             size: StreamSize::new(None),
             message: RosMessage::default(),
             begun: from_start,
-            broken: false,
+            mistake: None,
             cut: false,
             frame: Frame::default(),
         }
@@ -116,7 +117,8 @@ impl RosDecoder {
             || echo::is_csv(trimmed)
             || echo::is_csv_without_dimensions(trimmed) && !self.message.is_open();
         self.begun |= begins;
-        match self.message.line(line) {
+        let state = self.message.line(line);
+        match state {
             RosLine::More => {}
             RosLine::Cut => {
                 self.cut = true;
@@ -125,51 +127,67 @@ impl RosDecoder {
                     self.end(line, counts, sink);
                 }
             }
-            RosLine::Wrong(_) | RosLine::Unended => self.broken = true,
+            RosLine::Wrong(column) => self.note(state.mistake(), Some(column)),
+            RosLine::Unended => self.note(state.mistake(), None),
             RosLine::Whole => self.end(line, counts, sink),
         }
         self.begun |= trimmed == b"---";
     }
 
+    /// Keeps the first mistake in the message, and the field in its line, if a single one is wrong.
+    fn note(&mut self, mistake: Option<&str>, column: Option<usize>) {
+        let text = mistake.map(|text| match column {
+            Some(column) => format!("column {column}: {text}"),
+            None => text.to_owned(),
+        });
+        self.mistake = self.mistake.take().or(text);
+    }
+
     /// Ends a message: reports it as a frame, or drops it.
     fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
-        let values = self.message.cells().len();
-        let size = self.message.size_with(self.named);
         let begun = std::mem::replace(&mut self.begun, true);
         if std::mem::take(&mut self.cut) {
-            counts.cut |= begun && !self.broken;
-            self.broken = true;
+            counts.cut |= begun && self.mistake.is_none();
+            self.note(Some(&StreamRefusal::Cut.to_string()), None);
         }
-        match size.filter(|size| size.cells() == values) {
-            _ if !begun => {}
-            Some(size) if !self.broken && !self.size.admits(size) => {
-                counts.drop_frames(1, line);
-            }
-            Some(size) if !self.broken => {
-                self.frame.reset(size);
-                self.frame
-                    .values_mut()
-                    .copy_from_slice(self.message.cells());
-                self.frame.number = counts.frames;
-                counts.frames += 1;
-                sink(StreamEvent::Frame(&self.frame));
-            }
-            _ => {
-                self.size.pass_torn();
-                if size.is_none() && !self.broken {
-                    counts.unshaped = Some(values as u64);
+        let mistake = self.mistake.take();
+        if begun {
+            let size = match mistake {
+                None => echo::size(&self.message, &mut self.size, self.named, 1),
+                Some(mistake) => {
+                    self.size.pass_torn();
+                    Err(RecordingError::damaged(mistake))
                 }
-                counts.drop_frames(1, line);
+            };
+            match size {
+                Ok(size) => {
+                    self.frame.reset(size);
+                    self.frame
+                        .values_mut()
+                        .copy_from_slice(self.message.cells());
+                    self.frame.number = counts.frames;
+                    counts.frames += 1;
+                    sink(StreamEvent::Frame(&self.frame));
+                }
+                Err(error) => {
+                    counts.drop_frames(1, line);
+                    match error {
+                        RecordingError::Shape { values } => counts.unshaped = Some(values),
+                        // A stream has no line numbers.
+                        RecordingError::Damaged { message, .. } => counts.reason = Some(message),
+                        error => counts.reason = Some(error.to_string()),
+                    }
+                }
             }
         }
-        self.broken = false;
         self.message.clear();
     }
 
     /// Ends the input: a message whose array is closed is whole.
     pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.message.begun() {
-            self.broken |= self.message.is_open() && !self.cut;
+            let is_torn = self.message.is_open() && !self.cut;
+            self.note(is_torn.then_some(echo::UNENDED), None);
             self.end(b"", counts, sink);
         }
     }

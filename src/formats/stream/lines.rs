@@ -375,13 +375,17 @@ impl LinesDecoder {
 
     /// Takes a block of rows that is whole.
     fn block(&mut self, own: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
-        if self.size.admits(own) {
-            if self.current.rows > 1 {
-                self.kind = LineKind::Row;
+        match self.size.admit(own) {
+            Ok(()) => {
+                if self.current.rows > 1 {
+                    self.kind = LineKind::Row;
+                }
+                self.give(counts, sink);
             }
-            self.give(counts, sink);
-        } else {
-            counts.drop_frames(1, self.current.sample.trim_ascii_end());
+            Err(reason) => {
+                self.lose(1, &self.current.sample, counts);
+                counts.reason = Some(reason);
+            }
         }
     }
 
@@ -642,6 +646,15 @@ mod tests {
         let expected = "5 numbers, expected 4";
         assert_eq!(
             reason(timed, Some(FrameSize::of(4, 1))).as_deref(),
+            Some(expected)
+        );
+        let block = "1 2\n3 4\n5 6\n\n";
+        let expected = "found 3 rows of 2, expected 2 of 2 as before";
+        let changed = reason(&format!("1 2\n3 4\n\n{block}"), None);
+        assert_eq!(changed.as_deref(), Some(expected));
+        let expected = "found 3 rows of 2, expected 2 of 2";
+        assert_eq!(
+            reason(block, Some(FrameSize::of(2, 2))).as_deref(),
             Some(expected)
         );
         let expected = "row 2 has 1 number, expected 2";

@@ -29,7 +29,7 @@ use crate::formats::recording::event::{
 };
 use crate::formats::recording::json::cells::CellsSeed;
 use crate::formats::recording::json::clock::{JsonClock, TimeCandidates};
-use crate::formats::recording::side::{changed, frame_size};
+use crate::formats::recording::side::{frame_size};
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::lines::TextLines;
 use crate::formats::recording::time::exact::Time;
@@ -107,11 +107,8 @@ impl JsonFrames {
         if channel == self.sizes.len() {
             self.sizes.push(StreamSize::new(line.named));
         }
-        let size = &mut self.sizes[channel];
-        let before = size.present().unwrap_or(line.size);
-        if !size.admits(line.size) {
-            return Err(FrameLineError::of_line(changed(line.size, before)));
-        }
+        let admitted = self.sizes[channel].admit(line.size);
+        admitted.map_err(FrameLineError::of_line)?;
         let frame = &mut self.frame;
         frame.reset(line.size);
         frame.values_mut().copy_from_slice(&line.values);

@@ -23,7 +23,7 @@ use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, Sink};
-use crate::formats::recording::side::{arranged, changed, matrix_size};
+use crate::formats::recording::side::{arranged, matrix_size};
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::lines::TextLines;
 use crate::formats::recording::text::row::{self, Field};
@@ -59,6 +59,20 @@ pub(in crate::formats) enum RosLine {
     Unended,
 }
 
+impl RosLine {
+    /// Returns what is wrong with a message because of this line, apart from values that are left out.
+    pub(in crate::formats) fn mistake(&self) -> Option<&'static str> {
+        match self {
+            Self::Wrong(_) => Some("found something other than a number"),
+            Self::Unended => Some("found another array, expected '---' before it"),
+            Self::More | Self::Whole | Self::Cut => None,
+        }
+    }
+}
+
+/// The mistake in a message whose array is still open at the end of the input.
+pub(in crate::formats) const UNENDED: &str = "ends inside a message, expected '---'";
+
 /// The most values of a message that are kept, one more than any frame has.
 const MOST_VALUES: usize = MAX_FRAME_CELLS + 1;
 
@@ -87,7 +101,7 @@ impl RosMessage {
 
     /// Returns the rows and columns of the message: the `named` ones if they have as many cells, otherwise its own. If
     /// it has none, the `named` ones are returned even if they do not fit. None if both are missing.
-    pub(in crate::formats) fn size_with(&self, named: Option<FrameSize>) -> Option<FrameSize> {
+    fn size_with(&self, named: Option<FrameSize>) -> Option<FrameSize> {
         arranged(self.cells().len(), self.size(), named).or(named)
     }
 
@@ -324,24 +338,24 @@ fn is_number(field: &[u8]) -> bool {
 /// # Errors
 /// Returns an error if rows and columns are neither in the message nor given, if it has another number of values, or
 /// if it has other rows and columns than those before it.
-fn size(
+pub(in crate::formats) fn size(
     message: &RosMessage,
     expected: &mut StreamSize,
     named: Option<FrameSize>,
     line: u64,
 ) -> Result<FrameSize, RecordingError> {
     let values = message.cells().len();
-    let size = message.size_with(named).ok_or(RecordingError::Shape {
-        values: values as u64,
-    })?;
+    let Some(size) = message.size_with(named) else {
+        expected.pass_torn();
+        let values = values as u64;
+        return Err(RecordingError::Shape { values });
+    };
     if values != size.cells() {
         expected.pass_torn();
         return Err(row::count(line, values, size.cells()));
     }
-    let before = expected.present().unwrap_or(size);
-    if !expected.admits(size) {
-        return Err(RecordingError::in_line(line, changed(size, before)));
-    }
+    let admitted = expected.admit(size);
+    admitted.map_err(|message| RecordingError::in_line(line, message))?;
     Ok(size)
 }
 
@@ -368,21 +382,19 @@ pub(in crate::formats::recording) fn read(
             RosLine::More => continue,
             RosLine::Whole if ended && !message.begun() => return Ok(()),
             RosLine::Whole if message.is_open() && ended => {
-                let text = "ends inside a message, expected '---'";
-                Some(RecordingError::in_line(number + 1, text))
+                Some(RecordingError::in_line(number + 1, UNENDED))
             }
-            RosLine::Whole => None,
             RosLine::Cut => {
                 let text = "the echo leaves out values ('...'): record it with --full-length";
                 Some(RecordingError::in_line(number, text))
             }
-            RosLine::Unended => {
-                let text = "found another array, expected '---' before it";
-                Some(RecordingError::in_line(number, text))
-            }
             RosLine::Wrong(column) => {
-                let text = "found something other than a number";
-                Some(RecordingError::in_field(number, column, text))
+                let mistake = state.mistake();
+                mistake.map(|text| RecordingError::in_field(number, column, text))
+            }
+            RosLine::Whole | RosLine::Unended => {
+                let mistake = state.mistake();
+                mistake.map(|text| RecordingError::in_line(number, text))
             }
         };
         wrong = wrong.or(error);
