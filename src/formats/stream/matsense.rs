@@ -38,6 +38,9 @@ enum Framing {
 /// The position of a byte in the stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum BytePosition {
+    /// At the beginning of a stream, which may be that of a frame; what is there up to the first end of a frame is
+    /// dropped if it is no frame.
+    AtStart,
     /// Before the first start or end of a frame; what is there is dropped.
     BeforeFrames,
     /// In a frame.
@@ -84,7 +87,7 @@ impl Parts {
             cells,
             values: Vec::new(),
             position: if framing == Framing::Ended && from_start {
-                BytePosition::InFrame
+                BytePosition::AtStart
             } else {
                 BytePosition::BeforeFrames
             },
@@ -99,7 +102,12 @@ impl Parts {
         match self.framing {
             Framing::Ended if byte == END => {
                 let before = std::mem::replace(&mut self.position, BytePosition::InFrame);
-                self.end(before == BytePosition::InFrame)
+                let part = self.end(before != BytePosition::BeforeFrames);
+                if before == BytePosition::AtStart && part == Part::Dropped {
+                    self.values.clear();
+                    return Part::More;
+                }
+                part
             }
             Framing::Ended => self.value(byte),
             Framing::Bracketed => self.bracketed(byte),
@@ -271,7 +279,7 @@ impl MatsenseDecoder {
             self.decide(usize::from(brackets), counts, sink);
         }
         for (parts, _) in &mut self.candidates {
-            if !parts.values.is_empty() {
+            if !parts.values.is_empty() && parts.position != BytePosition::AtStart {
                 counts.drop_frames(1, &parts.values);
                 parts.values.clear();
             }
@@ -368,6 +376,20 @@ mod tests {
             let found = decoded(&stream, FrameSize::of(2, 2), false);
             assert_eq!(found, (wanted.clone(), dropped), "{between:?}");
         }
+    }
+
+    #[test]
+    fn what_precedes_the_first_end_of_a_frame_is_not_counted() {
+        let size = FrameSize::of(2, 2);
+        let (whole, wanted) = (b"\x01\x02\x03\x04\xff", vec![1.0, 2.0, 3.0, 4.0]);
+        for (start, frames) in [(&b""[..], 3), (b"\x03\x04\xff", 3), (b"hello\r\n", 2)] {
+            let stream = [start, &whole.repeat(3)].concat();
+            let found = decoded(&stream, size, true);
+            assert_eq!(found, (vec![wanted.clone(); frames], 0), "{start:?}");
+        }
+        assert_eq!(decoded(b"\x03\x04", size, true), (Vec::new(), 0));
+        let torn = [whole, whole, &b"\x03\x04\xff"[..]].concat();
+        assert_eq!(decoded(&torn, size, true), (vec![wanted; 2], 1));
     }
 
     #[test]

@@ -29,7 +29,7 @@ use crate::formats::recording::event::{
 };
 use crate::formats::recording::json::cells::CellsSeed;
 use crate::formats::recording::json::clock::{JsonClock, TimeCandidates};
-use crate::formats::recording::side::{frame_size};
+use crate::formats::recording::side::frame_size;
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::lines::TextLines;
 use crate::formats::recording::time::exact::Time;
