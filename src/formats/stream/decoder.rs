@@ -21,6 +21,7 @@ use crate::formats::stream::flexitac::FlexitacDecoder;
 use crate::formats::stream::format_search::{FormatSearch, is_numbers};
 use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
+use crate::formats::stream::output::StreamOutput;
 
 /// Decodes a stream, piece by piece.
 #[derive(Debug)]
@@ -161,13 +162,14 @@ impl StreamDecoder {
     /// Decodes the next bytes.
     pub fn push(&mut self, bytes: &[u8], sink: &mut StreamSink<'_>) {
         self.counts.bytes += bytes.len() as u64;
+        let output = &mut StreamOutput::new(&mut self.counts, sink);
         match &mut self.state {
             State::Looking(_) => {
                 self.bytes.extend_from_slice(bytes);
                 self.look(false, sink);
             }
-            State::Flexitac(decoder) => decoder.push(bytes, &mut self.counts, sink),
-            State::Matsense(decoder) => decoder.push(bytes, &mut self.counts, sink),
+            State::Flexitac(decoder) => decoder.push(bytes, output),
+            State::Matsense(decoder) => decoder.push(bytes, output),
             State::Unshaped => {}
             State::Lines(_) | State::Json | State::Ros(_) => self.text(bytes, sink),
         }
@@ -184,15 +186,16 @@ impl StreamDecoder {
             return;
         }
         let torn = self.without_mark(&torn);
+        let output = &mut StreamOutput::new(&mut self.counts, sink);
         match &mut self.state {
-            State::Lines(decoder) => decoder.finish(torn, &mut self.counts, sink),
-            State::Json => self.json.line(torn, &mut self.counts, sink),
+            State::Lines(decoder) => decoder.finish(torn, output),
+            State::Json => self.json.line(torn, output),
             State::Ros(decoder) => {
-                decoder.line(torn, &mut self.counts, sink);
-                decoder.finish(&mut self.counts, sink);
+                decoder.line(torn, output);
+                decoder.finish(output);
             }
-            State::Flexitac(decoder) => decoder.finish(&mut self.counts, sink),
-            State::Matsense(decoder) => decoder.finish(&mut self.counts, sink),
+            State::Flexitac(decoder) => decoder.finish(output),
+            State::Matsense(decoder) => decoder.finish(output),
             State::Looking(_) | State::Unshaped => {}
         }
     }
@@ -236,10 +239,11 @@ impl StreamDecoder {
         if take(&mut self.torn) && !(matches!(self.state, State::Json) && is_object(line)) {
             return;
         }
+        let output = &mut StreamOutput::new(&mut self.counts, sink);
         match &mut self.state {
-            State::Lines(decoder) => decoder.line(line, &mut self.counts, sink),
-            State::Json => self.json.line(line, &mut self.counts, sink),
-            State::Ros(decoder) => decoder.line(line, &mut self.counts, sink),
+            State::Lines(decoder) => decoder.line(line, output),
+            State::Json => self.json.line(line, output),
+            State::Ros(decoder) => decoder.line(line, output),
             _ => {}
         }
     }

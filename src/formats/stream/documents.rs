@@ -8,7 +8,8 @@ use crate::formats::recording::json::lines::{FrameLineError, JsonFrames};
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamRefusal, StreamSink};
+use crate::formats::stream::event::{StreamEvent, StreamRefusal};
+use crate::formats::stream::output::StreamOutput;
 use crate::frame::{Frame, FrameSize};
 
 /// A decoder of JSON lines. Its channels and times continue after a gap.
@@ -38,36 +39,31 @@ impl JsonDecoder {
     }
 
     /// Decodes a line.
-    pub(super) fn line(
-        &mut self,
-        line: &[u8],
-        counts: &mut StreamCounts,
-        sink: &mut StreamSink<'_>,
-    ) {
+    pub(super) fn line(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         if line.trim_ascii().is_empty() {
             return;
         }
         if let Err(error) = self.0.read(line) {
-            counts.drop_frames(1, line);
-            match error {
-                FrameLineError::Wrong { message, .. } => counts.reason = Some(message),
+            let reason = match error {
+                FrameLineError::Wrong { message, .. } => Some(message),
                 FrameLineError::Shape(values) => {
-                    counts.unshaped.get_or_insert(values);
+                    output.counts.unshaped.get_or_insert(values);
+                    None
                 }
-            }
+            };
+            output.lose(1, line, reason);
             return;
         }
         // A stream has channels as soon as one has a name.
         if self.0.channels.has_names() {
             for info in self.0.channels.take_new() {
-                sink(StreamEvent::Channel(info));
+                output.report(StreamEvent::Channel(info));
             }
         }
         if let Some(note) = self.0.clock.clock.take_note() {
-            sink(StreamEvent::Note(&note));
+            output.report(StreamEvent::Note(&note));
         }
-        counts.frames += 1;
-        sink(StreamEvent::Frame(self.0.frame()));
+        output.numbered(self.0.frame());
     }
 }
 
@@ -105,12 +101,7 @@ impl RosDecoder {
     }
 
     /// Decodes a line.
-    pub(super) fn line(
-        &mut self,
-        line: &[u8],
-        counts: &mut StreamCounts,
-        sink: &mut StreamSink<'_>,
-    ) {
+    pub(super) fn line(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         // A boundary, or a line with a whole array, begins a message.
         let trimmed = line.trim_ascii();
         let begins = trimmed.starts_with(b"array(")
@@ -124,12 +115,12 @@ impl RosDecoder {
                 self.cut = true;
                 // A message of a single line has no other end.
                 if echo::is_csv(trimmed) {
-                    self.end(line, counts, sink);
+                    self.end(line, output);
                 }
             }
             RosLine::Wrong(column) => self.note(state.mistake(), Some(column)),
             RosLine::Unended => self.note(state.mistake(), None),
-            RosLine::Whole => self.end(line, counts, sink),
+            RosLine::Whole => self.end(line, output),
         }
         self.begun |= trimmed == b"---";
     }
@@ -144,10 +135,10 @@ impl RosDecoder {
     }
 
     /// Ends a message: reports it as a frame, or drops it.
-    fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn end(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         let begun = std::mem::replace(&mut self.begun, true);
         if std::mem::take(&mut self.cut) {
-            counts.cut |= begun && self.mistake.is_none();
+            output.counts.cut |= begun && self.mistake.is_none();
             self.note(Some(&StreamRefusal::Cut.to_string()), None);
         }
         let mistake = self.mistake.take();
@@ -165,18 +156,19 @@ impl RosDecoder {
                     self.frame
                         .values_mut()
                         .copy_from_slice(self.message.cells());
-                    self.frame.number = counts.frames;
-                    counts.frames += 1;
-                    sink(StreamEvent::Frame(&self.frame));
+                    output.frame(&mut self.frame);
                 }
                 Err(error) => {
-                    counts.drop_frames(1, line);
-                    match error {
-                        RecordingError::Shape { values } => counts.unshaped = Some(values),
+                    let reason = match error {
+                        RecordingError::Shape { values } => {
+                            output.counts.unshaped = Some(values);
+                            None
+                        }
                         // A stream has no line numbers.
-                        RecordingError::Damaged { message, .. } => counts.reason = Some(message),
-                        error => counts.reason = Some(error.to_string()),
-                    }
+                        RecordingError::Damaged { message, .. } => Some(message),
+                        error => Some(error.to_string()),
+                    };
+                    output.lose(1, line, reason);
                 }
             }
         }
@@ -184,11 +176,11 @@ impl RosDecoder {
     }
 
     /// Ends the input: a message whose array is closed is whole.
-    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    pub(super) fn finish(&mut self, output: &mut StreamOutput<'_, '_>) {
         if self.message.begun() {
             let is_torn = self.message.is_open() && !self.cut;
             self.note(is_torn.then_some(echo::UNENDED), None);
-            self.end(b"", counts, sink);
+            self.end(b"", output);
         }
     }
 }

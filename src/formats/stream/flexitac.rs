@@ -11,7 +11,8 @@
 //! last byte has arrived, so that the live page does not lag a frame behind; it is confirmed or withdrawn by the
 //! bytes after it.
 
-use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
+use crate::formats::stream::event::StreamEvent;
+use crate::formats::stream::output::StreamOutput;
 use crate::frame::{Frame, FrameSize};
 
 /// The bytes before each frame.
@@ -70,33 +71,28 @@ impl FlexitacDecoder {
     }
 
     /// Decodes bytes.
-    pub(super) fn push(
-        &mut self,
-        bytes: &[u8],
-        counts: &mut StreamCounts,
-        sink: &mut StreamSink<'_>,
-    ) {
+    pub(super) fn push(&mut self, bytes: &[u8], output: &mut StreamOutput<'_, '_>) {
         // Take one piece at a time, so that the buffer stays small however many bytes arrive at once.
         for piece in bytes.chunks(self.period()) {
             self.bytes.extend_from_slice(piece);
-            while self.step(false, counts, sink) {}
+            while self.step(false, output) {}
         }
     }
 
     /// Ends the input.
-    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
-        while self.step(true, counts, sink) {}
+    pub(super) fn finish(&mut self, output: &mut StreamOutput<'_, '_>) {
+        while self.step(true, output) {}
         if !self.bytes.is_empty() {
-            self.withdraw(sink);
-            if matches!(self.start, Start::Marker { .. }) || counts.frames > 0 {
-                counts.drop_frames(1, &self.bytes);
+            self.withdraw(output);
+            if matches!(self.start, Start::Marker { .. }) || output.counts.frames > 0 {
+                output.lose(1, &self.bytes, None);
             }
             self.bytes.clear();
         }
     }
 
     /// Takes one frame, or drops invalid bytes; returns false if more bytes are needed.
-    fn step(&mut self, ended: bool, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) -> bool {
+    fn step(&mut self, ended: bool, output: &mut StreamOutput<'_, '_>) -> bool {
         let period = self.period();
         if self.start == Start::Stream && self.bytes.len() >= MARKER.len() {
             self.start = if self.has_marker(0) {
@@ -109,44 +105,41 @@ impl FlexitacDecoder {
             let whole = self.bytes.len() == period;
             if self.has_marker(period) || whole && ended {
                 self.fill();
-                self.frame.number = counts.frames;
-                counts.frames += 1;
                 self.bytes.drain(..period);
                 self.start = if ended && self.bytes.is_empty() {
                     Start::Anywhere
                 } else {
                     Start::Marker { shown: false }
                 };
-                sink(StreamEvent::Frame(&self.frame));
+                output.frame(&mut self.frame);
                 return true;
             }
             let waits = whole || self.bytes.len() == period + 1 && self.bytes[period] == MARKER[0];
             if !ended && (waits || self.bytes.len() < period) {
                 if whole && !shown {
                     self.fill();
-                    self.frame.number = counts.frames;
                     self.start = Start::Marker { shown: true };
-                    sink(StreamEvent::Provisional(&self.frame));
+                    output.provisional(&mut self.frame);
                 }
                 return false;
             }
-            self.withdraw(sink);
+            self.withdraw(output);
         }
-        self.search(ended, counts)
+        self.search(ended, output)
     }
 
     /// Withdraws a frame that was shown and is invalid.
-    fn withdraw(&mut self, sink: &mut StreamSink<'_>) {
+    fn withdraw(&mut self, output: &mut StreamOutput<'_, '_>) {
         if let Start::Marker { shown } = &mut self.start
             && std::mem::take(shown)
         {
-            sink(StreamEvent::Withdrawn);
+            output.report(StreamEvent::Withdrawn);
         }
     }
 
     /// Searches for the marker nearest to its expected place that the next one confirms; returns false if more bytes
     /// are needed.
-    fn search(&mut self, ended: bool, counts: &mut StreamCounts) -> bool {
+    fn search(&mut self, ended: bool, output: &mut StreamOutput<'_, '_>) -> bool {
         let period = self.period();
         let in_step = matches!(self.start, Start::Marker { .. });
         let due = if in_step { period } else { 0 };
@@ -180,9 +173,9 @@ impl FlexitacDecoder {
         };
         if in_step {
             let frames = (gone + period / 2) / period;
-            counts.drop_frames(frames.max(1) as u64, &self.bytes);
-        } else if !found && counts.frames > 0 {
-            counts.drop_frames(1, &self.bytes);
+            output.lose(frames.max(1) as u64, &self.bytes, None);
+        } else if !found && output.counts.frames > 0 {
+            output.lose(1, &self.bytes, None);
         }
         self.bytes.drain(..gone);
         self.start = if found {

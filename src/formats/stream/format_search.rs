@@ -14,10 +14,11 @@
 use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
 use crate::formats::recording::ros::echo;
 use crate::formats::recording::time::moment;
-use crate::formats::stream::event::{StreamCounts, StreamFormat};
+use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamFormat};
 use crate::formats::stream::flexitac::MARKER;
 use crate::formats::stream::matsense::MatsenseDecoder;
 use crate::formats::stream::numbers;
+use crate::formats::stream::output::StreamOutput;
 use crate::frame::{FrameSize, MAX_FRAME_CELLS};
 
 /// The number of bytes of text within which a line must end; otherwise it is not a known stream.
@@ -137,7 +138,8 @@ impl FormatSearch {
                 let trial = self
                     .trial
                     .get_or_insert_with(|| MatsenseDecoder::new(size, false));
-                trial.push(new, &mut StreamCounts::default(), &mut |_| ());
+                let (mut counts, mut sink) = (StreamCounts::default(), |_: StreamEvent<'_>| ());
+                trial.push(new, &mut StreamOutput::new(&mut counts, &mut sink));
                 // With fewer bytes, markers could still show another format.
                 if bytes.len() >= enough && trial.is_sure() {
                     return Some(StreamFormat::Matsense);

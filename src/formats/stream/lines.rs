@@ -18,16 +18,16 @@
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are
 //! never joined. If frames are known to be single lines, each line that is not a frame counts as a lost one.
 
-use crate::formats::recording::side::frame_size;
 use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::separator::{Separator, is_comment};
 use crate::formats::recording::time::exact::Time;
 use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::recording::time::moment::{self, DecimalCommas, Moment};
-use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
+use crate::formats::recording::time::moment::{self, Moment};
+use crate::formats::stream::event::StreamEvent;
 use crate::formats::stream::numbers;
+use crate::formats::stream::output::StreamOutput;
+use crate::formats::stream::row_block::{RowBlock, WrongRow, may_be_end};
 use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
-use crate::parameter::number::counted;
 
 /// The assumed content of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub(super) struct LinesDecoder {
     /// Whether a boundary was seen, so that a frame may begin.
     begun: bool,
     /// The rows of the current frame so far.
-    current: Block,
+    current: RowBlock,
     /// The clock that turns timestamps into seconds since the first frame.
     pub(super) clock: FrameClock,
     /// Whether there was an empty line.
@@ -55,92 +55,9 @@ pub(super) struct LinesDecoder {
     kind: LineKind,
     /// The first blocks of a stream that is read from its beginning, until it is known whether the first one is a
     /// frame.
-    held: Option<Vec<Block>>,
+    held: Option<Vec<RowBlock>>,
     /// The frame that is reported.
     frame: Frame,
-}
-
-/// A block of rows, which an empty line ends.
-#[derive(Debug, Default)]
-struct Block {
-    /// The values, row by row.
-    values: Vec<f64>,
-    /// The number of rows.
-    rows: u16,
-    /// The timestamp at the beginning of the first line.
-    time: Option<Time>,
-    /// Whether a row is invalid.
-    broken: bool,
-    /// The beginning of that row, or of the first row if none is invalid.
-    sample: Vec<u8>,
-    /// The length of that row and the expected one, if it has only numbers; None otherwise.
-    wrong: Option<WrongRow>,
-    /// Whether the first line is a single value, which may be the time of the frame.
-    begins_alone: bool,
-    /// Whether the line below a single value has several numbers.
-    is_below_value: bool,
-    /// The decimal commas that its timestamps may have.
-    commas: DecimalCommas,
-}
-
-/// A row with the wrong number of numbers.
-#[derive(Clone, Copy, Debug)]
-struct WrongRow {
-    /// The number of the row in its block, from 1.
-    row: u16,
-    /// The number of its numbers.
-    found: usize,
-    /// The number of numbers in the rows above it.
-    expected: usize,
-}
-
-impl WrongRow {
-    /// Describes a row of `found` numbers; None if that is the expected number, or if it has anything else.
-    fn of(row: u16, found: Option<usize>, expected: usize) -> Option<Self> {
-        let found = found.filter(|&found| found != expected)?;
-        Some(Self {
-            row,
-            found,
-            expected,
-        })
-    }
-}
-
-impl Block {
-    /// Returns the rows and columns; None if the block is not a frame.
-    fn size(&self) -> Option<FrameSize> {
-        let columns = self.values.len().checked_div(self.rows.into())?;
-        frame_size(columns, self.rows.into()).filter(|_| !self.broken)
-    }
-
-    /// Counts the next row. `found` is the number of its numbers; None if it has anything else.
-    fn begin_row(&mut self, time: Option<Time>, line: &[u8], found: Option<usize>) {
-        match self.rows {
-            0 => {
-                let is_one = found.map_or_else(|| moment::is_alone(line), |count| count == 1);
-                self.begins_alone = time.is_none() && is_one;
-                self.time = time;
-            }
-            1 => self.is_below_value = self.begins_alone && found.is_some_and(|count| count > 1),
-            _ => {}
-        }
-        self.rows = self.rows.saturating_add(1);
-    }
-
-    /// Prepares for the next block, in the same memory.
-    fn clear(&mut self) {
-        self.values.clear();
-        (self.rows, self.broken, self.is_below_value) = (0, false, false);
-        self.commas = DecimalCommas::default();
-    }
-}
-
-/// Returns true if the first of two blocks may be the end of one like the second: its last rows, or the end of its
-/// last row.
-fn may_be_end(own: FrameSize, next: FrameSize) -> bool {
-    let (columns, next_columns) = (own.columns(), next.columns());
-    own.rows() < next.rows()
-        && (columns == next_columns || own.rows() == 1 && columns < next_columns)
 }
 
 impl LinesDecoder {
@@ -149,7 +66,7 @@ impl LinesDecoder {
         Self {
             size: StreamSize::new(named),
             begun: from_start,
-            current: Block::default(),
+            current: RowBlock::default(),
             clock,
             parted: false,
             kind: match named {
@@ -162,15 +79,10 @@ impl LinesDecoder {
     }
 
     /// Decodes a line without its end.
-    pub(super) fn line(
-        &mut self,
-        line: &[u8],
-        counts: &mut StreamCounts,
-        sink: &mut StreamSink<'_>,
-    ) {
+    pub(super) fn line(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         let trimmed = line.trim_ascii();
         if trimmed.is_empty() {
-            self.boundary(counts, sink);
+            self.boundary(output);
             return;
         }
         if is_comment(trimmed) {
@@ -183,7 +95,7 @@ impl LinesDecoder {
             Some((moment, numbers)) => (Some(self.clock.moment(moment)), numbers),
             None => (None, line),
         };
-        self.numbers(moment, line, counts, sink);
+        self.numbers(moment, line, output);
     }
 
     /// Splits a line into the timestamp at its beginning and the numbers after it. If rows and columns were given, the
@@ -205,13 +117,7 @@ impl LinesDecoder {
     }
 
     /// Decodes the numbers of a line that is not empty, after its timestamp.
-    fn numbers(
-        &mut self,
-        moment: Option<Time>,
-        line: &[u8],
-        counts: &mut StreamCounts,
-        sink: &mut StreamSink<'_>,
-    ) {
+    fn numbers(&mut self, moment: Option<Time>, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         let before = self.current.values.len();
         let room = MAX_FRAME_CELLS.saturating_sub(before);
         let read = numbers::read(line, &mut self.current.values, room);
@@ -226,7 +132,7 @@ impl LinesDecoder {
         {
             self.current.values.drain(..before);
             self.current.time = moment;
-            self.give_line(counts, sink);
+            self.give_line(output);
             return;
         }
         if self.kind == LineKind::Frame && self.current.rows == 0 && !self.may_be_row(found) {
@@ -235,7 +141,7 @@ impl LinesDecoder {
             let cells = self.size.present().map(FrameSize::cells);
             self.current.wrong = cells.and_then(|cells| WrongRow::of(1, found, cells));
             if std::mem::replace(&mut self.begun, true) {
-                self.lose(1, line, counts);
+                self.lose(1, line, output);
             }
             return;
         }
@@ -249,31 +155,31 @@ impl LinesDecoder {
             self.current.values.truncate(before);
             if !self.current.broken {
                 let wrong = WrongRow::of(self.current.rows, found, expected);
-                self.note_row(line, wrong);
+                self.current.note_row(line, wrong);
             }
             self.current.broken = true;
             // No frame of a known size has that many rows.
             if self.size.present().is_none() && self.current.rows > MAX_FRAME_SIDE {
-                counts.unshaped = Some(count as u64);
+                output.counts.unshaped = Some(count as u64);
             }
-            self.give_up(line, counts);
+            self.give_up(line, output);
         } else if self.current.rows == 1 {
-            self.note_row(line, None);
+            self.current.note_row(line, None);
         }
     }
 
     /// Reports the values of a line as a frame. The rows before it do not belong to a frame.
-    fn give_line(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn give_line(&mut self, output: &mut StreamOutput<'_, '_>) {
         if self.current.rows > 0 && self.begun {
             // If there was no empty line so far, those rows were frames, too.
             let lost = if self.parted { 1 } else { self.current.rows };
-            self.lose(lost.into(), &self.current.sample, counts);
+            self.lose(lost.into(), &self.current.sample, output);
         }
         self.kind = LineKind::Frame;
         self.size.pass_torn();
         // The line before this one was complete.
         self.begun = true;
-        self.give(counts, sink);
+        self.give(output);
         self.current.clear();
     }
 
@@ -283,67 +189,19 @@ impl LinesDecoder {
         self.parted && count.is_some() && count == columns
     }
 
-    /// Keeps the beginning of a row, and what is wrong with it.
-    fn note_row(&mut self, line: &[u8], wrong: Option<WrongRow>) {
-        self.current.sample.clear();
-        self.current.sample.extend(line.iter().take(64));
-        self.current.wrong = wrong;
-    }
-
-    /// Counts dropped frames, with a sample and the reason, if it is known.
-    fn lose(&self, frames: u64, sample: &[u8], counts: &mut StreamCounts) {
+    /// Counts lost frames, with a sample and the reason, if it is known.
+    fn lose(&self, frames: u64, sample: &[u8], output: &mut StreamOutput<'_, '_>) {
+        let reason = self.current.reason(self.size.named(), self.parted);
         // The carriage return of CR LF belongs to the end of the line.
-        counts.drop_frames(frames, sample.trim_ascii_end());
-        counts.reason = self.reason();
-    }
-
-    /// Returns why the current block is not a frame: a single value stands above it, or a row has another number of
-    /// numbers than the rows above it or than was given, or too many. None if something else is wrong.
-    fn reason(&self) -> Option<String> {
-        if self.current.is_below_value {
-            let end = if self.parted {
-                ""
-            } else {
-                ", and end each frame with an empty line"
-            };
-            return Some(format!("{}{end}", moment::ABOVE_ROWS));
-        }
-        let numbers = |count: usize| counted(count as u64, "number");
-        let Some(WrongRow {
-            row,
-            found,
-            expected,
-        }) = self.current.wrong
-        else {
-            let columns = self
-                .current
-                .values
-                .len()
-                .checked_div(self.current.rows.into())?;
-            let is_wide = !self.current.broken && columns > MAX_FRAME_SIDE.into();
-            let columns = numbers(columns);
-            return is_wide.then(|| format!("{columns} a row, expected at most {MAX_FRAME_SIDE}"));
-        };
-        let Some(size) = self.size.named() else {
-            let found = numbers(found);
-            return Some(format!("row {row} has {found}, expected {expected}"));
-        };
-        let (found, columns, cells) = (numbers(found), size.columns(), size.cells());
-        Some(match size.rows() {
-            1 => format!("{found}, expected {cells}"),
-            _ => format!(
-                "{found}, expected {cells} for a frame of {}, or {columns} for a row",
-                size.in_words()
-            ),
-        })
+        output.lose(frames, sample.trim_ascii_end(), reason);
     }
 
     /// Counts an invalid line at once if, as far as is known, no empty line separates frames.
-    fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
+    fn give_up(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         let is_full = |size: FrameSize| self.current.rows > size.rows();
         if self.size.named().is_some_and(is_full) || self.current.rows > MAX_FRAME_SIDE {
             if self.begun {
-                self.lose(1, line, counts);
+                self.lose(1, line, output);
             }
             self.current.clear();
             self.begun = true;
@@ -351,7 +209,7 @@ impl LinesDecoder {
     }
 
     /// Ends a frame at an empty line.
-    fn boundary(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn boundary(&mut self, output: &mut StreamOutput<'_, '_>) {
         self.parted = true;
         if !std::mem::replace(&mut self.begun, true) || self.current.rows == 0 {
             self.current.clear();
@@ -360,88 +218,83 @@ impl LinesDecoder {
         match self.current.size() {
             Some(own) if self.size.present() != Some(own) && self.current.commas.are_possible() => {
                 self.size.pass_torn();
-                counts.unshaped = Some(own.columns().into());
-                self.lose(1, &self.current.sample, counts);
+                output.counts.unshaped = Some(own.columns().into());
+                self.lose(1, &self.current.sample, output);
             }
-            Some(own) if self.held.is_some() => self.hold(own, counts, sink),
-            Some(own) => self.block(own, counts, sink),
+            Some(own) if self.held.is_some() => self.hold(own, output),
+            Some(own) => self.block(own, output),
             None => {
                 self.size.pass_torn();
-                self.lose(1, &self.current.sample, counts);
+                self.lose(1, &self.current.sample, output);
             }
         }
         self.current.clear();
     }
 
     /// Takes a block of rows that is whole.
-    fn block(&mut self, own: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn block(&mut self, own: FrameSize, output: &mut StreamOutput<'_, '_>) {
         match self.size.admit(own) {
             Ok(()) => {
                 if self.current.rows > 1 {
                     self.kind = LineKind::Row;
                 }
-                self.give(counts, sink);
+                self.give(output);
             }
-            Err(reason) => {
-                self.lose(1, &self.current.sample, counts);
-                counts.reason = Some(reason);
-            }
+            Err(reason) => output.lose(1, self.current.sample.trim_ascii_end(), Some(reason)),
         }
     }
 
     /// Holds a block until it is known whether the first one is a frame. It is, if the second is not larger, or if
     /// the third differs from the second, which may be two frames that lost the empty line between them.
-    fn hold(&mut self, own: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn hold(&mut self, own: FrameSize, output: &mut StreamOutput<'_, '_>) {
         if self.held.as_ref().is_some_and(Vec::is_empty) {
             // If the block is withdrawn, another frame is the first one.
             let clock = self.clock;
-            self.fill(own, counts);
+            self.fill(own);
             self.clock = clock;
-            sink(StreamEvent::Provisional(&self.frame));
+            output.provisional(&mut self.frame);
         }
         let held = self.held.get_or_insert_default();
         held.push(std::mem::take(&mut self.current));
-        let sizes: Vec<FrameSize> = held.iter().filter_map(Block::size).collect();
+        let sizes: Vec<FrameSize> = held.iter().filter_map(RowBlock::size).collect();
         match sizes[..] {
             [] | [_] => {}
             [first, second] if may_be_end(first, second) => {}
-            [_, second, third] if second == third => self.release(second, counts, sink),
-            [first, ..] => self.release(first, counts, sink),
+            [_, second, third] if second == third => self.release(second, output),
+            [first, ..] => self.release(first, output),
         }
     }
 
     /// Takes the held blocks; those of the given size are frames.
-    fn release(&mut self, size: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn release(&mut self, size: FrameSize, output: &mut StreamOutput<'_, '_>) {
         let Some(held) = self.held.take() else {
             return;
         };
         self.size.begin(size);
-        let differs = |first: &Block| first.size() != Some(size);
+        let differs = |first: &RowBlock| first.size() != Some(size);
         if held.first().is_some_and(differs) {
-            sink(StreamEvent::Withdrawn);
+            output.report(StreamEvent::Withdrawn);
         }
         for block in held {
             self.current = block;
             if let Some(own) = self.current.size() {
-                self.block(own, counts, sink);
+                self.block(own, output);
             }
         }
     }
 
     /// Reports the values as a frame of the current size.
-    fn give(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn give(&mut self, output: &mut StreamOutput<'_, '_>) {
         let Some(size) = self.size.present() else {
             return;
         };
-        self.fill(size, counts);
-        counts.frames += 1;
-        sink(StreamEvent::Frame(&self.frame));
+        self.fill(size);
+        output.frame(&mut self.frame);
     }
 
     /// Copies the values into the frame, which gets that size.
-    fn fill(&mut self, size: FrameSize, counts: &StreamCounts) {
+    fn fill(&mut self, size: FrameSize) {
         self.frame.reset(size);
-        self.frame.number = counts.frames;
         let time = self.current.time;
         self.frame.time = time.map(|time| self.clock.since_first(time));
         self.frame
@@ -450,28 +303,21 @@ impl LinesDecoder {
     }
 
     /// Ends the input: the last frame may lack its empty line. An incomplete frame is dropped.
-    pub(super) fn finish(
-        &mut self,
-        torn: &[u8],
-        counts: &mut StreamCounts,
-        sink: &mut StreamSink<'_>,
-    ) {
+    pub(super) fn finish(&mut self, torn: &[u8], output: &mut StreamOutput<'_, '_>) {
         if !torn.trim_ascii().is_empty() {
-            self.current.rows = self.current.rows.saturating_add(1);
-            self.current.broken = true;
-            self.current.wrong = None;
-            self.current.sample = torn.iter().take(64).copied().collect();
+            self.current.add_torn(torn);
         }
         // Only lines and no empty one: they are frames, or the rows of a single frame.
         if self.size.present().is_none() && !self.parted && self.current.rows > 0 {
-            counts.unshaped = Some(self.current.values.len() as u64 / u64::from(self.current.rows));
+            output.counts.unshaped =
+                Some(self.current.values.len() as u64 / u64::from(self.current.rows));
             self.current.clear();
             return;
         }
-        self.boundary(counts, sink);
+        self.boundary(output);
         let first = self.held.as_ref().and_then(|held| held.first());
-        if let Some(size) = first.and_then(Block::size) {
-            self.release(size, counts, sink);
+        if let Some(size) = first.and_then(RowBlock::size) {
+            self.release(size, output);
         }
     }
 }
@@ -479,6 +325,7 @@ impl LinesDecoder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::stream::event::StreamCounts;
 
     /// Returns the frames in lines, as rows, columns and first value, and the number of dropped frames.
     fn decoded(text: &str, named: Option<(u16, u16)>) -> (Vec<(u16, u16, f64)>, u64) {
@@ -491,9 +338,12 @@ mod tests {
             }
         };
         for line in text.lines() {
-            decoder.line(line.as_bytes(), &mut counts, &mut sink);
+            decoder.line(
+                line.as_bytes(),
+                &mut StreamOutput::new(&mut counts, &mut sink),
+            );
         }
-        decoder.finish(b"", &mut counts, &mut sink);
+        decoder.finish(b"", &mut StreamOutput::new(&mut counts, &mut sink));
         (frames, counts.dropped)
     }
 
@@ -538,7 +388,7 @@ mod tests {
         let mut decoder = LinesDecoder::new(None, true, FrameClock::default());
         let (mut events, mut counts) = (String::new(), StreamCounts::default());
         for line in ["3 4", "", "1 2", "3 4", "", "1 2", "3 4", ""] {
-            decoder.line(line.as_bytes(), &mut counts, &mut |event| {
+            let mut sink = |event: StreamEvent<'_>| {
                 events += match event {
                     StreamEvent::Frame(_) => "frame ",
                     StreamEvent::Provisional(_) => "provisional ",
@@ -546,7 +396,11 @@ mod tests {
                     StreamEvent::Channel(_) => "channel ",
                     StreamEvent::Note(_) => "note ",
                 };
-            });
+            };
+            decoder.line(
+                line.as_bytes(),
+                &mut StreamOutput::new(&mut counts, &mut sink),
+            );
         }
         assert_eq!(events, "provisional withdrawn frame frame ");
     }
@@ -582,9 +436,12 @@ mod tests {
                 }
             };
             for line in text.lines() {
-                decoder.line(line.as_bytes(), &mut counts, &mut sink);
+                decoder.line(
+                    line.as_bytes(),
+                    &mut StreamOutput::new(&mut counts, &mut sink),
+                );
             }
-            decoder.finish(b"", &mut counts, &mut sink);
+            decoder.finish(b"", &mut StreamOutput::new(&mut counts, &mut sink));
             (times, counts.dropped)
         };
         let lines = "2024-05-01 23:59:59.75,1,2,3,4\n5,6,7,8\n2024-05-02T00:00:00.5,9,1,1,1\n";
@@ -632,9 +489,12 @@ mod tests {
             let mut decoder = LinesDecoder::new(shape, true, FrameClock::default());
             let mut counts = StreamCounts::default();
             for line in text.lines() {
-                decoder.line(line.as_bytes(), &mut counts, &mut |_| ());
+                decoder.line(
+                    line.as_bytes(),
+                    &mut StreamOutput::new(&mut counts, &mut |_| ()),
+                );
             }
-            decoder.finish(b"", &mut counts, &mut |_| ());
+            decoder.finish(b"", &mut StreamOutput::new(&mut counts, &mut |_| ()));
             counts.reason
         };
         let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
@@ -689,7 +549,10 @@ mod tests {
         let mut decoder = LinesDecoder::new(None, true, FrameClock::default());
         let mut counts = StreamCounts::default();
         for line in ["1 2\r", "3\r", "\r"] {
-            decoder.line(line.as_bytes(), &mut counts, &mut |_| ());
+            decoder.line(
+                line.as_bytes(),
+                &mut StreamOutput::new(&mut counts, &mut |_| ()),
+            );
         }
         assert_eq!(counts.sample.as_deref(), Some("3"));
     }
@@ -718,9 +581,13 @@ mod tests {
         let mut decoder = LinesDecoder::new(None, true, FrameClock::default());
         let (mut given, mut counts) = (0, StreamCounts::default());
         for line in ["1 2", "3 4", "", "5 6", "7 8", ""] {
-            decoder.line(line.as_bytes(), &mut counts, &mut |event| {
+            let mut sink = |event: StreamEvent<'_>| {
                 given += u32::from(matches!(event, StreamEvent::Frame(_)));
-            });
+            };
+            decoder.line(
+                line.as_bytes(),
+                &mut StreamOutput::new(&mut counts, &mut sink),
+            );
         }
         assert_eq!((given, counts.dropped), (2, 0));
     }

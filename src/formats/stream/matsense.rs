@@ -8,7 +8,7 @@
 //! 5B 00 0C 07 03 5D       cells are 0 to 255; 5B, 5C and 5D among them are 5C 01, 5C 00 and 5C 02
 //! ```
 
-use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
+use crate::formats::stream::output::StreamOutput;
 use crate::frame::{Frame, FrameSize};
 
 /// The byte that ends a frame of the first kind, in which no cell has this value.
@@ -202,12 +202,7 @@ impl MatsenseDecoder {
     }
 
     /// Decodes bytes.
-    pub(super) fn push(
-        &mut self,
-        bytes: &[u8],
-        counts: &mut StreamCounts,
-        sink: &mut StreamSink<'_>,
-    ) {
+    pub(super) fn push(&mut self, bytes: &[u8], output: &mut StreamOutput<'_, '_>) {
         for &byte in bytes {
             let undecided = self.candidates.len() > 1;
             for (parts, waiting) in &mut self.candidates {
@@ -221,14 +216,14 @@ impl MatsenseDecoder {
                 } else if undecided {
                     parts.dropped += 1;
                 } else if part == Part::Whole {
-                    give(&mut self.frame, &parts.values, counts, sink);
+                    give(&mut self.frame, &parts.values, output);
                 } else {
-                    counts.drop_frames(1, &parts.values);
+                    output.lose(1, &parts.values, None);
                 }
                 parts.values.clear();
             }
             if let Some(index) = self.sure() {
-                self.decide(index, counts, sink);
+                self.decide(index, output);
             }
         }
     }
@@ -261,26 +256,26 @@ impl MatsenseDecoder {
     }
 
     /// Reports the frames that waited for the decision, and forgets the other kind.
-    fn decide(&mut self, index: usize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn decide(&mut self, index: usize, output: &mut StreamOutput<'_, '_>) {
         let (parts, waiting) = self.candidates.swap_remove(index);
         if parts.dropped > 0 {
-            counts.drop_frames(parts.dropped, b"");
+            output.lose(parts.dropped, b"", None);
         }
         for values in waiting {
-            give(&mut self.frame, &values, counts, sink);
+            give(&mut self.frame, &values, output);
         }
         self.candidates = vec![(parts, Vec::new())];
     }
 
     /// Ends the input. If the kind is undecided, it is the one in which frames have the right length.
-    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    pub(super) fn finish(&mut self, output: &mut StreamOutput<'_, '_>) {
         if let [(_, ended), (_, bracketed)] = self.candidates.as_slice() {
             let brackets = !bracketed.is_empty() && (self.doubted || ended.is_empty());
-            self.decide(usize::from(brackets), counts, sink);
+            self.decide(usize::from(brackets), output);
         }
         for (parts, _) in &mut self.candidates {
             if !parts.values.is_empty() && parts.position != BytePosition::AtStart {
-                counts.drop_frames(1, &parts.values);
+                output.lose(1, &parts.values, None);
                 parts.values.clear();
             }
         }
@@ -288,18 +283,17 @@ impl MatsenseDecoder {
 }
 
 /// Reports the values as the next frame.
-fn give(frame: &mut Frame, values: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+fn give(frame: &mut Frame, values: &[u8], output: &mut StreamOutput<'_, '_>) {
     for (slot, &value) in frame.values_mut().iter_mut().zip(values) {
         *slot = f64::from(value);
     }
-    frame.number = counts.frames;
-    counts.frames += 1;
-    sink(StreamEvent::Frame(frame));
+    output.frame(frame);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::stream::event::{StreamCounts, StreamEvent};
 
     /// Returns the frames in some bytes, and the number of dropped ones.
     fn decoded(bytes: &[u8], size: FrameSize, from_start: bool) -> (Vec<Vec<f64>>, u64) {
@@ -310,8 +304,8 @@ mod tests {
                 frames.push(frame.values().to_vec());
             }
         };
-        decoder.push(bytes, &mut counts, &mut sink);
-        decoder.finish(&mut counts, &mut sink);
+        decoder.push(bytes, &mut StreamOutput::new(&mut counts, &mut sink));
+        decoder.finish(&mut StreamOutput::new(&mut counts, &mut sink));
         (frames, counts.dropped)
     }
 

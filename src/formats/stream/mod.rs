@@ -23,7 +23,11 @@
 
 mod event;
 
+mod output;
+
 mod numbers;
+
+mod row_block;
 
 mod lines;
 
