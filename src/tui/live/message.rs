@@ -181,13 +181,13 @@ impl SourceGaps {
     /// Returns a sentence about the gaps; None if there are none.
     pub fn sentence(self) -> Option<String> {
         let [waited, missing] = [self.waited, self.missing].map(|seconds| decimal(seconds, 1));
-        let lost = match self.count {
+        let gaps = match self.count {
             0 => return None,
-            1 => format!("for {waited} s"),
-            several => format!("{several} times, for {waited} s in all"),
+            1 => String::new(),
+            several => format!(" in {several} gaps"),
         };
         Some(format!(
-            "the connection was lost {lost}; {missing} s of frames are missing"
+            "no frames for {missing} s{gaps}, of which the connection was lost for {waited} s"
         ))
     }
 }

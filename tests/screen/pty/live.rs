@@ -605,14 +605,14 @@ fn the_notice_of_a_connection_gap_stays_until_a_key_is_pressed() {
             program.shows("tare of the last");
         }
     }
-    program.shows("! the connection was lost for 1");
-    program.shows(" s of frames are missing");
+    program.shows("! no frames for 1");
+    program.shows(" s, of which the connection was lost for 1");
     program.shows("gaps       1, 1");
     program.types(b"T");
     program.shows("tare removed");
     program.until("no gap", |program| {
         let screen = program.screen().contents();
-        !screen.contains("are missing") && screen.contains("gaps       1, 1")
+        !screen.contains("no frames for") && screen.contains("gaps       1, 1")
     });
     program.types(b"q");
     program.types(b"q");

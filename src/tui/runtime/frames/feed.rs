@@ -412,7 +412,7 @@ mod tests {
             Some("back after 4 s; no frame yet")
         );
         after(&mut page, &feed, at(5.5));
-        let once = "the connection was lost for 4 s; 5.5 s of frames are missing";
+        let once = "no frames for 5.5 s, of which the connection was lost for 4 s";
         assert_eq!(page.trouble().as_deref(), Some(once));
         // The text stays until the user has seen it.
         after(&mut page, &feed, at(5.6));
@@ -424,7 +424,7 @@ mod tests {
         ] {
             after(&mut page, &feed, event);
         }
-        let twice = "the connection was lost 2 times, for 6 s in all; 7.9 s of frames are missing";
+        let twice = "no frames for 7.9 s in 2 gaps, of which the connection was lost for 6 s";
         assert_eq!(page.trouble().as_deref(), Some(twice));
         page.see_notices();
         assert_eq!(page.trouble(), None);
