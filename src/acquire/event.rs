@@ -145,7 +145,7 @@ pub enum AcquireEvent<'a> {
     Absent(&'a io::Error),
     /// The source is lost; opening it is tried again each second.
     Lost(&'a io::Error),
-    /// The source is open for the first time, or again.
+    /// The source is open, after [`Self::Absent`] or [`Self::Lost`].
     Back {
         /// The time spent waiting for it.
         gap: Duration,

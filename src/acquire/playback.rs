@@ -80,7 +80,7 @@ struct Player<'a, 'b> {
     counts: RefCell<StreamCounts>,
     /// The wait for the next frame of a followed file.
     silence: RefCell<SilenceWatch>,
-    /// The error of the first of them.
+    /// The error of the first wrong frame of a followed file.
     damage: RefCell<Option<RecordingError>>,
 }
 

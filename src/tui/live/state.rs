@@ -342,9 +342,9 @@ impl Live {
 
     /// Changes the tare. If another tare is subtracted afterwards, the range is computed again from the last frames.
     fn retare<T>(&mut self, act: impl FnOnce(&mut LiveTare, &mut Processing) -> T) -> T {
-        let before = self.tare.mark();
+        let before = self.tare.origin();
         let done = act(&mut self.tare, &mut self.processing);
-        if self.tare.mark() != before {
+        if self.tare.origin() != before {
             self.is_viewed_anew = true;
             self.range.begin_anew();
             for frame in self.cursor.newest(RANGED) {
@@ -385,7 +385,7 @@ impl Live {
 
     /// Returns true if neither a tare nor a gain changes the values.
     pub fn shows_raw(&self) -> bool {
-        self.tare.mark().is_none() && self.processing.gain.is_none()
+        self.tare.origin().is_none() && self.processing.gain.is_none()
     }
 
     /// Sets a rule that the user has chosen on the page, and reads the frame again.

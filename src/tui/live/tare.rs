@@ -10,7 +10,7 @@ use crate::tui::live::request::WatchRequest;
 
 /// The origin of a tare.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TareMark {
+pub struct TareOrigin {
     /// The number of frames that the tare was made of.
     pub frames: u64,
     /// The number of the last of these frames; None for a tare of another recording, or from before the source was
@@ -28,7 +28,7 @@ pub(super) struct LiveTare {
     /// The first frames, until there are enough for the requested tare.
     first: Option<TareFrames>,
     /// The origin of the tare; None if nothing is subtracted.
-    mark: Option<TareMark>,
+    origin: Option<TareOrigin>,
     /// Whether the tare in the recording's own metadata is used once that is known.
     takes_own: bool,
     /// Why the tare that was requested at the start is missing.
@@ -41,15 +41,15 @@ impl LiveTare {
         Self {
             wanted: request.tare,
             first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
-            mark: None,
+            origin: None,
             takes_own: request.own_tare && request.tare == 0,
             error: None,
         }
     }
 
     /// Returns the origin of the tare; None without one.
-    pub(super) fn mark(&self) -> Option<TareMark> {
-        self.mark
+    pub(super) fn origin(&self) -> Option<TareOrigin> {
+        self.origin
     }
 
     /// Returns how many frames have come for the tare, and how many it needs; None if no tare is being made.
@@ -68,7 +68,7 @@ impl LiveTare {
         let takes_own = std::mem::take(&mut self.takes_own);
         if let Some(tare) = channel.tare_for(&processing.view).filter(|_| takes_own) {
             processing.tare = Some(tare.clone());
-            self.mark = Some(TareMark {
+            self.origin = Some(TareOrigin {
                 frames: tare.frames(),
                 number: None,
                 time: None,
@@ -131,7 +131,7 @@ impl LiveTare {
         processing: &mut Processing,
     ) -> Result<(), FrameError> {
         let tare = frames.finish()?;
-        self.mark = Some(TareMark {
+        self.origin = Some(TareOrigin {
             frames: tare.frames(),
             number: Some(last.number),
             time: last.time,
@@ -142,8 +142,8 @@ impl LiveTare {
 
     /// Removes the tare, and stops making one. Returns false if there was none and none was being made.
     pub(super) fn give_up(&mut self, processing: &mut Processing) -> bool {
-        let was = self.mark.is_some() || self.first.is_some();
-        (self.mark, self.first, self.error, self.wanted) = (None, None, None, 0);
+        let was = self.origin.is_some() || self.first.is_some();
+        (self.origin, self.first, self.error, self.wanted) = (None, None, None, 0);
         processing.tare = None;
         was
     }
@@ -151,12 +151,12 @@ impl LiveTare {
     /// Notes that the source is watched again, which counts its frames from 0: an existing tare stays without its
     /// age. A tare that was being made, or that lacked frames, begins anew.
     pub(super) fn restart(&mut self) {
-        self.mark = self.mark.map(|mark| TareMark {
+        self.origin = self.origin.map(|origin| TareOrigin {
             number: None,
             time: None,
-            ..mark
+            ..origin
         });
-        let begins = self.mark.is_none() && self.wanted > 0;
+        let begins = self.origin.is_none() && self.wanted > 0;
         self.first = begins.then(|| TareFrames::new(self.wanted));
         self.error = None;
     }

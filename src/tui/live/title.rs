@@ -75,7 +75,7 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
         _ => {}
     }
     let layer = match live.layer {
-        HeatLayer::Tared if live.tare.mark().is_none() => HeatLayer::Raw,
+        HeatLayer::Tared if live.tare.origin().is_none() => HeatLayer::Raw,
         layer => layer,
     };
     say(8, layer.name().to_owned(), Role::Quiet);

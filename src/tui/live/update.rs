@@ -317,8 +317,8 @@ fn refuse_recording(app: &mut App, page: &Live, refused: &LiveRefusal) {
 /// Returns the notice about a tare that was made just now of this number of frames. If the page stays at a frame, these
 /// end with it, and the notice says so.
 fn tare_of(page: &Live, frames: u64) -> String {
-    let mark = page.tare.mark().filter(|_| !page.cursor.follows());
-    match (mark.and_then(|mark| mark.number), frames) {
+    let origin = page.tare.origin().filter(|_| !page.cursor.follows());
+    match (origin.and_then(|origin| origin.number), frames) {
         (Some(number), 1) => format!("tare of frame {number}"),
         (Some(number), _) => format!("tare of the {frames} frames up to frame {number}"),
         (None, 1) => "tare of 1 frame".to_owned(),

@@ -462,18 +462,18 @@ fn tare(live: &Live) -> String {
     if let Some(progress) = live.tare.progress() {
         return progress_text(progress);
     }
-    let Some(mark) = live.tare.mark() else {
+    let Some(origin) = live.tare.origin() else {
         return "none".to_owned();
     };
-    let frames = counted(mark.frames, "frame");
+    let frames = counted(origin.frames, "frame");
     let shown = live.reading().map(|reading| &reading.frame);
-    let age = shown.and_then(|frame| match (frame.time, mark.time) {
+    let age = shown.and_then(|frame| match (frame.time, origin.time) {
         (Some(now), Some(then)) if now > then => {
             Some(format!(", {} s ago", value::decimal(now - then, 1)))
         }
         (Some(_), Some(_)) => None,
         _ => {
-            let frames = frame.number.checked_sub(mark.number?)?;
+            let frames = frame.number.checked_sub(origin.number?)?;
             Some(format!(", {} ago", counted(frames, "frame")))
         }
     });
