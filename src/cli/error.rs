@@ -535,7 +535,8 @@ mod tests {
             CliError::Recording { name, error }.to_string()
         };
         let advice = "; give --rows and --columns";
-        let expected = format!("a.csv: 1 value a frame, but no rows and columns{advice}");
+        let expected =
+            format!("a.csv: 1 value a frame, but its rows and columns are not stated{advice}");
         assert_eq!(recording(RecordingError::Shape { values: 1 }), expected);
         let columns = recording(RecordingError::Columns { numbers: 2 });
         assert!(columns.ends_with(advice), "{columns}");

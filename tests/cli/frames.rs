@@ -133,6 +133,12 @@ fn frames_are_chosen_by_number_label_or_sum() {
         "--frame 3 --at-least 9",
         "no frame 3, expected 0 to 2",
     );
+    let run = taxel(
+        "frames - --frame 99 --at-least 9",
+        "{\"frame\":[[1,2],[3,4]]}\n",
+    );
+    let expected = "error: standard input: no frame 99; the recording has only frame 0\n";
+    assert_eq!((run.status, run.stderr.as_str()), (Some(1), expected));
     unanswered(
         "tekscan.asf",
         "--label 0 --at-least 9",
@@ -672,7 +678,10 @@ fn a_listing_shows_only_the_requested_channel() {
 #[test]
 fn an_endless_input_is_refused_at_once() {
     for (line, expected) in [
-        ("1 2 3", "3 numbers a line, but no rows and columns"),
+        (
+            "1 2 3",
+            "3 numbers a line, but the rows and columns of a frame are not stated",
+        ),
         ("{\\\"frame\\\":[[1],[]]}", "line 1, column "),
     ] {
         let script = format!("yes \"{line}\" | timeout 5 \"$0\" frames -");
@@ -950,7 +959,7 @@ fn a_column_of_numbers_is_a_recording_if_rows_and_columns_are_given() {
     super::refused(
         &read(column, ""),
         1,
-        "standard input: 1 value a frame, but no rows and columns; give --rows and --columns",
+        "standard input: 1 value a frame, but its rows and columns are not stated; give --rows and --columns",
     );
     let words = read("5\nwords\n", "").stderr;
     assert!(

@@ -831,7 +831,7 @@ fn the_message_says_why_lines_of_numbers_are_not_frames() {
     let file = folder.path().join("wide.txt");
     fs::write(&file, wide.repeat(3)).expect("written");
     let said = failure(&format!("frames {}", file.display()), "");
-    let expected = "600 numbers a line, but no rows and columns, each at most 512 (";
+    let expected = "600 numbers a line, but the rows and columns of a frame, each at most 512, are not stated (";
     assert!(said.contains(expected), "{said}");
     let timed = "0.1\n1 2\n3 4\n\n0.2\n1 2\n3 4\n\n";
     let said = failure("watch - --once", timed);
@@ -927,7 +927,7 @@ fn a_channel_whose_rows_and_columns_are_unknown_is_refused() {
     let tip = "--channel /state#tip --at-least 1";
     let said = failure(&format!("watch --once {topics} {tip}"), "");
     assert!(
-        said.contains("3 values a frame, but no rows and columns"),
+        said.contains("3 values a frame, but its rows and columns are not stated"),
         "{said}"
     );
     assert_eq!(said, failure(&format!("frames {topics} --all {tip}"), ""));

@@ -908,7 +908,7 @@ fn watch_accepts_the_flags_of_the_command_line() {
     page.frames(1);
     shows(
         &page,
-        &["no rows and columns", "after Esc, add them to :watch"],
+        &["rows and columns", "after Esc, add them to :watch"],
     );
     then(&mut page, "<Esc>", &[]);
     then(&mut page, &line(" --rows 2 --columns 3 --at-least 4"), &[]);

@@ -156,21 +156,16 @@ fn keeping() -> [Arg; 4] {
 /// Defines the flags that prepare frames. `--rows` and `--columns` have ids of their own: they are not those of a
 /// sensor, and go further.
 pub(crate) fn processing() -> [Arg; 9] {
-    let side = |id: &'static str, flag: &'static str, help: &'static str| {
+    let side = |id: &'static str, flag: &'static str, title: &str| {
         Arg::new(id)
             .long(flag)
             .value_name(flag.to_ascii_uppercase())
             .value_parser(whole::<u16>(FrameSize::SIDES))
-            .help(help)
+            .help(format!("{title}, if the recording does not state them"))
     };
     [
-        side(
-            "frame_columns",
-            "columns",
-            "Columns, if the recording does not state them",
-        )
-        .requires("frame_rows"),
-        side("frame_rows", "rows", "Rows, if it does not state them").requires("frame_columns"),
+        side("frame_columns", "columns", "Columns").requires("frame_rows"),
+        side("frame_rows", "rows", "Rows").requires("frame_columns"),
         option(
             "channel",
             "NAME",

@@ -212,9 +212,10 @@ fn write_noise(
 fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
     match choice {
         FrameChoice::Label(label) => format!("no frame is labelled {label}"),
-        FrameChoice::Number(number) if listed.frames > 0 => {
-            format!("no frame {number}, expected 0 to {}", listed.frames - 1)
-        }
+        FrameChoice::Number(number) if listed.frames > 0 => match listed.frames - 1 {
+            0 => format!("no frame {number}; the recording has only frame 0"),
+            last => format!("no frame {number}, expected 0 to {last}"),
+        },
         FrameChoice::Peak if listed.frames > 0 => {
             "no frame has a cell with a value, so none is the peak".to_owned()
         }

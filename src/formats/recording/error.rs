@@ -38,7 +38,7 @@ pub enum RecordingError {
     },
     /// The file does not say how its values are arranged: it has a list of cells, without rows. Their size can be given
     /// in [`ReadOptions`](super::ReadOptions).
-    #[error("{} a frame, but no rows and columns", counted(*values, "value"))]
+    #[error("{} a frame, but its rows and columns are not stated", counted(*values, "value"))]
     Shape {
         /// The number of values of a frame.
         values: u64,
@@ -46,7 +46,8 @@ pub enum RecordingError {
     /// A table without a header, which does not say how its values are arranged: some numbers of a line may not be
     /// values.
     #[error(
-        "{} a line, but no rows and columns{} (a frame number and a time may be among the numbers)",
+        "{} a line, but the rows and columns of a frame{} are not stated (a frame number and a time may be among the \
+         numbers)",
         counted(*numbers, "number"),
         most_of(*numbers)
     )]
@@ -59,7 +60,7 @@ pub enum RecordingError {
 /// Returns how large rows and columns may be, for a line that is too long to be a row.
 fn most_of(numbers: u64) -> String {
     if numbers > MAX_FRAME_SIDE.into() {
-        format!(", each at most {MAX_FRAME_SIDE}")
+        format!(", each at most {MAX_FRAME_SIDE},")
     } else {
         String::new()
     }

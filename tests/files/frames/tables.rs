@@ -268,7 +268,7 @@ fn a_decimal_comma_between_commas_is_found_by_the_number_of_fields() {
         (
             lines(&block),
             None,
-            "3 numbers a line, but no rows and columns",
+            "3 numbers a line, but the rows and columns of a frame are not stated",
         ),
         // The number may be that of the frame.
         (
@@ -719,7 +719,7 @@ fn the_time_of_a_line_of_json_may_come_after_many_other_keys() {
 fn single_rows_between_empty_lines_need_given_rows_and_columns() {
     let found = recorded(b"1,2\n\n3,4\n\n5,6\n\n", None);
     assert!(
-        error(&found).contains("no rows and columns"),
+        error(&found).contains("rows and columns of a frame are not stated"),
         "{}",
         error(&found)
     );
