@@ -20,7 +20,14 @@ pub(super) struct FrameMarks {
 impl FrameMarks {
     /// Returns the marks set by keys, in the order in which their frames came.
     pub(super) fn own(&self) -> Vec<FrameMark> {
-        self.own.iter().map(|(_, mark)| *mark).collect()
+        self.own_from(0)
+    }
+
+    /// Returns the marks set by keys on frames with this number in the history or a later one, in the order in which
+    /// their frames came.
+    pub(super) fn own_from(&self, first: u64) -> Vec<FrameMark> {
+        let own = self.own.iter().filter(|(number, _)| *number >= first);
+        own.map(|(_, mark)| *mark).collect()
     }
 
     /// Returns true if the marks set by keys have changed since the last call.

@@ -5,6 +5,9 @@
 pub struct RecordingState {
     /// The file that is written; None if nothing is recorded.
     name: Option<String>,
+    /// The number in the history that the next frame had when the recording was requested: frames before it are not
+    /// recorded.
+    from: u64,
     /// Why nothing is recorded although it was requested.
     refusal: Option<String>,
     /// Why the recording that was requested together with the source has failed.
@@ -17,6 +20,11 @@ impl RecordingState {
         self.name.as_deref()
     }
 
+    /// Returns the number in the history from which on frames may be recorded.
+    pub(super) fn from(&self) -> u64 {
+        self.from
+    }
+
     /// Returns why nothing is recorded although it was requested; None if it is recorded, or was not requested.
     pub fn refusal(&self) -> Option<&str> {
         self.refusal.as_deref()
@@ -26,6 +34,11 @@ impl RecordingState {
     /// recordings do not change that.
     pub fn write_failure(&self) -> Option<&str> {
         self.write_failure.as_deref()
+    }
+
+    /// Notes that a recording is requested, before the frame with this number in the history.
+    pub(super) fn request(&mut self, next_number: u64) {
+        self.from = next_number;
     }
 
     /// Notes that a recording has begun in the file `name`, or has ended.

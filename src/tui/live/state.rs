@@ -218,15 +218,15 @@ impl Live {
         self.marks.recorded()
     }
 
-    /// Returns threshold, tare and marks if frames are recorded and any of these has changed. They count as written
-    /// afterwards.
+    /// Returns threshold, tare and the marks of recorded frames, if frames are recorded and any of these has changed.
+    /// They count as written afterwards.
     pub fn take_changed_view(&mut self) -> Option<RecordedView> {
         self.recording.name()?;
         let is_changed = std::mem::take(&mut self.is_viewed_anew) | self.marks.take_change();
         is_changed.then(|| RecordedView {
             rule: self.rule,
             tare: self.processing.tare.clone(),
-            marks: self.marks.own(),
+            marks: self.marks.own_from(self.recording.from()),
         })
     }
 
@@ -469,6 +469,11 @@ impl Live {
     pub fn switch_range(&mut self) -> bool {
         self.range.is_own = !self.range.is_own;
         self.range.is_own
+    }
+
+    /// Notes that a recording of the frames to come is requested.
+    pub(super) fn request_recording(&mut self) {
+        self.recording.request(self.cursor.next_number());
     }
 
     /// Notes that a recording has begun in the file `name`, or has ended.

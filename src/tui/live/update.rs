@@ -440,6 +440,7 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     if page.status().state.is_final() {
         return Err(LiveRefusal::SourceEnded);
     }
+    page.request_recording();
     let channel = page.status().channel.as_deref();
     let metadata = RecordingMetadata {
         source: page.request().source.to_string_lossy().into_owned(),
@@ -588,6 +589,37 @@ mod tests {
         assert_eq!(moved.as_deref(), Some(said));
         assert_eq!(page.recording().name(), Some("touch-2.npy"));
         assert_eq!(page.follow_recording(&status), None);
+    }
+
+    /// A recording that is played in a loop: its numbers begin again.
+    #[test]
+    fn marks_from_before_a_recording_do_not_get_into_it() {
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let take = |page: &mut Live, number| {
+            let mut frame = Frame::new(FrameSize::of(2, 2));
+            frame.number = number;
+            page.take(&FrameBatch {
+                frames: vec![Arc::new(frame)],
+                ..FrameBatch::default()
+            });
+            assert_eq!(page.mark(), Ok((number, true)));
+        };
+        for number in [5, 6, 0] {
+            take(&mut page, number);
+        }
+        let requested = record(&mut page);
+        assert!(matches!(
+            requested,
+            Ok(Effect::Frames(FrameWork::Record(_)))
+        ));
+        // The recording has begun before the page hears of it.
+        take(&mut page, 1);
+        page.set_recording(Some("touch-1.npy".to_owned()));
+        take(&mut page, 6);
+        let view = page.take_changed_view().expect("frames were marked");
+        let numbers: Vec<u64> = view.marks.iter().map(|mark| mark.number).collect();
+        assert_eq!(numbers, [1, 6]);
+        assert_eq!(page.marks().len(), 5);
     }
 
     #[test]
