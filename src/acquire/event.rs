@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::acquire::growing_file::ReadAnew;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingFormat, RecordingNote};
-use crate::formats::stream::{StreamCounts, StreamFormat};
+use crate::formats::stream::{StreamCounts, StreamFormat, StreamOptions};
 use crate::formats::system_error::system_reason;
 #[cfg(feature = "tui")]
 use crate::formats::value::decimal;
@@ -58,10 +58,19 @@ pub enum Playback {
     },
 }
 
-#[cfg(feature = "tui")]
 impl AcquireOptions {
     /// The allowed bits per second of a serial line.
+    #[cfg(feature = "tui")]
     pub(crate) const BAUDS: RangeInclusive<u32> = 50..=20_000_000;
+
+    /// Returns the options for decoding a stream; `from_start` says whether its first byte begins a frame.
+    pub(super) fn for_stream(&self, from_start: bool) -> StreamOptions {
+        StreamOptions {
+            format: self.format.or(self.stream_format),
+            size: self.size.or(self.stream_size),
+            from_start,
+        }
+    }
 }
 
 #[cfg(feature = "tui")]

@@ -9,6 +9,8 @@
 //! recording -> formats::recording, at its own rate          -> AcquireEvent -> FrameRecorder (every frame)
 //! ```
 
+mod source_name;
+
 mod source;
 
 mod serial;
@@ -48,3 +50,4 @@ pub(crate) use recorder::PreparedMetadata;
 pub use recorder::{FrameRecorder, MetadataFileError, RecorderError, metadata_beside};
 pub use run::acquire;
 pub use source::FrameSource;
+pub use source_name::SourceName;

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::acquire::event::{AcquireError, AcquireOptions, Playback};
 use crate::acquire::recorder::RecorderError;
+use crate::acquire::source_name::SourceName;
 use crate::formats::recording::{ReadOptions, RecordingError, RecordingFormat, format_of};
 use crate::formats::system_error::system_reason;
 use crate::storage::FileId;
@@ -44,13 +45,16 @@ impl FrameSource {
     /// Returns the source of that name. A path that does not exist counts as a file, except in `/dev` and
     /// `/dev/serial`: there it counts as a serial line, which may be plugged in later.
     pub fn new(name: &OsStr) -> Self {
-        if name == "-" {
-            return Self::Standard;
-        }
-        if let Some(address) = name.to_str().and_then(|name| name.strip_prefix("tcp://")) {
-            return Self::Tcp(address.to_owned());
-        }
-        let path = PathBuf::from(name);
+        Self::named(SourceName::new(name))
+    }
+
+    /// Returns the source of that name; see [`Self::new`].
+    pub fn named(name: SourceName) -> Self {
+        let path = match name {
+            SourceName::Standard => return Self::Standard,
+            SourceName::Tcp(address) => return Self::Tcp(address),
+            SourceName::Path(path) => path,
+        };
         match fs::metadata(&path).map(|metadata| metadata.file_type()) {
             Ok(kind) if kind.is_char_device() => Self::Serial(path),
             Ok(kind) if kind.is_fifo() => Self::Fifo(path),
@@ -92,13 +96,14 @@ impl FrameSource {
 
     /// Returns the name for messages.
     pub fn name(&self) -> String {
-        match self {
-            Self::Standard => "standard input".to_owned(),
-            Self::Tcp(address) => format!("tcp://{address}"),
+        let name = match self {
+            Self::Standard => SourceName::Standard,
+            Self::Tcp(address) => SourceName::Tcp(address.clone()),
             Self::Serial(path) | Self::Fifo(path) | Self::File(path) => {
-                path.to_string_lossy().into_owned()
+                SourceName::Path(path.clone())
             }
-        }
+        };
+        name.to_string()
     }
 
     /// Refuses a source that cannot be read even later: a file that cannot be opened, or an address without a port.
@@ -139,8 +144,9 @@ impl FrameSource {
             return AcquireError::opening(error);
         }
         let text = format!(
-            "{}; a connection is written tcp://{name}",
-            system_reason(&error)
+            "{}; a connection is written {}",
+            system_reason(&error),
+            SourceName::Tcp(name)
         );
         AcquireError::opening(io::Error::new(error.kind(), text))
     }

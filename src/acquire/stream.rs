@@ -13,7 +13,7 @@ use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
 use crate::acquire::ticker::{TICK, Ticker};
 use crate::formats::recording::{LOOKED_AT, recognised};
-use crate::formats::stream::{StreamCounts, StreamDecoder, StreamEvent, StreamOptions, StreamSink};
+use crate::formats::stream::{StreamCounts, StreamDecoder, StreamEvent, StreamSink};
 
 /// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -75,21 +75,12 @@ pub(super) fn run(
         source,
         options,
         stop,
-        decoder: decoder_for(source, options),
+        decoder: StreamDecoder::new(options.for_stream(source.begins())),
         start: StreamStart::new(source, options),
         clock: StreamClock::new(source, options),
         consumer,
     };
     reader.read()
-}
-
-/// Creates the decoder for a source.
-fn decoder_for(source: &FrameSource, options: &AcquireOptions) -> StreamDecoder {
-    StreamDecoder::new(StreamOptions {
-        format: options.format.or(options.stream_format),
-        size: options.size.or(options.stream_size),
-        from_start: source.begins(),
-    })
 }
 
 /// The first bytes of a source, as long as they may begin a recording that only a file can be.

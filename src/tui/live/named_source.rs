@@ -155,6 +155,7 @@ fn bounds(range: &RangeInclusive<impl fmt::Display>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::acquire::SourceName;
 
     #[test]
     fn a_name_may_have_spaces_and_flags_follow_it() {
@@ -164,7 +165,7 @@ mod tests {
             "my run.csv --rows 4 --columns=5 --baud 9600 --at-least 10 --channel left --speed 0.5 --model figures-30",
         );
         let whole = whole.expect("flags");
-        assert_eq!(whole.source, "my run.csv");
+        assert_eq!(whole.source, SourceName::new("my run.csv"));
         let options = &whole.options;
         assert_eq!(
             (options.size, options.baud),
@@ -185,8 +186,8 @@ mod tests {
         assert_eq!(rule.rule, Rule::at_least(10.0).expect("in range"));
         let plain = request("a--b.csv").expect("no flags");
         assert_eq!(
-            (plain.source.to_str(), plain.rule),
-            (Some("a--b.csv"), None)
+            (plain.source.to_string(), plain.rule),
+            ("a--b.csv".to_owned(), None)
         );
         for (text, error) in [
             ("x --rows 4", "--rows and --columns go together"),

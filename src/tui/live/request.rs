@@ -1,9 +1,9 @@
 //! A request to watch a source, and how its frames are processed.
 
-use std::ffi::OsString;
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
-use crate::acquire::AcquireOptions;
+use crate::acquire::{AcquireOptions, SourceName};
 use crate::frame::{Processing, SetRule};
 use crate::recognition::Noise;
 use crate::storage::Existing;
@@ -14,8 +14,8 @@ use crate::tui::live::history::HISTORY_BYTES;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct WatchRequest {
-    /// The name of the source: a path, `tcp://HOST:PORT`, or `-` for standard input.
-    pub source: OsString,
+    /// The name of the source.
+    pub source: SourceName,
     /// The options for reading the source.
     pub options: AcquireOptions,
     /// Whether the bits per second were given for this source.
@@ -47,9 +47,9 @@ impl PartialEq for WatchRequest {
 
 impl WatchRequest {
     /// Creates a request for a source with default settings.
-    pub fn new(source: impl Into<OsString>) -> Self {
+    pub fn new(source: impl AsRef<OsStr>) -> Self {
         Self {
-            source: source.into(),
+            source: SourceName::new(source),
             options: AcquireOptions::default(),
             baud_named: false,
             processing: Processing::default(),
@@ -65,9 +65,9 @@ impl WatchRequest {
 
     /// Returns a request with the same settings for another source.
     #[must_use]
-    pub fn for_source(&self, source: impl Into<OsString>) -> Self {
+    pub fn for_source(&self, source: impl AsRef<OsStr>) -> Self {
         Self {
-            source: source.into(),
+            source: SourceName::new(source),
             ..self.clone()
         }
     }
@@ -83,11 +83,6 @@ impl WatchRequest {
 
     /// Returns the name of the source for display, without folders.
     pub fn name(&self) -> String {
-        let name = self.source.to_string_lossy();
-        match &*name {
-            "-" => "standard input".to_owned(),
-            tcp if tcp.starts_with("tcp://") => tcp.to_owned(),
-            path => path.rsplit('/').next().unwrap_or(path).to_owned(),
-        }
+        self.source.short()
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::acquire::SourceName;
 use crate::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use crate::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
 use crate::imprint::Imprint;
@@ -521,7 +522,7 @@ impl Live {
     /// # Errors
     /// Returns an error for a source that has not ended, and for standard input.
     pub fn check_again(&self) -> Result<(), LiveRefusal> {
-        if self.request.source == "-" {
+        if self.request.source == SourceName::Standard {
             return Err(LiveRefusal::ReadOnce);
         }
         let is_possible =

@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::acquire::SourceName;
 use crate::formats::Name;
 use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::value::{counted, grouped};
@@ -80,7 +81,8 @@ pub(in crate::tui) fn set_aside(app: &mut App) {
 fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
     let request = source.request(&app.watch_settings);
     // A second page would have no bytes to read, and the first one and its history would be gone.
-    if request.source == "-" && page(app).is_some_and(|page| page.request().source == "-") {
+    let reads_standard = |request: &WatchRequest| request.source == SourceName::Standard;
+    if reads_standard(&request) && page(app).is_some_and(|page| reads_standard(page.request())) {
         refuse(app, LiveRefusal::ReadOnce.to_string());
         return None;
     }
@@ -443,7 +445,7 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     page.request_recording();
     let channel = page.status().channel.as_deref();
     let metadata = RecordingMetadata {
-        source: page.request().source.to_string_lossy().into_owned(),
+        source: page.request().source.to_string(),
         unit: channel.and_then(|channel| channel.unit.clone()),
         pitch_mm: channel.and_then(|channel| channel.pitch_mm),
         rule: page.rule(),

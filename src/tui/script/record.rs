@@ -4,10 +4,9 @@
 //! becomes a drag. Frames of a recording that come in between are counted. A comment notes what a script cannot
 //! repeat: frames of a stream, and inputs while work is under way.
 
-use std::ffi::OsStr;
 use std::fmt::Write;
 
-use crate::acquire::FrameSource;
+use crate::acquire::{FrameSource, SourceName};
 use crate::formats::StoredShape;
 use crate::formats::value::counted;
 use crate::tui::app::message::{Mouse, MouseKind};
@@ -132,8 +131,8 @@ impl Recorder {
 }
 
 /// Returns the line for frames that have come. Frames of a stream cannot be repeated.
-fn frames(source: &OsStr, count: u64) -> String {
-    match FrameSource::new(source) {
+fn frames(source: &SourceName, count: u64) -> String {
+    match FrameSource::named(source.clone()) {
         FrameSource::File(_) => format!("Frames {count}\n"),
         stream => {
             let (frames, name) = (counted(count, "frame"), stream.name());
@@ -183,7 +182,7 @@ mod tests {
             })
             .collect();
         let frames = |source: &str| {
-            let (source, count) = (OsStr::new(source), 3);
+            let (source, count) = (&SourceName::new(source), 3);
             Recorder::new(&[]).lines(SessionEvent::Frames { source, count })
         };
         let script = script + &frames("touch.csv") + &frames("tcp://robot:7000");

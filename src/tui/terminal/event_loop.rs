@@ -13,7 +13,6 @@
 //! It sleeps without a time limit while nothing is pending, so an idle program uses no processor time. A terminal
 //! that takes no output does not delay signals: they interrupt writing, and the next frame repairs the screen.
 
-use std::ffi::OsStr;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
@@ -24,6 +23,7 @@ use ratatui::layout::Size;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
+use crate::acquire::SourceName;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
@@ -130,7 +130,7 @@ pub enum SessionEvent<'a> {
     /// Frames that have come from a source.
     Frames {
         /// The name of the source.
-        source: &'a OsStr,
+        source: &'a SourceName,
         /// The number of frames since the last event.
         count: u64,
     },

@@ -106,7 +106,7 @@ impl FrameFeed {
             return Ok(());
         };
         let metadata = RecordingMetadata {
-            source: request.source.to_string_lossy().into_owned(),
+            source: request.source.to_string(),
             rule: request.rule,
             ..RecordingMetadata::default()
         };
@@ -224,7 +224,7 @@ impl FrameFeed {
                 pending.status().state = SourceState::Silent(why);
             }),
             AcquireEvent::Absent(error) => self.change(|pending| {
-                let name = request.source.to_string_lossy();
+                let name = &request.source;
                 let reason = system_reason(error);
                 let text = format!("waiting for {name}, trying again each second: {reason}");
                 pending.status().state = SourceState::Lost(text);

@@ -1,25 +1,22 @@
 //! Finds out what the name of a frame source refers to, and whether it can be watched.
 
-use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, IsTerminal};
 use std::os::fd::AsFd;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-use crate::acquire::FrameSource;
+use crate::acquire::{FrameSource, SourceName};
 use crate::storage::location;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 
 /// Returns the source of a name, which may begin with `~`.
-pub(in crate::tui::runtime) fn named(name: &OsStr) -> FrameSource {
-    let below = name.to_str().and_then(location::below_home);
-    match below {
-        Some(path) if name != "-" && !name.to_string_lossy().starts_with("tcp://") => {
-            FrameSource::new(path.as_os_str())
-        }
-        _ => FrameSource::new(name),
-    }
+pub(in crate::tui::runtime) fn named(name: &SourceName) -> FrameSource {
+    let below = match name {
+        SourceName::Path(path) => path.to_str().and_then(location::below_home),
+        SourceName::Standard | SourceName::Tcp(_) => None,
+    };
+    FrameSource::named(below.map_or_else(|| name.clone(), SourceName::Path))
 }
 
 /// Returns the source of a name. A script from a stranger reads files only: a serial line would be set up and its
@@ -28,7 +25,7 @@ pub(in crate::tui::runtime) fn named(name: &OsStr) -> FrameSource {
 /// # Errors
 /// Returns a sentence with the name if the source may not or cannot be read.
 pub(in crate::tui::runtime) fn readable(
-    name: &OsStr,
+    name: &SourceName,
     access: &WriteAccess,
 ) -> Result<FrameSource, String> {
     let source = named(name);
