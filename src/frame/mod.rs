@@ -32,6 +32,9 @@ mod view;
 
 mod tare;
 
+#[cfg(feature = "tui")]
+mod first_frames;
+
 mod rule;
 
 mod set_rule;
@@ -43,6 +46,8 @@ mod peak;
 mod flips;
 
 pub use error::FrameError;
+#[cfg(feature = "tui")]
+pub(crate) use first_frames::FirstFrames;
 pub use flips::{FlipCounter, FlipReport};
 pub use peak::Peak;
 pub use processing::{Processed, Processing};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::formats::recording::ChannelInfo;
 use crate::formats::value::counted;
-use crate::frame::{Frame, FrameError, Processing, TareFrames};
+use crate::frame::{FirstFrames, Frame, FrameError, Processing, Tare, TareFrames};
 use crate::tui::live::request::WatchRequest;
 
 /// The origin of a tare.
@@ -26,7 +26,7 @@ pub(super) struct LiveTare {
     /// The number of first frames that a tare was requested of, until a key makes or removes a tare; 0 for none.
     wanted: u64,
     /// The first frames, until there are enough for the requested tare.
-    first: Option<TareFrames>,
+    first: Option<FirstFrames>,
     /// The origin of the tare; None if nothing is subtracted.
     origin: Option<TareOrigin>,
     /// Whether the tare in the recording's own metadata is used once that is known.
@@ -40,7 +40,7 @@ impl LiveTare {
     pub(super) fn new(request: &WatchRequest) -> Self {
         Self {
             wanted: request.tare,
-            first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
+            first: (request.tare > 0).then(|| FirstFrames::new(request.tare)),
             origin: None,
             takes_own: request.own_tare && request.tare == 0,
             error: None,
@@ -77,14 +77,20 @@ impl LiveTare {
     }
 
     /// Adds one of the first frames, and uses the tare after the last of them. A frame whose size does not fit is left
-    /// out; the error says so until one that fits.
+    /// out, as [`FirstFrames`] describes; the error says so until one that fits.
     pub(super) fn add(&mut self, frame: &Frame, processing: &mut Processing) {
         let Some(mut first) = self.first.take() else {
             return;
         };
-        let added = first.add_frame(frame, &processing.view);
+        let added = first.add(frame, &processing.view);
         self.error = match added {
-            Ok(()) if first.missing() == 0 => self.end(first, frame, processing).err(),
+            Ok(_) if first.missing() == 0 => match first.finish() {
+                Ok(tare) => {
+                    self.end(tare, frame, processing);
+                    None
+                }
+                Err(error) => Some(error),
+            },
             Err(error) if !error.is_of_size() => Some(error),
             added => {
                 self.first = Some(first);
@@ -118,26 +124,19 @@ impl LiveTare {
         for frame in frames.iter().rev() {
             tare.add_frame(frame, &processing.view)?;
         }
-        self.end(tare, last, processing)?;
+        self.end(tare.finish()?, last, processing);
         (self.first, self.error, self.wanted) = (None, None, 0);
         Ok(())
     }
 
     /// Uses a tare, and notes its last frame, by which its age is shown.
-    fn end(
-        &mut self,
-        frames: TareFrames,
-        last: &Frame,
-        processing: &mut Processing,
-    ) -> Result<(), FrameError> {
-        let tare = frames.finish()?;
+    fn end(&mut self, tare: Tare, last: &Frame, processing: &mut Processing) {
         self.origin = Some(TareOrigin {
             frames: tare.frames(),
             number: Some(last.number),
             time: last.time,
         });
         processing.tare = Some(tare);
-        Ok(())
     }
 
     /// Removes the tare, and stops making one. Returns false if there was none and none was being made.
@@ -157,7 +156,7 @@ impl LiveTare {
             ..origin
         });
         let begins = self.origin.is_none() && self.wanted > 0;
-        self.first = begins.then(|| TareFrames::new(self.wanted));
+        self.first = begins.then(|| FirstFrames::new(self.wanted));
         self.error = None;
     }
 }

@@ -314,6 +314,7 @@ impl Watcher<'_> {
         let Some(queue) = self.tare.take() else {
             return Ok(());
         };
+        self.answers.count_unfit(queue.unfit());
         let (tare, waiting) = queue
             .finish()
             .map_err(|error| self.reports.refused(&error))?;

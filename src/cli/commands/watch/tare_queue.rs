@@ -1,19 +1,22 @@
 //! The first frames of a source, which wait for the tare that is made of them.
 
-use crate::frame::{Frame, FrameError, Tare, TareFrames, View};
+use crate::frame::{FirstFrames, Frame, FrameError, Tare, View};
 
 /// The frames that wait, and the tare as far as it is made. The whole frames wait, not only their visible parts.
 pub(super) struct TareQueue {
-    tare: TareFrames,
+    tare: FirstFrames,
     waiting: Vec<Frame>,
+    /// The number of frames that have waited, but whose size is not that of the tare.
+    unfit: u64,
 }
 
 impl TareQueue {
     /// Begins a tare of this many frames; None for a tare of 0 frames.
     pub(super) fn new(frames: u64) -> Option<Self> {
         (frames > 0).then(|| Self {
-            tare: TareFrames::new(frames),
+            tare: FirstFrames::new(frames),
             waiting: Vec::new(),
+            unfit: 0,
         })
     }
 
@@ -28,10 +31,18 @@ impl TareQueue {
     /// Returns an error if the frame does not fit the view or the frames before it, or if the tare would take too much
     /// memory. After an error of its size, the tare is made of the frames that follow.
     pub(super) fn add(&mut self, frame: Frame, view: &View) -> Result<bool, FrameError> {
-        self.tare.add_frame(&frame, view)?;
+        let goes_on = self.tare.add(&frame, view)?;
         self.tare.check_memory(frame.values().len())?;
+        if !goes_on {
+            self.unfit += self.waiting.drain(..).len() as u64;
+        }
         self.waiting.push(frame);
         Ok(self.tare.missing() == 0)
+    }
+
+    /// Returns the number of frames that have waited, but whose size is not that of the tare.
+    pub(super) fn unfit(&self) -> u64 {
+        self.unfit
     }
 
     /// Returns the error that the source has ended before the tare was complete.
