@@ -145,12 +145,12 @@ fn the_prompt_offers_commands_and_remembers_lines_between_runs() {
 fn forms_begin_with_the_values_that_were_accepted_last() {
     let folder = folder();
     let world = || World::new(Library::open(folder.path().to_owned()));
-    press(&mut started(world(), ""), "f<Tab>2.5<Enter>u");
-    // The matrix is left empty, so no unsaved work would be offered. Cancelled values are not remembered.
+    press(&mut started(world(), ""), "f<Tab>2.5<Enter>:quit!<Enter>");
+    // The figure was given up, so no unsaved work is offered. Cancelled values are not remembered.
     press(&mut started(world(), ""), "f<Tab>7<Esc>");
     press(
         &mut started(world(), ""),
-        "fr<Tab>5<Enter>e<Down><Down><C-u>0:80:20<Enter>qu",
+        "fr<Tab>5<Enter>e<Down><Down><C-u>0:80:20<Enter>q:quit!<Enter>",
     );
     let mut third = started(world(), "f");
     shows(&third, &["rectangle length 5.00"]);
@@ -177,7 +177,7 @@ fn forms_begin_with_the_values_that_were_accepted_last() {
 fn a_key_gives_forms_their_defaults_and_another_sensor_has_its_own_values() {
     let folder = folder();
     let world = || World::new(Library::open(folder.path().to_owned()));
-    let accepted = "f<Tab>2.5<Enter>e<Down><Down><C-u>0:80:20<Enter>qu";
+    let accepted = "f<Tab>2.5<Enter>e<Down><Down><C-u>0:80:20<Enter>q:quit!<Enter>";
     press(&mut started(world(), ""), accepted);
     // On a sensor of another size, a remembered position may be anywhere, so the values do not apply.
     let mut other = started(world(), ":sensor --columns 20 --rows 16<Enter>f");

@@ -406,10 +406,6 @@ fn quitting_asks_if_work_would_be_lost() {
     for no in ["n", "q", "<Esc>", "<C-c>", "<C-g>"] {
         assert!(!session(&format!("f<Enter>q{no}")).app().ended(), "{no}");
     }
-    assert!(
-        session("f<Enter>uq").app().ended(),
-        "nothing is left to lose"
-    );
     // A drawing that was left for something else would be lost, too: only undo has it.
     let earlier = "An earlier drawing is not saved; the history (H) has it.";
     for left in ["<Space>nq", "<Space><Right><Space>lwasher<Enter>q"] {
@@ -417,6 +413,23 @@ fn quitting_asks_if_work_would_be_lost() {
     }
     let rectangle = "An earlier rectangle is not saved; the history (H) has it.";
     shows("fr<Enter>lgear<Enter>q", &[rectangle, "n: stay)"]);
+    // So would one that was undone until the matrix was empty, or that only redo has.
+    let later = "A later drawing is not saved; the history (H) has it.";
+    for undone in [
+        "<Space><Right><Space>uuq",
+        "<Space>nuuq",
+        "<Space>H<Home><Enter>q",
+    ] {
+        shows(undone, &[later, "Quit anyway?"]);
+    }
+    shows(
+        "<Space>n<Space>uuq",
+        &["The imprint and a later drawing are not saved; the history (H) has the"],
+    );
+    shows(
+        "<Space>n<Space>n<Right><Space>q",
+        &["The imprint and 2 other shapes are not saved; the history (H) has them."],
+    );
     // Both may be unsaved, and saving one does not discard the other.
     let both = "<Space>n<Right><Space>q";
     shows(
@@ -438,7 +451,9 @@ fn quitting_asks_if_work_would_be_lost() {
     for nothing_lost in [
         "<Space><Space>nq",
         "<Space>saa<Enter>nq",
-        "<Space>nuuq",
+        "<Space><Space>nuuq",
+        // What is undone on a shape that stays is given up, as in an editor.
+        "lwasher<Enter><Space>uq",
         // An empty matrix is not worth a question, however it became empty, and on whatever sensor.
         "<Space>saa<Enter><Space>q",
         "f<Enter>saa<Enter>uq",

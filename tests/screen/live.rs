@@ -716,9 +716,9 @@ fn an_imprint_from_a_frame_is_unsaved_work() {
         &["An earlier drawing is not saved; the history (H) has it."],
     );
     // Back on the page, nothing has been taken yet.
-    then(&mut page, "<Esc>uq", &["not saved"]);
-    then(&mut page, "<Esc>uq", &[]);
-    hides(&page, &["not saved"]);
+    then(&mut page, "<Esc>uq", &["The imprint is not saved"]);
+    // Only redo has it.
+    then(&mut page, "<Esc>uq", &["A later drawing is not saved"]);
 }
 
 #[test]

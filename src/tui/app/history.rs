@@ -93,6 +93,28 @@ struct Revision {
     chosen: Option<usize>,
 }
 
+/// The place of a state in the history.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StatePlace {
+    /// Before the present state: undo leads there.
+    Earlier,
+    /// The present state.
+    Present,
+    /// After the present state: redo leads there.
+    Later,
+}
+
+/// A document of the history that would be lost with it.
+#[derive(Clone, Copy, Debug)]
+pub struct UnsavedState<'a> {
+    /// The document.
+    pub document: &'a Document,
+    /// Its origin.
+    pub origin: &'a DocumentOrigin,
+    /// Its place in the history.
+    pub place: StatePlace,
+}
+
 /// A document with all its earlier and, after undo, later states. Going back to a state brings back its name too.
 #[derive(Clone, Debug)]
 pub struct History {
@@ -184,7 +206,8 @@ impl History {
     /// lost by that: undo would go back to them, and quitting there without a question would lose the document.
     pub fn resume(&mut self, document: Document, origin: DocumentOrigin) {
         self.begin(document, origin);
-        if self.left_unsaved().is_none() {
+        let is_earlier = |state: UnsavedState| state.place == StatePlace::Earlier;
+        if !self.unsaved().any(is_earlier) {
             self.past.clear();
         }
     }
@@ -244,29 +267,61 @@ impl History {
         }
     }
 
-    /// Returns the last document that was left for another one without being saved, so that only undo would bring it
-    /// back; None if there is none.
-    pub fn left_unsaved(&self) -> Option<&Document> {
-        let later = self.past.iter().skip(1).chain([&self.present]);
-        let left = self.past.iter().zip(later).filter(|(state, next)| {
-            state.origin != next.origin
-                && (self.origins.get(state.origin))
-                    .is_some_and(|origin| origin.would_lose(&state.document))
-        });
-        left.last().map(|(state, _)| &state.document)
+    /// Returns the documents that would be lost, in the order of the history. Of the states of one origin, the last
+    /// one counts. Where the present document comes from the same origin, that one counts: what was undone on it was
+    /// given up. An empty matrix does not count as a state of a document, so what undo took off it would be lost.
+    pub fn unsaved(&self) -> impl Iterator<Item = UnsavedState<'_>> {
+        let present = &self.present;
+        let at = |place| move |state| (state, place);
+        let earlier = self.past.iter().map(at(StatePlace::Earlier));
+        let later = self.later().map(at(StatePlace::Later));
+        let now = [(present, StatePlace::Present)];
+        let mut states = earlier.chain(now).chain(later).peekable();
+        std::iter::from_fn(move || {
+            let (state, place) = states.next()?;
+            let next = states.peek().map(|(next, _)| next.origin);
+            Some((state, place, next != Some(state.origin)))
+        })
+        .filter(|(state, place, is_last)| match place {
+            StatePlace::Earlier => *is_last,
+            StatePlace::Present => true,
+            StatePlace::Later => {
+                *is_last && (state.origin != present.origin || present.document.is_empty())
+            }
+        })
+        .filter_map(|(state, place, _)| {
+            let (document, origin) = (&state.document, self.origins.get(state.origin)?);
+            origin.would_lose(document).then_some(UnsavedState {
+                document,
+                origin,
+                place,
+            })
+        })
+    }
+
+    /// Returns the states that redo leads to, the next one first.
+    fn later(&self) -> impl Iterator<Item = &Revision> {
+        let before = self.future_before.as_ref();
+        let future = before.filter(|_| self.last_step_is_empty());
+        future.unwrap_or(&self.future).iter().rev()
+    }
+
+    /// Returns true if the last step leads to the same document.
+    fn last_step_is_empty(&self) -> bool {
+        let Revision {
+            document, origin, ..
+        } = &self.present;
+        let last = self.past.last();
+        last.is_some_and(|past| past.document == *document && past.origin == *origin)
     }
 
     /// Drops the last step if amendments have undone it: such a step is no change, and leaves no trace. What could be
     /// redone before it can be redone again.
     fn drop_empty_step(&mut self) {
-        let Revision {
-            document, origin, ..
-        } = &self.present;
-        let is_same = |past: &mut Revision| past.document == *document && past.origin == *origin;
-        if let Some(future) = self
-            .future_before
-            .take_if(|_| self.past.pop_if(is_same).is_some())
+        if self.last_step_is_empty()
+            && let Some(future) = self.future_before.take()
         {
+            self.past.pop();
             self.future = future;
         }
     }

@@ -8,7 +8,7 @@
 //! line_prompt  pages that are one line of text
 //! state      App                                       update: all changes begin there
 //! change     changes of the document                   mouse: what clicks and drags do
-//! quit       the end, and the question before it
+//! unsaved    what would be lost                        quit: the end, and the question before it
 //! steps      the steps of the history, in words
 //! layout     the panes of the screen                   view: draws them
 //! notice     what is said at the bottom, and the area that it leaves to a page
@@ -36,6 +36,8 @@ pub mod state;
 pub mod steps;
 
 pub mod history;
+
+pub mod unsaved;
 
 pub mod change;
 

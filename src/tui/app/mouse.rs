@@ -157,7 +157,8 @@ mod tests {
         let (first, last) = (taxels[0], taxels[taxels.len() - 1]);
         let mouse = |kind, (column, row)| Message::Mouse(Mouse { kind, column, row });
         update(&mut app, mouse(MouseKind::Press, first));
-        let drawn = app.unsaved_work().expect("something is drawn");
+        let drawn = app.unsaved_work().pop().expect("something is drawn");
+        let drawn = drawn.to_shape();
         update(&mut app, mouse(MouseKind::Drag, last));
         assert!(app.reading().imprint.count() > drawn.imprint.count());
         let brought_back = LibraryEvent::Recovered(Box::new(drawn.clone()));

@@ -11,7 +11,7 @@ use crate::formats::{Name, StoredShape};
 use crate::imprint::{Bounds, Imprint};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::{Expected, ShapeOrigin, UNNAMED};
+use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};
@@ -482,33 +482,10 @@ impl App {
         self.paint = None;
     }
 
-    /// Returns true if there is work on the matrix that would be lost.
-    pub fn unsaved(&self) -> bool {
-        self.history.origin().would_lose(self.history.present())
-    }
-
     /// Returns true if the document differs from what is stored under its name. An empty one may differ, although
     /// nothing is lost.
     pub(in crate::tui) fn is_changed(&self) -> bool {
         *self.history.present() != self.history.origin().saved
-    }
-
-    /// Returns true if the document on the matrix is being saved.
-    pub(in crate::tui) fn is_being_saved(&self) -> bool {
-        let present = self.history.present();
-        self.saving.iter().any(|save| save.document == *present)
-    }
-
-    /// Returns the shape to keep in the journal: the unsaved work on the matrix, else the shape that is being saved;
-    /// None if nothing would be lost. After Quit, the work on the matrix has been given up.
-    pub fn unsaved_work(&self) -> Option<StoredShape> {
-        let shown = self.shown();
-        if self.run_state == RunState::Quit || !self.history.origin().would_lose(shown) {
-            return self.saving.back().map(|save| (*save.shape).clone());
-        }
-        let stored = self.stored_name().unwrap_or(UNNAMED);
-        let name = Name::new(stored).or_else(|_| Name::new(UNNAMED)).ok()?;
-        Some(shown.to_shape(name, self.reading()))
     }
 
     /// Returns the taxel under the cursor: column, row. On a smaller sensor than the one that the cursor was put on,

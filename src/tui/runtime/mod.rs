@@ -88,7 +88,7 @@ impl World {
     /// Returns the world around a library. The newest unsaved work in it will be offered.
     pub fn new(library: Library) -> Self {
         Self {
-            journal: JournalWriter::new(Journal::new(&library)),
+            journal: JournalWriter::new(library.clone()),
             orphan: newest_orphan(&library),
             unreadable: leftover::unreadable(&library),
             reminders: Some(Reminders::of(&library)),
@@ -395,7 +395,7 @@ impl World {
             // No more effects are performed.
             let _ = update(app, answer);
         });
-        if is_kept && !lines.is_empty() && app.unsaved_work().is_some() {
+        if is_kept && !lines.is_empty() && !app.unsaved_work().is_empty() {
             lines.push("the next start offers it as unsaved work\n".to_owned());
         }
         lines
@@ -447,7 +447,7 @@ impl World {
         lines.extend(self.finish_changes(app, end, take));
         self.journal.note(app);
         lines.extend(self.writer.left());
-        if !is_kept && app.unsaved_work().is_some() {
+        if !is_kept && !app.unsaved_work().is_empty() {
             let line =
                 "unsaved work may not be on the disk: the disk refuses it or does not answer\n";
             lines.push(line.to_owned());

@@ -118,6 +118,68 @@ fn restored_work_is_not_lost_by_undo() {
     );
 }
 
+/// Returns what is said about unsaved work from last time, and moves all of it to the trash.
+fn offers(library: &Path) -> String {
+    let mut later = session_on(library, "");
+    let mut said = String::new();
+    while later.screen().contains("unsaved work from last time") {
+        said += &later.screen();
+        press(&mut later, "n");
+    }
+    // The lines break anywhere.
+    said.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The work that the question before quitting warns of is also kept if the program dies without a question.
+#[test]
+fn work_that_was_left_for_something_else_is_kept() {
+    let drawn = "<Space><Right><Space><Right><Space>";
+    for left in [
+        "lwasher<Enter>",
+        "n",
+        "rt",
+        "uuu",
+        "H<Home><Enter>",
+        // A form shows its figure instead, but Esc would bring the drawing back.
+        "f<Tab>",
+    ] {
+        let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+        drop(session_on(folder.path(), &format!("{drawn}{left}")));
+        assert!(offers(folder.path()).contains(": 3 taxels, "), "{left}");
+    }
+    // Each document is kept, also the one that only redo has.
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let four = format!("{drawn}n<Right><Space><Right><Space>lwasher<Enter><Space>n<Space>uu");
+    drop(session_on(folder.path(), &four));
+    let said = offers(folder.path());
+    for work in [
+        "(1 of 4)",
+        ": 3 taxels",
+        ": 1 taxel,",
+        "washer, ",
+        ": 2 taxels",
+    ] {
+        assert!(said.contains(work), "{work}: {said}");
+    }
+}
+
+/// Only what could be lost is kept: not what was saved, undone, or given up.
+#[test]
+fn work_that_was_saved_undone_or_given_up_is_not_kept() {
+    for keys in [
+        "<Space>sx<Enter>lwasher<Enter>",
+        "<Space>lwasher<Enter>uqsx<Enter>",
+        "lwasher<Enter><Space>u",
+        "<Space>nqy",
+        "<Space>uqy",
+    ] {
+        let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+        drop(session_on(folder.path(), keys));
+        let later = session_on(folder.path(), "");
+        assert!(!later.screen().contains("unsaved work"), "{keys}");
+    }
+}
+
 /// Waits until unsaved work is on the disk.
 fn journal_is_written(library: &Path) {
     let end = Instant::now() + Duration::from_secs(60);
@@ -201,12 +263,12 @@ fn an_empty_matrix_is_never_unsaved_work() {
     ] {
         let session = session(keys);
         let app = session.app();
-        assert!(!app.unsaved() && app.unsaved_work().is_none(), "{keys}");
+        assert!(!app.unsaved() && app.unsaved_work().is_empty(), "{keys}");
     }
     // Still, it differs from the stored shape, and this is marked beside its name.
     shows("f<Enter>sx<Enter>u", &["· x*\n"]);
     let drawn = session("f<Enter>sx<Enter><Space>");
-    assert!(drawn.app().unsaved() && drawn.app().unsaved_work().is_some());
+    assert!(drawn.app().unsaved() && !drawn.app().unsaved_work().is_empty());
 }
 
 #[test]

@@ -1,23 +1,24 @@
 //! Writes unsaved work to the journal on a separate thread, so that no key waits for a disk.
 //!
 //! ```text
-//!            Persist                400 ms, or Flush
+//!            Keep                   400 ms, or Flush
 //! no work -----------> work, due ---------------------> written: work, nothing due
 //!    ^                     ^                            error:   due again in 5 s, reported once
-//!    |  Clear              |  Persist                      |
+//!    |  Keep nothing       |  Keep                         |
 //!    +---- any             +-------------------------------+
 //! ```
 //! Of the changes within the interval only the last one is written. The thread sleeps while nothing is due. A flush
-//! also writes work that was written before, if someone has removed it from the disk.
+//! also writes work that was written before, if someone has removed it from the disk. A journal holds one shape, so
+//! each piece of work has a journal of its own.
 
 use std::cell::Cell;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::formats::StoredShape;
-use crate::storage::{Journal, Orphan};
+use crate::storage::{Journal, Library, LibraryError, Orphan};
 use crate::tui::app::state::App;
+use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::runtime::work::progress::WorkerEventSink;
 use crate::tui::runtime::work::threads::{self, PATIENCE};
@@ -36,7 +37,7 @@ pub(in crate::tui) struct JournalWriter {
     /// The thread, until it is joined.
     thread: Option<JoinHandle<()>>,
     /// The work that was noted last.
-    last: Option<StoredShape>,
+    last: Vec<UnsavedWork>,
     /// The reason why there is no thread, if the system gives none.
     refused: Option<String>,
     /// Whether the disk has not answered in time: then the program ends without waiting for it.
@@ -45,12 +46,10 @@ pub(in crate::tui) struct JournalWriter {
 
 /// A request to the thread.
 enum JournalRequest {
-    /// Keep this unsaved work.
-    Persist(Box<StoredShape>),
-    /// Keep this work of a program that crashed, and then remove it from that program's journal.
+    /// Keep this unsaved work, and nothing else.
+    Keep(Vec<UnsavedWork>),
+    /// Keep this work of a program that crashed as well, and then remove it from that program's journal.
     Adopt(Box<Orphan>),
-    /// There is no unsaved work any more.
-    Clear,
     /// Write now; the answer is whether everything is written.
     Flush(Sender<bool>),
     /// Report errors to this sink.
@@ -58,12 +57,13 @@ enum JournalRequest {
 }
 
 impl JournalWriter {
-    /// Starts a thread that writes to a journal.
-    pub(in crate::tui) fn new(journal: Journal) -> Self {
+    /// Starts a thread that writes to journals in a library.
+    pub(in crate::tui) fn new(library: Library) -> Self {
         let (notes, inbox) = channel();
         let writer = JournalThread {
-            journal,
-            work: None,
+            library,
+            journals: Vec::new(),
+            works: Vec::new(),
             due: None,
             adopted: Vec::new(),
             post: None,
@@ -73,7 +73,7 @@ impl JournalWriter {
             Ok(thread) => Self {
                 notes: Some(notes),
                 thread: Some(thread),
-                last: None,
+                last: Vec::new(),
                 refused: None,
                 hangs: Cell::new(false),
             },
@@ -90,7 +90,7 @@ impl JournalWriter {
         Self {
             notes: None,
             thread: None,
-            last: None,
+            last: Vec::new(),
             refused: None,
             hangs: Cell::new(false),
         }
@@ -105,29 +105,18 @@ impl JournalWriter {
         self.send(JournalRequest::ReportTo(post));
     }
 
-    /// Notes the unsaved work if it has changed. Called after every message; the comparison is one shape with another.
+    /// Notes the unsaved work if it has changed. Called after every message, so documents are compared, not imprints.
     pub(in crate::tui) fn note(&mut self, app: &App) {
-        let work = app.unsaved_work();
-        if work == self.last {
-            return;
+        let works = app.unsaved_work();
+        if works != self.last {
+            self.last.clone_from(&works);
+            self.send(JournalRequest::Keep(works));
         }
-        if let Some(shape) = work {
-            self.persist(shape);
-        } else {
-            self.last = None;
-            self.send(JournalRequest::Clear);
-        }
-    }
-
-    /// Keeps unsaved work, even if it was noted before.
-    pub(in crate::tui) fn persist(&mut self, shape: StoredShape) {
-        self.last = Some(shape.clone());
-        self.send(JournalRequest::Persist(Box::new(shape)));
     }
 
     /// Keeps the work of a program that crashed, in place of that program's journal.
     pub(in crate::tui) fn adopt(&mut self, orphan: Orphan) {
-        self.last = Some(orphan.shape.clone());
+        self.last.push(UnsavedWork::from(&orphan.shape));
         self.send(JournalRequest::Adopt(Box::new(orphan)));
     }
 
@@ -165,10 +154,12 @@ impl Drop for JournalWriter {
 
 /// The thread's end: gathers changes for a moment, then writes the latest.
 struct JournalThread {
-    /// The journal that it writes to.
-    journal: Journal,
-    /// The unsaved work, if there is any.
-    work: Option<Box<StoredShape>>,
+    /// The library that the journals are in.
+    library: Library,
+    /// The journals, each with the work that was written to it last; None if that failed.
+    journals: Vec<(Journal, Option<UnsavedWork>)>,
+    /// The unsaved work, a journal for each.
+    works: Vec<UnsavedWork>,
     /// The time to write it; None if it is written.
     due: Option<Instant>,
     /// Work of programs that crashed, which stays in their journals until it is written here.
@@ -188,15 +179,11 @@ impl JournalThread {
                 None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
             };
             match note {
-                Ok(JournalRequest::Persist(shape)) => self.note(shape),
+                Ok(JournalRequest::Keep(works)) => self.note(works),
                 Ok(JournalRequest::Adopt(orphan)) => {
-                    self.note(Box::new(orphan.shape.clone()));
+                    self.works.push(UnsavedWork::from(&orphan.shape));
                     self.adopted.push(*orphan);
                     self.write();
-                }
-                Ok(JournalRequest::Clear) => {
-                    (self.work, self.due) = (None, None);
-                    self.journal.clear();
                 }
                 Ok(JournalRequest::Flush(done)) => {
                     // The program may have stopped waiting.
@@ -214,22 +201,20 @@ impl JournalThread {
         }
     }
 
-    /// Takes work to be written after a moment, together with later changes.
-    fn note(&mut self, work: Box<StoredShape>) {
+    /// Takes work to be written after a moment, together with later changes. If there is none, nothing can be lost, so
+    /// the journals are cleared at once.
+    fn note(&mut self, works: Vec<UnsavedWork>) {
         let soon = Instant::now() + GATHER;
-        self.work = Some(work);
+        self.works = works;
         self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
+        if self.works.is_empty() {
+            self.write();
+        }
     }
 
     /// Writes the work unless the disk has it already. Returns true if the disk has it.
     fn write(&mut self) -> bool {
-        let Some(work) = &self.work else {
-            return true;
-        };
-        if self.due.is_none() && self.journal.is_intact() {
-            return true;
-        }
-        match self.journal.keep(work) {
+        match self.keep() {
             Ok(()) => {
                 self.due = None;
                 self.reported = false;
@@ -249,5 +234,31 @@ impl JournalThread {
             }
         }
         self.due.is_none()
+    }
+
+    /// Brings the journals up to date. If their number grows, the last one is written first, otherwise the first one:
+    /// so work that moves to another journal is there before its old one gets other work, and a crash in between loses
+    /// nothing.
+    fn keep(&mut self) -> Result<(), LibraryError> {
+        let count = self.works.len();
+        let grows = count > self.journals.len();
+        let new = || (Journal::new(&self.library), None);
+        self.journals
+            .resize_with(self.journals.len().max(count), new);
+        for step in 0..count {
+            let index = if grows { count - 1 - step } else { step };
+            if let (Some(work), Some((journal, written))) =
+                (self.works.get(index), self.journals.get_mut(index))
+                && !(written.as_ref() == Some(work) && journal.is_intact())
+            {
+                *written = None;
+                journal.keep(&work.to_shape())?;
+                *written = Some(work.clone());
+            }
+        }
+        for (mut journal, _) in self.journals.drain(count..) {
+            journal.clear();
+        }
+        Ok(())
     }
 }

@@ -1,0 +1,85 @@
+//! Unsaved work: what the question before quitting warns of, and what the journal keeps. Both come from the same list,
+//! so nothing that is asked about is missing in the journal.
+
+use crate::formats::{Name, StoredShape};
+use crate::storage::UNNAMED;
+use crate::tui::app::document::{Document, Reading};
+use crate::tui::app::history::{DocumentOrigin, UnsavedState};
+use crate::tui::app::state::{App, RunState};
+
+/// A document that would be lost if the program died now.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnsavedWork {
+    /// The name that it is offered under.
+    name: Name,
+    /// The document.
+    document: Document,
+}
+
+impl UnsavedWork {
+    /// Returns the work as a shape. This touches the matrix, so it is not done for every key.
+    pub fn to_shape(&self) -> StoredShape {
+        let reading = Reading::of(&self.document);
+        self.document.to_shape(self.name.clone(), &reading)
+    }
+}
+
+impl From<&StoredShape> for UnsavedWork {
+    fn from(shape: &StoredShape) -> Self {
+        Self {
+            name: shape.name.clone(),
+            document: Document::of_shape(shape),
+        }
+    }
+}
+
+impl App {
+    /// Returns true if there is work on the matrix that would be lost.
+    pub fn unsaved(&self) -> bool {
+        self.history.origin().would_lose(self.history.present())
+    }
+
+    /// Returns true if a document is being saved.
+    pub(in crate::tui) fn is_being_saved(&self, document: &Document) -> bool {
+        self.saving.iter().any(|save| save.document == *document)
+    }
+
+    /// Returns the documents that are lost at the end unless the user stays, in the order of the history. A document
+    /// that is being saved is not: the end waits for it, and reports a failure.
+    pub(in crate::tui) fn lost_at_end(&self) -> impl Iterator<Item = UnsavedState<'_>> {
+        let unsaved = self.history.unsaved();
+        unsaved.filter(|state| !self.is_being_saved(state.document))
+    }
+
+    /// Returns the work to keep in the journal: all unsaved documents in the order of the history; what an open form
+    /// shows, because it may be accepted; the shapes that are being saved, because this may fail. After Quit, only the
+    /// latter: everything else has been given up.
+    pub fn unsaved_work(&self) -> Vec<UnsavedWork> {
+        let (origin, shown) = (self.history.origin(), self.shown());
+        let unsaved = self.history.unsaved();
+        let own = unsaved.map(|state| (origin_name(state.origin), state.document));
+        let shown = origin.would_lose(shown).then_some(shown);
+        let previewed = shown.map(|shown| (origin_name(origin), shown));
+        let kept = own
+            .chain(previewed)
+            .filter(|_| self.run_state != RunState::Quit);
+        let saving = self.saving.iter();
+        let saving = saving.map(|save| (Some(save.shape.name.clone()), &save.document));
+        let mut works: Vec<UnsavedWork> = Vec::new();
+        for (name, document) in kept.chain(saving) {
+            if let Some(name) = name
+                && !works.iter().any(|work| work.document == *document)
+            {
+                let document = document.clone();
+                works.push(UnsavedWork { name, document });
+            }
+        }
+        works
+    }
+}
+
+/// Returns the name to keep a document of this origin under: its own if it has one.
+fn origin_name(origin: &DocumentOrigin) -> Option<Name> {
+    let stored = origin.name.as_ref().map_or(UNNAMED, |stored| &stored.name);
+    Name::new(stored).or_else(|_| Name::new(UNNAMED)).ok()
+}
