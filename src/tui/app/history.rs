@@ -174,6 +174,11 @@ impl History {
             .unwrap_or(&self.origins[0])
     }
 
+    /// Returns the origin of that index; None if there is none.
+    pub fn origin_at(&self, index: usize) -> Option<&DocumentOrigin> {
+        self.origins.get(index)
+    }
+
     /// Returns true if a document of this name was loaded or saved since the start of the program.
     pub fn knows(&self, name: &str) -> bool {
         let names = self.origins.iter().filter_map(|own| own.name.as_ref());

@@ -125,8 +125,6 @@ pub enum Message {
     Mouse(Mouse),
     /// The size of the screen has changed: columns, rows.
     Resized(u16, u16),
-    /// Ask whether to store the shape over a file whose content has this stamp.
-    Replace(Box<StoredShape>, u64),
     /// Recover the unsaved work of a program that crashed.
     Recover,
     /// Move the unsaved work of a program that crashed to the trash.

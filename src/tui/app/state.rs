@@ -11,7 +11,7 @@ use crate::formats::{Name, StoredShape};
 use crate::imprint::{Bounds, Imprint};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::{Expected, ShapeOrigin};
+use crate::storage::Expected;
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};
@@ -534,18 +534,11 @@ impl App {
         &self.theme
     }
 
-    /// Returns the message that stores the document under a name. The user is asked before any existing file is
-    /// replaced, even the one that the document came from.
+    /// Returns the message that stores the document under a name. It replaces no file, not even the one that the
+    /// document came from: if there is one, the library says what it holds now, and the user is asked.
     pub(in crate::tui) fn storing(&self, name: Name) -> Message {
-        let own = self
-            .stored()
-            .filter(|stored| stored.owner == ShapeOrigin::Own && name.same(&stored.name));
-        let stamp = own.map(|stored| stored.stamp);
         let present = self.history.present();
         let shape = Box::new(present.to_shape(name, &Reading::of(present)));
-        match stamp {
-            Some(stamp) => Message::Replace(shape, stamp),
-            None => Message::Request(LibraryRequest::Store(shape, Expected::Nothing)),
-        }
+        Message::Request(LibraryRequest::Store(shape, Expected::Nothing))
     }
 }

@@ -62,12 +62,6 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             Some(before) => compare_with(app, "the state before", &before),
             None => inform(app, "nothing to compare with: this is the first state"),
         },
-        Message::Replace(shape, stamp) => {
-            let name = shape.name.to_string();
-            let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
-            let question = Question::replaces(&name, Message::Request(store));
-            app.dialogs.push(Dialog::Question(question));
-        }
         Message::OpenFile(name) => return Some(Effect::File(FileRequest::Open(name))),
         Message::WriteFile(name) => return files::write(app, name),
         Message::Overwrite(name, content) => {

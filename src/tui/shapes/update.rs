@@ -7,7 +7,7 @@ use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
-use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
+use crate::storage::{Expected, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
 use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse, resume};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
@@ -66,12 +66,8 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             app.saving.pop_front();
             refuse(app, reason);
         }
-        LibraryEvent::Differs(shape, stamp, text) => {
-            app.saving.pop_front();
-            let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
-            let about = format!("{text}.");
-            let question = Question::new(about, "Replace it?", Message::Request(store));
-            app.dialogs.push(Dialog::Question(question));
+        LibraryEvent::Differs(shape, stamp, reason) => {
+            ask_replacement(app, shape, stamp, reason);
         }
         LibraryEvent::Removed(name) => on_removed(app, name),
         LibraryEvent::Restored(name) => {
@@ -297,6 +293,25 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
         }
     }
     None
+}
+
+/// Asks whether to replace the file, with content of this stamp, that has kept a shape from being stored. If the
+/// document came from that file, the question says whether another program has changed it since.
+fn ask_replacement(app: &mut App, shape: Box<StoredShape>, stamp: u64, reason: String) {
+    let save = app.saving.pop_front();
+    let origin = save.and_then(|save| app.history.origin_at(save.origin));
+    let own = origin.and_then(|origin| origin.name.as_ref());
+    let own = own.filter(|own| own.owner == ShapeOrigin::Own && shape.name.same(&own.name));
+    let reason = match own.filter(|own| own.stamp != stamp) {
+        Some(own) => {
+            let name = own.name.clone();
+            LibraryError::Changed { name, stamp }.to_string()
+        }
+        None => reason,
+    };
+    let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
+    let question = Question::new(format!("{reason}."), "Replace it?", Message::Request(store));
+    app.dialogs.push(Dialog::Question(question));
 }
 
 /// Asks whether to delete a shape.

@@ -124,13 +124,18 @@ fn two_programs_do_not_overwrite_each_other_unnoticed() {
     let mut first = session_on(folder.path(), "<Space>sshared<Enter>");
     let mut second = session_on(folder.path(), "lshared<Enter><Right><Space>s<Enter>y");
     shows(&second, &["saved as shared"]);
-    then(
-        &mut first,
-        "<Down><Space>s<Enter>y",
-        &["\"shared\" was changed by another program since it was loaded. Replace it?"],
-    );
+    // There is one question, and it is about what the file holds now.
+    let changed = "\"shared\" was changed by another program since it was loaded. Replace it?";
+    then(&mut first, "<Down><Space>s<Enter>", &[changed]);
     then(&mut first, "n", &["Save as: shared"]);
-    then(&mut second, "nlshared<Enter>", &["NA 2 in all"]);
+    then(&mut first, "<Enter>", &[changed]);
+    press(&mut second, "<Right><Space>s<Enter>y");
+    then(&mut first, "y", &[changed]);
+    then(&mut first, "n<Esc>", &[]);
+    then(&mut second, "nlshared<Enter>", &["NA 3 in all"]);
+    // A file that is gone is not replaced.
+    then(&mut second, "dshared<Enter>y", &["shared deleted"]);
+    then(&mut first, "s<Enter>", &["saved as shared"]);
 }
 
 #[test]
