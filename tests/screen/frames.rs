@@ -24,7 +24,7 @@ const SCENES: [(&str, &str, &str, usize); 9] = [
     ("first frame", "", "", 2200),
     ("cursor move", "", "<Right>", 60),
     ("cursor move on a figure", "f<CR>", "<Right>", 60),
-    ("first toggle", "", "<Space>", 180),
+    ("first toggle", "", "<Space>", 290),
     (
         "toggle that makes a hole",
         "f<CR><8x:Left><8x:Down><3x:Right><3x:Up>",

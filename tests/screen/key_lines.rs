@@ -76,7 +76,10 @@ fn the_menu_shows_the_keys_of_the_page() {
             "f<CR>:explore --angle 0<CR>",
             "Tab page  d D descriptor  x export  e ranges  Esc close",
         ),
-        ("r", "t quiz  a x keep, forget  o O other model  Esc close"),
+        (
+            "f<CR>r",
+            "t quiz  a x keep, forget  o O other model  Esc close",
+        ),
     ] {
         let (first, _) = lines(&sized((60, 20), false, keys));
         assert_eq!(first, menu, "{keys}");
@@ -116,12 +119,32 @@ fn the_menu_shows_the_keys_of_the_page() {
             "{keys}: {last}"
         );
     }
+    // On the matrix, too, and on a page beside it.
+    for (keys, expected) in [
+        ("", "Space toggle  r recognise"),
+        (
+            "<Space>",
+            "Space toggle  u undo  Tab region  e explore  r recognise",
+        ),
+        ("<Space><Space>", "Space toggle  u undo  r recognise"),
+        ("<Space>r", "Space toggle  u undo  Tab region  e explore"),
+        ("r", "Space toggle"),
+    ] {
+        let (_, last) = lines(keys);
+        assert_eq!(last, expected, "{keys}");
+    }
+    shows("f<CR>", &["c coverage  g hold"]);
+    shows(
+        "r",
+        &["t quiz   o O other model   v confusion   Esc close   ? help\n"],
+    );
     let (menu, hints) = lines("f<CR>r");
     assert!(menu.starts_with("t quiz"), "{menu}");
     assert!(
         menu.ends_with("? Help") || menu.ends_with("? help"),
         "{menu}"
     );
+    assert!(hints.contains("< > turn"), "{hints}");
     // On this page, o chooses the next set instead of the outline.
     assert!(
         hints.starts_with("Space toggle") && !hints.contains("outline"),

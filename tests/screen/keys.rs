@@ -30,7 +30,7 @@ fn taxels_are_toggled_and_toggles_are_undone() {
     shows("<Space><Space>", &["inactive", "empty"]);
     shows("<Space><Right><Space>u", &["NA 1 in all"]);
     shows("<Space><Right><Space>uu", &["NA 0 in all"]);
-    shows("<Space><Right><Space>uuu", &["nothing to undo"]);
+    shows("<Space><Right><Space>uuu", &["! nothing to undo"]);
     // A count that is too large ends at the first step, which is still named.
     shows("<Space><Right><Space>9u", &["undone: taxel 8, 8 on"]);
     shows("<Space><Right><Space>uu9<C-r>", &["redone: taxel 9, 8 on"]);

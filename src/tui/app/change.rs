@@ -33,7 +33,7 @@ pub(in crate::tui) fn compare_with(app: &mut App, name: &str, other: &Imprint) {
     app.dialogs.push(Dialog::Compare(comparison));
 }
 
-/// Shows a notice that says why something was not done.
+/// Shows a notice that says why something was not done, whatever the reason: an `!` stands before it.
 pub(in crate::tui) fn refuse(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Refusal(text.into()));
 }
@@ -95,7 +95,7 @@ pub(in crate::tui) fn travel(
             settle_elsewhere(app);
             inform(app, format!("{done}: {what}"));
         }
-        None => inform(app, otherwise),
+        None => refuse(app, otherwise),
     }
 }
 

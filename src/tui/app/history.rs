@@ -363,6 +363,12 @@ impl History {
         Some(undone)
     }
 
+    /// Returns true if there is a change to undo.
+    pub fn can_undo(&self) -> bool {
+        let dropped = self.future_before.is_some() && self.last_step_is_empty();
+        self.past.len() > usize::from(dropped)
+    }
+
     /// Goes forward again by one change. Returns the change in words, None if there is none.
     pub fn redo(&mut self) -> Option<String> {
         self.drop_empty_step();

@@ -24,6 +24,7 @@ use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::matrix::usable::is_usable;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -176,14 +177,18 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     placed(panes.hints, 2, Role::Quiet, false, &rows)
 }
 
-/// Returns true if the top page can do something with one of the keys of a row now.
+/// Returns true if one of the keys of a row does something now: on the matrix if the row belongs to it, otherwise on the
+/// top page.
 fn useful(app: &App, row: &Binding) -> bool {
+    let mut messages = row.keys.iter().filter_map(|(_, action)| action.message());
+    if matches!(row.context, Context::Matrix | Context::Hold) {
+        return messages.any(|message| is_usable(app, message));
+    }
     let page = app.dialogs.last().map(Dialog::page);
     let Some((page, panes)) = page.zip(app.panes()) else {
         return true;
     };
     let area = notice::page_area(app, &panes, page);
-    let mut messages = row.keys.iter().filter_map(|(_, action)| action.message());
     messages.any(|message| page.has_use_for(message, area))
 }
 

@@ -111,12 +111,11 @@ fn with_count(app: &mut App, message: &Message) -> Option<Effect> {
 fn take_digit(app: &mut App, digit: u16) {
     let count = app.count.unwrap_or_default() * 10 + digit;
     app.count = Some(count.min(MOST_TIMES)).filter(|&count| count > 0);
-    let text = match count {
-        0 => "a count begins with 1 to 9".to_owned(),
-        1..=MOST_TIMES => counted(count, "time"),
-        _ => format!("a key repeats at most {MOST_TIMES} times"),
-    };
-    inform(app, text);
+    match count {
+        0 => refuse(app, "a count begins with 1 to 9"),
+        1..=MOST_TIMES => inform(app, counted(count, "time")),
+        _ => refuse(app, format!("a key repeats at most {MOST_TIMES} times")),
+    }
 }
 
 /// Repeats a message of the user, stopping at the first effect.

@@ -1,6 +1,6 @@
 //! The effects of messages over two imprints that are compared.
 
-use crate::tui::app::change::inform;
+use crate::tui::app::change::refuse;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::Page;
@@ -30,7 +30,7 @@ pub(in crate::tui) fn in_comparison(
         } else if let Some(by) = by
             && !page.scroll(by, area)
         {
-            inform(app, "all of it is visible");
+            refuse(app, "all of it is visible");
         }
     }
     app.dialogs.push(Dialog::Compare(page));

@@ -82,7 +82,7 @@ pub(in crate::tui) fn in_results(
                 && results.map_zoom() == before
             {
                 let end = ["this is the whole range", "every pose has its letter"];
-                inform(app, end[usize::from(*by > 0)]);
+                refuse(app, end[usize::from(*by > 0)]);
             }
         }
     }

@@ -5,7 +5,7 @@
 
 use crate::figure::FigureKind;
 use crate::quote::quoted_character;
-use crate::tui::app::change::{inform, refuse, replace};
+use crate::tui::app::change::{refuse, replace};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -55,7 +55,7 @@ pub(in crate::tui) fn update(
         }
         Message::Defaults => dialog.set_defaults(),
         Message::Step(_) | Message::Erase(_) | Message::ToEdge(_) if on_kind => {
-            inform(app, "an arrow or a letter chooses the kind");
+            refuse(app, "an arrow or a letter chooses the kind");
         }
         Message::Step(direction) => dialog.edit(|form| form.step(direction)),
         other => dialog.edit(|form| form.take(&other)),

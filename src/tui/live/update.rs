@@ -126,7 +126,7 @@ fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
 /// recording that was requested at the start is finished, and stays as it is.
 fn open(app: &mut App) -> Option<Effect> {
     if topmost!(&app.dialogs, Live).is_some() {
-        inform(app, OPEN_ALREADY);
+        refuse(app, OPEN_ALREADY);
         return None;
     }
     let Some(mut page) = app.live.take() else {
@@ -206,7 +206,7 @@ fn scrub(app: &mut App, page: &mut Live, by: i16) {
             _ if page.has_ended() => "no later frame",
             _ => "no later frame yet",
         };
-        inform(app, text);
+        refuse(app, text);
     }
 }
 
@@ -381,14 +381,14 @@ fn on_no_name(app: &mut App, source: u64, by: u64, reason: &str) -> Option<Effec
 fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
     if page.display.only_panel {
         let key = app.keymap().label(Context::Live, &action::PANEL);
-        return inform(app, format!("the taxels are hidden; {key} shows them"));
+        return refuse(app, format!("the taxels are hidden; {key} shows them"));
     }
     let area = app.panes();
     let area = area.map(|panes| notice::page_area(app, &panes, page));
     let next = area.and_then(|area| view::beyond(page, app.theme(), area, towards));
     if next.is_none() {
         let hides = area.is_some_and(|area| view::hides_taxels(page, area));
-        return inform(
+        return refuse(
             app,
             if hides || page.reading().is_none() {
                 "no more taxels in this direction"

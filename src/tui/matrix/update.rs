@@ -10,12 +10,12 @@ use crate::parameter::Parameter;
 use crate::parameter::number::short;
 use crate::picture::Picture;
 use crate::source::Source;
-use crate::storage::{Existing, Expected, ShapeOrigin};
+use crate::storage::{Existing, ShapeOrigin};
 use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
     shift, travel, turn, zoom,
 };
-use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::library::LibraryRequest;
@@ -47,7 +47,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::New => {
             let origin = app.history.origin();
             if origin.name.is_none() && app.history.present().is_empty() {
-                inform(app, "the matrix is empty already");
+                refuse(app, "the matrix is empty already");
             } else {
                 let empty = Document::empty(sensor);
                 begin(app, DocumentOrigin::of(&empty), empty);
@@ -60,7 +60,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             .map(|before| Reading::of(before).imprint)
         {
             Some(before) => compare_with(app, "the state before", &before),
-            None => inform(app, "nothing to compare with: this is the first state"),
+            None => refuse(app, "nothing to compare with: this is the first state"),
         },
         Message::OpenFile(name) => return Some(Effect::File(FileRequest::Open(name))),
         Message::WriteFile(name) => return files::write(app, name),
@@ -301,7 +301,7 @@ fn edit(app: &mut App, message: &Message) {
                 .panes()
                 .is_some_and(|panes| !app.can_switch_pane(&panes)) =>
         {
-            inform(app, "both sides of the screen are visible");
+            refuse(app, "both sides of the screen are visible");
         }
         Message::SwitchPane => {
             app.narrow_pane = match app.narrow_pane {
@@ -396,13 +396,14 @@ fn switch_layer(app: &mut App, layer: Layer) {
         Layer::Outline => app.layers.outline = Some(show),
         Layer::Rectangle => app.layers.rectangle = Some(show),
     }
-    let text = match (show, missing, layer) {
-        (false, ..) => format!("without {name}"),
-        (true, false, _) => format!("with {name}"),
-        (true, true, Layer::Outline) => format!("no outline to show: {}", has_none(app)),
-        (true, true, Layer::Rectangle) => NO_REGION.to_owned(),
-    };
-    inform(app, text);
+    match (show, missing, layer) {
+        (false, ..) => inform(app, format!("without {name}")),
+        (true, false, _) => inform(app, format!("with {name}")),
+        (true, true, Layer::Outline) => {
+            refuse(app, format!("no outline to show: {}", has_none(app)));
+        }
+        (true, true, Layer::Rectangle) => refuse(app, NO_REGION),
+    }
 }
 
 /// Returns the first or the last index of a number of columns or rows.
@@ -418,7 +419,7 @@ fn change_step(app: &mut App, direction: i8) {
     let step = app.step.other(direction);
     if step == app.step {
         let end = ["smallest", "largest"][usize::from(direction > 0)];
-        inform(app, format!("{} is the {end} step", step.length()));
+        refuse(app, format!("{} is the {end} step", step.length()));
     }
     app.step = step;
 }
@@ -440,7 +441,7 @@ fn choose_region(app: &mut App, by: i8) {
     app.followed = Followed::Region;
     let seen = app.reading();
     let Some((now, _)) = seen.region(app.chosen()) else {
-        return inform(app, NO_REGION);
+        return refuse(app, NO_REGION);
     };
     let count = seen.regions.len();
     if count == 1 {

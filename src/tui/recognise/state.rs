@@ -346,6 +346,11 @@ impl Recognition {
         self.kept.len()
     }
 
+    /// Returns true if the touch on the matrix is a kept one.
+    pub fn is_kept(&self) -> bool {
+        self.present_kept
+    }
+
     /// Returns the imprint on the matrix.
     pub fn present(&self) -> &Imprint {
         &self.present

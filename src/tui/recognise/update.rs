@@ -176,19 +176,23 @@ fn show_poses(app: &mut App) {
     page.show(imprint, source.as_ref());
     let seen = Layers::shown(page.outlines(), &grid);
     page.show_outlines(!seen);
-    let text = match page.found() {
-        _ if seen => "without poses",
-        _ if page.present().is_empty() => "no pose to show: nothing is touched",
-        None if page.is_searching() => "the poses are still being searched for",
-        None => "no pose to show: the search failed",
-        Some(found) if !found.poses.is_empty() => "the likeliest pose; others of the 95 % faintly",
-        Some(found) => match &found.refused {
-            Some(reason) => reason,
-            None => "no pose to show: no shape of the model leaves this imprint",
-        },
+    let said = match page.found() {
+        _ if seen => Ok("without poses"),
+        None if page.is_searching() => Ok("the poses are still being searched for"),
+        Some(found) if !found.poses.is_empty() => {
+            Ok("the likeliest pose; others of the 95 % faintly")
+        }
+        _ if page.present().is_empty() => Err("no pose to show: nothing is touched".to_owned()),
+        None => Err("no pose to show: the search failed".to_owned()),
+        Some(found) => {
+            let none = "no pose to show: no shape of the model leaves this imprint";
+            Err(found.refused.clone().unwrap_or_else(|| none.to_owned()))
+        }
     };
-    let text = text.to_owned();
-    inform(app, text);
+    match said {
+        Ok(text) => inform(app, text),
+        Err(reason) => refuse(app, reason),
+    }
 }
 
 /// Begins a quiz. Kept touches are forgotten: they were of another shape, and the answer is about one shape only.
@@ -221,9 +225,11 @@ fn separate(app: &mut App, flags: &SeparationFlags) {
 
 /// Forgets the kept touches.
 fn forget(app: &mut App) {
-    let any = state(app).is_some_and(Recognition::forget);
-    let text = ["no touches are kept", "the kept touches are forgotten"][usize::from(any)];
-    inform(app, text);
+    if state(app).is_some_and(Recognition::forget) {
+        inform(app, "the kept touches are forgotten");
+    } else {
+        refuse(app, "no touches are kept");
+    }
 }
 
 /// Keeps the touch on the matrix. Kept touches count as touches of the same shape; the answer considers them all
@@ -233,14 +239,13 @@ fn add_touch(app: &mut App) {
     let (imprint, source) = (app.reading().imprint, app.shown().source.clone());
     let Some(page) = state(app) else { return };
     page.show(imprint, source.as_ref());
-    let kept = page.add_touch();
-    let text = match (kept, page.kept()) {
-        (true, 1) => "1 touch kept; now touch the shape elsewhere".to_owned(),
-        (true, count) => format!("{count} touches kept"),
-        (false, _) if page.present().is_empty() => "nothing is touched".to_owned(),
-        (false, _) => "this touch is already kept".to_owned(),
-    };
-    inform(app, text);
+    let is_empty = page.present().is_empty();
+    match (page.add_touch(), page.kept()) {
+        (true, 1) => inform(app, "1 touch kept; now touch the shape elsewhere"),
+        (true, count) => inform(app, format!("{count} touches kept")),
+        (false, _) if is_empty => refuse(app, "nothing is touched"),
+        (false, _) => refuse(app, "this touch is already kept"),
+    }
 }
 
 /// Handles a message over the page; unknown messages go to the matrix. During a training, Cancel and Quit first stop
@@ -282,7 +287,7 @@ fn prepare_again(app: &mut App) -> Option<Effect> {
         }
         ModelState::Ready(_) => "the model is ready: nothing was stopped",
     };
-    inform(app, text);
+    refuse(app, text);
     None
 }
 

@@ -24,12 +24,13 @@ use crate::imprint::Imprint;
 use crate::parameter::number::{differing, share, short};
 use crate::pose::Axis;
 use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
+use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, PoseLayer, Slot};
 use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::recognise::message::PoseSearchResult;
+use crate::tui::recognise::message::{PoseSearchResult, RecogniseMessage};
 use crate::tui::recognise::state::{ModelState, Preparation, Recognition};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::narrow;
@@ -110,6 +111,19 @@ impl Page for Recognition {
         PoseLayer {
             sources: self.found().map_or(&[], |found| &found.poses),
             shown: self.outlines(),
+        }
+    }
+
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
+        match message {
+            Message::Recognise(RecogniseMessage::Keep) => {
+                !self.present().is_empty() && !self.is_kept()
+            }
+            Message::Recognise(RecogniseMessage::Forget) => self.kept() > 0,
+            Message::Recognise(RecogniseMessage::Touch | RecogniseMessage::Confusion) => {
+                !matches!(self.state(), ModelState::Missing)
+            }
+            _ => true,
         }
     }
 

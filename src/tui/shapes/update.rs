@@ -106,7 +106,7 @@ fn on_models(app: &mut App, names: &[String]) -> Option<Effect> {
 /// Handles the names of deleted shapes, for completion in the `:` prompt.
 fn on_trash(app: &mut App, names: &[String]) {
     if names.is_empty() {
-        inform(app, "nothing has been deleted");
+        refuse(app, "nothing has been deleted");
     }
     if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
         command.complete_asked(names);

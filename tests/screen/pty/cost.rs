@@ -10,8 +10,9 @@ use super::screens::session;
 const MOVE: usize = 60;
 /// The highest number of bytes for a toggle: fourteen descriptors change, whose new digits alone take 70 bytes.
 const TOGGLE: usize = 158;
-/// The highest number of bytes for the first toggle on an empty matrix: all descriptors appear.
-const FIRST_TOGGLE: usize = 195;
+/// The highest number of bytes for the first toggle on an empty matrix: all descriptors appear, and the hints about what
+/// is there.
+const FIRST_TOGGLE: usize = 290;
 
 #[test]
 fn screens_of_80_x_24_take_few_bytes() {

@@ -68,7 +68,7 @@ pub(in crate::tui) fn in_separate(
         Message::Recognise(RecogniseMessage::Want(by)) => page.want(*by),
         Message::Recognise(RecogniseMessage::Separate(_)) => {
             if !page.go_on() && page.work().is_none() {
-                inform(app, "all sizes are done");
+                refuse(app, "all sizes are done");
             }
         }
         Message::Explore(ExploreMessage::Export) if page.found().is_empty() => {
