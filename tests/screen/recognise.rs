@@ -200,7 +200,7 @@ fn the_pose_is_shown_with_its_unit() {
     let narrow = sized((40, 12), false, "f<Enter>r");
     shows(
         &narrow,
-        &["best error 0.0 %, certain 100.0 %\n", "0.09 cells\n"],
+        &["limit: error 0.0 %, certain 100.0 %\n", "0.09 cells\n"],
     );
 }
 
@@ -244,7 +244,7 @@ fn nothing_is_cut_off_beside_a_large_sensor() {
         let panel = panel.split_whitespace().collect::<Vec<_>>().join(" ");
         for text in [
             "grid: 0.01 cells, 1°; 25,200,000 touches",
-            "best possible error 33.0 %, certain 38.3 %",
+            "error 33.0 %, certain 38.3 %",
             "the model 1",
         ] {
             assert!(panel.contains(text), "{size:?}: no {text:?}\n{screen}");
@@ -403,7 +403,7 @@ fn a_notice_that_the_model_is_not_ready_goes_when_it_is() {
 #[test]
 fn escape_stops_the_sizes_and_keeps_the_results() {
     let mut program = Beside::new("r");
-    program.until("best possible error");
+    program.until("limit: error");
     press(
         &mut program.session,
         ":separate --scale 0.5:3:0.01 --positions 20<Enter>",

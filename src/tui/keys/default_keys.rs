@@ -232,7 +232,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('#') => SORT_BY_FIRST_POSE, Char('n') => SORT_BY_POSES,
             Char('c') => SORT_BY_PIECES, Char('h') => SORT_BY_HOLES,
             Char('v') => SORT_BY_VALUE]
-            "" "sort by 1st pose, poses, pieces, holes, value";
+            "" "sort by #, poses, pieces, holes, value";
         [Char('=') => COMPARE] "compare" "compare it with the imprint on the matrix";
         [Char('j') => FIND] "jump" "jump to the imprint that is on the matrix";
         [Char('g') => FOLLOW] "map" "go to its first pose on the map";

@@ -187,10 +187,10 @@ impl Page for Confusion {
         let evaluation = &self.trained.evaluation;
         let title = format!("Confusion: {}", self.trained.choice);
         let error = percent(evaluation.error());
-        let limit = format!("  error {error} at best");
-        let shorter = limit.trim_end_matches(" at best");
+        let limit = format!("  limit: error {error}");
+        let shorter = format!("  error {error}");
         let room = usize::from(area.width).saturating_sub(write::width(&title));
-        let limit = write::first_fitting(&[&limit, shorter], room);
+        let limit = write::first_fitting(&[&limit, &shorter], room);
         let pieces = [(title.as_str(), Role::Title), (limit, Role::Text)];
         write::line(buffer, area, theme, pieces);
         let meanings = [

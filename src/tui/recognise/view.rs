@@ -4,7 +4,7 @@
 //! the model                   +--------------------------------------------+
 //! its grid, its limit         | Recognise: model figures-30                |
 //!                             | grid: 0.01 cells, 1°; 25,200,000 touches   |
-//!                             | best possible error 33.0 %, certain 38.3 % |
+//!                             | limit: error 33.0 %, certain 38.3 %        |
 //!                             |                                            |
 //! the answer in a word        | likely: hexagon                            |
 //! every shape it may be       | hexagon  ████████████████████       71.0 % |
@@ -199,7 +199,7 @@ impl Panel<'_> {
         self.text(&text, Role::Quiet);
     }
 
-    /// Writes the grid of a model, and the limit of what one touch tells.
+    /// Writes the grid of a model, and the limit of one touch: the error that no method can go below.
     fn model(&mut self, trained: &TrainedModel) {
         let (model, evaluation) = (&trained.model, &trained.evaluation);
         let ranges = model.ranges();
@@ -213,8 +213,8 @@ impl Panel<'_> {
         let certain = percent_of(evaluation.certain, evaluation.touches);
         let error = percent(evaluation.error());
         let limit = format!("error {error}, certain {certain}");
-        let [long, short] = ["best possible", "best"].map(|best| format!("{best} {limit}"));
-        // The shorter text is for a single line; if even that needs two, the longer one says more.
+        let [long, short] = ["limit of one touch", "limit"].map(|what| format!("{what}: {limit}"));
+        // If even the shorter text needs two lines, the longer one says more.
         let limits = [&*long, &*short, &*long];
         let limit = write::first_fitting(&limits, self.area.width.into());
         self.text(limit, Role::Quiet);

@@ -289,7 +289,7 @@ fn work_runs_on_one_thread_if_too_few_can_be_started() {
         return;
     };
     program.types(b":recognise figures\r");
-    program.shows("best possible error");
+    program.shows("limit: error");
     program.types(b"\x1b");
     program.shows("? Help");
     program.types(b"f\re\r");
