@@ -7,6 +7,7 @@
 
 use std::fmt;
 use std::ops::RangeInclusive;
+use std::str::FromStr;
 
 use crate::acquire::{AcquireOptions, Playback};
 use crate::formats::stream::StreamFormat;
@@ -33,18 +34,50 @@ pub struct NamedSource {
 }
 
 impl NamedSource {
-    /// The flags, for completion.
-    pub const FLAGS: [&'static str; 9] = [
-        "--rows",
-        "--columns",
-        "--format",
-        "--baud",
-        "--channel",
-        "--speed",
-        "--at-least",
-        "--percent",
-        "--model",
+    /// The flags, each with the function that takes its value.
+    const FLAGS: [(&'static str, Take); 9] = [
+        ("--rows", |source, value| {
+            source.rows = Some(value.side()?);
+            Ok(())
+        }),
+        ("--columns", |source, value| {
+            source.columns = Some(value.side()?);
+            Ok(())
+        }),
+        ("--format", |source, value| {
+            let format = value.text.parse();
+            source.format = Some(format.map_err(|error: UnknownName| error.to_string())?);
+            Ok(())
+        }),
+        ("--baud", |source, value| {
+            source.baud = Some(value.within(&AcquireOptions::BAUDS, "a number")?);
+            Ok(())
+        }),
+        ("--channel", |source, value| {
+            source.channel = Some(value.text.to_owned());
+            Ok(())
+        }),
+        ("--speed", |source, value| {
+            let speed = number::read(value.text).filter(|&speed| Playback::allows(speed));
+            source.speed = Some(speed.ok_or_else(|| value.refused(&Playback::SPEEDS))?);
+            Ok(())
+        }),
+        ("--at-least", |source, value| {
+            source.set_rule(value, Rule::at_least)
+        }),
+        ("--percent", |source, value| {
+            source.set_rule(value, Rule::percent)
+        }),
+        ("--model", |source, value| {
+            source.model = Some(ModelChoice::from_text(value.text));
+            Ok(())
+        }),
     ];
+
+    /// Returns the names of the flags.
+    pub fn flags() -> [&'static str; 9] {
+        Self::FLAGS.map(|(name, _)| name)
+    }
 
     /// Creates a source without flags.
     pub fn new(name: impl Into<String>) -> Self {
@@ -62,9 +95,11 @@ impl NamedSource {
         let (name, rest) = text.split_at(flags_start(text).unwrap_or(text.len()));
         let mut source = Self::new(name.trim());
         let words: Vec<&str> = rest.split_whitespace().collect();
-        let known = |flag: &str| Self::FLAGS.into_iter().find(|own| *own == flag);
-        for (flag, _, value) in flags::read(&words, &Self::FLAGS, known)? {
-            source.take(flag, value)?;
+        let known = |flag: &str| Self::FLAGS.iter().position(|(name, _)| *name == flag);
+        for (flag, index, text) in flags::read(&words, &Self::flags(), known)? {
+            if let Some((_, take)) = Self::FLAGS.get(index) {
+                take(&mut source, &FlagValue { flag, text })?;
+            }
         }
         if source.rows.is_some() != source.columns.is_some() {
             return Err("--rows and --columns go together".to_owned());
@@ -72,51 +107,20 @@ impl NamedSource {
         Ok(source)
     }
 
-    /// Takes the value of one flag.
-    fn take(&mut self, flag: &str, text: &str) -> Result<(), String> {
-        let refused = |expected: &dyn fmt::Display| {
-            format!("{flag} takes {expected}, found {}", shortened(text))
-        };
-        let side = || {
-            let side = text.parse().ok();
-            let side = side.filter(|side| FrameSize::SIDES.contains(side));
-            side.ok_or_else(|| refused(&format!("a whole number {}", bounds(&FrameSize::SIDES))))
-        };
-        match flag {
-            "--rows" => self.rows = Some(side()?),
-            "--columns" => self.columns = Some(side()?),
-            "--format" => {
-                let format = text.parse();
-                self.format = Some(format.map_err(|error: UnknownName| error.to_string())?);
-            }
-            "--baud" => {
-                let baud = text.parse().ok();
-                let bauds = AcquireOptions::BAUDS;
-                let baud = baud.filter(|baud| bauds.contains(baud));
-                let expected = || refused(&format!("a number {}", bounds(&bauds)));
-                self.baud = Some(baud.ok_or_else(expected)?);
-            }
-            "--channel" => self.channel = Some(text.to_owned()),
-            "--model" => self.model = Some(ModelChoice::from_text(text)),
-            "--speed" => {
-                let speed = number::read(text).filter(|&speed| Playback::allows(speed));
-                self.speed = Some(speed.ok_or_else(|| refused(&Playback::SPEEDS))?);
-            }
-            _ if self.rule.is_some() => {
-                return Err("--at-least and --percent do not go together".to_owned());
-            }
-            _ => {
-                let value = number::read(text).ok_or_else(|| refused(&"a number"))?;
-                let rule = match flag {
-                    "--percent" => Rule::percent(value),
-                    _ => Rule::at_least(value),
-                };
-                self.rule = Some(rule.map_err(|error| match error {
-                    FrameError::Rule { allowed, .. } => refused(&format!("a number {allowed}")),
-                    error => format!("{flag}: {error}"),
-                })?);
-            }
+    /// Takes the value of a threshold, unless there is one already.
+    fn set_rule(
+        &mut self,
+        value: &FlagValue,
+        rule: fn(f64) -> Result<Rule, FrameError>,
+    ) -> Result<(), String> {
+        if self.rule.is_some() {
+            return Err("--at-least and --percent do not go together".to_owned());
         }
+        let threshold = number::read(value.text).ok_or_else(|| value.refused(&"a number"))?;
+        self.rule = Some(rule(threshold).map_err(|error| match error {
+            FrameError::Rule { allowed, .. } => value.refused(&format!("a number {allowed}")),
+            error => format!("{}: {error}", value.flag),
+        })?);
         Ok(())
     }
 
@@ -139,6 +143,39 @@ impl NamedSource {
             request.rule = Some(SetRule { rule, least, from });
         }
         request
+    }
+}
+
+/// Takes the value of a flag.
+type Take = fn(&mut NamedSource, &FlagValue) -> Result<(), String>;
+
+/// A flag with its value, as they were typed.
+struct FlagValue<'a> {
+    flag: &'a str,
+    text: &'a str,
+}
+
+impl FlagValue<'_> {
+    /// Returns the message that the flag takes something else.
+    fn refused(&self, expected: &dyn fmt::Display) -> String {
+        let found = shortened(self.text);
+        format!("{} takes {expected}, found {found}", self.flag)
+    }
+
+    /// Returns the value as a number in this range; `what` names such numbers.
+    fn within<N: FromStr + PartialOrd + fmt::Display>(
+        &self,
+        range: &RangeInclusive<N>,
+        what: &str,
+    ) -> Result<N, String> {
+        let number = self.text.parse().ok();
+        let number = number.filter(|number| range.contains(number));
+        number.ok_or_else(|| self.refused(&format!("{what} {}", bounds(range))))
+    }
+
+    /// Returns the value as a number of rows or columns.
+    fn side(&self) -> Result<u16, String> {
+        self.within(&FrameSize::SIDES, "a whole number")
     }
 }
 

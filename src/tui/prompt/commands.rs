@@ -28,6 +28,9 @@ use crate::tui::prompt::flags::{is_given, lacks_value};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
 
+/// The flag of the anchor in `explore`.
+pub(super) const ANCHOR: &str = "--anchor";
+
 /// A command: all lines that begin with one word.
 #[derive(Clone, Debug)]
 pub struct PromptCommand {
@@ -247,7 +250,7 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         (Some(Arguments::Sensor), said) => flags(SENSOR_PARAMETERS.to_vec(), said),
         (Some(Arguments::Ranges), said) => {
             let ranges = Axis::ALL.map(|axis| format!("--{}", axis.parameter().flag()));
-            words([&ranges[..], &["--anchor".to_owned()]].concat(), said)
+            words([&ranges[..], &[ANCHOR.to_owned()]].concat(), said)
         }
         (Some(Arguments::Sizes), said) => {
             words(SeparationFlags::NAMES.map(str::to_owned).to_vec(), said)
@@ -256,7 +259,7 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
             let is_flag = |word: &&str| word.starts_with("--");
             let flags = said.iter().position(is_flag).unwrap_or(said.len());
             words(
-                NamedSource::FLAGS.map(str::to_owned).to_vec(),
+                NamedSource::flags().map(str::to_owned).to_vec(),
                 &said[flags..],
             )
         }

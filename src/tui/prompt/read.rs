@@ -32,7 +32,7 @@ use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::live::named_source::NamedSource;
-use crate::tui::prompt::commands::{PromptCommand, commands, find};
+use crate::tui::prompt::commands::{ANCHOR, PromptCommand, commands, find};
 use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
@@ -215,9 +215,6 @@ fn unexpected(command: &PromptCommand, rest: &str) -> String {
 fn name_of(text: &str) -> Result<Name, String> {
     Name::new(text).map_err(|error| error.to_string())
 }
-
-/// The flag of the anchor in `explore`.
-const ANCHOR: &str = "--anchor";
 
 /// Returns a parameter's flag.
 fn flag_of(parameter: Parameter) -> String {
