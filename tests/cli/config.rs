@@ -242,9 +242,10 @@ fn menu_hints_help_and_notices_show_the_keys_of_the_settings_file() {
             "Ctrl-N New   l Load",
             "q Quit   K Help",
             "drawn by hand: x draws, f places a figure",
-            "x toggle  ? undo",
+            "x toggle  ",
         ],
     );
+    shows("x", &["x toggle  ? undo"]);
     shows(
         "K",
         &[
