@@ -182,7 +182,7 @@ pub(crate) enum CliError {
         imprint: MatrixSize,
     },
     /// A name that no shape of the model has.
-    #[error("--expect: the model has no shape named {name:?}, but {shapes}{near}")]
+    #[error("--expect: the model has no shape named {name:?}; its shapes are {shapes}{near}")]
     NotInModel {
         /// The name.
         name: String,

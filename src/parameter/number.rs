@@ -58,15 +58,22 @@ pub fn to_decimals(value: f64, decimals: i32) -> f64 {
     }
 }
 
-/// Returns the message for text that is not a number. If a decimal comma is the reason, the message shows the right
+/// Returns the message for text that [`read`] refuses. If a decimal comma is the reason, the message shows the right
 /// spelling.
 ///
 /// ```
 /// use taxel::parameter::number;
 /// assert_eq!(number::complaint("wide"), "not a number");
 /// assert_eq!(number::complaint("2,5"), "not a number; write 2.5");
+/// assert_eq!(number::complaint("1e400"), "too large");
 /// ```
 pub fn complaint(text: &str) -> String {
+    // Digits that no float can hold are read as infinity.
+    let is_too_large =
+        |number: f64| number.is_infinite() && text.contains(|c: char| c.is_ascii_digit());
+    if text.trim().parse().is_ok_and(is_too_large) {
+        return "too large".to_owned();
+    }
     with_point(text).map_or_else(
         || "not a number".to_owned(),
         |number| format!("not a number; write {number}"),

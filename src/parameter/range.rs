@@ -48,13 +48,13 @@ impl Range {
         let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
         if value.is_nan() {
             Some("is not a number".to_owned())
-        } else if value < low {
+        } else if value < low && with_low {
             Some(format!("is below {low}"))
-        } else if value > high {
+        } else if value > high && with_high {
             Some(format!("is above {high}"))
-        } else if value == low && !with_low {
+        } else if value <= low && !with_low {
             Some(format!("is not above {low}"))
-        } else if value == high && !with_high {
+        } else if value >= high && !with_high {
             Some(format!("is not below {high}"))
         } else {
             None

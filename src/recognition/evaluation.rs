@@ -123,6 +123,11 @@ impl Evaluation {
         self
     }
 
+    /// Returns true if a shape has a weight above 1, so that each touch counts with the weight of its shape.
+    pub fn is_weighted(&self) -> bool {
+        self.weights > self.labels.len() as u128
+    }
+
     /// Returns the share of touches that are named right.
     pub fn accuracy(&self) -> f64 {
         share(self.right, self.touches)

@@ -225,6 +225,12 @@ fn a_word_that_is_not_a_figure_is_refused_with_a_tip() {
             Some("a circle is an ellipse with equal radii"),
         ),
         (
+            "figure|ellipse|--radius|3",
+            Some(
+                "an ellipse has two radii, '--radius-x' and '--radius-y'; a circle has equal ones",
+            ),
+        ),
+        (
             "sweep|Square",
             Some("a square is a rectangle with equal sides"),
         ),
@@ -296,6 +302,10 @@ fn a_number_out_of_range_exits_with_status_1_and_names_the_range() {
         "--x0 -16.5 is below -16 (allowed: -16 to 16)",
     );
     out(
+        "figure ellipse --angle 400",
+        "--angle 400 is not below 360 (allowed: 0 to below 360)",
+    );
+    out(
         "figure ellipse --columns 1e3",
         "--columns 1e3 is above 64 (allowed: 1 to 64)",
     );
@@ -305,7 +315,7 @@ fn a_number_out_of_range_exits_with_status_1_and_names_the_range() {
     );
     out(
         "describe - --pitch -1 --json",
-        "--pitch -1 is below 0 (allowed: above 0, up to 1000)",
+        "--pitch -1 is not above 0 (allowed: above 0, up to 1000)",
     );
     out(
         "--threshold 0",

@@ -462,6 +462,27 @@ fn shapes_come_from_files_words_and_the_library() {
 }
 
 #[test]
+fn an_evaluation_says_if_touches_count_with_weights() {
+    let place = Place::new();
+    for (weights, counted) in [([1, 1], false), ([2, 2], true), ([1, 3], true)] {
+        let [a, b] = weights;
+        let lines = format!(
+            "{{\"name\":\"a\",\"figure\":\"rectangle\",\"length\":4,\"width\":4,\"weight\":{a}}}\n\
+             {{\"name\":\"b\",\"figure\":\"hexagon\",\"side\":3,\"weight\":{b}}}\n"
+        );
+        let run = place.run(
+            &format!("model train - {COARSE} --out m.npz --force"),
+            &lines,
+        );
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        let said = "each touch counts with the weight of its shape\n";
+        for output in [run.stdout, place.done("model confusion m.npz")] {
+            assert_eq!(output.contains(said), counted, "{weights:?}: {output}");
+        }
+    }
+}
+
+#[test]
 fn similar_names_are_suggested() {
     let place = Place::new();
     for (line, message) in [

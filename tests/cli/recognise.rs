@@ -218,7 +218,7 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     refused(
         &place.run("recognise square.txt --model r --expect disc", ""),
         1,
-        "--expect: the model has no shape named \"disc\", but a, b, c, d",
+        "--expect: the model has no shape named \"disc\"; its shapes are a, b, c, d",
     );
     refused(
         &place.run("recognise square.txt --model nobody", ""),

@@ -66,6 +66,11 @@ fn unknown_flag(mut error: Error, program: &mut Command) -> Error {
         if let Some(command) = refusing {
             return command.error(ErrorKind::UnknownArgument, message);
         }
+    } else if quoted(&error, ContextKind::InvalidArg) == Some("--radius") {
+        let both =
+            "an ellipse has two radii, '--radius-x' and '--radius-y'; a circle has equal ones";
+        error.remove(ContextKind::SuggestedArg);
+        suggest(&mut error, vec![StyledStr::from(both)]);
     } else if quoted(&error, ContextKind::InvalidArg).is_some_and(|flag| flag.starts_with("--"))
         && let Some(ContextValue::StyledStrs(mut tips)) = error.remove(ContextKind::Suggested)
     {

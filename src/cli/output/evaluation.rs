@@ -169,6 +169,9 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
         counted(evaluation.labels.len() as u64, "shape"),
         named.distinct(evaluation.keys as u64)
     );
+    if evaluation.is_weighted() {
+        text += "each touch counts with the weight of its shape\n";
+    }
     let mut line = |name: &str, value: u128, note: &str| {
         // Cannot fail: the text is kept in memory.
         let _ = writeln!(
