@@ -34,18 +34,18 @@ pub struct FilterDialog {
 impl FilterDialog {
     /// Creates a prompt that starts with the filter of a list.
     pub fn new(results: &Results) -> Self {
-        let selected = results.rows_from(results.selected()).next();
-        let mut field = TextField::new(results.filter(), LONGEST);
-        if !results.filter().is_empty() {
+        let selected = results.rows_from(results.list.selected()).next();
+        let mut field = TextField::new(results.list.filter(), LONGEST);
+        if !results.list.filter().is_empty() {
             field.enter();
         }
         Self {
             field,
             before: (
-                results.filter().to_owned(),
+                results.list.filter().to_owned(),
                 selected.map(|(_, entry)| entry.id),
             ),
-            kept: Ok((results.row_count(), results.sweep().atlas.len())),
+            kept: Ok((results.list.row_count(), results.sweep().atlas.len())),
         }
     }
 
@@ -54,7 +54,7 @@ impl FilterDialog {
         let typed = self.field.text();
         self.kept = typed.parse::<AtlasFilter>().map(|filter| {
             results.keep(typed, &filter);
-            (results.row_count(), results.sweep().atlas.len())
+            (results.list.row_count(), results.sweep().atlas.len())
         });
     }
 
@@ -70,7 +70,7 @@ impl FilterDialog {
             results.keep(typed, &filter);
         }
         if let Some(id) = selected {
-            results.find(*id);
+            results.list.find(*id);
         }
     }
 }

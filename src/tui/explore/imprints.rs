@@ -53,31 +53,31 @@ pub static TAB: ResultsTab = ResultsTab {
 
 /// Returns the message of a click: it selects a row, puts the selected row onto the matrix, or sorts by a heading.
 fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
-    let list = ImprintList::of(area, results);
+    let list = ImprintTable::of(area, results);
     if let Some(column) = list.heading(at) {
         return Some(Message::Explore(ExploreMessage::Sort(column)));
     }
-    list.rows.click(at, results.selected())
+    list.rows.click(at, results.list.selected())
 }
 
 /// Selects a row, or another heading.
 fn update(results: &mut Results, message: &Message, area: Rect) {
-    let visible = ImprintList::of(area, results).rows.area.height.into();
-    results.keep_first_row(visible);
-    if let Some(row) = moved(results.selected(), message) {
-        results.select(row);
+    let visible = ImprintTable::of(area, results).rows.area.height.into();
+    results.list.keep_first_row(visible);
+    if let Some(row) = moved(results.list.selected(), message) {
+        results.list.select(row);
     }
     if let Message::Explore(ExploreMessage::Columns(by)) = *message {
-        let shown = ImprintList::of(area, results).columns();
+        let shown = ImprintTable::of(area, results).columns();
         let shown: Vec<ListColumn> = shown.into_iter().map(|(column, _)| column).collect();
-        results.move_heading(by, &shown);
+        results.list.move_heading(by, &shown);
     }
-    results.keep_first_row(visible);
+    results.list.keep_first_row(visible);
 }
 
 /// The layout of the list of imprints.
 #[derive(Clone, Debug)]
-pub struct ImprintList {
+pub struct ImprintTable {
     /// The headings.
     pub head: Rect,
     /// The rows.
@@ -95,7 +95,7 @@ pub struct ImprintList {
     pub place: Vec<(Axis, usize)>,
 }
 
-impl ImprintList {
+impl ImprintTable {
     /// Computes the layout of the list on its tab.
     pub fn of(area: Rect, results: &Results) -> Self {
         let result = results.sweep();
@@ -136,8 +136,8 @@ impl ImprintList {
             },
             rows: ListRows {
                 // The list scrolls by whole screenfuls, so that a clicked row stays where it is.
-                first: results.first_row(rows.height.into()),
-                count: results.row_count(),
+                first: results.list.first_row(rows.height.into()),
+                count: results.list.row_count(),
                 area: rows,
             },
             detail: write::below(area, area.height - below),
@@ -181,21 +181,21 @@ impl ImprintList {
 
 /// Returns the text for a list without a row.
 pub(super) fn no_row(results: &Results) -> String {
-    format!("no imprint fits {}", results.filter())
+    format!("no imprint fits {}", results.list.filter())
 }
 
 /// Draws the tab. Returns the position of the selected row.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let list = ImprintList::of(area, results);
+    let list = ImprintTable::of(area, results);
     draw_headings(theme, results, &list, buffer);
-    if results.row_count() == 0 {
+    if results.list.row_count() == 0 {
         let text = no_row(results);
         write::text(buffer, list.rows.area, theme, &text, Role::Quiet);
     }
     let marks = marked(results);
     let rows = results.rows_from(list.rows.first);
     for ((index, entry), row) in rows.zip(list.rows.area.rows()) {
-        let selected = index == results.selected();
+        let selected = index == results.list.selected();
         let (sign, role) = if selected {
             ('>', Role::Focus)
         } else {
@@ -215,13 +215,13 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     if let Some(area) = list.gallery {
         draw_gallery(theme, results, buffer, area);
     }
-    list.rows.position(results.selected())
+    list.rows.position(results.list.selected())
 }
 
 /// Draws the headings, with an arrow at the column that rows are sorted by. The chosen heading looks like the
 /// selected row.
-fn draw_headings(theme: &Theme, results: &Results, list: &ImprintList, buffer: &mut Buffer) {
-    let (by, descending) = results.sort_key();
+fn draw_headings(theme: &Theme, results: &Results, list: &ImprintTable, buffer: &mut Buffer) {
+    let (by, descending) = results.list.sort_key();
     let key: String = results.feature().key.chars().take(VALUE - 1).collect();
     let mut pieces: Vec<(String, Role)> = Vec::new();
     for (column, width) in list.columns() {
@@ -242,7 +242,7 @@ fn draw_headings(theme: &Theme, results: &Results, list: &ImprintList, buffer: &
         };
         let room = width - behind;
         let gap = room.saturating_sub(write::width(&title));
-        let role = if column == results.heading() {
+        let role = if column == results.list.heading() {
             Role::Focus
         } else {
             Role::Title
@@ -269,7 +269,7 @@ fn marked(results: &Results) -> BTreeMap<u32, char> {
 }
 
 /// Returns the text of a row, without the sign of the selected one.
-fn row_text(theme: &Theme, results: &Results, list: &ImprintList, entry: &AtlasEntry) -> String {
+fn row_text(theme: &Theme, results: &Results, list: &ImprintTable, entry: &AtlasEntry) -> String {
     let (id, poses) = (list.id, list.poses);
     let mut text = format!(
         "{:>id$} {:>poses$} {:>SHARE$}",
@@ -314,7 +314,7 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> [String; 2] {
 
 /// Draws thumbnails of the selected imprint and the ones after it, in lines from left to right.
 fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rect) {
-    let Some((_, first)) = results.rows_from(results.selected()).next() else {
+    let Some((_, first)) = results.rows_from(results.list.selected()).next() else {
         return;
     };
     let (width, height) = thumbnail::size(theme, &first.imprint);
@@ -330,7 +330,7 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
     let down = area.height / (height + 1);
     let places =
         (0..down.max(1)).flat_map(|line| (0..across.max(1)).map(move |column| (column, line)));
-    for ((column, line), (index, entry)) in places.zip(results.rows_from(results.selected())) {
+    for ((column, line), (index, entry)) in places.zip(results.rows_from(results.list.selected())) {
         let place = Rect {
             x: area.x + column * (width + 2),
             y: area.y + line * (height + 1),
@@ -338,7 +338,7 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
             height: height + 1,
         };
         let place = place.intersection(area);
-        let sign = if index == results.selected() {
+        let sign = if index == results.list.selected() {
             ">"
         } else {
             " "

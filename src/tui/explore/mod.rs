@@ -4,7 +4,8 @@
 //! ```text
 //! message    requests by keys and commands, and findings of a sweep
 //! ranges     the form                                     running: work in progress
-//! results    the findings, and what is shown of them      column: the columns to sort the list by
+//! results    the findings, and what is shown of them
+//! imprint_list               the list of imprints         column: the columns to sort it by
 //! export  filter  mark       the prompts for a file name, a condition and a letter
 //! prompts    handles messages in filter and mark
 //! tab        the type of a tab of the results             tabs: the table of tabs
@@ -20,6 +21,8 @@ pub mod ranges;
 pub mod running;
 
 pub mod column;
+
+pub mod imprint_list;
 
 pub mod results;
 

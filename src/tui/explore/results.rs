@@ -1,8 +1,7 @@
-//! The results of a sweep, and the state of their tabs: the open one, descriptor, order, row, cursor of the map.
+//! The results of a sweep, and the state of their tabs: the open one, descriptor, list, cursor of the map.
 //!
-//! The findings never change, and are shared with workers that write them to files. All tabs show the same
-//! descriptor, and the list and the map lead to each other. The file is long because each key changes what several
-//! tabs show.
+//! The findings never change, and are shared with workers that write them to files. The tabs that show a descriptor
+//! show the same one, which the points have as their vertical axis; the list and the map lead to each other.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,12 +9,12 @@ use std::sync::Arc;
 use crate::atlas::{AtlasEntry, AtlasFilter, Feature, features};
 use crate::formats::value::{counted, grouped};
 use crate::imprint::Imprint;
-use crate::index::wide;
 use crate::pose::{Axis, Pose, PoseIndex};
 use crate::sweep::SweepResult;
 use crate::touch::Plane;
 use crate::tui::explore::angles::curve::{AngleCurve, AngleSearch, zooms_of};
 use crate::tui::explore::column::ListColumn;
+use crate::tui::explore::imprint_list::ImprintList;
 use crate::tui::explore::map::visible::VisibleImprints;
 use crate::tui::explore::message::{ExploreTab, Findings, name_of};
 use crate::tui::widget::number::around;
@@ -43,23 +42,8 @@ pub struct Results {
     visible_imprints: VisibleImprints,
     /// How many times the map was zoomed in, starting from its whole range.
     map_zoom: u8,
-    /// The column that rows are sorted by, and whether the largest comes first.
-    sort: (ListColumn, bool),
-    /// The chosen heading, which the sort key sorts by.
-    heading: ListColumn,
-    /// The filter of the rows, as it was typed; empty for none.
-    filter: String,
-    /// The numbers of all imprints, sorted. They are kept because a filter is typed letter by letter, which does not
-    /// change the order.
-    order: Vec<u32>,
-    /// Whether the filter keeps each imprint, by number; empty if it keeps all.
-    kept: Vec<bool>,
-    /// The numbers of the imprints that the filter keeps, sorted.
-    rows: Vec<u32>,
-    /// The index of the selected row.
-    selected: usize,
-    /// The index of the row that came first when the list was last used.
-    top: usize,
+    /// The list of imprints.
+    pub(super) list: ImprintList,
     /// The index of the first column of statistics that is shown.
     column: usize,
     /// The place of the map's cursor, by indices.
@@ -71,7 +55,7 @@ pub struct Results {
 impl Results {
     /// Creates the state for some findings, with the most frequent imprint first.
     pub fn new(findings: Arc<Findings>) -> Self {
-        let mut results = Self {
+        Self {
             tab: ExploreTab::Imprints,
             feature: 0,
             values: findings.sweep.atlas.values(0),
@@ -79,21 +63,12 @@ impl Results {
             angles: None,
             visible_imprints: VisibleImprints::default(),
             map_zoom: 0,
-            order: findings.by_poses.clone(),
+            list: ImprintList::new(findings.by_poses.clone()),
             findings,
-            sort: (ListColumn::Poses, true),
-            heading: ListColumn::Poses,
-            filter: String::new(),
-            kept: Vec::new(),
-            rows: Vec::new(),
-            selected: 0,
-            top: 0,
             column: 0,
             pose_index: PoseIndex::new([0; 5]),
             marks: BTreeMap::new(),
-        };
-        results.apply_filter();
-        results
+        }
     }
 
     /// Returns the findings.
@@ -147,8 +122,8 @@ impl Results {
     pub fn choose_feature(&mut self, number: usize) {
         self.feature = number.min(features().len() - 1);
         self.values = self.sweep().atlas.values(self.feature);
-        if self.sort.0 == ListColumn::Value {
-            self.arrange();
+        if self.list.sort_key().0 == ListColumn::Value {
+            self.list.arrange(&self.findings.sweep, &self.values);
         }
     }
 
@@ -221,7 +196,7 @@ impl Results {
     pub fn kept_of_all(&self) -> String {
         let count = |count: usize| grouped(count as u64);
         let all = self.sweep().atlas.len();
-        format!("{} of {}", count(self.row_count()), count(all))
+        format!("{} of {}", count(self.list.row_count()), count(all))
     }
 
     /// Returns a summary of the sweep; it begins with a remark if the sweep is only a part. `filtered` is whether the
@@ -236,66 +211,25 @@ impl Results {
             format!("a part: {done} of {}", counted(all, "pose"))
         };
         let what = name_of(result.grid.source());
-        if filtered && !self.filter.is_empty() {
+        let filter = self.list.filter();
+        if filtered && !filter.is_empty() {
             let kept = self.kept_of_all();
-            return format!("{what}: {poses}, {kept} distinct imprints: {}", self.filter);
+            return format!("{what}: {poses}, {kept} distinct imprints: {filter}");
         }
         let distinct = counted(result.atlas.len() as u64, "distinct imprint");
         format!("{what}: {poses}, {distinct}")
     }
 
-    /// Returns the column that rows are sorted by, and whether the largest comes first.
-    pub fn sort_key(&self) -> (ListColumn, bool) {
-        self.sort
-    }
-
-    /// Sorts by a column, which becomes the chosen heading; by the same column again, reverses the order. The
+    /// Sorts the list by a column, which becomes the chosen heading; by the same column again, reverses the order. The
     /// selected imprint stays selected.
     pub fn sort(&mut self, by: ListColumn) {
-        self.sort = if self.sort.0 == by {
-            (by, !self.sort.1)
-        } else {
-            (by, by.largest_first())
-        };
-        self.heading = by;
-        self.arrange();
+        self.list.sort(by, &self.findings.sweep, &self.values);
     }
 
-    /// Returns the chosen heading.
-    pub fn heading(&self) -> ListColumn {
-        self.heading
-    }
-
-    /// Chooses the heading `by` further on among the shown ones; at the ends it stays.
-    pub fn move_heading(&mut self, by: i8, shown: &[ListColumn]) {
-        let now = shown.iter().position(|&column| column == self.heading);
-        let next = now.map_or(0, |now| now.saturating_add_signed(isize::from(by)));
-        if let Some(&column) = shown.get(next.min(shown.len().saturating_sub(1))) {
-            self.heading = column;
-        }
-    }
-
-    /// Returns the filter of the rows, as it was typed; empty for none.
-    pub fn filter(&self) -> &str {
-        &self.filter
-    }
-
-    /// Keeps only the rows that pass a filter, given as it was typed and as it was read. The selected imprint stays
-    /// selected if it is kept.
+    /// Keeps only the imprints in the list that pass a filter, given as it was typed and as it was read. The selected
+    /// imprint stays selected if it is kept.
     pub fn keep(&mut self, typed: &str, filter: &AtlasFilter) {
-        typed.trim().clone_into(&mut self.filter);
-        self.kept = if filter.is_empty() {
-            Vec::new()
-        } else {
-            filter.keeps(&self.sweep().atlas)
-        };
-        self.apply_filter();
-    }
-
-    /// Returns true if the filter keeps an imprint.
-    pub fn keeps(&self, id: u32) -> bool {
-        let kept = self.kept.get(wide(id));
-        kept.is_none_or(|&kept| kept)
+        self.list.keep(typed, filter, &self.findings.sweep.atlas);
     }
 
     /// Marks the present pose with a letter. Returns false if there is none.
@@ -310,69 +244,10 @@ impl Results {
         &self.marks
     }
 
-    /// Sorts and filters the rows.
-    fn arrange(&mut self) {
-        let (by, descending) = self.sort;
-        self.order = by.order(self.sweep(), &self.values, descending);
-        self.apply_filter();
-    }
-
-    /// Filters the rows, and keeps the selected imprint selected; if the filter removes it, a row at about the same
-    /// place is selected.
-    fn apply_filter(&mut self) {
-        let selected = self.rows.get(self.selected).copied();
-        let rows = self.order.iter().copied();
-        self.rows = rows.filter(|&id| self.keeps(id)).collect();
-        if !selected.is_some_and(|id| self.find(id)) {
-            self.select(self.selected);
-        }
-    }
-
-    /// Returns the number of rows in the list of imprints.
-    pub fn row_count(&self) -> usize {
-        self.rows.len()
-    }
-
     /// Returns the imprints from a row on, with the indices of their rows.
     pub fn rows_from(&self, first: usize) -> impl Iterator<Item = (usize, AtlasEntry)> + '_ {
-        let rows = self.rows.iter().enumerate().skip(first);
-        rows.filter_map(|(index, &id)| Some((index, self.sweep().atlas.entry(id)?)))
-    }
-
-    /// Returns the index of the selected row.
-    pub fn selected(&self) -> usize {
-        self.selected
-    }
-
-    /// Selects a row by its index; an index too large selects the last one.
-    pub fn select(&mut self, row: usize) {
-        self.selected = row.min(self.rows.len().saturating_sub(1));
-    }
-
-    /// Returns the index of the first row of a list that shows `visible` rows. It stays the same while the selected
-    /// row is visible; otherwise the list scrolls by whole screenfuls. The last one is full.
-    pub fn first_row(&self, visible: usize) -> usize {
-        let visible = visible.max(1);
-        let last = self.rows.len().saturating_sub(visible);
-        let top = self.top.min(last);
-        let first = if (top..top + visible).contains(&self.selected) {
-            top
-        } else {
-            self.selected - self.selected % visible
-        };
-        first.min(last)
-    }
-
-    /// Stores the first row of a list that shows `visible` rows.
-    pub fn keep_first_row(&mut self, visible: usize) {
-        self.top = self.first_row(visible);
-    }
-
-    /// Selects an imprint by its number. Returns false if the list does not have it.
-    pub fn find(&mut self, id: u32) -> bool {
-        let row = self.rows.iter().position(|&row| row == id);
-        self.selected = row.unwrap_or(self.selected);
-        row.is_some()
+        let rows = self.list.rows().enumerate().skip(first);
+        rows.filter_map(|(index, id)| Some((index, self.sweep().atlas.entry(id)?)))
     }
 
     /// Selects an imprint.
@@ -380,10 +255,13 @@ impl Results {
     /// # Errors
     /// Returns a sentence if the filter hides the imprint.
     pub fn go_to_imprint(&mut self, id: u32) -> Result<(), String> {
-        if self.find(id) {
+        if self.list.find(id) {
             return Ok(());
         }
-        Err(format!("the filter hides imprint {id}: {}", self.filter()))
+        Err(format!(
+            "the filter hides imprint {id}: {}",
+            self.list.filter()
+        ))
     }
 
     /// Selects the imprint of a pose.
@@ -450,7 +328,7 @@ impl Results {
         if matches!(self.tab, ExploreTab::Map | ExploreTab::Angles) {
             return Some(self.sweep().grid.number(self.pose_index));
         }
-        let (_, entry) = self.rows_from(self.selected).next()?;
+        let (_, entry) = self.rows_from(self.list.selected()).next()?;
         Some(entry.first_pose)
     }
 
@@ -527,8 +405,8 @@ mod tests {
     fn the_selected_imprint_stays_selected_when_the_descriptor_changes() {
         let mut results = results();
         results.sort(ListColumn::Value);
-        results.select(7);
-        let selected = |results: &Results| results.rows_from(results.selected()).next();
+        results.list.select(7);
+        let selected = |results: &Results| results.rows_from(results.list.selected()).next();
         let before = selected(&results).map(|(_, entry)| entry.id);
         results.next_feature(3);
         assert_eq!(selected(&results).map(|(_, entry)| entry.id), before);
@@ -541,7 +419,7 @@ mod tests {
                 .all(|(_, entry)| entry.count <= most.count)
         );
         results.sort(ListColumn::Poses);
-        assert_eq!(results.sort_key(), (ListColumn::Poses, false));
+        assert_eq!(results.list.sort_key(), (ListColumn::Poses, false));
     }
 
     #[test]
@@ -598,8 +476,8 @@ mod tests {
     #[test]
     fn a_filter_and_marks_apply_to_the_right_imprints() {
         let mut results = results();
-        let all = results.row_count();
-        results.select(7);
+        let all = results.list.row_count();
+        results.list.select(7);
         let ids = |results: &Results| {
             let rows = results.rows_from(0);
             rows.map(|(_, entry)| entry.id).collect::<Vec<_>>()
@@ -609,12 +487,12 @@ mod tests {
         let kept = before[7];
         let typed = format!("id<={kept}");
         results.keep(&typed, &typed.parse().expect("an expression"));
-        assert!(results.row_count() < all && results.filter() == typed);
-        assert_eq!(ids(&results)[results.selected()], kept);
-        assert!(results.keeps(kept) && !results.keeps(kept + 1));
-        assert!(!results.find(kept + 1));
+        assert!(results.list.row_count() < all && results.list.filter() == typed);
+        assert_eq!(ids(&results)[results.list.selected()], kept);
+        assert!(results.list.keeps(kept) && !results.list.keeps(kept + 1));
+        assert!(!results.list.find(kept + 1));
         results.keep("id<0", &"id<0".parse().expect("an expression"));
-        assert_eq!((results.row_count(), results.selected()), (0, 0));
+        assert_eq!((results.list.row_count(), results.list.selected()), (0, 0));
         assert!(results.pose().is_none() && !results.mark('b'));
         results.keep("", &AtlasFilter::default());
         assert_eq!(ids(&results), before);
@@ -626,13 +504,13 @@ mod tests {
     #[test]
     fn the_last_screenful_is_full_and_the_list_scrolls_only_when_needed() {
         let mut results = results();
-        let (all, visible) = (results.row_count(), 10);
+        let (all, visible) = (results.list.row_count(), 10);
         assert!(all > 25 && all % visible != 0, "{all}");
         let mut first = |row| {
-            results.keep_first_row(visible);
-            results.select(row);
-            results.keep_first_row(visible);
-            results.first_row(visible)
+            results.list.keep_first_row(visible);
+            results.list.select(row);
+            results.list.keep_first_row(visible);
+            results.list.first_row(visible)
         };
         assert_eq!([first(9), first(10), first(19)], [0, 10, 10]);
         let last = all - visible;
@@ -640,8 +518,8 @@ mod tests {
         assert_eq!(first(last - 1), (last - 1) / visible * visible);
         first(usize::MAX);
         results.keep("id<15", &"id<15".parse().expect("an expression"));
-        assert_eq!(results.first_row(visible), 5, "no line stays empty");
-        assert_eq!(results.first_row(20), 0);
+        assert_eq!(results.list.first_row(visible), 5, "no line stays empty");
+        assert_eq!(results.list.first_row(20), 0);
     }
 
     #[test]
@@ -652,10 +530,14 @@ mod tests {
             ListColumn::Position(Axis::X0),
             ListColumn::Position(Axis::Angle),
         ];
-        results.move_heading(1, &shown);
-        assert_eq!(results.heading(), shown[0], "that of poses is not shown");
-        results.move_heading(1, &shown);
-        results.sort(results.heading());
+        results.list.move_heading(1, &shown);
+        assert_eq!(
+            results.list.heading(),
+            shown[0],
+            "that of poses is not shown"
+        );
+        results.list.move_heading(1, &shown);
+        results.sort(results.list.heading());
         let places = |results: &Results, axis| {
             let grid = results.sweep().grid.clone();
             let rows = results.rows_from(0);
@@ -663,9 +545,9 @@ mod tests {
                 .collect::<Vec<f64>>()
         };
         assert!(places(&results, Axis::X0).is_sorted());
-        results.move_heading(9, &shown);
-        results.sort(results.heading());
-        results.sort(results.heading());
+        results.list.move_heading(9, &shown);
+        results.sort(results.list.heading());
+        results.sort(results.list.heading());
         let angles = places(&results, Axis::Angle);
         assert!(angles.iter().rev().is_sorted(), "{angles:?}");
     }

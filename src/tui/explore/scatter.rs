@@ -48,7 +48,7 @@ pub static TAB: ResultsTab = ResultsTab {
 fn update(results: &mut Results, message: &Message, area: Rect) {
     match *message {
         Message::Explore(ExploreMessage::Columns(by)) => results.next_x_feature(by),
-        Message::Select(row) => results.select(row),
+        Message::Select(row) => results.list.select(row),
         _ => choose_descriptor(results, message, area),
     }
 }
@@ -92,7 +92,7 @@ fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
         .iter()
         .min_by(|one, other| far(one).total_cmp(&far(other)));
     nearest.map(|&(row, _)| {
-        if row == results.selected() {
+        if row == results.list.selected() {
             Message::Accept
         } else {
             Message::Select(row)
@@ -117,7 +117,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     let title = title(results, points.len());
     write::text(buffer, area, theme, &title, Role::Title);
     if points.is_empty() {
-        let text = if results.row_count() == 0 {
+        let text = if results.list.row_count() == 0 {
             no_row(results)
         } else {
             "no imprint has both values".to_owned()
@@ -126,7 +126,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         write::line(buffer, write::row(area, 1), theme, pieces);
         return None;
     }
-    let selected = results.rows_from(results.selected()).next();
+    let selected = results.rows_from(results.list.selected()).next();
     let foot = write::below(area, area.height.saturating_sub(1));
     if let Some((_, entry)) = selected.filter(|_| area.height > 1) {
         let text = detail(theme, results, &entry);
@@ -176,7 +176,7 @@ fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> 
     let mut plot = PointPlot::new(&x.label(), &y.label())
         .with_title(&results.summary(true))
         .with_points(&points);
-    let selected = results.rows_from(results.selected()).next();
+    let selected = results.rows_from(results.list.selected()).next();
     if let Some((x, y)) = selected.and_then(|(_, entry)| point(results, &entry)) {
         plot = plot.with_chosen(x, y);
     }

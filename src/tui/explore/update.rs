@@ -93,7 +93,7 @@ pub(in crate::tui) fn in_results(
 /// Opens the comparison of the selected imprint with the one on the matrix, over the results. Refused if nothing is
 /// selected.
 fn compare(app: &mut App, results: Box<Results>) {
-    let entry = results.rows_from(results.selected()).next();
+    let entry = results.rows_from(results.list.selected()).next();
     app.dialogs.push(Dialog::Results(results));
     match entry {
         Some((_, entry)) => compare_with(app, &format!("imprint {}", entry.id), &entry.imprint),
@@ -125,7 +125,7 @@ fn change_view(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
         }
         ExploreMessage::Feature(by) => results.next_feature(by),
         ExploreMessage::Sort(by) => results.sort(by),
-        ExploreMessage::SortHere => results.sort(results.heading()),
+        ExploreMessage::SortHere => results.sort(results.list.heading()),
         ExploreMessage::Find => find(app, results),
         ExploreMessage::Follow => follow(app, results),
         ExploreMessage::Point(x0, y0) => results.point(x0, y0),

@@ -263,7 +263,9 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
 /// a drawing, which shows what its tab shows.
 fn filter_remark(app: &App, name: &str) -> String {
     match app.results_below() {
-        Some(results) if !results.filter().is_empty() && DrawingFormat::of_path(name).is_none() => {
+        Some(results)
+            if !results.list.filter().is_empty() && DrawingFormat::of_path(name).is_none() =>
+        {
             let imprints = counted(results.sweep().atlas.len() as u64, "imprint");
             format!(", all {imprints} (the filter does not apply)")
         }
