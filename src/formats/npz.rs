@@ -316,18 +316,19 @@ pub enum ArchiveError {
     /// An invalid header.
     #[error("header: {0}")]
     Header(String),
-    /// An invalid source or sensor.
+    /// An invalid source or sensor. Like the following three, it is part of the message, so it is not the source of this
+    /// error, too.
     #[error("header: {0}")]
-    Record(#[from] RecordError),
+    Record(RecordError),
     /// An invalid range.
     #[error("header: {0}")]
-    Range(#[from] RangeError),
+    Range(RangeError),
     /// An invalid shard.
     #[error("header: {0}")]
-    Shard(#[from] ShardError),
+    Shard(ShardError),
     /// An invalid grid.
     #[error("header: {0}")]
-    Grid(#[from] GridError),
+    Grid(GridError),
     /// Numbers that contradict each other.
     #[error(transparent)]
     Parts(#[from] PartsError),
@@ -354,6 +355,30 @@ impl From<io::Error> for ArchiveError {
     }
 }
 
+impl From<RecordError> for ArchiveError {
+    fn from(error: RecordError) -> Self {
+        Self::Record(error)
+    }
+}
+
+impl From<RangeError> for ArchiveError {
+    fn from(error: RangeError) -> Self {
+        Self::Range(error)
+    }
+}
+
+impl From<ShardError> for ArchiveError {
+    fn from(error: ShardError) -> Self {
+        Self::Shard(error)
+    }
+}
+
+impl From<GridError> for ArchiveError {
+    fn from(error: GridError) -> Self {
+        Self::Grid(error)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::error::Error;
@@ -377,6 +402,16 @@ mod tests {
         let full = ArchiveError::from(io::Error::from_raw_os_error(28));
         assert_eq!(full.to_string(), "No space left on device");
         assert!(full.source().is_none());
+    }
+
+    #[test]
+    fn an_error_of_the_header_is_printed_once() {
+        let wrong = "5:1"
+            .parse::<crate::pose::DecimalRange>()
+            .expect_err("the end is before the start");
+        let error = ArchiveError::from(wrong.clone());
+        assert_eq!(error.to_string(), format!("header: {wrong}"));
+        assert!(error.source().is_none(), "its message has the reason");
     }
 
     #[test]
