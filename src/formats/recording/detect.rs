@@ -329,10 +329,7 @@ pub(crate) fn read_as(
         #[cfg(feature = "mcap")]
         RecordingFormat::Mcap => mcap::read(&mut input, options, sink),
         #[cfg(not(feature = "mcap"))]
-        RecordingFormat::Mcap => Err(RecordingError::damaged(
-            "an MCAP file, which this build does not read: it was built without the feature mcap",
-        )
-        .into()),
+        RecordingFormat::Mcap => Err(RecordingError::WithoutMcap.into()),
     })
 }
 

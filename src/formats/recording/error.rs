@@ -36,6 +36,9 @@ pub enum RecordingError {
         /// The message, which says what was found and what was expected.
         message: String,
     },
+    /// A recording in MCAP, if this crate was built without its feature `mcap`.
+    #[error("an MCAP file, which this build does not read: it was built without the feature mcap")]
+    WithoutMcap,
     /// The file does not say how its values are arranged: it has a list of cells, without rows. Their size can be given
     /// in [`ReadOptions`](super::ReadOptions).
     #[error("{} a frame, but its rows and columns are not stated", counted(*values, "value"))]
