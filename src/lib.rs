@@ -42,7 +42,8 @@
 //! # Map
 //!
 //! The *rooms* (top-level modules) in reading order. Each uses only the rooms above it, and the modules inside a room
-//! do not depend on each other in cycles. A test reads the `use` lines and enforces both.
+//! do not depend on each other in cycles. A test reads the `use` lines and enforces both. `quote`, `index`, `lock`
+//! and `memory` are private.
 //! ```text
 //!  quote        shortens untrusted text for messages, and suggests names that are nearly right
 //!  index        checked conversions between whole numbers and indices
