@@ -38,6 +38,7 @@ impl FirstFrames {
     ///
     /// # Errors
     /// Returns [`FrameError::TareSize`] if they take too much memory.
+    #[cfg(feature = "cli")]
     pub(crate) fn check_memory(&self, values: usize) -> Result<(), FrameError> {
         self.frames.check_memory(values)
     }
