@@ -91,6 +91,9 @@ mod named_shape;
 #[cfg(feature = "tui")]
 pub(crate) mod separation;
 
+#[cfg(feature = "tui")]
+pub(crate) mod pose_words;
+
 pub use described::DescribedImprint;
 #[cfg(feature = "tui")]
 pub(crate) use drawing::{axis_ends, axis_marks};

@@ -337,7 +337,7 @@ fn a_pose_is_given_in_cells_degrees_and_mm() {
     assert!((in_mm - 2.5 * number(&pose["centre"][0])).abs() < 1e-9);
     let text = place.done("recognise bar.txt --model r --pose --pitch 2.5");
     assert!(
-        text.contains(" cells, ") && text.contains(" mm\nangle "),
+        text.contains(" cells (") && text.contains(" mm)\nangle "),
         "{text}"
     );
     let braille = |sign: char| ('\u{2801}'..'\u{2900}').contains(&sign);

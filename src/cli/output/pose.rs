@@ -1,7 +1,7 @@
 //! The place of a recognised shape: in words, as JSON, and as its outline over the touch.
 //!
 //! ```text
-//! centre at 3, 3 ± 0.13, 0.13 cells
+//! centre 3.00 ± 0.13, 3.00 ± 0.13 cells (7.50 ± 0.32, 7.50 ± 0.32 mm)
 //! angle 30.2° ± 1.4° (repeats every 180°); 95 % in 27°..32°
 //! ```
 //! A position is that of the centre about which the shape turns, in cells of the touch, x to the right, y down. All
@@ -12,6 +12,7 @@ use serde::{Serialize, Serializer};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::{canvas_of_taxels, character};
+use crate::formats::pose_words;
 use crate::formats::value::{decimal, deviation};
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::imprint::Imprint;
@@ -157,19 +158,9 @@ impl PoseReport {
     /// Returns the pose in words, and the outline of the shape over the touch.
     pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
         let estimate = &self.estimate;
-        let place = |factor: f64| {
-            let ([x, y], [dx, dy]) = (estimate.position, estimate.standard_deviation);
-            format!(
-                "{}, {} ± {}, {}",
-                decimal(x * factor, 2),
-                decimal(y * factor, 2),
-                deviation(dx * factor, 2),
-                deviation(dy * factor, 2)
-            )
-        };
-        let mut text = format!("centre at {} cells", place(1.0));
+        let mut text = format!("centre {} cells", pose_words::centre(estimate, 1.0));
         if let Some(pitch) = self.pitch_mm {
-            text += &format!(", {} mm", place(pitch));
+            text += &format!(" ({} mm)", pose_words::centre(estimate, pitch));
         }
         text += &match &estimate.angle {
             None => "; it looks the same at every angle\n".to_owned(),
@@ -208,16 +199,13 @@ impl PoseReport {
 
 /// Returns the angle with its spread in words, or "any" if no angle is more likely than another.
 fn angle_in_words(angle: &AngleEstimate) -> String {
-    let repeats = match decimal(angle.period, 2) {
-        turn if turn == "360" => String::new(),
-        period => format!(" (repeats every {period}°)"),
-    };
+    let repeats = pose_words::repeats(angle);
     let Some((mean, spread)) = angle.known() else {
         return format!("angle any{repeats}");
     };
     let (mean, spread) = (decimal(mean, 1), deviation(spread, 1));
-    let (first, last) = angle.ends();
-    format!("angle {mean}° ± {spread}°{repeats}; 95 % in {first}°..{last}°")
+    let arc = pose_words::arc(angle);
+    format!("angle {mean}° ± {spread}°{repeats}; 95 % in {arc}")
 }
 
 /// Draws a boundary as dots.

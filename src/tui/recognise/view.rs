@@ -19,7 +19,8 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::{counted, decimal, deviation, grouped, percent};
+use crate::formats::pose_words;
+use crate::formats::value::{counted, decimal, grouped, percent};
 use crate::imprint::Imprint;
 use crate::parameter::number::{differing, share, short};
 use crate::pose::Axis;
@@ -406,10 +407,7 @@ const MARKS: [char; 2] = ['+', '-'];
 /// Returns the lines about the pose of a shape: mean and spread over the poses that leave the imprint. `whose` is the
 /// name of the shape if the answer does not name it, otherwise empty.
 fn pose_lines(whose: &str, pose: &PoseEstimate) -> [String; 3] {
-    let [x, y] = pose.position;
-    let [dx, dy] = pose.standard_deviation;
-    let (dx, dy) = (spread_of(dx, 2), spread_of(dy, 2));
-    let position = format!("{whose} centre {x:.2} ± {dx}, {y:.2} ± {dy} cells");
+    let position = format!("{whose} centre {} cells", pose_words::centre(pose, 1.0));
     let position = position.trim_start().to_owned();
     let poses = counted(pose.poses, "pose");
     let any = || ("any angle".to_owned(), poses.clone());
@@ -417,15 +415,10 @@ fn pose_lines(whose: &str, pose: &PoseEstimate) -> [String; 3] {
         let Some((mean, spread)) = angle.known() else {
             return any();
         };
-        let turn = match decimal(angle.period, 2) {
-            turn if turn == "360" => String::new(),
-            period => format!(" (repeats every {period}°)"),
-        };
-        let (first, last) = angle.ends();
-        let (mean, spread) = (decimal(half_up(mean), 0), spread_of(spread, 1));
+        let (mean, spread) = (decimal(half_up(mean), 0), pose_words::spread(spread, 1));
         (
-            format!("angle {mean}° ± {spread}°{turn}"),
-            format!("95 % of {poses}: {first}°..{last}°"),
+            format!("angle {mean}° ± {spread}°{}", pose_words::repeats(angle)),
+            format!("95 % of {poses}: {}", pose_words::arc(angle)),
         )
     });
     [position, angle, poses]
@@ -435,14 +428,6 @@ fn pose_lines(whose: &str, pose: &PoseEstimate) -> [String; 3] {
 /// symmetric shapes often have such a mean.
 fn half_up(number: f64) -> f64 {
     (number + 0.5).floor()
-}
-
-/// Formats a standard deviation with all its decimals, so that lines keep their width while a shape is moved.
-fn spread_of(number: f64, decimals: usize) -> String {
-    match deviation(number, decimals) {
-        little if little.starts_with('<') => little,
-        _ => format!("{number:.decimals$}"),
-    }
 }
 
 /// Formats a share of a whole as percent.
