@@ -99,7 +99,7 @@ pub(crate) enum CliError {
     Nowhere {
         /// The argument.
         name: String,
-        /// The end of the message: a stored shape with a similar name.
+        /// The end of the message: a stored shape with a similar name, or the command that lists them.
         near: String,
     },
     /// No shape has this name in the library or in its trash.
@@ -107,7 +107,7 @@ pub(crate) enum CliError {
     NoShape {
         /// The name, and where it was not found.
         error: LibraryError,
-        /// The end of the message: a similar name.
+        /// The end of the message: a similar name, or the command that lists the names.
         near: String,
     },
     /// A shape of a set cannot be read.

@@ -228,7 +228,8 @@ fn a_shape_can_be_described_by_its_name() {
 #[test]
 fn a_file_that_cannot_be_read_is_named() {
     let run = taxel("describe no-such-shape", "");
-    let message = "no stored shape or file named \"no-such-shape\"";
+    let message =
+        "no stored shape or file named \"no-such-shape\"; to list all shapes: taxel library list";
     refused(&run, 1, message);
     let run = taxel("describe Wsher", "");
     let message = "no stored shape or file named \"Wsher\"; did you mean \"washer\"?";

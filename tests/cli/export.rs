@@ -241,7 +241,7 @@ fn bad_targets_are_refused_with_what_is_expected() {
     refused(
         &taxel("export nowhere a.svg", ""),
         1,
-        "no stored shape or file named \"nowhere\"",
+        "no stored shape or file named \"nowhere\"; to list all shapes: taxel library list",
     );
     refused(
         &taxel("export - - --format csv", "P1 2 1 2"),

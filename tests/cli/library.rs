@@ -46,7 +46,8 @@ impl Shelf {
         path.to_str().expect("text").to_owned()
     }
 
-    fn refuses(&self, line: &str, message: &str) {
+    /// Runs a line that must fail with this message, in which the library is written as FOLDER.
+    pub(super) fn refuses(&self, line: &str, message: &str) {
         let run = self.run(line, "");
         let folder = self.folder.display().to_string();
         let stderr = run.stderr.replace(&folder, "FOLDER");
@@ -91,8 +92,10 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     let restores = "deleted my ring; to restore it: taxel library restore --library ";
     assert!(deleted.starts_with(restores), "{deleted}");
     assert!(deleted.ends_with(" 'my ring'\n"), "{deleted}");
-    shelf.refuses("library|show|my ring", "no shape named \"my ring\"");
-    shelf.refuses("library|delete|my ring", "no shape named \"my ring\"");
+    let none =
+        "no shape named \"my ring\"; to list all shapes: taxel library list --library FOLDER";
+    shelf.refuses("library|show|my ring", none);
+    shelf.refuses("library|delete|my ring", none);
     // A typing error in the name of a shape, in the library and in its trash.
     shelf.refuses(
         "library|show|wahser",
@@ -108,7 +111,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     );
     shelf.refuses(
         "library|restore|my ring",
-        "no shape named \"my ring\" in the trash",
+        "no shape named \"my ring\" in the trash; to list those that are: taxel library list --library FOLDER --names --deleted",
     );
     let count = taxel::storage::shipped::names().count() + 1;
     assert_eq!(
@@ -157,7 +160,7 @@ fn an_existing_shape_is_only_replaced_with_force() {
     shelf.refuses("library|delete|washer", undeletable);
     shelf.refuses(
         "library|restore|washer",
-        "no shape named \"washer\" in the trash",
+        "no shape named \"washer\" in the trash; to list those that are: taxel library list --library FOLDER --names --deleted",
     );
 }
 
@@ -409,7 +412,9 @@ fn a_library_path_below_a_file_still_has_the_shipped_shapes() {
     refused(
         &run("library show nothing"),
         1,
-        "no shape named \"nothing\"",
+        &format!(
+            "no shape named \"nothing\"; to list all shapes: taxel library list --library {below}"
+        ),
     );
     let saved = run("library save mine washer");
     assert_eq!(saved.status, Some(1));
@@ -440,7 +445,8 @@ fn saving_with_name_and_file_swapped_explains_the_order() {
     refused(&save("ring"), 1, &told);
     let told = missing("my ring") + order + " 'my ring' imprint.txt";
     refused(&save("my ring"), 1, &told);
-    shelf.refuses("library|save|none.txt|ring", &missing("ring"));
+    let told = missing("ring") + "; to list all shapes: taxel library list --library FOLDER";
+    shelf.refuses("library|save|none.txt|ring", &told);
 }
 
 /// A command that cannot be typed, or that would be refused, is not proposed.

@@ -1,7 +1,6 @@
 //! Tests of `taxel picture`: shapes of the library and of files, moved; named pictures in a batch.
 
 use super::library::Shelf;
-use super::refused;
 
 #[test]
 fn without_flags_a_picture_is_the_shape_itself() {
@@ -72,7 +71,7 @@ fn a_name_of_the_library_is_preferred_to_a_file() {
     for (arguments, message) in [
         (
             "picture|nothing",
-            "no stored shape or file named \"nothing\"",
+            "no stored shape or file named \"nothing\"; to list all shapes: taxel library list --library FOLDER",
         ),
         (
             "picture|no/such.txt",
@@ -87,7 +86,7 @@ fn a_name_of_the_library_is_preferred_to_a_file() {
             "--x0 17 is above 16 (allowed: -16 to 16)",
         ),
     ] {
-        refused(&shelf.run(arguments, ""), 1, message);
+        shelf.refuses(arguments, message);
     }
 }
 

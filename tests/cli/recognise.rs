@@ -228,7 +228,7 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     refused(
         &place.run("recognise nothing.txt --model r", ""),
         1,
-        "no stored shape or file named \"nothing.txt\"",
+        "no stored shape or file named \"nothing.txt\"; to list all shapes: taxel library list",
     );
 }
 

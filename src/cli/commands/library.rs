@@ -243,28 +243,16 @@ fn in_order(error: CliError, file: &str) -> CliError {
 pub(crate) fn delete(shelf: &Shelf, name: &str, charset: Charset) -> Result<String, CliError> {
     let deleted = shelf.library()?.delete(name);
     let name = deleted.map_err(|error| shelf.refused(error))?;
-    let hint = restoring(shelf.named()?.as_ref(), &name);
+    let hint = restoring(shelf, &name);
     // A command whose characters are escaped, or whose folder is not UTF-8, cannot be typed.
     let hint = hint.filter(|hint| charset.line(hint) == *hint);
     let hint = hint.map_or(String::new(), |hint| format!("; to restore it: {hint}"));
     Ok(charset.lines(&format!("deleted {name}{hint}\n")))
 }
 
-/// Returns the command that restores a shape, from the library if `--library` names it; None if the library's path
-/// is not UTF-8.
-fn restoring(library: Option<&Library>, name: &str) -> Option<String> {
-    let mut command = "taxel library restore".to_owned();
-    if let Some(library) = library {
-        let folder = library.folder().to_str()?;
-        // Otherwise a folder with a dash would be taken for a flag.
-        let is_dashed = folder.starts_with('-');
-        command += if is_dashed {
-            " --library="
-        } else {
-            " --library "
-        };
-        command += &as_argument(folder);
-    }
+/// Returns the command that restores a shape; None if the library's path is not UTF-8.
+fn restoring(shelf: &Shelf, name: &str) -> Option<String> {
+    let mut command = shelf.library_command("restore")?;
     // Otherwise a name with a dash would be taken for a flag.
     command += if name.starts_with('-') { " -- " } else { " " };
     Some(command + &as_argument(name))

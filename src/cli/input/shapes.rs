@@ -19,6 +19,7 @@ use crate::formats::StoredShape;
 use crate::formats::name::folded;
 use crate::imprint::Imprint;
 use crate::lock::locked;
+use crate::quote::as_argument;
 use crate::storage::{Existing, Expected, Library, LibraryError};
 
 /// The library, which is opened when it is first used: most commands never need it.
@@ -160,7 +161,7 @@ impl Shelf {
     }
 
     /// Returns the end of a message about a name that no stored shape and no file has: that it is the name of a
-    /// figure, or a shape with a similar name.
+    /// figure, or what [`Self::suggestion`] says.
     fn near_or_figure(&self, name: &str) -> String {
         match name.parse::<FigureKind>() {
             Ok(_) => format!("; {name:?} is a figure, which taxel figure and taxel sweep take"),
@@ -168,7 +169,8 @@ impl Shelf {
         }
     }
 
-    /// Returns the message about an error of the library. For an unknown name, it suggests a similar one.
+    /// Returns the message about an error of the library. For an unknown name, it suggests a similar one, or says where
+    /// to look.
     pub(crate) fn refused(&self, error: LibraryError) -> CliError {
         if let LibraryError::System(refused) = &error
             && !refused.is_in_place()
@@ -188,9 +190,39 @@ impl Shelf {
         CliError::NoShape { error, near }
     }
 
-    /// Returns the end of a message about an unknown name: a shape with a similar name, if there is one.
+    /// Returns the end of a message about an unknown name: a shape with a similar name, or if there is none, the
+    /// command that lists the names.
     fn suggestion(&self, error: &LibraryError) -> String {
-        self.readable().suggestion(error)
+        let similar = self.readable().suggestion(error);
+        if !similar.is_empty() {
+            return similar;
+        }
+        let (flags, listed) = match error {
+            LibraryError::NotInTrash { .. } => (" --names --deleted", "those that are"),
+            _ => ("", "all shapes"),
+        };
+        let command = self.library_command("list");
+        command.map_or(String::new(), |list| {
+            format!("; to list {listed}: {list}{flags}")
+        })
+    }
+
+    /// Returns the words `taxel library` with a command, and with the folder if `--library` names it; None if the
+    /// folder's path is not UTF-8.
+    pub(crate) fn library_command(&self, command: &str) -> Option<String> {
+        let mut words = format!("taxel library {command}");
+        if let Some(folder) = self.folder.as_ref().filter(|_| self.asked) {
+            let folder = folder.to_str()?;
+            // Otherwise a folder with a dash would be taken for a flag.
+            let is_dashed = folder.starts_with('-');
+            words += if is_dashed {
+                " --library="
+            } else {
+                " --library "
+            };
+            words += &as_argument(folder);
+        }
+        Some(words)
     }
 
     /// Returns the imprint of a stored shape, for the lines of a batch. Each shape is read once.
