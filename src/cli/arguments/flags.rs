@@ -120,7 +120,7 @@ pub(super) fn anchor() -> Arg {
     option(
         "anchor",
         "POINT",
-        "What x0 and y0 set: corner (default) or centre",
+        "Point that x0 and y0 place: corner (default)\nor centre",
     )
     .value_parser(parameters::one_of::<Anchor, _>(Anchor::NAMES))
     .hide_possible_values(true)

@@ -123,6 +123,7 @@ pub(super) fn command() -> Command {
         .arg(seed())
         .args(output())
         .args(noisy())
+        .arg(untrained())
 }
 
 /// Defines `--given`, `--greedy`, `--pairs` and `--classifier`: all questions except those about noise.
@@ -179,7 +180,7 @@ fn output() -> [Arg; 5] {
 }
 
 /// Defines the flags of noisy touches.
-fn noisy() -> [Arg; 5] {
+fn noisy() -> [Arg; 4] {
     let noise = option(
         "noise",
         "START:END:STEP",
@@ -195,17 +196,22 @@ fn noisy() -> [Arg; 5] {
     .value_parser(whole::<u32>(0..=4095));
     let touches = option("touches", "N", "Noisy touches of each shape; default 1000")
         .value_parser(whole::<u64>(1..=1_000_000_000));
-    let matrix = option("matrix", "CxR", "Size of the sensor; default the model's")
+    let matrix = option("matrix", "CxR", "Columns and rows of the sensor for noisy\ntouches; default those of the model")
         .value_parser(parse_matrix);
     let [dead, touches, matrix] = [dead, touches, matrix].map(|arg| arg.requires("with_noise"));
-    let test = option(
+    [noise, dead, touches, matrix].map(|arg| arg.help_heading("Noise"))
+}
+
+/// Defines `--test`.
+fn untrained() -> Arg {
+    option(
         "test",
         "half-step",
-        "Test touches between the model's poses",
+        "Touch the shapes half a step off the model's\nposes, in x0, y0 and angle",
     )
     .value_parser(["half-step"])
-    .hide_possible_values(true);
-    [noise, dead, touches, matrix, test].map(|arg| arg.help_heading("Noise"))
+    .hide_possible_values(true)
+    .help_heading("Untrained poses")
 }
 
 /// Parses probabilities that a taxel flips, such as `0:0.1:0.02`. Both ends must be valid for [`Noise::new`].

@@ -75,8 +75,8 @@ pub(super) fn command() -> Command {
     .value_parser(Name::new);
     let allow_cut = switch("allow-cut", "Also take poses that the sensor cuts off");
     let anchor = anchor().help(
-        "What x0 and y0 set: corner or centre; default\n\
-         corner where one of them is given, else centre",
+        "Point that x0 and y0 place: corner or centre;\n\
+         default corner with --x0 or --y0, else centre",
     );
     Command::new("train")
         .about("Learn every imprint of a set of shapes")
