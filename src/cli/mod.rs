@@ -214,7 +214,7 @@ impl Surroundings {
         Ok(())
     }
 
-    /// Runs `taxel sweep`. Notes on standard error tell which values were chosen because they were not given.
+    /// Runs `taxel sweep`. Notes on standard error warn of ranges that were chosen because they were not given.
     fn sweep(&self, asked: SweepArguments) -> Result<(), CliError> {
         let (source, sensor) = match asked.what {
             Swept::Figure(figure, sensor) => (figure, sensor),

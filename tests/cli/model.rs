@@ -388,7 +388,7 @@ fn models_can_be_named_listed_and_shown() {
     assert_eq!(names(&place.0.path().join("models")), ["parts.npz"]);
     let card = place.done("model show parts");
     for line in [
-        "16 × 16 sensor, threshold 0.4, centre at x0 7:7.9:0.1, y0 7:7.9:0.1, angle 0:355:5",
+        "16 × 16 sensor, threshold 0.4, centre at x0 7:7.9:0.1 cells, y0 7:7.9:0.1 cells, angle 0:355:5°",
         "  d: rectangle length 4.20, width 4.20, named right in 100.0 % of its touches",
         "7,200 poses each",
     ] {
@@ -399,7 +399,7 @@ fn models_can_be_named_listed_and_shown() {
     );
     let zoomed = place.done("model show zoomed.npz");
     assert!(
-        zoomed.contains(", angle 0, zoom_x 0.5:1:0.25\n"),
+        zoomed.contains(", angle 0°, zoom_x 0.5:1:0.25\n"),
         "{zoomed}"
     );
     let run = place.run("frames zoomed.npz", "");

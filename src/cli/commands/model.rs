@@ -3,7 +3,7 @@
 //! A model is the file of a training: every imprint that some shapes leave on a grid of poses, and how often each
 //! shape leaves it. `show` prints a description, the model's card:
 //! ```text
-//! 16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5
+//! 16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2 cells, y0 7:7.8:0.2 cells, angle 0:355:5°
 //!   disc: ellipse radius_x 2.40, radius_y 2.40, named right in 96.0 % of its touches
 //!   block: rectangle length 4.50, width 4.30, named right in 99.1 % of its touches
 //! 1,800 poses each
@@ -30,6 +30,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::note::note;
 use crate::cli::output::progress::Progress;
+use crate::cli::output::ranges::ranges_in_words;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
 use crate::formats::value::{counted, grouped, percent};
@@ -174,19 +175,18 @@ fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
     }
 }
 
-/// Describes the grid of a training in a line, such as
-/// `16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5`. A zoom of 1 is left out.
+/// Describes the grid of a training in a line, such as `16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2 cells,
+/// y0 7:7.8:0.2 cells, angle 0:355:5°`. A zoom of 1 is left out.
 fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
     let is_unzoomed = |axis: Axis| axis.is_zoom() && ranges[axis] == DecimalRange::whole(1);
     let axes = Axis::ALL.into_iter().filter(|&axis| !is_unzoomed(axis));
-    let axes = axes.map(|axis| format!("{} {}", axis.name(), ranges[axis]));
     format!(
         "{} × {} sensor, threshold {}, {} at {}",
         sensor.columns(),
         sensor.rows(),
         sensor.threshold(),
         anchor.name(),
-        axes.collect::<Vec<_>>().join(", ")
+        ranges_in_words(axes, ranges)
     )
 }
 

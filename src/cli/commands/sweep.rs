@@ -43,8 +43,8 @@ impl Wanted {
     }
 }
 
-/// Returns the grid to sweep, and notes about it: the ranges of x0 and y0 that were not given, whether they span less
-/// than a cell, and how many poses are cut off nevertheless.
+/// Returns the grid to sweep, and notes about the ranges of x0 and y0 that were not given: whether they span less than
+/// a cell, and how many poses are cut off nevertheless. The summary names the ranges.
 ///
 /// A figure gets the paper's cell, which starts at 5, if nothing is cut off there; a picture gets the cell that it
 /// lies in.
@@ -74,10 +74,7 @@ pub(crate) fn grid(
             PoseGrid::new(source, sensor, anchor, ranges)?
         }
     };
-    let taken = missing
-        .iter()
-        .map(|&axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
-    let mut notes = vec![format!("range: {}", taken.collect::<Vec<_>>().join(", "))];
+    let mut notes = Vec::new();
     let zoomed = [(Axis::X0, Axis::ZoomX), (Axis::Y0, Axis::ZoomY)];
     let mut zoomed = zoomed.iter().filter(|(axis, _)| missing.contains(axis));
     if anchor == Anchor::Corner && zoomed.any(|&(_, zoom)| grid.ranges()[zoom].value(0) < 1.0) {

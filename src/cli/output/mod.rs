@@ -17,6 +17,8 @@ pub(super) mod record_writer;
 
 pub(super) mod recording_list;
 
+pub(super) mod ranges;
+
 pub(super) mod sweep_summary;
 
 pub(super) mod progress;

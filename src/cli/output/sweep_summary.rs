@@ -3,7 +3,7 @@
 //! The text gives the counts, then a line per feature and a column per statistic. `–` marks a value that does not
 //! exist:
 //! ```text
-//! 10,000 poses: x0 5:5.99:0.01, y0 5:5.99:0.01
+//! 10,000 poses: x0 5:5.99:0.01 cells, y0 5:5.99:0.01 cells, angle 0°
 //! 393 distinct imprints, 376 up to shifts, 58 up to quarter turns and mirror images too
 //! 0 poses cut off by the sensor, 0 poses without an imprint; 0.03 s
 //!
@@ -19,6 +19,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::atlas::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
 use crate::cli::output::charset::Charset;
+use crate::cli::output::ranges::ranges_in_words;
 use crate::formats::json;
 use crate::formats::value::{counted, grouped};
 use crate::pose::{Axis, PoseGrid};
@@ -74,11 +75,10 @@ impl<'a> SweepSummary<'a> {
         // A picture is swept at its own size unless zooms are given, so zooms of one value are not shown.
         let ranges = grid.axes();
         let ranges = ranges.filter(|&axis| grid.counts()[axis] > 1 || !axis.is_zoom());
-        let ranges = ranges.map(|axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
         line(&format!(
             "{}{part}: {}",
             counted(*poses, "pose"),
-            ranges.collect::<Vec<_>>().join(", ")
+            ranges_in_words(ranges, grid.ranges())
         ));
         let number = |count: usize| grouped(count as u64);
         line(&format!(

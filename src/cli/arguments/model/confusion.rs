@@ -196,8 +196,12 @@ fn noisy() -> [Arg; 4] {
     .value_parser(whole::<u32>(0..=4095));
     let touches = option("touches", "N", "Noisy touches of each shape; default 1000")
         .value_parser(whole::<u64>(1..=1_000_000_000));
-    let matrix = option("matrix", "CxR", "Columns and rows of the sensor for noisy\ntouches; default those of the model")
-        .value_parser(parse_matrix);
+    let matrix = option(
+        "matrix",
+        "CxR",
+        "Columns and rows of the sensor for noisy\ntouches; default those of the model",
+    )
+    .value_parser(parse_matrix);
     let [dead, touches, matrix] = [dead, touches, matrix].map(|arg| arg.requires("with_noise"));
     [noise, dead, touches, matrix].map(|arg| arg.help_heading("Noise"))
 }
