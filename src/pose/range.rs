@@ -395,7 +395,7 @@ pub enum RangeError {
         step: String,
     },
     /// The end lies before the start.
-    #[error("{start}:{end}:{step}: the end is below the start, expected {start} or more")]
+    #[error("the end {end} is below the start {start}")]
     Backwards {
         /// The start as given, shortened.
         start: String,

@@ -37,11 +37,19 @@ pub struct Noise {
 
 /// The error for a probability that is out of range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("noise {found}: expected a probability from 0 to below 0.5")]
+#[error("noise {found}: {}", self.expected())]
 #[non_exhaustive]
 pub struct NoiseError {
     /// The given probability.
     pub found: f64,
+}
+
+impl NoiseError {
+    /// Returns the part of the message that says what was expected, for a place that shows the number itself.
+    #[must_use]
+    pub fn expected(&self) -> &'static str {
+        "expected a probability from 0 to below 0.5"
+    }
 }
 
 /// A difference that a noise does not explain: more taxels of a touch differ from every imprint of a model than are

@@ -436,6 +436,15 @@ fn the_seven_figures_are_built_in() {
     assert!(card.contains("hexagon: hexagon side 4.00"), "{card}");
 }
 
+/// The message of the command line quotes the number, so what follows does not.
+#[test]
+fn a_noise_out_of_range_is_quoted_once() {
+    misused(
+        "recognise - --noise 0.7",
+        "invalid value '0.7' for '--noise <E>': expected a probability from 0 to below 0.5\n",
+    );
+}
+
 /// Each of these lines is refused before a built-in set is trained.
 #[test]
 fn mistyped_names_are_refused_before_training() {

@@ -539,7 +539,7 @@ fn impossible_sweeps_are_refused() {
         ("sweep hexagon --x0 1:2:0", "step 0 is not above 0"),
         (
             "sweep hexagon --y0 2:1:0.1",
-            "2:1:0.1: the end is below the start, expected 2 or more",
+            "the end 1 is below the start 2",
         ),
         (
             "sweep hexagon --shard 4/3",

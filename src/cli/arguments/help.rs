@@ -319,17 +319,21 @@ Examples:
 
 /// `taxel model separate`: what it answers.
 pub(crate) const MODEL_SEPARATE_EXAMPLES: &str = "\
-Trains the set at each scale, which multiplies all lengths, or at each pitch, if
-lengths are in mm, and prints how many touches even the best classifier names
-wrong. Sizes at which the shapes do not fit on 64 x 64 taxels are left out, and
-standard error lists them. With --pitch, a taxel of a stored shape is 1 mm; the
-shape's own pitch and threshold are ignored.
+Trains the set once for each scale, pitch and threshold, and prints the error:
+the share of touches that even the best classifier names wrong. A scale
+multiplies all lengths. With --pitch, lengths are in mm, and a taxel of a stored
+shape is 1 mm; the shape's own pitch and threshold are ignored. Sizes at which
+the shapes do not fit on 64 x 64 taxels are left out; standard error lists them.
 
---want tries scales from the smallest up, or pitches from the coarsest down,
-until one reaches the error, and then tenths of a step before that one. A larger
-shape is not always easier to name, so --want also prints how many of the larger
-scales, or finer pitches, miss it again. With --csv, its answer goes to standard
-error.
+'imprints' counts the distinct imprints up to shifts, and 'sensor' is the
+smallest that holds the shapes, at least 16 x 16. With --csv and --json they are
+called 'keys' and 'side'.
+
+--want tries every scale from the smallest up, or every pitch from the coarsest
+down, and then tenths of a step before the first one that reaches the error. A
+larger shape is not always easier to name, so --want also prints how many of the
+larger scales, or finer pitches, miss the error again. With --csv, its answer
+goes to standard error.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20

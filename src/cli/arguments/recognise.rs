@@ -102,7 +102,7 @@ pub(super) fn command() -> Command {
 /// Parses the probability that a taxel flips: 0 or more, below 0.5.
 pub(crate) fn parse_noise(text: &str) -> Result<Noise, String> {
     let number = flags::parse_number(text)?;
-    Noise::new(number).map_err(|error: NoiseError| error.to_string())
+    Noise::new(number).map_err(|error: NoiseError| error.expected().to_owned())
 }
 
 impl RecogniseArguments {
