@@ -43,6 +43,8 @@ const BLOCKS: &[Block] = &[
     ("recognition-peers", recognition::peers),
     ("recognition-sizes", recognition::sizes),
     ("recognition-want", recognition::want),
+    ("recognition-mm", recognition::mm),
+    ("recognition-pitch", recognition::pitch),
     ("dependencies", dependencies::block),
 ];
 

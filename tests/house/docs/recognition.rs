@@ -10,7 +10,10 @@ use crate::docs::commands::shell_in;
 /// The set of shapes that the page uses.
 const SET: &str = include_str!("../../../examples/figures.jsonl");
 
-/// Runs shell lines in a folder with the set and its model. Returns each line followed by its output.
+/// The set whose lengths are in mm.
+const MM: &str = include_str!("../../../examples/mm.jsonl");
+
+/// Runs shell lines in a folder with both sets and the model of the first. Returns each line followed by its output.
 fn shown(lines: &[&str]) -> String {
     trained();
     let shown = lines
@@ -34,6 +37,7 @@ fn trained() -> &'static str {
         fs::remove_dir_all(folder).ok();
         fs::create_dir_all(folder).expect("a folder can be made");
         fs::write(folder.join("figures.jsonl"), SET).expect("written");
+        fs::write(folder.join("mm.jsonl"), MM).expect("written");
         shell_in(folder, TRAIN)
     })
 }
@@ -77,6 +81,17 @@ pub(crate) fn want() -> String {
     ])
 }
 
+pub(crate) fn mm() -> String {
+    format!("\n```json\n{MM}```\n\n")
+}
+
+pub(crate) fn pitch() -> String {
+    static PITCH: OnceLock<String> = OnceLock::new();
+    let pitch =
+        || shown(&["taxel model separate mm.jsonl --pitch 0.5:4:0.5 --positions 20 --want 0.05"]);
+    PITCH.get_or_init(pitch).clone()
+}
+
 /// The numbers in the text of the page must be those that the program prints.
 #[test]
 fn the_numbers_in_the_text_are_those_that_the_commands_print() {
@@ -96,5 +111,10 @@ fn the_numbers_in_the_text_are_those_that_the_commands_print() {
         assert_eq!(format!("{error:.2}"), said);
         assert!(page.contains(&format!(" {said}")), "{said}");
     }
+    let pitch = pitch();
+    assert!(pitch.contains("is 1.4 mm: 2.0 %") && page.contains("Cells of 1.4 mm are fine enough"));
+    assert!(
+        pitch.contains("\n1.5             0.5    6.6 %") && page.contains("it is wrong in 6.6 %")
+    );
     assert!(page.contains("The limit is 0.330") && format!("{:.3}", errors[1]) == "0.330");
 }
