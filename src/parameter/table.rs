@@ -274,7 +274,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         key: "y0",
         label: "y0",
         short: "y0",
-        meaning: "top edge of the bounding rectangle, before rotation (y runs down)",
+        meaning: "top edge of the bounding rectangle, before rotation; y runs down",
         ..POSITION
     },
     ParameterRow {

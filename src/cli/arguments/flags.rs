@@ -144,7 +144,7 @@ pub(super) fn memory() -> Arg {
     option(
         "memory",
         "SIZE",
-        "Stop before using more memory, such as 500M\nor 2G; default all that is free",
+        "Most memory to use, such as 500M or 2G;\ndefault all that is free",
     )
     .value_parser(|text: &str| text.parse::<MemorySize>())
 }

@@ -128,7 +128,7 @@ pub(crate) fn command() -> Command {
 /// Defines `--heat`, which shows values. It excludes `--json`, which has no place for values, and a report on many
 /// frames.
 fn heat() -> Arg {
-    switch("heat", "Show the values in shades, in drawings too")
+    switch("heat", "Show the values as shades, also in drawings")
         .requires("choice")
         .conflicts_with("noise-report")
 }
@@ -192,13 +192,13 @@ pub(crate) fn processing() -> [Arg; 9] {
         option(
             "mask",
             "FILE",
-            "Imprint of the dead cells, which have no value",
+            "Imprint whose active taxels are dead cells;\nthese get no value",
         )
         .value_parser(value_parser!(PathBuf)),
         option(
             "tare",
             "N",
-            "Subtract the median of each cell over N frames",
+            "Subtract the median of each cell over the first\nN frames",
         )
         .value_parser(whole::<u64>(0..)),
         option("gain", "FILE", "Table of factors, one for each cell")
@@ -257,7 +257,7 @@ pub(crate) fn rules() -> [Arg; 6] {
         value(
             "low",
             "A",
-            "Active at A or more, if connected to one of B or more",
+            "Active at A or more if connected to a cell of B\nor more",
         )
         .requires("high")
         .conflicts_with_all(others("low")),

@@ -62,8 +62,9 @@ Examples:
 pub(crate) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text with one line per row, '#' for an active taxel and '.' for an
 inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image with two
-shades (PGM) or a numpy array (NPY); at most 64 x 64. Inactive taxels are 0, and
-active ones have one other value, such as 1 or 255. The content decides, not the
+shades (PGM) or a numpy array (NPY). In a table or an array, inactive taxels are
+0, and active ones have one other value, such as 1 or 255. An imprint has at
+most 64 x 64 taxels. taxel recognises the format from the content, not from the
 extension. A stored shape is a JSON file. If a stored shape and a file have the
 same name, taxel uses the shape.
 
@@ -76,8 +77,8 @@ Examples:
 /// `taxel export`: the formats that can be written.
 pub(crate) const EXPORT_EXAMPLES: &str = "\
 The extension of TO decides the format:
-  .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline where it is
-  .pbm  a bitmap, P4                      known, rectangle, CG, CD, axes, legend
+  .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline (if known),
+  .pbm  a bitmap, P4                      rectangle, CG, CD, axes, legend
   .csv  a table of 0 and 1          .png  the same in pixels, 288 per inch
   .npy  a numpy array of bool
 Drawings are grey; with a pitch they are in mm. An existing file is replaced
@@ -100,8 +101,9 @@ Sizes, position, angle and zooms have no defaults here, unlike the flags of
 other commands; a figure without "thickness" is solid. Give a picture by its
 rows or by its name in the library. A figure or picture may have its own sensor:
   "sensor":{"columns":32,"rows":32,"threshold":0.5}
-A frame has the values of a sensor in rows, and "at_least":VALUE, "percent":P
-or "low":VALUE,"high":VALUE; "least":TAXELS drops pieces of fewer taxels.
+A frame holds the values of a sensor, row by row. Its threshold is
+"at_least":VALUE, "percent":P or "low":VALUE,"high":VALUE; "least":TAXELS drops
+pieces of fewer taxels.
 
 Each answer is one line, in the order of the input. If a line is wrong or longer
 than 1 MiB, its answer is {"error":"line 3: ..."}, the other lines are still
@@ -127,11 +129,11 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command per line; positions are 
 Quit checks that the program has ended. Source fails if the file cannot be
 read; Frames fails if there are too few frames. Without --library, the script
 starts with an empty library. It writes files only below its own folder, and
-replaces only files that it wrote itself. For scripts that you trust,
---allow-outside lets them write anywhere and set a library.
+replaces only files that it wrote itself. If you trust a script, --allow-outside
+lets it write anywhere and set a library.
 
-Exit status: 0 all expectations held, 1 one failed, 2 the script is wrong, 3 the
-program ended before the script.
+Exit status: 0 all expectations held, 1 an expectation failed, 2 the script is
+wrong, 3 taxel exited before the script finished.
 
 Examples:
   taxel script test.taxel
@@ -140,8 +142,8 @@ Examples:
   echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
 
 /// `taxel config`: where the settings file is, and an example of one.
-pub(crate) const CONFIG_EXAMPLES: &str = r#"The output is itself a settings file. Yours is taxel/config.toml in your folder
-for settings, or the file that --config or TAXEL_CONFIG names:
+pub(crate) const CONFIG_EXAMPLES: &str = r#"The output is itself a settings file. Yours is ~/.config/taxel/config.toml on
+Linux, or the file that --config or TAXEL_CONFIG names. An example:
   theme = "light"
   charset = "ascii"             # as the flag --ascii
   library = "~/shapes"
@@ -161,10 +163,10 @@ Examples:
 
 /// `taxel completions`: where each shell looks for them.
 pub(crate) const COMPLETIONS_EXAMPLES: &str = "\
-bash reads that file if its package bash-completion is installed; otherwise, put
+Write the script to a file that your shell reads, as in the examples, and start
+a new shell. In bash, this needs the package bash-completion; without it, put
 'source <(taxel completions bash)' into ~/.bashrc. zsh needs the line
-'fpath+=~/.zfunc' in ~/.zshrc, above the one that runs compinit. Then start a
-new shell.
+'fpath+=~/.zfunc' in ~/.zshrc, above the line that runs compinit.
 
 Examples:
   taxel completions bash > ~/.local/share/bash-completion/completions/taxel
@@ -206,11 +208,11 @@ pub(crate) const FILES: &str = "
 /// `taxel sweep`: ranges and their defaults.
 pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
-exact. By default, ranges have the resolution of the paper's program: one cell
-in steps of 0.01 and every whole degree, 3.6 million poses. Figures start at
-x0 = y0 = 5, and pictures in the cell that they lie in. If the sensor would cut
-the shape off there at any angle, taxel takes the cell nearest to the middle in
-which nothing is cut off. It always prints the ranges. Figures are solid without
+exact. By default, x0 and y0 run over one cell in steps of 0.01, at every whole
+degree: 3.6 million poses. The cell of a figure starts at x0 = y0 = 5; that of a
+picture is the cell that it lies in. If the sensor would cut off the shape there
+at some angle, taxel takes the cell nearest to the middle of the sensor in which
+nothing is cut off. The summary states the ranges. Figures are solid without
 --thickness. A picture keeps its own sensor, unless flags change it.
 
 Examples:
@@ -234,8 +236,8 @@ Examples:
 /// `taxel model`: what a model is.
 pub(crate) const MODEL_EXAMPLES: &str = "\
 A model holds every imprint that its shapes can leave, and in how many poses
-each shape leaves it. So counting finds the best answer to one touch: no method
-gets a smaller share of the touches wrong.
+each shape leaves it. The best answer to a touch is the shape that leaves its
+imprint in the most poses: no method names a smaller share of touches wrong.
 MODEL is a file, the name of a model beside the library, or the name of a
 built-in model: figures, figures-30 or shapes.
 
@@ -249,12 +251,12 @@ pub(crate) const MODEL_TRAIN_EXAMPLES: &str = "\
 A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
   {\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}
   {\"name\":\"ring\",\"picture\":\"washer\"}
-Only the taxels of a stored shape count, not its pitch or threshold; a taxel is
+Of a stored shape, only the taxels count, not its pitch or threshold; a taxel is
 one cell. By default, every shape is touched at 100 x 100 positions inside one
 cell and at every whole degree. The sensor is the smallest that holds all
-shapes, at least 16 x 16; taxel prints its size. It refuses poses that the
-sensor would cut off, since a cut imprint depends on the rim; --allow-cut
-permits them. 'taxel merge' puts shards together.
+shapes, at least 16 x 16; taxel prints its size. taxel refuses poses that the
+sensor would cut off, since a cut imprint depends on where the rim is;
+--allow-cut permits them. 'taxel merge' merges shards.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -274,8 +276,8 @@ Examples:
 
 /// `taxel model list`: where models are.
 pub(crate) const MODEL_LIST_EXAMPLES: &str = "\
-Models are files in the folder 'models' beside the library; --names and --json
-list only these. The built-in ones are trained when first used.
+Your models are files in the folder 'models' beside the library. The built-in
+ones are trained when first used; --names and --json leave them out.
 
 Examples:
   taxel model list --json";
@@ -290,8 +292,8 @@ Examples:
 /// `taxel model confusion`: what the numbers mean.
 pub(crate) const MODEL_CONFUSION_EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
-numbers count the touches of all poses. 'certain' counts touches that only one
-shape can leave.
+numbers count touches, one for each pose. 'certain' counts the touches whose
+imprint only one shape can leave.
 
 --given, --greedy and --round use descriptors that do not depend on the
 position of the imprint: na, nae, ce, p, f, roundness, area, diagonals,
@@ -302,11 +304,10 @@ measured to a hundredth of a cell.
 --noise tests touches in random places on the sensor. Imprints that do not fit
 on a smaller --matrix are left out, and standard error says how many.
 
-Classifiers: z measures the distance to the mean of each shape in standard
-deviations; diagonal, lda and qda fit a Gaussian to each shape, with independent
-features (diagonal), one covariance for all shapes (lda) or one for each (qda);
-knn takes the shape of the nearest touches, template that of the nearest
-imprints.
+Classifiers: z takes the shape whose mean is nearest, in standard deviations;
+diagonal, lda and qda fit a Gaussian to each shape, with independent features
+(diagonal), one covariance for all shapes (lda) or one for each (qda); knn takes
+the shape of the nearest touches, template that of the nearest imprint.
 
 Examples:
   taxel model confusion parts
@@ -343,10 +344,10 @@ Examples:
 
 /// `taxel model touches`: what is simulated.
 pub(crate) const MODEL_TOUCHES_EXAMPLES: &str = "\
-Touches each shape again and again in random poses and multiplies probabilities,
-until one shape has the probability of --until. Prints the mean number of
-touches with its standard error; the same seed gives the same numbers. A run
-ends after 10,000 touches; its shape then gets no mean.
+Touches each shape again and again in random poses, and multiplies the
+probabilities until one shape reaches that of --until. Prints the mean number of
+touches and its standard error; the same seed gives the same numbers. If a run
+does not get there in 10,000 touches, it ends, and its shape has no mean.
 
 Examples:
   taxel model touches parts
@@ -354,16 +355,18 @@ Examples:
 
 /// `taxel recognise`: input and answers.
 pub(crate) const RECOGNISE_EXAMPLES: &str = "\
-Reads an imprint in any format that 'taxel describe' reads, or lines of JSON,
-each {\"imprint\":[\"..##\",...]}, {\"touches\":[[...],[...]]} for several touches
-of one shape, or {\"frame\":[[0,12],...],\"at_least\":10} for the values of a
-sensor with a threshold as for 'taxel batch'. The answer to a line is one line.
-It copies frame, label, time and channel, but not the values of a sensor; other
-keys are ignored. An imprint at the rim may be cut off and is never 'certain'.
-With --noise, even an imprint that no shape leaves gets an answer: it is
-compared with every imprint of the model in every place on the matrix. With
---expect, the exit status is 3 if the answer is another shape, or is tied,
-rejected or unknown; if some lines cannot be answered, it is 1.
+Reads an imprint in any format that 'taxel describe' reads, or lines of JSON:
+  {\"imprint\":[\"..##\",...]}              one touch
+  {\"touches\":[[...],[...]]}             several touches of one shape
+  {\"frame\":[[0,12],...],\"at_least\":10}  a sensor's values, and a threshold as
+                                        for 'taxel batch'
+Each line gets one line as its answer, with a copy of the line's frame number,
+label, time and channel; other keys are ignored. An imprint at the rim may be
+cut off, so it is never 'certain'. With --noise, even an imprint that no shape
+leaves gets a name: it is compared with every imprint of the model, in every
+place on the matrix. With --expect, the exit status is 3 if the answer is
+another shape, or is tied, rejected or unknown; if some lines cannot be
+answered, it is 1.
 
 Built-in models: 'figures', the seven figures at their default sizes;
 'figures-30', the same figures at about 30 cells each; 'shapes', the shapes that
@@ -381,8 +384,9 @@ pub(crate) const LIBRARY_EXAMPLES: &str = "\
 A library is a folder with one JSON file per shape. The shapes that come with
 the program are always listed; you can copy them, but not change them. A name
 has 1 to 64 letters, digits, spaces, '-', '_' or '.'; case does not matter.
-Without --library the folder is TAXEL_LIBRARY, else the 'library' of the
-settings, else ~/.local/share/taxel/library.
+The folder is the one that --library names; if it is not given, the one in the
+variable TAXEL_LIBRARY, then the 'library' of the settings, then
+~/.local/share/taxel/library.
 
 Examples:
   taxel library list
@@ -438,11 +442,11 @@ Examples:
   ls \"$(taxel library path)\"";
 
 /// `taxel library check`.
-pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape and lists broken ones, shapes with another name inside
-their file, names that differ only in case, damaged unsaved work, and other
-files in the folder. The exit status is 1 if a shape is broken or unsaved work
-damaged, or if --library names a folder that does not exist. --json prints an
-array on one line, with an object for each finding:
+pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape and lists broken ones, shapes whose file holds another name,
+names that differ only in case, damaged unsaved work, and other files in the
+folder. The exit status is 1 if a shape is broken or unsaved work is damaged, or
+if --library names a folder that does not exist. --json prints an array on one
+line, with an object for each finding:
   {"finding":"broken","name":"ring","reason":"..."}
   {"finding":"name","name":"Ring","reason":"..."}
   {"finding":"damaged","path":"shapes/.journal/4711-0.json","reason":"..."}
@@ -455,12 +459,12 @@ Examples:
 
 /// `taxel frames`: the formats of recordings, the order of processing, and what happens to a damaged one.
 pub(crate) const FRAMES_EXAMPLES: &str = "\
-A recording comes from Tekscan, XSENSOR, emed, zebris or PoPu, or is MCAP, NPY,
-NPZ, JSON lines, the output of 'ros2 topic echo' or a table of numbers; its
-content decides which. Without a flag under Frames, taxel lists its channels.
-Frames are cropped, flipped, turned and masked, then tared, then multiplied by
-the gain; then the threshold makes the imprint. Values are in the recording's
-own unit.
+A recording is a file from Tekscan, XSENSOR, emed, zebris or PoPu, or is MCAP,
+NPY, NPZ, JSON lines, the output of 'ros2 topic echo' or a table of numbers.
+taxel recognises the format from the content. Without a flag under Frames, it
+lists the channels. Frames are cropped, flipped, turned, masked, tared and
+multiplied by the gain, in this order; then the threshold makes the imprint.
+Values are in the recording's own unit.
 
 If a recording is damaged, taxel processes the complete frames before the
 damage and reports where the damage is; the exit status is 1.
@@ -480,12 +484,12 @@ pub(crate) const WATCH_EXAMPLES: &str = "\
 On a terminal, a page shows the frames; it stays open when the source has ended,
 even with --once. With --json, or in a pipeline, taxel prints a line for each
 frame, like 'taxel frames --all --json'; without a threshold, the imprint in it
-is null. A stream consists of numbers in lines, JSON lines, the output of
-'ros2 topic echo', or FlexiTac's or MatSense's bytes; its content decides which.
-A recording is played at its own rate. If a serial line or connection is lost,
-taxel tries again each second, unless --once is given; on a terminal, it also
-waits for one that does not exist yet. Torn, short, long and garbled frames are
-dropped and counted.
+is null. A stream consists of lines of numbers, JSON lines, the output of
+'ros2 topic echo', or the bytes of FlexiTac or MatSense; taxel recognises the
+format from the content. A recording is played at its own rate. If a serial line
+or connection is lost, taxel tries again every second, unless --once is given;
+on a terminal, it also waits for one that does not exist yet. Torn, short, long
+and garbled frames are dropped and counted.
 
 --write records every frame, shown or not; numpy can open the file at any time.
 A .json file of the same name describes the values. The source's own labels are

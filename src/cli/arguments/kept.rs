@@ -32,11 +32,11 @@ pub(crate) struct Saving {
 /// Defines the flags that keep the result of a touch: `--save`, `--export` with `--format`, and `--force`. They are
 /// for commands that answer with one imprint: `figure`, `picture` and `frames`.
 pub(super) fn flags() -> [Arg; 4] {
-    let save = option("save", "NAME", "Store the shape in the library too")
+    let save = option("save", "NAME", "Also store the shape in the library")
         .value_parser(Name::new)
         .help_heading("Library");
     let what =
-        "Write the imprint, or a drawing of it; '-' for standard output, in place of the table";
+        "Write the imprint, or a drawing of it; '-' for standard output, instead of the table";
     let file = option("export", "FILE", parameters::wrapped(what, 52))
         .value_parser(value_parser!(PathBuf))
         .help_heading("Export");

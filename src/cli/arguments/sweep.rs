@@ -152,7 +152,7 @@ fn atlas() -> Arg {
     option(
         "atlas",
         "FILE",
-        "Write the atlas, all imprints that were found,\nas .csv, .jsonl or .npz",
+        "Write the atlas, a list of all imprints found, as\n.csv, .jsonl or .npz",
     )
     .value_parser(OsStringValueParser::new().try_map(AtlasFile::new))
 }

@@ -83,7 +83,7 @@ pub(super) fn batch() -> Command {
             Arg::new("file")
                 .value_name("FILE")
                 .value_parser(value_parser!(PathBuf))
-                .help("Lines of JSON; nothing or '-' for standard input"),
+                .help("File of JSON lines; standard input if left out or '-'"),
         )
         .args(sensor_of_imprints())
         .arg(jobs())

@@ -140,7 +140,7 @@ fn questions() -> [Arg; 4] {
         )
         .value_parser(str::parse::<GivenDescriptors>),
         switch("greedy", "Choose descriptors one by one until none helps"),
-        switch("pairs", "Print the error of each pair of shapes alone"),
+        switch("pairs", "Print the error for each pair of shapes, by itself"),
         option(
             "classifier",
             "NAME",

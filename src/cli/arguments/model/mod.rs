@@ -97,7 +97,7 @@ pub(super) fn command() -> Command {
         .after_help(MODEL_DELETE_EXAMPLES)
         .arg(flags::name("Name of the model"));
     Command::new("model")
-        .about("Train models of shapes, and see what one touch can tell")
+        .about("Train models, and measure how well one touch tells shapes apart")
         .after_help(MODEL_EXAMPLES)
         .subcommand_required(true)
         .subcommand(train::command())

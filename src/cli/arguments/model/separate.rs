@@ -71,7 +71,7 @@ pub(super) fn command() -> Command {
     let csv = switch("csv", "Print comma-separated values").conflicts_with("json");
     let axes = ["range_scale", "range_pitch", "range_threshold"];
     Command::new("separate")
-        .about("Find the sensor that tells the shapes apart")
+        .about("Find how fine a sensor must be to tell the shapes apart")
         .override_usage("taxel model separate [OPTIONS] <--scale|--pitch|--threshold> [MODEL]...")
         .after_help(MODEL_SEPARATE_EXAMPLES)
         .args(shape_set::args(

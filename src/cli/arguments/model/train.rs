@@ -84,7 +84,7 @@ pub(super) fn command() -> Command {
         .after_help(MODEL_TRAIN_EXAMPLES)
         .args(shape_set::args(
             "FILE.jsonl|NAME",
-            "Shapes: lines of JSON, '-' for standard input, or names\nof the library",
+            "Shapes: files of JSON lines, '-' for standard input,\nor names of the library",
         ))
         .args([out, name])
         .group(shape_set::group())
