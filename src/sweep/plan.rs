@@ -120,11 +120,19 @@ impl fmt::Display for Shard {
 
 /// The error for text that is not a shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("\"{text}\" is not a shard, expected K/N with K from 1 to N and N up to 4294967295")]
+#[error("\"{text}\" is not a shard, {}", self.expected())]
 #[non_exhaustive]
 pub struct ShardError {
     /// The text, shortened.
     pub text: String,
+}
+
+impl ShardError {
+    /// Returns the part of the message that says what was expected, for a place that shows the text itself.
+    #[must_use]
+    pub fn expected(&self) -> &'static str {
+        "expected K/N with K from 1 to N and N up to 4294967295"
+    }
 }
 
 /// The error for shards that are not all those of one sweep or training, in their order.

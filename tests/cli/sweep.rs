@@ -542,8 +542,16 @@ fn impossible_sweeps_are_refused() {
             "the end 1 is below the start 2",
         ),
         (
+            "sweep hexagon --x0 1:2",
+            "invalid value '1:2' for '--x0 <START:END:STEP>': expected a number or start:end:step",
+        ),
+        (
+            "sweep hexagon --x0 0,5",
+            "invalid value '0,5' for '--x0 <START:END:STEP>': not a number; write 0.5",
+        ),
+        (
             "sweep hexagon --shard 4/3",
-            "\"4/3\" is not a shard, expected K/N with K from 1 to N and N up to 4294967295",
+            "invalid value '4/3' for '--shard <K/N>': expected K/N with K from 1 to N and N up to 4294967295",
         ),
         (
             "sweep hexagon --atlas x.txt",

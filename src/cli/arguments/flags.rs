@@ -21,10 +21,10 @@ use crate::formats::Name;
 use crate::formats::ending::has_ending;
 use crate::memory::MemorySize;
 use crate::parameter::{Parameter, number};
-use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Ranges};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::Existing;
-use crate::sweep::Shard;
+use crate::sweep::{Shard, ShardError};
 
 /// Defines a flag without a value, `--NAME`.
 pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
@@ -102,7 +102,7 @@ pub(super) fn range(axis: Axis, default: &str) -> Arg {
         .long(flag)
         .value_name("START:END:STEP")
         .allow_hyphen_values(true)
-        .value_parser(str::parse::<DecimalRange>)
+        .value_parser(parse_range)
         .help_heading("Grid")
         .help(parameters::wrapped(&help, 46))
 }
@@ -159,8 +159,7 @@ pub(super) fn memory_of(matches: &ArgMatches) -> Option<MemorySize> {
 
 /// Defines `--shard`, for work that is divided among several machines.
 pub(super) fn shard() -> Arg {
-    option("shard", "K/N", "Compute only shard K of N of the grid")
-        .value_parser(str::parse::<Shard>)
+    option("shard", "K/N", "Compute only shard K of N of the grid").value_parser(parse_shard)
 }
 
 /// Returns the value of [`shard`]; if not given, the whole grid.
@@ -309,6 +308,20 @@ pub(super) fn parse_probability(text: &str) -> Result<f64, String> {
         .contains(&number)
         .then_some(number)
         .ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+/// Parses a range. clap quotes the argument, so the message does not quote the whole of it again.
+pub(super) fn parse_range(text: &str) -> Result<DecimalRange, String> {
+    text.parse().map_err(|error: RangeError| match &error {
+        RangeError::Form { .. } => error.expected(),
+        RangeError::Number { text: part } if part == text => number::complaint(text),
+        _ => error.to_string(),
+    })
+}
+
+/// Parses a shard. clap quotes the argument, so the message does not.
+fn parse_shard(text: &str) -> Result<Shard, &'static str> {
+    text.parse().map_err(|error: ShardError| error.expected())
 }
 
 /// Parses a finite number with a decimal point.

@@ -18,14 +18,14 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    self, EvaluationForm, json, number_of, option, quiet, replace, report, seed, switch,
-    which_model, whole,
+    self, EvaluationForm, json, number_of, option, parse_range, quiet, replace, report, seed,
+    switch, which_model, whole,
 };
 use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
 use crate::cli::error::CliError;
 use crate::formats::ending::has_ending;
 use crate::index::wide;
-use crate::pose::{DecimalRange, RangeError};
+use crate::pose::DecimalRange;
 use crate::recognition::{Classifier, ClassifierSettings, GivenDescriptors, Noise, Rounding};
 use crate::sensor::MatrixSize;
 use crate::storage::Existing;
@@ -220,9 +220,7 @@ fn untrained() -> Arg {
 
 /// Parses probabilities that a taxel flips, such as `0:0.1:0.02`. Both ends must be valid for [`Noise::new`].
 fn parse_noise_range(text: &str) -> Result<DecimalRange, String> {
-    let range: DecimalRange = text
-        .parse()
-        .map_err(|error: RangeError| error.to_string())?;
+    let range = parse_range(text)?;
     for value in [range.value(0), range.last()] {
         Noise::new(value).map_err(|error| error.to_string())?;
     }

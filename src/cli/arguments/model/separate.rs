@@ -13,8 +13,8 @@ use std::path::PathBuf;
 use clap::{Arg, ArgGroup, ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    self, EvaluationForm, jobs, json, option, parse_probability, quiet, range, replace, report,
-    switch,
+    self, EvaluationForm, jobs, json, option, parse_probability, parse_range, quiet, range,
+    replace, report, switch,
 };
 use crate::cli::arguments::help::MODEL_SEPARATE_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
@@ -109,7 +109,7 @@ fn sizes() -> [Arg; 3] {
         Arg::new(id)
             .long(long)
             .value_name("RANGE")
-            .value_parser(str::parse::<DecimalRange>)
+            .value_parser(parse_range)
             .help(help)
     };
     [
