@@ -1,7 +1,7 @@
 //! The parts of a pose that the screen and the command line write the same way: `3.00 ± 0.13, 2.50 ± 0.08`, and
-//! `27°..32°`.
+//! `95 % of 66 poses: 27°..32°`.
 
-use crate::formats::value::{decimal, deviation};
+use crate::formats::value::{counted, decimal, deviation};
 use crate::recognition::{AngleEstimate, PoseEstimate};
 
 /// Returns x and y of the centre, each with its standard deviation, multiplied by `factor`: 1 for cells, the pitch
@@ -33,11 +33,13 @@ pub(crate) fn repeats(angle: &AngleEstimate) -> String {
     }
 }
 
-/// Returns the fewest whole degrees that hold 95 % of the poses: the first and the last, or the only one.
-pub(crate) fn arc(angle: &AngleEstimate) -> String {
+/// Returns the fewest whole degrees that hold 95 % of the poses, as in `95 % of 66 poses: 27°..32°`: the first and the
+/// last degree, or the only one.
+pub(crate) fn arc(angle: &AngleEstimate, poses: u64) -> String {
+    let poses = counted(poses, "pose");
     match angle.ends() {
-        (first, last) if first == last => format!("{first}°"),
-        (first, last) => format!("{first}°..{last}°"),
+        (first, last) if first == last => format!("95 % of {poses}: {first}°"),
+        (first, last) => format!("95 % of {poses}: {first}°..{last}°"),
     }
 }
 
@@ -56,8 +58,15 @@ mod tests {
 
     #[test]
     fn a_single_degree_is_written_once() {
-        let arcs = [(27, 1), (27, 6), (178, 5)].map(|degrees| arc(&angle(degrees)));
-        assert_eq!(arcs, ["27°", "27°..32°", "-2°..2°"]);
+        let arcs = [(27, 1), (27, 6), (178, 5)].map(|degrees| arc(&angle(degrees), 66));
+        assert_eq!(
+            arcs,
+            [
+                "95 % of 66 poses: 27°",
+                "95 % of 66 poses: 27°..32°",
+                "95 % of 66 poses: -2°..2°"
+            ]
+        );
     }
 
     #[test]

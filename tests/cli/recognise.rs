@@ -375,6 +375,25 @@ fn a_pose_is_given_in_cells_degrees_and_mm() {
     );
 }
 
+/// One range of degrees for both ends would say the same number twice.
+#[test]
+fn a_single_degree_is_said_once() {
+    let place = Place::new();
+    let bar = "bar=rectangle length=6 width=3";
+    place.done(&format!(
+        "model train --shape '{bar}' --positions 2 --angle 0:345:15 --out b.npz"
+    ));
+    let touched = place.done(
+        "figure rectangle --length 6 --width 3 --x0 5 --y0 5 --angle 30 --export - --format txt",
+    );
+    let text = place
+        .run("recognise - --model b.npz --pose", &touched)
+        .stdout;
+    let said = "centre 8.00 ± 0.00, 6.50 ± 0.00 cells\n\
+                angle 30° ± 0° (repeats every 180°); 95 % of 2 poses: 30°\n";
+    assert!(text.contains(said), "{text}");
+}
+
 /// The angle of a picture that a quarter turn maps onto itself is only known up to quarter turns.
 #[test]
 fn the_angle_of_a_cross_is_known_modulo_a_quarter_turn() {

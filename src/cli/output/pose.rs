@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! centre 3.00 ± 0.13, 3.00 ± 0.13 cells (7.50 ± 0.32, 7.50 ± 0.32 mm)
-//! angle 30.2° ± 1.4° (repeats every 180°); 95 % in 27°..32°
+//! angle 30.2° ± 1.4° (repeats every 180°); 95 % of 66 poses: 27°..32°
 //! ```
 //! A position is that of the centre about which the shape turns, in cells of the touch, x to the right, y down. All
 //! poses of the model that leave the imprint count equally; `±` is their standard deviation. Angles are degrees as in
@@ -164,7 +164,7 @@ impl PoseReport {
         }
         text += &match &estimate.angle {
             None => "; it looks the same at every angle\n".to_owned(),
-            Some(angle) => format!("\n{}\n", angle_in_words(angle)),
+            Some(angle) => format!("\n{}\n", angle_in_words(angle, estimate.poses)),
         };
         charset.lines(&(text + &self.drawn(touch, charset)))
     }
@@ -197,15 +197,15 @@ impl PoseReport {
     }
 }
 
-/// Returns the angle with its spread in words, or "any" if no angle is more likely than another.
-fn angle_in_words(angle: &AngleEstimate) -> String {
+/// Returns the angle with its spread over a number of poses in words, or "any" if no angle is more likely than another.
+fn angle_in_words(angle: &AngleEstimate, poses: u64) -> String {
     let repeats = pose_words::repeats(angle);
     let Some((mean, spread)) = angle.known() else {
         return format!("angle any{repeats}");
     };
     let (mean, spread) = (decimal(mean, 1), deviation(spread, 1));
-    let arc = pose_words::arc(angle);
-    format!("angle {mean}° ± {spread}°{repeats}; 95 % in {arc}")
+    let arc = pose_words::arc(angle, poses);
+    format!("angle {mean}° ± {spread}°{repeats}; {arc}")
 }
 
 /// Draws a boundary as dots.

@@ -418,7 +418,7 @@ fn pose_lines(whose: &str, pose: &PoseEstimate) -> [String; 3] {
         let (mean, spread) = (decimal(half_up(mean), 0), pose_words::spread(spread, 1));
         (
             format!("angle {mean}° ± {spread}°{}", pose_words::repeats(angle)),
-            format!("95 % of {poses}: {}", pose_words::arc(angle)),
+            pose_words::arc(angle, pose.poses),
         )
     });
     [position, angle, poses]
