@@ -122,7 +122,9 @@ fn the_smallest_size_that_reaches_an_error_is_found() {
     assert!(
         text.contains(&format!(
             "the smallest scale with an error of at most 0.1 is {scale}:"
-        )) && text.contains("tried from the smallest on in steps of 0.5, then of 0.05"),
+        )) && text.contains(
+            "tried from the smallest on in steps of 0.5, then in steps of 0.05 just before"
+        ),
         "{text}"
     );
     let text = place.done(&format!("{line} --want 0"));
@@ -152,7 +154,7 @@ fn the_answer_about_pitches_says_coarser_and_finer() {
     assert!(
         text.contains("the coarsest pitch with an error of at most 0.1 is 0.")
             && text.contains(" mm: ")
-            && text.contains("tried from the coarsest on in steps of 0.2 mm, then of 0.02 mm")
+            && text.contains("tried from the coarsest on in steps of 0.2 mm, then in steps of 0.02 mm just before")
             && text.contains("every finer pitch that was tried reaches it, too"),
         "{text}"
     );

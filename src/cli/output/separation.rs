@@ -122,7 +122,7 @@ fn found(axis: SizeAxis, step: f64, curve: &SeparationCurve, wanted: f64) -> Str
         let (coarse, fine) = (short(step), short(smallest.step));
         let _ = writeln!(
             text,
-            "  tried from the {extreme} on in steps of {coarse}{unit}, then of {fine}{unit} before the first that reaches it"
+            "  tried from the {extreme} on in steps of {coarse}{unit}, then in steps of {fine}{unit} just before the first that reaches it"
         );
     } else {
         let _ = writeln!(
