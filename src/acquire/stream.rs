@@ -12,7 +12,7 @@ use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback
 use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
 use crate::acquire::ticker::{TICK, Ticker};
-use crate::formats::recording::{LOOKED_AT, recognised};
+use crate::formats::recording::{StartKind, StartSearch};
 use crate::formats::stream::{StreamCounts, StreamDecoder, StreamEvent, StreamSink};
 
 /// The number of bytes read at a time.
@@ -71,44 +71,68 @@ pub(super) fn run(
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
+    let decoder = StreamDecoder::new(options.for_stream(source.begins()));
     let reader = StreamReader {
         source,
         options,
         stop,
-        decoder: StreamDecoder::new(options.for_stream(source.begins())),
-        start: StreamStart::new(source, options),
+        start: StreamStart::new(source, options, decoder.counts()),
+        decoder,
         clock: StreamClock::new(source, options),
         consumer,
     };
     reader.read()
 }
 
-/// The first bytes of a source, as long as they may begin a recording that only a file can be.
-struct StreamStart(Option<Vec<u8>>);
+/// The start of a source, as long as it may be that of a recording that only a file can be. With its first frame, a
+/// source is a stream.
+struct StreamStart {
+    /// The search; None once it has ended.
+    search: Option<StartSearch>,
+    /// The number of frames before the first byte.
+    frames: u64,
+}
 
 impl StreamStart {
-    /// Prepares for the first byte of a source. Where the bytes may begin anywhere, they do not show a recording, and a
-    /// format that the user names is not doubted.
-    fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
-        Self((source.begins() && options.format.is_none()).then(Vec::new))
+    /// Prepares for the first byte of a source, given the counts before it. Where the bytes may begin anywhere, they do
+    /// not show a recording, and a format that the user names is not doubted.
+    fn new(source: &FrameSource, options: &AcquireOptions, counts: &StreamCounts) -> Self {
+        let is_searched = source.begins() && options.format.is_none();
+        Self {
+            search: is_searched.then(StartSearch::default),
+            frames: counts.frames,
+        }
     }
 
-    /// Checks that the source does not begin like such a recording, given its next bytes and the counts of those before.
-    /// They may come in pieces of any size. With its first frame, the source is a stream.
+    /// Examines the next bytes, after those that gave these counts. Returns the number of those after which the kind of
+    /// the source is certain, and the kind; None if it is not certain yet, or was before.
+    fn push(&mut self, bytes: &[u8], counts: &StreamCounts) -> Option<(usize, StartKind)> {
+        self.search.take_if(|_| counts.frames > self.frames);
+        let found = self.search.as_mut()?.push(bytes)?;
+        self.search = None;
+        Some(found)
+    }
+
+    /// Checks that a source with these counts is a stream, if it is of this kind according to its start.
     ///
     /// # Errors
     /// Returns [`AcquireError::NotStream`].
-    fn check(&mut self, bytes: &[u8], counts: &StreamCounts) -> Result<(), AcquireError> {
-        self.0
-            .take_if(|start| counts.frames > 0 || start.len() >= LOOKED_AT);
-        let Some(start) = self.0.as_mut().filter(|_| !bytes.is_empty()) else {
-            return Ok(());
-        };
-        start.extend_from_slice(bytes);
-        match recognised(start).filter(|format| !format.can_be_streamed()) {
-            Some(format) => Err(AcquireError::NotStream { format }),
-            None => Ok(()),
+    fn check(&self, kind: StartKind, counts: &StreamCounts) -> Result<(), AcquireError> {
+        match kind {
+            StartKind::Recording(format) if counts.frames == self.frames => {
+                Err(AcquireError::NotStream { format })
+            }
+            _ => Ok(()),
         }
+    }
+
+    /// Checks that a source that has ended with these counts is a stream.
+    ///
+    /// # Errors
+    /// Returns [`AcquireError::NotStream`].
+    fn finish(&self, counts: &StreamCounts) -> Result<(), AcquireError> {
+        let search = self.search.as_ref();
+        search.map_or(Ok(()), |search| self.check(search.finish(), counts))
     }
 }
 
@@ -135,13 +159,10 @@ impl StreamReader<'_, '_> {
         let mut bytes = vec![0; CHUNK];
         while !self.stop.load(Ordering::Relaxed) {
             let lost = match input.read(&mut bytes) {
-                Ok(ReadOutcome::Bytes(count)) => {
-                    self.start.check(&bytes[..count], self.decoder.counts())?;
-                    match self.decode(&bytes[..count]) {
-                        ControlFlow::Continue(()) => continue,
-                        ControlFlow::Break(()) => return Ok(()),
-                    }
-                }
+                Ok(ReadOutcome::Bytes(count)) => match self.decode(&bytes[..count])? {
+                    ControlFlow::Continue(()) => continue,
+                    ControlFlow::Break(()) => return Ok(()),
+                },
                 Ok(ReadOutcome::Anew(how)) => {
                     if self.step(StreamDecoder::finish).is_break()
                         || (self.consumer)(AcquireEvent::Anew(how)).is_break()
@@ -149,14 +170,17 @@ impl StreamReader<'_, '_> {
                         return Ok(());
                     }
                     self.decoder.begin_anew();
-                    self.start = StreamStart::new(self.source, self.options);
+                    self.start = StreamStart::new(self.source, self.options, self.decoder.counts());
                     self.clock.times.rejoin();
                     continue;
                 }
                 Ok(ReadOutcome::End) if comes_back => {
                     io::Error::new(io::ErrorKind::UnexpectedEof, "the other end has closed it")
                 }
-                Ok(ReadOutcome::End) => break,
+                Ok(ReadOutcome::End) => {
+                    self.start.finish(self.decoder.counts())?;
+                    break;
+                }
                 Err(error) if comes_back => error,
                 Err(error) => {
                     // What came before counts.
@@ -236,12 +260,32 @@ impl StreamReader<'_, '_> {
         }
     }
 
-    /// Decodes bytes, perhaps none, and reports their frames and a tick.
-    fn decode(&mut self, bytes: &[u8]) -> ControlFlow<()> {
+    /// Decodes bytes, perhaps none, and reports their frames and a tick. No frame waits until it is certain that the
+    /// source is a stream: in a recording that is not one, that is certain before the first frame.
+    ///
+    /// # Errors
+    /// Returns [`AcquireError::NotStream`].
+    fn decode(&mut self, bytes: &[u8]) -> Result<ControlFlow<()>, AcquireError> {
         // If no bytes came, the content that was in a file has been read.
         self.clock.timed |= self.clock.is_live && bytes.is_empty();
-        self.step(|decoder, sink| decoder.push(bytes, sink))?;
-        self.tick()
+        let mut rest = bytes;
+        if let Some((count, kind)) = self.start.push(bytes, self.decoder.counts()) {
+            let (before, after) = bytes.split_at(count);
+            if self.push(before).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+            self.start.check(kind, self.decoder.counts())?;
+            rest = after;
+        }
+        if self.push(rest).is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+        Ok(self.tick())
+    }
+
+    /// Decodes bytes, and reports their frames.
+    fn push(&mut self, bytes: &[u8]) -> ControlFlow<()> {
+        self.step(|decoder, sink| decoder.push(bytes, sink))
     }
 
     /// Calls one step of the decoder, and reports its events until no more are wanted.
@@ -283,6 +327,7 @@ mod tests {
     use std::net::TcpListener;
 
     use super::*;
+    use crate::formats::recording::{LOOKED_AT, recognised};
     use crate::formats::stream::StreamFormat;
     use crate::frame::FrameSize;
 
@@ -385,6 +430,111 @@ mod tests {
             }
             ControlFlow::Continue(())
         })
+    }
+
+    /// Returns the frames of a pipe that brings these pieces, the number of dropped ones, and the error.
+    fn watched(pieces: &[&[u8]]) -> (Vec<String>, u64, Option<String>) {
+        let source = FrameSource::Fifo("pipe".into());
+        let options = AcquireOptions {
+            playback: Playback::Once,
+            ..AcquireOptions::default()
+        };
+        let mut frames = Vec::new();
+        let decoder = StreamDecoder::new(options.for_stream(source.begins()));
+        let mut reader = StreamReader {
+            source: &source,
+            options: &options,
+            stop: &AtomicBool::new(false),
+            start: StreamStart::new(&source, &options, decoder.counts()),
+            decoder,
+            clock: StreamClock::new(&source, &options),
+            consumer: &mut |event| {
+                if let AcquireEvent::Frame { frame, time } = event {
+                    frames.push(format!("{frame:?} {time:?}"));
+                }
+                ControlFlow::Continue(())
+            },
+        };
+        let mut decoded = pieces
+            .iter()
+            .try_for_each(|piece| reader.decode(piece).map(drop));
+        if decoded.is_ok() {
+            decoded = reader.start.finish(reader.decoder.counts());
+            let _ = reader.step(StreamDecoder::finish);
+        }
+        let dropped = reader.decoder.counts().dropped;
+        let error = decoded.err().map(|error| error.to_string());
+        (frames, dropped, error)
+    }
+
+    /// Returns what comes of a pipe with these bytes, after a check that it does not depend on the pieces.
+    fn watched_in_any_pieces(bytes: &[u8]) -> (Vec<String>, u64, Option<String>) {
+        let whole = watched(&[bytes]);
+        let single: Vec<_> = bytes.chunks(1).collect();
+        assert_eq!(watched(&single), whole, "{}", bytes.escape_ascii());
+        for cut in 1..bytes.len() {
+            let (start, rest) = bytes.split_at(cut);
+            assert_eq!(watched(&[start, rest]), whole, "{}|", start.escape_ascii());
+        }
+        whole
+    }
+
+    #[test]
+    fn a_sample_is_a_stream_or_refused_however_it_is_cut() {
+        let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files/frames/samples");
+        let (mut refused, mut names) = (0, 0);
+        for sample in std::fs::read_dir(samples).expect("the samples") {
+            let path = sample.expect("a sample").path();
+            let bytes = std::fs::read(&path).expect("read");
+            let format = recognised(&bytes).expect("a recording");
+            let (frames, _, error) = watched_in_any_pieces(&bytes);
+            let expected = (!format.can_be_streamed())
+                .then(|| format!("a recording ({}), not a stream", format.name()));
+            assert_eq!(error, expected, "{}", path.display());
+            assert!(error.is_none() || frames.is_empty(), "{}", path.display());
+            refused += usize::from(error.is_some());
+            names += 1;
+        }
+        assert!(refused > 5 && names > refused + 5, "{refused} of {names}");
+    }
+
+    #[test]
+    fn a_stream_with_words_of_recordings_is_a_stream_however_it_is_cut() {
+        for (stream, frames) in [
+            // A line of JSON is judged when it is whole.
+            ("{\"n_columns\":2,\"n_rows\":1,\"frame\":[[1,2]]}\n", 1),
+            ("{\"snapshots\":{},\"n_columns\":2,\"frame\":[[1,2]]}\n", 1),
+            (
+                "{\"snapshots\":{},\"n_columns\":2}\n{\"frame\":[[1,2]]}\n",
+                1,
+            ),
+            ("boot v1\nDATA_TYPE ready\n\n1 2\n3 4\n\n5 6\n7 8\n\n", 2),
+            ("PK ready\n\n1 2\n3 4\n\n5 6\n7 8\n\n", 2),
+            ("FRAME,1\n\n1 2\n3 4\n\nFRAME,2\n\n1 2\n3 4\n\n", 2),
+            // After its first frame, a stream may contain anything.
+            ("1 2\n3 4\n\n5 6\n7 8\n\nASCII_DATA @@\n\n", 2),
+            ("P1\n\n1 2\n3 4\n\n5 6\n7 8\n\nASCII_DATA @@\n\n", 2),
+        ] {
+            let (found, _, error) = watched_in_any_pieces(stream.as_bytes());
+            assert_eq!((found.len(), error), (frames, None), "{stream}");
+        }
+    }
+
+    #[test]
+    fn a_start_without_a_line_is_judged_after_64_kib() {
+        let popu =
+            "{\"a_columns\":1,\"a_rows\":1,\"snapshots\":{\"0\":{\"a_readings\":[".to_owned();
+        let long = popu.clone() + &" ".repeat(LOOKED_AT - popu.len());
+        let refused = Some("a recording (popu), not a stream".to_owned());
+        for (text, error) in [
+            (long.clone() + "\"frame\"", &refused),
+            (long[..LOOKED_AT - 7].to_owned() + "\"frame\"", &None),
+        ] {
+            for size in [1, 100, LOOKED_AT - 1, LOOKED_AT, text.len()] {
+                let pieces: Vec<_> = text.as_bytes().chunks(size).collect();
+                assert_eq!(&watched(&pieces).2, error, "{size}");
+            }
+        }
     }
 
     #[test]

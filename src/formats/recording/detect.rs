@@ -8,15 +8,15 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::foreign;
-use crate::formats::npy;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingSink, until_enough};
 use crate::formats::recording::format::RecordingFormat;
 use crate::formats::recording::json::{lines as json_lines, popu};
 use crate::formats::recording::numpy::{archive, array};
+use crate::formats::recording::ros::echo;
 #[cfg(feature = "mcap")]
 use crate::formats::recording::ros::mcap;
-use crate::formats::recording::ros::{MCAP_MAGIC, echo};
+use crate::formats::recording::signs::{self, VendorSigns};
 use crate::formats::recording::table::cell_names::is_first_cell;
 use crate::formats::recording::table::delimited;
 use crate::formats::recording::table::layout::EarlierLayout;
@@ -25,7 +25,6 @@ use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::recording::text::separator::{Separator, is_comment};
 use crate::formats::recording::time::moment;
 use crate::formats::recording::vendor::{emed, flexitac, tekscan, xsensor, zebris};
-use crate::formats::stream::FLEXITAC_MARKER;
 
 /// The number of bytes at the start of a file that decide its format.
 pub(crate) const LOOKED_AT: usize = 1 << 16;
@@ -45,42 +44,42 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
     let start = &start[..start.len().min(LOOKED_AT)];
     let text = without_mark(start);
     let trimmed = text.trim_ascii_start();
-    let has = |word: &[u8]| start.windows(word.len()).any(|window| window == word);
-    let line_with = |word: &[u8]| {
-        let mut lines = text.split(|&byte| byte == b'\n');
-        lines.any(|line| line.starts_with(word))
-    };
     let mut lines = trimmed.split(|&byte| byte == b'\n');
     let first = lines.clone().next().unwrap_or(b"");
     // Comments may stand above a table.
     let is_row = |line: &&[u8]| !is_blank(line) && !is_comment(line);
     let row = lines.find(is_row).unwrap_or(first);
-    Some(match start {
-        _ if start.starts_with(npy::MAGIC) => RecordingFormat::Npy,
-        _ if start.starts_with(&MCAP_MAGIC) => RecordingFormat::Mcap,
-        _ if start.starts_with(&FLEXITAC_MARKER) => RecordingFormat::Flexitac,
-        [b'P', b'K', 3 | 5, 4 | 6, ..] => RecordingFormat::Npz,
-        _ if is_blank(trimmed) || start.contains(&0) => return None,
-        _ if trimmed.starts_with(b"{") => {
-            if (has(b"\"snapshots\"") || has(b"_columns\"")) && !has(b"\"frame\"") {
-                RecordingFormat::Popu
-            } else {
-                RecordingFormat::JsonLines
-            }
-        }
-        _ if is_parted_by_cr(text) || trimmed.starts_with(b"<") || is_bitmap(text) => return None,
-        _ if line_with(b"ASCII_DATA") || line_with(b"DATA_TYPE ") => RecordingFormat::Tekscan,
-        _ if xsensor::is_export(text) => RecordingFormat::Xsensor,
-        _ if has(b"SensCountX=") => RecordingFormat::Zebris,
-        _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
-        _ if is_ros(echo::without_notices(trimmed)) => RecordingFormat::Ros2,
-        // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
-        _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
-        _ if moment::is_alone(row) => return None,
-        _ if is_table(row) || is_named_column(text) => RecordingFormat::Csv,
-        _ if options.size.is_some() && is_number(row) => RecordingFormat::Csv,
-        _ => return None,
-    })
+    let known = signs::by_magic(start);
+    if known.is_some() {
+        return known;
+    }
+    if is_blank(trimmed) || start.contains(&0) {
+        return None;
+    }
+    if trimmed.starts_with(b"{") {
+        return Some(if signs::is_popu(trimmed) {
+            RecordingFormat::Popu
+        } else {
+            RecordingFormat::JsonLines
+        });
+    }
+    if is_parted_by_cr(text) || trimmed.starts_with(b"<") || is_bitmap(text) {
+        return None;
+    }
+    let known = VendorSigns::of(text);
+    if known.is_some() {
+        return known;
+    }
+    if is_ros(echo::without_notices(trimmed)) {
+        return Some(RecordingFormat::Ros2);
+    }
+    // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
+    if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') {
+        return Some(RecordingFormat::JsonLines);
+    }
+    let is_table =
+        is_table(row) || is_named_column(text) || options.size.is_some() && is_number(row);
+    (is_table && !moment::is_alone(row)).then_some(RecordingFormat::Csv)
 }
 
 /// Returns the error for a file that is not a recording.
@@ -139,7 +138,7 @@ fn numbers_below_text(text: &[u8]) -> Option<u64> {
 }
 
 /// Returns true if a file is a black-and-white or grey image of netpbm.
-fn is_bitmap(start: &[u8]) -> bool {
+pub(super) fn is_bitmap(start: &[u8]) -> bool {
     matches!(start, [b'P', b'1' | b'2' | b'4' | b'5', blank, ..] if blank.is_ascii_whitespace())
 }
 
@@ -212,13 +211,12 @@ fn is_table(line: &[u8]) -> bool {
 /// JSON must contain a frame for this: most JSON is a stored shape with a mistake.
 #[cfg(feature = "tui")]
 pub(crate) fn may_be_recording(bytes: &[u8]) -> bool {
-    let frame = b"\"frame\"";
     // PBM and PGM files have messages of their own.
     if matches!(bytes, [b'P', b'1'..=b'6', ..]) {
         return false;
     }
     match recognised(bytes) {
-        Some(RecordingFormat::JsonLines) => bytes.windows(frame.len()).any(|word| word == frame),
+        Some(RecordingFormat::JsonLines) => signs::names_frame(bytes),
         found => found.is_some(),
     }
 }

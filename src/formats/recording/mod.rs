@@ -40,7 +40,9 @@
 //! numpy            NPY and NPZ
 //! ros              MCAP, and ros2 topic echo
 //! vendor           Tekscan, XSENSOR, emed, zebris and FlexiTac
+//! signs            magic bytes and words of vendors, by which formats are recognised
 //! detect           which of these a file is
+//! start_search     whether a stream begins like a recording
 //! ```
 //! Each format uses the modules above it; formats do not use each other.
 
@@ -78,21 +80,30 @@ pub(super) mod ros;
 
 mod vendor;
 
+mod signs;
+
 mod detect;
+
+#[cfg(all(feature = "acquire", unix))]
+mod start_search;
 
 pub use answer::FrameAnswer;
 pub use channel_choice::ChannelChoice;
 #[cfg(feature = "cli")]
 pub(crate) use channel_choice::no_channel;
+#[cfg(all(test, feature = "acquire", unix))]
+pub(crate) use detect::LOOKED_AT;
 #[cfg(feature = "tui")]
 pub(crate) use detect::may_be_recording;
 #[cfg(all(feature = "acquire", unix))]
-pub(crate) use detect::{LOOKED_AT, RecordingInput, format_after, format_of, read_as};
+pub(crate) use detect::{RecordingInput, format_after, format_of, read_as};
 pub use detect::{read, recognised};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingNote};
 pub use format::RecordingFormat;
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
+#[cfg(all(feature = "acquire", unix))]
+pub(crate) use start_search::{StartKind, StartSearch};
 #[cfg(feature = "cli")]
 pub(crate) use table::delimited::read_rows;
 #[cfg(all(feature = "acquire", unix))]

@@ -172,12 +172,19 @@ fn pair(line: &[u8]) -> (String, String) {
     (key, next())
 }
 
-/// Returns true if the first lines of a text are those of an export: they name a frame, and then the cells of a
-/// sensor.
-pub(in crate::formats::recording) fn is_export(start: &[u8]) -> bool {
-    let mut lines = start.split(|&byte| byte == b'\n');
-    let mut has = |key: &str| lines.any(|line| line.len() < LONGEST_KEY && pair(line).0 == key);
-    has("FRAME") && has("SENSELS")
+/// Returns true if a line begins a frame. The first lines of an export have one, and then [`begins_cells`].
+pub(in crate::formats::recording) fn begins_frame(line: &[u8]) -> bool {
+    has_key(line, "FRAME")
+}
+
+/// Returns true if the cells of a sensor follow a line.
+pub(in crate::formats::recording) fn begins_cells(line: &[u8]) -> bool {
+    has_key(line, "SENSELS")
+}
+
+/// Returns true if a line has this key.
+fn has_key(line: &[u8], key: &str) -> bool {
+    line.len() < LONGEST_KEY && pair(line).0 == key
 }
 
 /// Returns the unit of length after a key, as in `SENSEL WIDTH (CM)`; None for an unknown unit.
