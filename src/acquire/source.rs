@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Read};
+use std::os::fd::AsFd;
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 
@@ -177,6 +178,20 @@ impl FrameSource {
     /// Returns true if the source is a file that was moved or removed: no file has its name.
     pub(super) fn has_vanished(&self) -> bool {
         matches!(self, Self::File(path) if has_no_file(path))
+    }
+
+    /// Returns true if its bytes are in a file, where they can be read again.
+    #[cfg(feature = "cli")]
+    pub(crate) fn is_in_file(&self) -> bool {
+        match self {
+            Self::Standard => {
+                let input = io::stdin().as_fd().try_clone_to_owned();
+                let metadata = input.and_then(|input| File::from(input).metadata());
+                metadata.is_ok_and(|found| found.is_file())
+            }
+            Self::File(_) => true,
+            Self::Tcp(_) | Self::Serial(_) | Self::Fifo(_) => false,
+        }
     }
 
     /// Returns true if all its frames arrive while they are read. Those in a file came before, and standard input or a

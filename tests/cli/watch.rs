@@ -108,17 +108,18 @@ fn a_stream_is_a_filter_in_a_pipeline() {
         ("tekscan.asf", "tekscan"),
     ] {
         let bytes = fs::read(sample(name)).expect("a sample");
+        let refused = format!("standard input: a recording ({format}), not a stream");
         for flags in ["--once", "", "--rows 4 --columns 5"] {
             let run = taxel(&format!("watch - {flags}"), bytes.as_slice());
-            let expected = format!(
-                "error: standard input: a recording ({format}), not a stream; read it with taxel frames -\n"
-            );
-            assert_eq!(
-                (run.status, run.stderr),
-                (Some(1), expected),
-                "{name} {flags}"
-            );
+            let message = format!("{refused}; save it to a file, then type taxel frames FILE");
+            super::refused(&run, 1, &message);
         }
+        // From a file, it can be read again.
+        let mut child = program(&["watch", "-", "--once"], "C.UTF-8");
+        let input = fs::File::open(sample(name)).expect("a sample");
+        let run = child.stdin(input).output().expect("it ends");
+        let message = format!("error: {refused}; read it with taxel frames -\n");
+        assert_eq!(String::from_utf8(run.stderr), Ok(message), "{name}");
     }
     misused("watch - --once --speed 2", "the argument '--once'");
     misused("watch - --write touch.txt", "invalid value 'touch.txt'");

@@ -77,11 +77,16 @@ impl<'a> SourceReports<'a> {
     pub(super) fn damage(&self, error: AcquireError) -> CliError {
         match error {
             AcquireError::Recording(error) => self.damaged(error),
-            AcquireError::NotStream { .. } if *self.source == FrameSource::Standard => {
-                self.refused(&format!("{error}; read it with taxel frames -"))
-            }
             AcquireError::NotStream { .. } => {
-                self.refused(&format!("{error}; read it with taxel frames"))
+                // A pipe does not bring its bytes again.
+                let advice = match self.source {
+                    source if !source.is_in_file() => {
+                        "save it to a file, then type taxel frames FILE"
+                    }
+                    FrameSource::Standard => "read it with taxel frames -",
+                    _ => "read it with taxel frames",
+                };
+                self.refused(&format!("{error}; {advice}"))
             }
             error => self.refused(&error),
         }
