@@ -50,7 +50,8 @@ use crate::acquire::{playback, stream};
 ///
 /// # Errors
 /// Returns an error if the source cannot be opened at first, cannot be read on and does not come back, is a damaged
-/// recording, or is standard input or a FIFO with a recording that cannot be a stream, such as NPY.
+/// recording, or turns out to be a recording that cannot be a stream, such as NPY: on standard input or a FIFO, or in a
+/// file that was no recording yet when it was opened.
 pub fn acquire(
     source: &FrameSource,
     options: &AcquireOptions,

@@ -3,7 +3,6 @@
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Read};
-use std::os::fd::AsFd;
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 
@@ -185,6 +184,7 @@ impl FrameSource {
     pub(crate) fn is_in_file(&self) -> bool {
         match self {
             Self::Standard => {
+                use std::os::fd::AsFd;
                 let input = io::stdin().as_fd().try_clone_to_owned();
                 let metadata = input.and_then(|input| File::from(input).metadata());
                 metadata.is_ok_and(|found| found.is_file())

@@ -571,6 +571,20 @@ mod tests {
             ControlFlow::Continue(())
         });
         assert!(matches!(result, Err(AcquireError::NotStream { .. })));
+        // The frames before the file was replaced do not make it a stream.
+        std::fs::write(&path, b"1 2\n3 4\n\n5 6\n7 8\n\n").expect("written");
+        let other = folder.path().join("other");
+        std::fs::write(&other, b"\x93NUMPY\x01\x00v\x00{").expect("written");
+        let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
+            if let AcquireEvent::Tick(counts) = event
+                && counts.frames == 2
+                && other.exists()
+            {
+                std::fs::rename(&other, &path).expect("renamed");
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(matches!(result, Err(AcquireError::NotStream { .. })));
     }
 
     /// A connection and a serial line are live even if they are read only once; a pipe may hold a file.

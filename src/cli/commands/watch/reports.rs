@@ -84,7 +84,7 @@ impl<'a> SourceReports<'a> {
                         "save it to a file, then type taxel frames FILE"
                     }
                     FrameSource::Standard => "read it with taxel frames -",
-                    _ => "read it with taxel frames",
+                    _ => "watch it again when it is complete",
                 };
                 self.refused(&format!("{error}; {advice}"))
             }
@@ -177,5 +177,31 @@ impl<'a> SourceReports<'a> {
                 format.name()
             )
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::recording::RecordingFormat;
+
+    #[test]
+    fn a_recording_that_is_not_a_stream_comes_with_advice_for_its_source() {
+        for (source, expected) in [
+            (
+                FrameSource::Fifo("pipe".into()),
+                "pipe: a recording (npy), not a stream; save it to a file, then type taxel frames FILE",
+            ),
+            (
+                FrameSource::File("a.npy".into()),
+                "a.npy: a recording (npy), not a stream; watch it again when it is complete",
+            ),
+        ] {
+            let mut note = |_: &str| ();
+            let reports = SourceReports::new(&source, &AcquireOptions::default(), &mut note);
+            let format = RecordingFormat::Npy;
+            let error = reports.damage(AcquireError::NotStream { format });
+            assert_eq!(error.to_string(), expected);
+        }
     }
 }

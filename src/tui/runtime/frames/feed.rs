@@ -141,7 +141,7 @@ impl FrameFeed {
             wanted
         };
         let ended = caught(|| acquire(source, options, stop, &mut consumer));
-        let ended = ended.and_then(|ended| ended.map_err(|error| no_frame::reason(&error)));
+        let ended = ended.and_then(|ended| ended.map_err(|error| no_frame::reason(source, &error)));
         if wanted.is_break() {
             return;
         }

@@ -14,9 +14,13 @@ const FORMAT_HINT: &str = "; after Esc, add one to :watch, as in --format lines"
 const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --columns C";
 
 /// Returns the reason why a source cannot be read.
-pub(super) fn reason(error: &AcquireError) -> String {
-    let hint = match error {
-        AcquireError::Recording(error) if error.is_of_size() => SIZE_HINT,
+pub(super) fn reason(source: &FrameSource, error: &AcquireError) -> String {
+    let hint = match (error, source) {
+        (AcquireError::Recording(error), _) if error.is_of_size() => SIZE_HINT,
+        (AcquireError::NotStream { .. }, FrameSource::File(_)) => {
+            "; watch it again when it is complete"
+        }
+        (AcquireError::NotStream { .. }, _) => "; save it to a file, and watch that",
         _ => "",
     };
     format!("{error}{hint}")
@@ -67,6 +71,7 @@ fn hint(source: &FrameSource, refusal: StreamRefusal) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::recording::RecordingFormat;
 
     #[test]
     fn standard_input_is_not_read_again_by_watch() {
@@ -78,6 +83,22 @@ mod tests {
         let said = reason_at_end(&FrameSource::Standard, &counts);
         let end = "start again in the shell, with --rows R --columns C";
         assert!(said.is_some_and(|said| said.ends_with(end)));
+    }
+
+    #[test]
+    fn a_recording_that_is_not_a_stream_can_be_watched_as_a_file() {
+        let format = RecordingFormat::Npy;
+        let error = AcquireError::NotStream { format };
+        for (source, hint) in [
+            (FrameSource::Standard, "save it to a file, and watch that"),
+            (
+                FrameSource::File("a.npy".into()),
+                "watch it again when it is complete",
+            ),
+        ] {
+            let expected = format!("a recording (npy), not a stream; {hint}");
+            assert_eq!(reason(&source, &error), expected);
+        }
     }
 
     #[test]
