@@ -43,6 +43,18 @@ impl FirstFrames {
         self.frames.check_memory(values)
     }
 
+    /// Returns why a frame is not in the tare, as far as it is made; None if it fits.
+    #[cfg(feature = "cli")]
+    pub(crate) fn refusal(&mut self, frame: &Frame, view: &View) -> Option<FrameError> {
+        self.frames.check_frame(frame, view).err()
+    }
+
+    /// Returns how many of the last frames were left out, but are in the tare if it begins again with more of them.
+    #[cfg(feature = "cli")]
+    pub(crate) fn others(&self) -> u64 {
+        self.other.as_ref().map_or(0, TareFrames::frames)
+    }
+
     /// Adds the part of a frame that a view shows. Returns false if the tare begins again with it and the frames of its
     /// size just before it: those that were added before are not in the tare.
     ///

@@ -69,6 +69,20 @@ impl TareFrames {
         if self.missing() == 0 {
             return Ok(());
         }
+        self.check(frame)?;
+        self.size = Some(frame.size());
+        let values = frame.values().iter();
+        let known = values.map(|&value| if is_value(value) { value } else { f64::NAN });
+        self.values.extend(known);
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Checks that a frame can be added.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::add`].
+    fn check(&self, frame: &Matrix<f64>) -> Result<(), FrameError> {
         let size = frame.size();
         if let Some(found) = self.size.filter(|&found| found != size) {
             return Err(FrameError::Size {
@@ -77,13 +91,7 @@ impl TareFrames {
                 expected: size,
             });
         }
-        self.check_memory(frame.values().len())?;
-        self.size = Some(size);
-        let values = frame.values().iter();
-        let known = values.map(|&value| if is_value(value) { value } else { f64::NAN });
-        self.values.extend(known);
-        self.frames += 1;
-        Ok(())
+        self.check_memory(frame.values().len())
     }
 
     /// Adds the part of a frame that a view shows, like [`Self::add`].
@@ -91,12 +99,37 @@ impl TareFrames {
     /// # Errors
     /// Returns the errors of [`Self::add`], and an error if the view does not fit the frame.
     pub fn add_frame(&mut self, frame: &Frame, view: &View) -> Result<(), FrameError> {
+        self.with_visible(frame, view, Self::add)
+    }
+
+    /// Checks that a frame can be added by [`Self::add_frame`].
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::add_frame`].
+    #[cfg(feature = "cli")]
+    pub(super) fn check_frame(&mut self, frame: &Frame, view: &View) -> Result<(), FrameError> {
+        self.with_visible(frame, view, |tare, visible| tare.check(visible))
+    }
+
+    /// Does something with the part of a frame that a view shows.
+    fn with_visible(
+        &mut self,
+        frame: &Frame,
+        view: &View,
+        does: impl FnOnce(&mut Self, &Matrix<f64>) -> Result<(), FrameError>,
+    ) -> Result<(), FrameError> {
         let mut visible = std::mem::take(&mut self.visible);
-        let added = view
+        let done = view
             .apply_to(frame, &mut visible)
-            .and_then(|()| self.add(&visible));
+            .and_then(|()| does(self, &visible));
         self.visible = visible;
-        added
+        done
+    }
+
+    /// Returns the number of frames so far.
+    #[cfg(feature = "cli")]
+    pub(super) fn frames(&self) -> u64 {
+        self.frames
     }
 
     /// Computes the tare.

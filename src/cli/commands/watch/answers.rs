@@ -104,11 +104,6 @@ impl Answers {
         }
     }
 
-    /// Counts frames that are left out like the one that was reported.
-    pub(super) fn count_unfit(&mut self, frames: u64) {
-        self.unfit += frames;
-    }
-
     /// Ends the answers if no more can be written: the reader is gone, or there is no model.
     ///
     /// # Errors

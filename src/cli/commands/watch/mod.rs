@@ -296,17 +296,16 @@ impl Watcher<'_> {
             self.frame = own;
             return answered;
         };
-        let is_first = queue.is_empty();
-        match queue.add(own, &self.processing.view) {
-            Ok(true) => self.end_tare(),
-            Ok(false) => Ok(()),
-            Err(error) if !is_first && error.is_of_size() => {
-                self.answers
-                    .leave_out(frame.number, &error, &mut self.reports);
-                Ok(())
-            }
-            Err(error) => Err(self.reports.refused(&error)),
+        let left_out = queue
+            .add(own, &self.processing.view)
+            .map_err(|error| self.reports.refused(&error))?;
+        for (number, error) in left_out {
+            self.answers.leave_out(number, &error, &mut self.reports);
         }
+        if queue.is_complete() {
+            return self.end_tare();
+        }
+        Ok(())
     }
 
     /// Uses the complete tare, and answers the frames that waited for it.
@@ -314,7 +313,6 @@ impl Watcher<'_> {
         let Some(queue) = self.tare.take() else {
             return Ok(());
         };
-        self.answers.count_unfit(queue.unfit());
         let (tare, waiting) = queue
             .finish()
             .map_err(|error| self.reports.refused(&error))?;
