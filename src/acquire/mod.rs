@@ -31,6 +31,8 @@ mod silence;
 
 mod ticker;
 
+mod stream_start;
+
 mod stream;
 
 mod pace;

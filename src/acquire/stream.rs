@@ -11,9 +11,9 @@ use crate::acquire::byte_input::{ByteInput, ReadOutcome};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
+use crate::acquire::stream_start::StreamStart;
 use crate::acquire::ticker::{TICK, Ticker};
-use crate::formats::recording::{StartKind, StartSearch};
-use crate::formats::stream::{StreamCounts, StreamDecoder, StreamEvent, StreamSink};
+use crate::formats::stream::{StreamDecoder, StreamEvent, StreamSink};
 
 /// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -82,58 +82,6 @@ pub(super) fn run(
         consumer,
     };
     reader.read()
-}
-
-/// The start of a source, as long as it may be that of a recording that only a file can be. With its first frame, a
-/// source is a stream.
-struct StreamStart {
-    /// The search; None once it has ended.
-    search: Option<StartSearch>,
-    /// The number of frames before the first byte.
-    frames: u64,
-}
-
-impl StreamStart {
-    /// Prepares for the first byte of a source, given the counts before it. Where the bytes may begin anywhere, they do
-    /// not show a recording, and a format that the user names is not doubted.
-    fn new(source: &FrameSource, options: &AcquireOptions, counts: &StreamCounts) -> Self {
-        let is_searched = source.begins() && options.format.is_none();
-        Self {
-            search: is_searched.then(StartSearch::default),
-            frames: counts.frames,
-        }
-    }
-
-    /// Examines the next bytes, after those that gave these counts. Returns the number of those after which the kind of
-    /// the source is certain, and the kind; None if it is not certain yet, or was before.
-    fn push(&mut self, bytes: &[u8], counts: &StreamCounts) -> Option<(usize, StartKind)> {
-        self.search.take_if(|_| counts.frames > self.frames);
-        let found = self.search.as_mut()?.push(bytes)?;
-        self.search = None;
-        Some(found)
-    }
-
-    /// Checks that a source with these counts is a stream, if it is of this kind according to its start.
-    ///
-    /// # Errors
-    /// Returns [`AcquireError::NotStream`].
-    fn check(&self, kind: StartKind, counts: &StreamCounts) -> Result<(), AcquireError> {
-        match kind {
-            StartKind::Recording(format) if counts.frames == self.frames => {
-                Err(AcquireError::NotStream { format })
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Checks that a source that has ended with these counts is a stream.
-    ///
-    /// # Errors
-    /// Returns [`AcquireError::NotStream`].
-    fn finish(&self, counts: &StreamCounts) -> Result<(), AcquireError> {
-        let search = self.search.as_ref();
-        search.map_or(Ok(()), |search| self.check(search.finish(), counts))
-    }
 }
 
 /// A reader of a source of bytes.

@@ -101,4 +101,16 @@ mod tests {
             assert_eq!(VendorSigns::of(text.as_bytes()), expected, "{text:?}");
         }
     }
+
+    #[test]
+    fn a_line_of_json_that_is_not_whole_yet_is_not_taken_for_popu() {
+        for (text, expected) in [
+            ("{\"time\":0.1,\"n_columns\":4,\"n_rows\":1,", false),
+            ("{\"time\":0.1,\"snapshots\":4,", false),
+            ("{\"a_columns\":4,\"a_rows\":1,\"snapshots\":{", true),
+            ("{\"a_columns\":4,\"snapshots\":4,\"frame\":[[", false),
+        ] {
+            assert_eq!(is_popu(text.as_bytes()), expected, "{text}");
+        }
+    }
 }
