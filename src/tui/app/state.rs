@@ -214,6 +214,9 @@ pub struct App {
     pub(in crate::tui) waiting: Option<String>,
     /// The shapes that are being saved, in the order in which the library answers.
     pub(in crate::tui) saving: VecDeque<UnfinishedSave>,
+    /// The shapes that could not be saved before the program ended, each with the reason. Nobody can be asked any more,
+    /// so the journal keeps them.
+    pub(in crate::tui) refused_at_end: Vec<(UnfinishedSave, String)>,
     /// The names of the shapes that were removed since the last change of the document, the last one last: undo
     /// restores them.
     pub(in crate::tui) removed: Vec<String>,
@@ -275,6 +278,7 @@ impl App {
             notice: None,
             waiting: None,
             saving: VecDeque::new(),
+            refused_at_end: Vec::new(),
             removed: Vec::new(),
             results: None,
             recognition: Some(Box::new(Recognition::new(options.seed))),

@@ -53,7 +53,7 @@ impl App {
 
     /// Returns the work to keep in the journal: all unsaved documents in the order of the history; what an open form
     /// shows, because it may be accepted; the shapes that are being saved, because this may fail. After Quit, only the
-    /// latter: everything else has been given up.
+    /// latter, and those that could not be saved: everything else has been given up.
     pub fn unsaved_work(&self) -> Vec<UnsavedWork> {
         let (origin, shown) = (self.history.origin(), self.shown());
         let unsaved = self.history.unsaved();
@@ -63,10 +63,12 @@ impl App {
         let kept = own
             .chain(previewed)
             .filter(|_| self.run_state != RunState::Quit);
-        let saving = self.saving.iter();
+        let refused = self.refused_at_end.iter().map(|(save, _)| save);
+        let saving = self.saving.iter().chain(refused);
         let saving = saving.map(|save| (Some(save.shape.name.clone()), &save.document));
         let mut works: Vec<UnsavedWork> = Vec::new();
-        for (name, document) in kept.chain(saving) {
+        // First, because the user has given these a name.
+        for (name, document) in saving.chain(kept) {
             if let Some(name) = name
                 && !works.iter().any(|work| work.document == *document)
             {
@@ -82,4 +84,48 @@ impl App {
 fn origin_name(origin: &DocumentOrigin) -> Option<Name> {
     let stored = origin.name.as_ref().map_or(UNNAMED, |stored| &stored.name);
     Name::new(stored).or_else(|_| Name::new(UNNAMED)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tui::app::library::{LibraryEvent, LibraryRequest};
+    use crate::tui::app::message::Message;
+    use crate::tui::app::state::Options;
+    use crate::tui::app::update::update;
+    use crate::tui::runtime::effect::Effect;
+
+    /// Draws a taxel and asks for it to be saved; returns the shape that the library was asked to store.
+    fn saving(app: &mut App) -> Box<StoredShape> {
+        let _ = update(app, Message::Toggle);
+        let message = app.storing(Name::new("mine").expect("a name"));
+        match update(app, message) {
+            Some(Effect::Library(LibraryRequest::Store(shape, _))) => shape,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// The library may answer only after the user has quit: then nobody can be asked whether to replace the file.
+    #[test]
+    fn a_save_that_is_refused_after_the_end_is_kept() {
+        let differs = |shape| LibraryEvent::Differs(shape, 7, "mine already exists".to_owned());
+        let not_stored = |_| LibraryEvent::NotStored("the disk is full".to_owned());
+        let answers: [&dyn Fn(Box<StoredShape>) -> LibraryEvent; 2] = [&differs, &not_stored];
+        for answer in answers {
+            for end in [Message::Quit, Message::Terminate] {
+                let mut app = App::new(&Options::plain(true));
+                let shape = saving(&mut app);
+                let _ = update(&mut app, end);
+                assert!(app.ended(), "a shape that is being saved needs no question");
+                let _ = update(&mut app, Message::Library(answer(shape.clone())));
+                let kept: Vec<StoredShape> = app
+                    .unsaved_work()
+                    .iter()
+                    .map(UnsavedWork::to_shape)
+                    .collect();
+                assert_eq!(kept, [*shape], "under the name that it was to have");
+                assert_eq!(app.refused_at_end.len(), 1);
+            }
+        }
+    }
 }

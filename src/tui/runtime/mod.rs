@@ -395,6 +395,8 @@ impl World {
             // No more effects are performed.
             let _ = update(app, answer);
         });
+        let refused = app.refused_at_end.iter();
+        lines.extend(refused.map(|(_, reason)| format!("not saved: {reason}\n")));
         if is_kept && !lines.is_empty() && !app.unsaved_work().is_empty() {
             lines.push("the next start offers it as unsaved work\n".to_owned());
         }

@@ -15,7 +15,7 @@ use crate::tui::app::history::{DocumentOrigin, StoredName};
 use crate::tui::app::library::{Leftover, LibraryEvent, LibraryRequest, Purpose};
 use crate::tui::app::message::Message;
 use crate::tui::app::quit::quit;
-use crate::tui::app::state::App;
+use crate::tui::app::state::{App, UnfinishedSave};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::live;
@@ -63,8 +63,8 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
         LibraryEvent::Deletable(Ok(name)) => ask_removal(app, name),
         LibraryEvent::Stored(name, stamp) => on_stored(app, name, stamp),
         LibraryEvent::NotStored(reason) => {
-            app.saving.pop_front();
-            refuse(app, reason);
+            let save = app.saving.pop_front();
+            not_saved(app, save, reason);
         }
         LibraryEvent::Differs(shape, stamp, reason) => {
             ask_replacement(app, shape, stamp, reason);
@@ -202,6 +202,15 @@ fn on_stored(app: &mut App, name: String, stamp: u64) {
     }
 }
 
+/// Handles a save that was refused. At the end of the program nobody sees a notice: the shape goes to the journal, and
+/// the end says why.
+fn not_saved(app: &mut App, save: Option<UnfinishedSave>, reason: String) {
+    match save.filter(|_| app.ended()) {
+        Some(save) => app.refused_at_end.push((save, reason)),
+        None => refuse(app, reason),
+    }
+}
+
 /// Asks whether to restore the unsaved work of a program that crashed.
 /// Work of several crashes is offered one after the other; no answer keeps it for the next start. While a sensor is
 /// watched the question waits below that page.
@@ -299,7 +308,8 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
 /// document came from that file, the question says whether another program has changed it since.
 fn ask_replacement(app: &mut App, shape: Box<StoredShape>, stamp: u64, reason: String) {
     let save = app.saving.pop_front();
-    let origin = save.and_then(|save| app.history.origin_at(save.origin));
+    let origin = save.as_ref();
+    let origin = origin.and_then(|save| app.history.origin_at(save.origin));
     let own = origin.and_then(|origin| origin.name.as_ref());
     let own = own.filter(|own| own.owner == ShapeOrigin::Own && shape.name.same(&own.name));
     let reason = match own.filter(|own| own.stamp != stamp) {
@@ -309,6 +319,9 @@ fn ask_replacement(app: &mut App, shape: Box<StoredShape>, stamp: u64, reason: S
         }
         None => reason,
     };
+    if app.ended() {
+        return not_saved(app, save, reason);
+    }
     let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
     let question = Question::new(format!("{reason}."), "Replace it?", Message::Request(store));
     app.dialogs.push(Dialog::Question(question));
