@@ -422,6 +422,12 @@ fn quitting_asks_if_work_would_be_lost() {
     ] {
         shows(undone, &[later, "Quit anyway?"]);
     }
+    // Loading a shape does not drop it.
+    shows("<Space>ulwasher<Enter>q", &[earlier, "Quit anyway?"]);
+    shows(
+        "<Space>n<Right><Space>lwasher<Enter>q",
+        &["2 shapes are not saved; the history (H) has them."],
+    );
     shows(
         "<Space>n<Space>uuq",
         &["The imprint and a later drawing are not saved; the history (H) has the"],

@@ -13,6 +13,7 @@ use crate::tui::live::update::recording;
 /// key for it, and the question names the key of the history. A shape that is being saved needs no question: the end
 /// waits for it, and reports a failure.
 pub(in crate::tui) fn quit(app: &mut App) {
+    app.history.keep_cut_off();
     let Some((what, lost)) = losses(app) else {
         app.run_state = RunState::Quit;
         return;
@@ -53,13 +54,13 @@ fn losses(app: &App) -> Option<(String, &'static str)> {
             }
         }
         many => {
-            let imprint = if present.is_empty() {
-                ""
+            let count = many.len();
+            let what = if present.is_empty() {
+                format!("{count} shapes")
             } else {
-                "The imprint and "
+                format!("The imprint and {count} other shapes")
             };
-            let what = format!("{imprint}{} other shapes are not saved", many.len());
-            format!("{what}; the history ({history}) has them")
+            format!("{what} are not saved; the history ({history}) has them")
         }
     };
     let lost = if present.len() + others.len() > 1 {

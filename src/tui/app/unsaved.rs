@@ -4,7 +4,7 @@
 use crate::formats::{Name, StoredShape};
 use crate::storage::UNNAMED;
 use crate::tui::app::document::{Document, Reading};
-use crate::tui::app::history::{DocumentOrigin, UnsavedState};
+use crate::tui::app::history::{DocumentOrigin, StatePlace, UnsavedState};
 use crate::tui::app::state::{App, RunState};
 
 /// A document that would be lost if the program died now.
@@ -51,12 +51,15 @@ impl App {
         unsaved.filter(|state| !self.is_being_saved(state.document))
     }
 
-    /// Returns the work to keep in the journal: all unsaved documents in the order of the history; what an open form
+    /// Returns the work to keep in the journal: all unsaved documents, the one on the matrix last; what an open form
     /// shows, because it may be accepted; the shapes that are being saved, because this may fail. After Quit, only the
     /// latter, and those that could not be saved: everything else has been given up.
     pub fn unsaved_work(&self) -> Vec<UnsavedWork> {
         let (origin, shown) = (self.history.origin(), self.shown());
-        let unsaved = self.history.unsaved();
+        let (present, others): (Vec<_>, Vec<_>) =
+            (self.history.unsaved()).partition(|state| state.place == StatePlace::Present);
+        // The last one is written last, and so offered first.
+        let unsaved = others.into_iter().chain(present);
         let own = unsaved.map(|state| (origin_name(state.origin), state.document));
         let shown = origin.would_lose(shown).then_some(shown);
         let previewed = shown.map(|shown| (origin_name(origin), shown));
@@ -115,6 +118,8 @@ mod tests {
             for end in [Message::Quit, Message::Terminate] {
                 let mut app = App::new(&Options::plain(true));
                 let shape = saving(&mut app);
+                let kept = app.unsaved_work();
+                assert!(kept.len() == 1 && kept[0].name == shape.name);
                 let _ = update(&mut app, end);
                 assert!(app.ended(), "a shape that is being saved needs no question");
                 let _ = update(&mut app, Message::Library(answer(shape.clone())));
