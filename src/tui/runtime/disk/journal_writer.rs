@@ -60,15 +60,7 @@ impl JournalWriter {
     /// Starts a thread that writes to journals in a library.
     pub(in crate::tui) fn new(library: Library) -> Self {
         let (notes, inbox) = channel();
-        let writer = JournalThread {
-            library,
-            journals: Vec::new(),
-            works: Vec::new(),
-            due: None,
-            adopted: Vec::new(),
-            post: None,
-            reported: false,
-        };
+        let writer = JournalThread::new(library);
         match threads::start(move || writer.run(&inbox)) {
             Ok(thread) => Self {
                 notes: Some(notes),
@@ -156,8 +148,8 @@ impl Drop for JournalWriter {
 struct JournalThread {
     /// The library that the journals are in.
     library: Library,
-    /// The journals, each with the work that was written to it last; None if that failed.
-    journals: Vec<(Journal, Option<UnsavedWork>)>,
+    /// The journals, in no order, each with the work that it holds.
+    journals: Vec<(Journal, UnsavedWork)>,
     /// The unsaved work, a journal for each.
     works: Vec<UnsavedWork>,
     /// The time to write it; None if it is written.
@@ -171,6 +163,19 @@ struct JournalThread {
 }
 
 impl JournalThread {
+    /// Returns the state of a thread without work.
+    fn new(library: Library) -> Self {
+        Self {
+            library,
+            journals: Vec::new(),
+            works: Vec::new(),
+            due: None,
+            adopted: Vec::new(),
+            post: None,
+            reported: false,
+        }
+    }
+
     /// Serves requests until the program drops its end of the channel.
     fn run(mut self, inbox: &Receiver<JournalRequest>) {
         loop {
@@ -236,29 +241,129 @@ impl JournalThread {
         self.due.is_none()
     }
 
-    /// Brings the journals up to date. If their number grows, the last one is written first, otherwise the first one:
-    /// so work that moves to another journal is there before its old one gets other work, and a crash in between loses
-    /// nothing.
+    /// Brings the journals up to date: writes work that no journal holds, then clears the journals of other work. A
+    /// journal of other work may be written over only once everything else is on the disk, so a crash loses nothing:
+    /// the former state of a drawing stays until the new one is there. All work is tried, whatever fails; returns the
+    /// first error.
     fn keep(&mut self) -> Result<(), LibraryError> {
-        let count = self.works.len();
-        let grows = count > self.journals.len();
-        let new = || (Journal::new(&self.library), None);
-        self.journals
-            .resize_with(self.journals.len().max(count), new);
-        for step in 0..count {
-            let index = if grows { count - 1 - step } else { step };
-            if let (Some(work), Some((journal, written))) =
-                (self.works.get(index), self.journals.get_mut(index))
-                && !(written.as_ref() == Some(work) && journal.is_intact())
-            {
-                *written = None;
-                journal.keep(&work.to_shape())?;
-                *written = Some(work.clone());
+        let mut old = std::mem::take(&mut self.journals);
+        let mut unwritten = Vec::new();
+        for work in &self.works {
+            let holds = |(journal, written): &mut (Journal, UnsavedWork)| {
+                written == work && journal.is_intact()
+            };
+            match old.extract_if(.., holds).next() {
+                Some(holder) => self.journals.push(holder),
+                None => unwritten.push(work),
             }
         }
-        for (mut journal, _) in self.journals.drain(count..) {
-            journal.clear();
+        let mut kept = Ok(());
+        for (index, work) in unwritten.iter().enumerate() {
+            let is_last = index + 1 == unwritten.len();
+            let reused = (is_last && kept.is_ok()).then(|| old.pop()).flatten();
+            let (journal, before) = reused.unzip();
+            let mut journal = journal.unwrap_or_else(|| Journal::new(&self.library));
+            let written = journal.keep(&work.to_shape());
+            match (&written, before) {
+                (Ok(()), _) => self.journals.push((journal, (*work).clone())),
+                (Err(_), Some(before)) => old.push((journal, before)),
+                (Err(_), None) => journal.clear(),
+            }
+            kept = kept.and(written);
         }
-        Ok(())
+        if kept.is_ok() {
+            old.drain(..).for_each(|(mut journal, _)| journal.clear());
+        }
+        self.journals.extend(old);
+        kept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::{Name, StoredShape};
+    use crate::imprint::Imprint;
+    use crate::sensor::Sensor;
+    use std::fs;
+
+    /// Returns the work of a drawing with this many taxels.
+    fn drawing(taxels: u8) -> UnsavedWork {
+        let sensor = Sensor::default();
+        let mut imprint = Imprint::empty(sensor.size());
+        (0..taxels).for_each(|row| imprint.toggle(3, row));
+        UnsavedWork::from(&StoredShape {
+            name: Name::new("drawn").expect("a name"),
+            sensor,
+            imprint,
+            source: None,
+        })
+    }
+
+    /// A library with the thread's end of its journals, which the test drives.
+    struct Journals {
+        folder: tempfile::TempDir,
+        thread: JournalThread,
+    }
+
+    impl Journals {
+        fn new() -> Self {
+            let folder = tempfile::tempdir().expect("a folder");
+            let thread = JournalThread::new(Library::open(folder.path().to_owned()));
+            Self { folder, thread }
+        }
+
+        /// Keeps drawings with these numbers of taxels; returns whether all could be kept, and the numbers of taxels
+        /// that are on the disk afterwards.
+        fn keep(&mut self, taxels: &[u8]) -> (bool, Vec<u32>) {
+            self.thread.works = taxels.iter().copied().map(drawing).collect();
+            let kept = self.thread.keep().is_ok();
+            let files = fs::read_dir(self.folder.path().join(".journal")).expect("a folder");
+            let paths = files.map(|file| file.expect("a file").path());
+            let journals = paths.filter(|path| {
+                path.extension().is_some_and(|ending| ending == "json") && path.is_file()
+            });
+            let mut found: Vec<u32> = journals
+                .map(|path| StoredShape::read(&fs::read(path).expect("a journal")))
+                .map(|shape| shape.expect("whole").imprint.count())
+                .collect();
+            found.sort_unstable();
+            (kept, found)
+        }
+
+        /// Puts a folder in the place of the journal of this number, so that it can be neither read nor written.
+        fn block(&self, number: usize) {
+            let name = format!(".journal/{}-{number}.json", std::process::id());
+            let path = self.folder.path().join(name);
+            fs::remove_file(&path).expect("a journal");
+            fs::create_dir(&path).expect("a folder");
+        }
+    }
+
+    #[test]
+    fn the_journals_hold_the_present_work() {
+        let mut journals = Journals::new();
+        for works in [
+            &[1][..],
+            &[1, 2],
+            &[3, 1],
+            &[2, 3, 4],
+            &[5, 6],
+            &[6, 5],
+            &[],
+        ] {
+            let mut sorted: Vec<u32> = works.iter().copied().map(u32::from).collect();
+            sorted.sort_unstable();
+            assert_eq!(journals.keep(works), (true, sorted));
+        }
+    }
+
+    #[test]
+    fn a_journal_is_not_written_over_while_its_work_is_kept() {
+        let mut journals = Journals::new();
+        assert_eq!(journals.keep(&[1, 2]), (true, vec![1, 2]));
+        // The new work cannot be written. What was in the first place stays, though it has moved to the second.
+        journals.block(1);
+        assert_eq!(journals.keep(&[3, 1]), (false, vec![1]));
     }
 }
