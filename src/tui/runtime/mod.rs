@@ -516,6 +516,10 @@ impl World {
                 }
                 _ => LibraryEvent::NotStored(error.to_string()),
             },
+            DiskAnswer::FoundWork(found) => {
+                self.orphan = found;
+                LibraryEvent::Found(self.left()?)
+            }
             DiskAnswer::ThrownAway(thrown, next) => self.given_up(thrown, next),
             DiskAnswer::File(event) => return Some(Message::File(event)),
             DiskAnswer::Library(event) => {
@@ -548,7 +552,7 @@ impl World {
         Message::Worker(WorkerEvent::Live(number, event))
     }
 
-    /// Takes over the unsaved work that is offered.
+    /// Takes over the unsaved work that is offered. More of it is offered next.
     fn recover(&mut self) -> Message {
         let Some((orphan, _)) = self.orphan.take() else {
             return no_work_left();
@@ -556,6 +560,8 @@ impl World {
         let shape = orphan.shape.clone();
         // The work is put into this program's journal before it is taken out of the other one.
         self.journal.adopt(*orphan);
+        let next = self.change(DiskRequest::FindWork);
+        self.later.extend(next);
         Message::Library(LibraryEvent::Recovered(Box::new(shape)))
     }
 

@@ -100,6 +100,26 @@ fn unsaved_work_is_offered_back_once() {
     );
 }
 
+/// Nobody has to start the program again for the next piece, and restoring one does not lose another.
+#[test]
+fn all_unsaved_work_is_offered_one_after_the_other() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    drop(session_on(
+        folder.path(),
+        "<Space>n<Space><Right><Space>n<Space><Right><Space><Right><Space>",
+    ));
+    let mut later = session_on(folder.path(), "");
+    shows(&later, &["last time (1 of 3): 3 taxels"]);
+    then(&mut later, "y", &["last time (1 of 2): ", "NA     3 "]);
+    then(&mut later, "y", &["last time: "]);
+    then(&mut later, "y", &["restored; s saves it"]);
+    let left = "The imprint and 2 other shapes are not saved; the history (H) has them.";
+    then(&mut later, "q", &[left]);
+    // All of it is kept if the program dies once more.
+    drop(later);
+    shows(&session_on(folder.path(), ""), &["last time (1 of 3): "]);
+}
+
 /// An undo of the restoring would lose the work without a question.
 #[test]
 fn restored_work_is_not_lost_by_undo() {

@@ -25,6 +25,8 @@ use crate::tui::runtime::work::models::ModelStore;
 pub(in crate::tui::runtime) enum DiskRequest {
     /// Read or change the library.
     Library(LibraryRequest),
+    /// Look for unsaved work of programs that crashed.
+    FindWork,
     /// Move unsaved work of a program that crashed to the trash, and look for more of it.
     ThrowAway(Box<Orphan>),
     /// Read or write a file, or list some.
@@ -53,6 +55,8 @@ pub(in crate::tui::runtime) enum DiskAnswer {
         Result<u64, LibraryError>,
         Option<Box<LoadedShape>>,
     ),
+    /// The unsaved work to offer, with the number of offers; None if there is none.
+    FoundWork(Option<(Box<Orphan>, usize)>),
     /// The name of the unsaved work in the trash, or the error; and the next work to offer, with the number of
     /// offers.
     ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
@@ -73,6 +77,7 @@ impl DiskRequest {
     pub(super) fn words(&self) -> String {
         match self {
             Self::Library(request) => request_words(request),
+            Self::FindWork => "Looking for unsaved work".to_owned(),
             Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
             Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
             Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
@@ -113,6 +118,7 @@ impl DiskRequest {
     pub(super) fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
         match self {
             Self::Library(request) => answer(library, request),
+            Self::FindWork => DiskAnswer::FoundWork(newest_orphan(library)),
             Self::ThrowAway(orphan) => throw_away(library, *orphan),
             Self::File(request) => {
                 let models = ModelStore::beside(library);
