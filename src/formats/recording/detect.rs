@@ -17,9 +17,9 @@ use crate::formats::recording::ros::echo;
 #[cfg(feature = "mcap")]
 use crate::formats::recording::ros::mcap;
 use crate::formats::recording::signs::{self, VendorSigns};
+use crate::formats::recording::table::arrangement::EarlierLayout;
 use crate::formats::recording::table::cell_names::is_first_cell;
 use crate::formats::recording::table::delimited;
-use crate::formats::recording::table::layout::EarlierLayout;
 use crate::formats::recording::text::lines::is_blank;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::recording::text::separator::{Separator, is_comment};

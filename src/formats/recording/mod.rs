@@ -104,7 +104,7 @@ pub use format::RecordingFormat;
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(all(feature = "acquire", unix))]
 pub(crate) use start_search::{StartKind, StartSearch};
+#[cfg(all(feature = "acquire", unix))]
+pub(crate) use table::arrangement::EarlierLayout;
 #[cfg(feature = "cli")]
 pub(crate) use table::delimited::read_rows;
-#[cfg(all(feature = "acquire", unix))]
-pub(crate) use table::layout::EarlierLayout;

@@ -35,10 +35,11 @@ use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, Recor
 use crate::formats::recording::event::{RecordingSink, until_enough};
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
-use crate::formats::recording::table::clock::{TableClock, TimeText};
-use crate::formats::recording::table::layout::{
-    EarlierLayout, FrameFields, LineLayout, TableLayout, layout, layout_with_header,
+use crate::formats::recording::table::arrangement::{
+    EarlierLayout, FrameFields, LineLayout, TableLayout,
 };
+use crate::formats::recording::table::clock::{TableClock, TimeText};
+use crate::formats::recording::table::layout::{layout, layout_with_header};
 use crate::formats::recording::text::lines::{TextLines, is_blank};
 use crate::formats::recording::text::number::whole;
 use crate::formats::recording::text::row::{self, Field};

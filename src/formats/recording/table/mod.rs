@@ -5,7 +5,9 @@
 //! cell_names       a header's names of cells
 //! unnamed_fields   the fields beside the cells, without a header
 //! header           the header, and whether the first line is one
-//! layout           what each field is, from the lines above
+//! arrangement      what each line and each field is
+//! unnamed          the arrangement of a table without a header
+//! layout           the arrangement of any table, from its first lines
 //! delimited        the frames
 //! ```
 
@@ -16,6 +18,10 @@ pub(super) mod cell_names;
 mod unnamed_fields;
 
 mod header;
+
+pub(super) mod arrangement;
+
+mod unnamed;
 
 pub(super) mod layout;
 
