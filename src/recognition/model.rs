@@ -380,12 +380,11 @@ impl Model {
         &self.keys
     }
 
-    /// Returns the shapes that leave a key, in the order of the set.
-    ///
-    /// # Panics
-    /// Panics if there are not that many keys.
+    /// Returns the shapes that leave the key of that index, in the order of the set; empty if there are not that many
+    /// keys.
     pub fn counts(&self, key: usize) -> &[ShapeCount] {
-        &self.counts[self.starts[key]..self.starts[key + 1]]
+        let end = key.checked_add(1).and_then(|next| self.starts.get(next));
+        end.map_or(&[], |&end| &self.counts[self.starts[key]..end])
     }
 
     /// Iterates over the keys in their order. Each item is the imprint of a key (None for touches that activate no
