@@ -67,10 +67,21 @@ pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryErro
     )
 }
 
+/// Returns the shape of that name, regardless of case; None if no shape of that name comes with the program.
+///
+/// ```
+/// use taxel::storage::shipped;
+///
+/// let washer = shipped::get("Washer").expect("it is shipped");
+/// assert_eq!(washer.name.as_str(), "washer");
+/// assert!(shipped::get("wrench").is_none());
+/// ```
+pub fn get(name: &str) -> Option<StoredShape> {
+    let (shape, _) = load(&Name::new(name).ok()?)?.ok()?;
+    Some(shape)
+}
+
 /// Iterates over all shapes, by name.
 pub fn all() -> impl Iterator<Item = StoredShape> {
-    names().filter_map(|name| {
-        let (shape, _) = load(&Name::new(name).ok()?)?.ok()?;
-        Some(shape)
-    })
+    names().filter_map(get)
 }
