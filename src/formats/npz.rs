@@ -258,8 +258,8 @@ pub(crate) fn header_of<'a, T: Deserialize<'a>>(
 fn zip_error(error: ZipError) -> ArchiveError {
     match error {
         ZipError::Io(error) if error.raw_os_error().is_some() => ArchiveError::Io(error),
-        ZipError::UnsupportedArchive(what) => ArchiveError::Zip(what.to_string()),
-        _ => ArchiveError::Zip("cut short, damaged, or a file of another kind".to_owned()),
+        ZipError::UnsupportedArchive(what) => ArchiveError::Unsupported(what.to_string()),
+        _ => ArchiveError::Zip,
     }
 }
 
@@ -278,6 +278,9 @@ fn other_format(found: &str, expected: &str) -> String {
     }
 }
 
+/// The beginning of the message for a file that is not an archive of taxel's.
+const NOT_READ: &str = "cannot be read as an atlas or a model, an .npz file written by taxel";
+
 /// The error for an archive that cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -286,8 +289,11 @@ pub enum ArchiveError {
     #[error("{}", system_reason(.0))]
     Io(io::Error),
     /// Not a zip, or a broken one.
-    #[error("cannot be read as an atlas or a model, an .npz file written by taxel: {0}")]
-    Zip(String),
+    #[error("{NOT_READ}: cut short, damaged, or a file of another kind")]
+    Zip,
+    /// A zip of a kind that is not supported, in words.
+    #[error("{NOT_READ}: {0}")]
+    Unsupported(String),
     /// The archive is too long for the address space of this program.
     #[error("an archive of {}; this {}-bit program reads at most {}", counted(*length, "byte"), usize::BITS, grouped(*longest))]
     Long {

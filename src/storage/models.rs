@@ -44,7 +44,7 @@ pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
     let mut file = BufReader::new(open_archive(path)?);
     read_model(&mut file).map_err(|error| {
         let error = match error {
-            ArchiveError::Zip(_) if is_json(&mut file) => ArchiveError::Untrained,
+            ArchiveError::Zip if is_json(&mut file) => ArchiveError::Untrained,
             error => error,
         };
         ArchiveFileError::new(path, error)
