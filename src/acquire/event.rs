@@ -1,6 +1,7 @@
 //! The options of an acquisition, its reports, and its errors.
 
 use std::io;
+use std::ops::ControlFlow;
 #[cfg(feature = "tui")]
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -63,6 +64,41 @@ impl AcquireOptions {
     #[cfg(feature = "tui")]
     pub(crate) const BAUDS: RangeInclusive<u32> = 50..=20_000_000;
 
+    /// Sets the format of a stream. A file is then a stream, too, not a recording.
+    #[must_use]
+    pub fn with_format(mut self, format: StreamFormat) -> Self {
+        self.format = Some(format);
+        self
+    }
+
+    /// Sets the rows and columns of a frame.
+    #[must_use]
+    pub fn with_size(mut self, size: FrameSize) -> Self {
+        self.size = Some(size);
+        self
+    }
+
+    /// Sets the channel of a recording whose frames are played at its rate.
+    #[must_use]
+    pub fn with_channel(mut self, channel: impl Into<String>) -> Self {
+        self.channel = Some(channel.into());
+        self
+    }
+
+    /// Sets the bits per second of a serial line.
+    #[must_use]
+    pub fn with_baud(mut self, baud: u32) -> Self {
+        self.baud = baud;
+        self
+    }
+
+    /// Sets the speed at which the source is read, and what happens at its end.
+    #[must_use]
+    pub fn with_playback(mut self, playback: Playback) -> Self {
+        self.playback = playback;
+        self
+    }
+
     /// Returns the options for decoding a stream; `from_start` says whether its first byte begins a frame.
     pub(super) fn for_stream(&self, from_start: bool) -> StreamOptions {
         StreamOptions {
@@ -114,6 +150,9 @@ impl Default for AcquireOptions {
         }
     }
 }
+
+/// A function that takes the reports of an acquisition; `Break` ends it without an error.
+pub type AcquireSink<'a> = dyn FnMut(AcquireEvent<'_>) -> ControlFlow<()> + 'a;
 
 /// A report of an acquisition.
 #[derive(Clone, Copy, Debug)]

@@ -43,7 +43,7 @@ mod run;
 
 mod recorder;
 
-pub use event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
+pub use event::{AcquireError, AcquireEvent, AcquireOptions, AcquireSink, Playback};
 #[cfg(feature = "tui")]
 pub(crate) use frame_rate::FrameRate;
 pub use growing_file::ReadAnew;

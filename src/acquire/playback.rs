@@ -9,13 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::acquire::arrival_clock::ArrivalClock;
-use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
+use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, AcquireSink, Playback};
 use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::pace::Pace;
 use crate::acquire::recorder::metadata_beside;
 use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::{OpenRecording, has_no_file};
-use crate::acquire::stream::Consumer;
 use crate::acquire::ticker::{TICK, Ticker};
 use crate::formats::recording::{
     ChannelInfo, EarlierLayout, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
@@ -38,7 +37,7 @@ pub(super) fn run(
     OpenRecording { path, file, format }: OpenRecording<'_>,
     options: &AcquireOptions,
     stop: &AtomicBool,
-    consumer: &mut Consumer<'_>,
+    consumer: &mut AcquireSink<'_>,
 ) -> Result<(), AcquireError> {
     let ControlFlow::Continue(metadata) = metadata_of(path, consumer) else {
         return Ok(());
@@ -70,7 +69,7 @@ struct Player<'a, 'b> {
     /// The metadata beside the recording.
     metadata: Option<RecordingMetadata>,
     /// The consumer of what is read, and of a tick now and then while waiting for more.
-    consumer: RefCell<&'a mut Consumer<'b>>,
+    consumer: RefCell<&'a mut AcquireSink<'b>>,
     /// Whether the consumer wants no more.
     ended: Cell<bool>,
     ticker: RefCell<Ticker>,
@@ -366,7 +365,7 @@ impl Player<'_, '_> {
 /// metadata. Returns `Break` if no more is wanted.
 fn metadata_of(
     path: &Path,
-    consumer: &mut Consumer<'_>,
+    consumer: &mut AcquireSink<'_>,
 ) -> ControlFlow<(), Option<RecordingMetadata>> {
     match metadata_beside(path).transpose() {
         Ok(metadata) => ControlFlow::Continue(metadata),

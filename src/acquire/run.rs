@@ -2,9 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::acquire::event::{AcquireError, AcquireOptions};
+use crate::acquire::event::{AcquireError, AcquireOptions, AcquireSink};
 use crate::acquire::source::FrameSource;
-use crate::acquire::stream::Consumer;
 use crate::acquire::{playback, stream};
 
 /// Reads a source until it ends, `stop` is set, or the consumer breaks off. A recording is played back, and followed if
@@ -28,9 +27,8 @@ use crate::acquire::{playback, stream};
 /// # std::fs::write(&path, "{\"t\":0,\"frame\":[[0,9],[0,8]]}\n{\"t\":0.01,\"frame\":[[0,9],[7,8]]}\n")?;
 /// // Or "/dev/ttyUSB0", "tcp://192.168.1.4:5000", a FIFO, or a file that grows.
 /// let source = FrameSource::new(path.as_os_str());
-/// let mut options = AcquireOptions::default();
 /// // As fast as possible, then stop; without this a recording is played at its own rate.
-/// options.playback = Playback::Once;
+/// let options = AcquireOptions::default().with_playback(Playback::Once);
 /// let mut processing = Processing::default();
 /// processing.rule = Some(Rule::at_least(5.0)?);
 /// let mut imprints = Vec::new();
@@ -56,7 +54,7 @@ pub fn acquire(
     source: &FrameSource,
     options: &AcquireOptions,
     stop: &AtomicBool,
-    consumer: &mut Consumer<'_>,
+    consumer: &mut AcquireSink<'_>,
 ) -> Result<(), AcquireError> {
     let recording = source.open_recording(options);
     match recording.map_err(|error| source.not_opened(error))? {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::byte_input::{ByteInput, ReadOutcome};
-use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
+use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, AcquireSink, Playback};
 use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
 use crate::acquire::stream_start::StreamStart;
@@ -46,7 +46,11 @@ impl StreamClock {
     }
 
     /// Reports an event of the decoder. A frame without a time gets that of its arrival.
-    fn report(&mut self, event: StreamEvent<'_>, consumer: &mut Consumer<'_>) -> ControlFlow<()> {
+    fn report(
+        &mut self,
+        event: StreamEvent<'_>,
+        consumer: &mut AcquireSink<'_>,
+    ) -> ControlFlow<()> {
         consumer(match event {
             StreamEvent::Frame(frame) => {
                 self.silence.note_frame(Instant::now());
@@ -61,15 +65,12 @@ impl StreamClock {
     }
 }
 
-/// A consumer of reports; it breaks off the acquisition by returning `Break`.
-pub(super) type Consumer<'a> = dyn FnMut(AcquireEvent<'_>) -> ControlFlow<()> + 'a;
-
 /// Reads a source of bytes.
 pub(super) fn run(
     source: &FrameSource,
     options: &AcquireOptions,
     stop: &AtomicBool,
-    consumer: &mut Consumer<'_>,
+    consumer: &mut AcquireSink<'_>,
 ) -> Result<(), AcquireError> {
     let decoder = StreamDecoder::new(options.for_stream(source.begins()));
     let reader = StreamReader {
@@ -92,7 +93,7 @@ struct StreamReader<'a, 'b> {
     decoder: StreamDecoder,
     start: StreamStart,
     clock: StreamClock,
-    consumer: &'a mut Consumer<'b>,
+    consumer: &'a mut AcquireSink<'b>,
 }
 
 impl StreamReader<'_, '_> {

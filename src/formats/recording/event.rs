@@ -317,7 +317,7 @@ pub enum RecordingEvent<'a> {
 }
 
 /// A function that takes the events of a recording; `Break` ends the reading without an error.
-pub(super) type RecordingSink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
+pub type RecordingSink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
 
 /// A function to which the reader of a format reports events.
 pub(super) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> Result<(), EarlyEnd> + 'a;

@@ -99,7 +99,7 @@ pub(crate) use detect::may_be_recording;
 pub(crate) use detect::{RecordingInput, format_after, format_of, read_as};
 pub use detect::{read, recognised};
 pub use error::RecordingError;
-pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingNote};
+pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, RecordingSink};
 pub use format::RecordingFormat;
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(all(feature = "acquire", unix))]
