@@ -53,7 +53,9 @@ pub enum GivenError {
         key: &'static str,
     },
     /// An invalid rounding.
-    #[error("rounding {found:?}: expected a descriptor and a step above 0, such as cg_cd=0.01")]
+    #[error(
+        "rounding {found:?}: expected a descriptor and a step from 1e-9 to 1e9, such as cg_cd=0.01"
+    )]
     Rounding {
         /// The given text.
         found: String,
@@ -165,7 +167,8 @@ impl std::fmt::Display for Rounding {
     }
 }
 
-/// Descriptors that are known instead of the imprint itself; as text, their keys separated by commas: `na,p`.
+/// Descriptors that are known instead of the imprint itself; as text, their keys separated by commas: `na,p`. The text
+/// leaves out the roundings, which have texts of their own.
 ///
 /// Two imprints count as the same if all given descriptors of their main regions agree. Descriptors are compared
 /// exactly ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A missing value agrees only with a missing value.
