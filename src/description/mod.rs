@@ -8,12 +8,16 @@ mod region;
 
 mod chain;
 
+mod exact;
+
+mod measures;
+
 mod descriptor;
 
 pub use chain::ChainSteps;
-pub use descriptor::{
-    ChangesUnder, DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value,
-};
+pub use descriptor::{ChangesUnder, DESCRIPTORS, Descriptor, Dimension, Value};
+pub use exact::ExactValue;
+pub use measures::Description;
 #[cfg(feature = "sweep")]
 pub(crate) use region::is_main;
 pub use region::{Region, RegionKind, each_region, main_region, regions};
