@@ -2,9 +2,10 @@
 
 use crate::imprint::Imprint;
 use crate::parameter::named;
+use crate::recognition::likelihood::SearchMethod;
 use crate::recognition::model::{Model, add_log_counts};
 use crate::recognition::nearest::Nearest;
-use crate::recognition::noise::{NEGLIGIBLE, Noise, SearchMethod};
+use crate::recognition::noise::{NEGLIGIBLE, Noise};
 
 /// The state of an answer: how far it can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

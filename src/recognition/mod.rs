@@ -47,11 +47,17 @@ mod answer;
 
 mod noise;
 
+mod likelihood;
+
 mod templates;
 
 mod classifiers;
 
+mod random;
+
 mod simulation;
+
+mod touches_until;
 
 mod half_step;
 
@@ -64,14 +70,16 @@ pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, Rounding, ShapeDescriptor, greedy};
 pub use half_step::{HalfStep, HalfStepWork};
 pub use key::{ImprintKey, KeyTable};
+pub use likelihood::{Distances, SearchMethod};
 pub use merge::ModelMerge;
 pub use model::{Model, ModelError, ModelHead, NamedShape, ShapeCount};
 pub use nearest::Nearest;
-pub use noise::{Distances, Noise, NoiseError, SearchMethod, UnexplainedDifference};
+pub use noise::{Noise, NoiseError, UnexplainedDifference};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
+#[cfg(feature = "tui")]
+pub(crate) use random::below;
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{CellPositions, GridSteps, GridStepsError, default_figures, equal_figures};
-#[cfg(feature = "tui")]
-pub(crate) use simulation::below;
-pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil};
+pub use simulation::{NoisyTouches, RecognitionRate};
+pub use touches_until::{MOST_TOUCHES, TouchesUntil};
 pub use training::{LEAST_SIDE, Training, TrainingError};
