@@ -6,7 +6,7 @@
 //!  70 % |⠉⠢⢄                                  the error against the size; dots at the wanted one
 //!   0 % |....⠈⠉⠒⠤
 //!        0.5   1   1.5   2
-//! scale    error  certain     keys  sensor    what was found of each size
+//! scale    error  certain imprints  sensor    what was found of each size
 //! 0.5     62.1 %    5.2 %      310  16 × 16
 //! error at most 1 %: scale 2.3 or larger       what was looked for
 //! scale 1: octagon named ellipse in 52.4 %    the pair that is confused most, with an imprint
@@ -204,7 +204,7 @@ impl Separate {
             format!("{name:<8}"),
             "    error".to_owned(),
             "   certain".to_owned(),
-            "       keys".to_owned(),
+            "   imprints".to_owned(),
             "  sensor".to_owned(),
         ];
         let head = whole_columns(&head, panes.head.width);
