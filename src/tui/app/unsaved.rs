@@ -83,10 +83,14 @@ impl App {
     }
 }
 
-/// Returns the name to keep a document of this origin under: its own if it has one.
+/// Returns the name to keep a document of this origin under: its own if it has one, otherwise the one that would be
+/// proposed for it.
 fn origin_name(origin: &DocumentOrigin) -> Option<Name> {
-    let stored = origin.name.as_ref().map_or(UNNAMED, |stored| &stored.name);
-    Name::new(stored).or_else(|_| Name::new(UNNAMED)).ok()
+    let stored = origin.name.as_ref().map(|stored| &stored.name);
+    let name = stored.or(origin.proposed.as_ref());
+    Name::new(name.map_or(UNNAMED, String::as_str))
+        .or_else(|_| Name::new(UNNAMED))
+        .ok()
 }
 
 #[cfg(test)]

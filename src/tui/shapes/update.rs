@@ -7,7 +7,7 @@ use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
-use crate::storage::{Expected, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
+use crate::storage::{Expected, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin, UNNAMED};
 use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse, resume};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
@@ -157,10 +157,14 @@ fn on_removed(app: &mut App, name: String) {
     app.removed.push(name);
 }
 
-/// Puts unsaved work of an earlier run onto the matrix.
+/// Puts unsaved work of an earlier run onto the matrix. It keeps the name that it had, or was to be saved under.
 fn on_recovered(app: &mut App, shape: &StoredShape) {
     let document = Document::of_shape(shape);
-    let origin = DocumentOrigin::unsaved(&document).called("unsaved work restored");
+    let origin = DocumentOrigin::unsaved(&document);
+    let origin = match shape.name.as_str() {
+        UNNAMED => origin.called("unsaved work restored"),
+        name => origin.called(format!("{name} restored")).proposing(name),
+    };
     resume(app, origin, document);
     let save = app.key_of(&action::SAVE);
     inform(app, format!("restored; {save} saves it"));

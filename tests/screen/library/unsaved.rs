@@ -120,6 +120,25 @@ fn all_unsaved_work_is_offered_one_after_the_other() {
     shows(&session_on(folder.path(), ""), &["last time (1 of 3): "]);
 }
 
+/// Work of a stored shape is proposed under its name again, even after a second crash.
+#[test]
+fn restored_work_keeps_its_name() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    drop(session_on(
+        folder.path(),
+        "<Space>smine<Enter><Right><Space>",
+    ));
+    drop(session_on(folder.path(), "y"));
+    let mut again = session_on(folder.path(), "");
+    shows(&again, &["unsaved work from last time: mine, 2 taxels"]);
+    then(&mut again, "ys", &["Save as: mine"]);
+    then(
+        &mut again,
+        "<Enter>",
+        &["\"mine\" already exists. Replace it?"],
+    );
+}
+
 /// An undo of the restoring would lose the work without a question.
 #[test]
 fn restored_work_is_not_lost_by_undo() {
