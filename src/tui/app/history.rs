@@ -211,7 +211,6 @@ impl History {
     /// lost by that: undo would go back to them, and quitting there without a question would lose the document.
     pub fn resume(&mut self, document: Document, origin: DocumentOrigin) {
         self.begin(document, origin);
-        self.keep_cut_off();
         let is_earlier = |state: UnsavedState| state.place == StatePlace::Earlier;
         if !self.unsaved().any(is_earlier) {
             self.past.clear();
@@ -277,24 +276,7 @@ impl History {
     /// one counts. Where the present document comes from the same origin, that one counts: what was undone on it was
     /// given up. An empty matrix does not count as a state of a document, so what undo took off it would be lost.
     pub fn unsaved(&self) -> impl Iterator<Item = UnsavedState<'_>> {
-        let unsaved = self.unsaved_revisions();
-        unsaved.filter_map(|(state, place)| {
-            Some(UnsavedState {
-                document: &state.document,
-                origin: self.origins.get(state.origin)?,
-                place,
-            })
-        })
-    }
-
-    /// Returns the states whose documents would be lost.
-    fn unsaved_revisions(&self) -> impl Iterator<Item = (&Revision, StatePlace)> {
         let present = &self.present;
-        // What was undone before a change, and what after it: both must leave the document unsaved.
-        let before = self.past.last().filter(|_| self.future_before.is_some());
-        let gave_up = |now: &Revision, later: &Revision| {
-            now.origin == later.origin && !now.document.is_empty()
-        };
         let at = |place| move |state| (state, place);
         let earlier = self.past.iter().map(at(StatePlace::Earlier));
         let later = self.later().map(at(StatePlace::Later));
@@ -305,48 +287,28 @@ impl History {
             let next = states.peek().map(|(next, _)| next.origin);
             Some((state, place, next != Some(state.origin)))
         })
-        .filter(move |(state, place, is_last)| match place {
+        .filter(|(state, place, is_last)| match place {
             StatePlace::Earlier => *is_last,
             StatePlace::Present => true,
             StatePlace::Later => {
-                let mut states = [Some(present), before].into_iter().flatten();
-                *is_last && !states.any(|now| gave_up(now, state))
+                *is_last && (state.origin != present.origin || present.document.is_empty())
             }
         })
         .filter_map(|(state, place, _)| {
-            let origin = self.origins.get(state.origin)?;
-            let is_lost = origin.would_lose(&state.document);
-            is_lost.then_some((state, place))
+            let (document, origin) = (&state.document, self.origins.get(state.origin)?);
+            origin.would_lose(document).then_some(UnsavedState {
+                document,
+                origin,
+                place,
+            })
         })
     }
 
-    /// Returns the states that redo leads to, the next one first; while the last change can go on, those that redo led
-    /// to before it.
+    /// Returns the states that redo leads to, the next one first.
     fn later(&self) -> impl Iterator<Item = &Revision> {
-        let future = self.future_before.as_ref().unwrap_or(&self.future);
-        future.iter().rev()
-    }
-
-    /// Puts the unsaved documents that the last change has cut off from redo among the earlier states, before the
-    /// document on the matrix. So a change of one document never drops another one that is not saved.
-    pub fn keep_cut_off(&mut self) {
-        self.drop_empty_step();
-        if self.future_before.as_ref().is_none_or(Vec::is_empty) {
-            return;
-        }
-        let unsaved = self.unsaved_revisions();
-        let later = unsaved.filter(|(_, place)| *place == StatePlace::Later);
-        let mut cut_off: Vec<Revision> = later.map(|(state, _)| state.clone()).collect();
-        for state in &mut cut_off {
-            // From here on it is another document than the one that goes on.
-            self.origins.extend(self.origins.get(state.origin).cloned());
-            state.origin = self.origins.len() - 1;
-        }
-        self.future_before = Some(Vec::new());
-        let past = self.past.iter().rev();
-        let own = past.take_while(|state| state.origin == self.present.origin);
-        let at = self.past.len() - own.count();
-        self.past.splice(at..at, cut_off);
+        let before = self.future_before.as_ref();
+        let future = before.filter(|_| self.last_step_is_empty());
+        future.unwrap_or(&self.future).iter().rev()
     }
 
     /// Returns true if the last step leads to the same document.
@@ -371,7 +333,7 @@ impl History {
 
     /// Makes a document the present one and the former one the last of the past.
     fn replace(&mut self, document: Document, origin: usize) {
-        self.keep_cut_off();
+        self.drop_empty_step();
         let chosen = self.present.chosen;
         let state = Revision {
             document,
@@ -393,7 +355,7 @@ impl History {
 
     /// Goes back by one change. Returns the change in words, None if there is none.
     pub fn undo(&mut self) -> Option<String> {
-        self.keep_cut_off();
+        self.drop_empty_step();
         let earlier = self.past.pop()?;
         let undone = self.step(&earlier, &self.present);
         let left = self.travel(earlier);
@@ -409,7 +371,7 @@ impl History {
 
     /// Goes forward again by one change. Returns the change in words, None if there is none.
     pub fn redo(&mut self) -> Option<String> {
-        self.keep_cut_off();
+        self.drop_empty_step();
         let later = self.future.pop()?;
         let redone = self.step(&self.present, &later);
         let left = self.travel(later);
@@ -436,7 +398,7 @@ impl History {
     /// Returns the steps from the oldest state to the latest one, in words, and the number of steps that lead to the
     /// present one.
     pub fn steps(&mut self) -> (Vec<String>, usize) {
-        self.keep_cut_off();
+        self.drop_empty_step();
         let later = self.future.iter().rev();
         let states = || self.past.iter().chain([&self.present]).chain(later.clone());
         let steps = states().zip(states().skip(1));
@@ -474,72 +436,6 @@ impl History {
 mod tests {
     use super::*;
     use crate::sensor::Sensor;
-
-    /// A document that only redo has is not saved; a change of another document must not drop it.
-    #[test]
-    fn an_unsaved_document_is_not_cut_off() {
-        let sensor = Sensor::default();
-        let empty = Document::empty(sensor);
-        let drawn = |taxels: u8| {
-            let mut drawn = empty.clone();
-            (0..taxels).for_each(|row| drawn.edits.toggle(3, row));
-            drawn
-        };
-        let unsaved = |history: &History| {
-            let unsaved = history.unsaved();
-            let counts = unsaved.map(|state| (state.document.edits.count(), state.place));
-            counts.collect::<Vec<_>>()
-        };
-        // Two drawings; the second one is undone, and the first one goes on.
-        let mut history = History::new(empty.clone());
-        history.push(drawn(1));
-        history.begin(empty.clone(), DocumentOrigin::of(&empty));
-        history.push(drawn(5));
-        assert!(history.undo().is_some() && history.undo().is_some());
-        history.push(drawn(2));
-        assert_eq!(
-            unsaved(&history),
-            [(2, StatePlace::Present), (5, StatePlace::Later)]
-        );
-        history.push(drawn(3));
-        history.push(drawn(4));
-        assert_eq!(
-            unsaved(&history),
-            [(5, StatePlace::Earlier), (4, StatePlace::Present)]
-        );
-        // A drawing that was undone to nothing, before another shape comes, or another sensor.
-        for is_loaded in [true, false] {
-            let mut history = History::new(empty.clone());
-            history.push(drawn(5));
-            assert!(history.undo().is_some());
-            let other = Document::empty(sensor.with_pitch_mm(2.0).expect("a pitch"));
-            if is_loaded {
-                history.begin(other, DocumentOrigin::of(&empty));
-            } else {
-                history.push(other);
-            }
-            history.keep_cut_off();
-            assert_eq!(unsaved(&history), [(5, StatePlace::Earlier)]);
-            assert!(history.undo().is_some());
-        }
-        // What was undone on a document that stays is given up, whatever comes next.
-        let mut history = History::new(empty.clone());
-        history.push(drawn(1));
-        history.push(drawn(5));
-        assert!(history.undo().is_some());
-        history.begin(empty.clone(), DocumentOrigin::of(&empty));
-        history.keep_cut_off();
-        assert_eq!(unsaved(&history), [(1, StatePlace::Earlier)]);
-        // A change that comes to nothing brings back what redo had.
-        let mut history = History::new(empty.clone());
-        history.push(drawn(5));
-        assert!(history.undo().is_some());
-        history.push(drawn(1));
-        history.amend(empty.clone());
-        history.keep_cut_off();
-        assert_eq!(unsaved(&history), [(5, StatePlace::Later)]);
-        assert!(history.redo().is_some());
-    }
 
     #[test]
     fn a_change_that_is_amended_to_nothing_leaves_no_step() {

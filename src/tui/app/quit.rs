@@ -13,7 +13,6 @@ use crate::tui::live::update::recording;
 /// key for it, and the question names the key of the history. A shape that is being saved needs no question: the end
 /// waits for it, and reports a failure.
 pub(in crate::tui) fn quit(app: &mut App) {
-    app.history.keep_cut_off();
     let Some((what, lost)) = losses(app) else {
         app.run_state = RunState::Quit;
         return;
