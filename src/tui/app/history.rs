@@ -406,6 +406,12 @@ impl History {
         (steps, self.past.len())
     }
 
+    /// Returns the step that brought the oldest state, in words; None if the program began with it.
+    pub fn start(&self) -> Option<&str> {
+        let oldest = self.past.first().unwrap_or(&self.present);
+        self.origins.get(oldest.origin)?.brought_by.as_deref()
+    }
+
     /// Returns the number of steps that lead to the present state.
     pub fn step_number(&self) -> usize {
         self.past.len()

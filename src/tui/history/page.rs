@@ -16,6 +16,8 @@ use crate::tui::widget::write;
 /// The list of steps.
 #[derive(Clone, Debug)]
 pub struct HistoryDialog {
+    /// The description of the state before all steps.
+    start: String,
     /// The descriptions of the steps, the oldest first.
     steps: Vec<String>,
     /// The number of steps that lead to the present state.
@@ -26,13 +28,15 @@ pub struct HistoryDialog {
     pub search: Search,
 }
 
-/// The name of row 0.
+/// The description of the state that the program begins with.
 const START: &str = "the start";
 
 impl HistoryDialog {
-    /// Creates the list, with the present state selected.
-    pub fn new(steps: Vec<String>, present: usize) -> Self {
+    /// Creates the list, with the present state selected. `start` is what brought the oldest state, in words; None if
+    /// the program began with it.
+    pub fn new(start: Option<&str>, steps: Vec<String>, present: usize) -> Self {
         Self {
+            start: start.unwrap_or(START).to_owned(),
             steps,
             present,
             selected: present,
@@ -71,7 +75,9 @@ impl HistoryDialog {
 
     /// Returns the text of each row, the start first.
     fn rows(&self) -> impl Iterator<Item = &str> {
-        std::iter::once(START).chain(self.steps.iter().map(String::as_str))
+        std::iter::once(&self.start)
+            .chain(&self.steps)
+            .map(String::as_str)
     }
 
     /// Returns the rows that contain a text.

@@ -114,8 +114,9 @@ fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
         }
         Message::History => {
             let (steps, present) = app.history.steps();
+            let start = app.history.start();
             app.dialogs
-                .push(Dialog::History(HistoryDialog::new(steps, present)));
+                .push(Dialog::History(HistoryDialog::new(start, steps, present)));
         }
         Message::Help => {
             let help = Help::new(app.context());

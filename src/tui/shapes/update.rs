@@ -4,6 +4,7 @@
 //! page that asked was closed. An answer for a closed page changes nothing.
 
 use crate::formats::StoredShape;
+use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
@@ -162,7 +163,10 @@ fn on_recovered(app: &mut App, shape: &StoredShape) {
     let document = Document::of_shape(shape);
     let origin = DocumentOrigin::unsaved(&document);
     let origin = match shape.name.as_str() {
-        UNNAMED => origin.called("unsaved work restored"),
+        UNNAMED => {
+            let taxels = counted(shape.imprint.count(), "taxel");
+            origin.called(format!("{taxels} restored"))
+        }
         name => origin.called(format!("{name} restored")).proposing(name),
     };
     resume(app, origin, document);

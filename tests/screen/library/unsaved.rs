@@ -113,6 +113,13 @@ fn all_unsaved_work_is_offered_one_after_the_other() {
     then(&mut later, "y", &["last time (1 of 2): ", "NA     3 "]);
     then(&mut later, "y", &["last time: "]);
     then(&mut later, "y", &["restored; s saves it"]);
+    let rows = [
+        "0  3 taxels restored",
+        "1  2 taxels restored",
+        "2  1 taxel restored",
+    ];
+    then(&mut later, "H", &rows);
+    press(&mut later, "<Esc>");
     let left = "The imprint and 2 other shapes are not saved; the history (H) has them.";
     then(&mut later, "q", &[left]);
     // All of it is kept if the program dies once more.
