@@ -211,22 +211,27 @@ fn free_name(app: &App, name: &str) -> String {
     free
 }
 
-/// Returns a name for a document that has no name of its own: the figure with its sizes, the picture, the shape or the
-/// frame that it comes from, or "drawing".
+/// Returns a name for a document that has no name of its own: the one that was proposed with it, the figure with its
+/// sizes, the picture or the shape that it comes from, or "drawing".
 fn name_of_origin(app: &App) -> String {
     if let Some(stored) = app.stored() {
-        return format!("{} copy", stored.name);
+        return name_of_copy(&stored.name);
+    }
+    if let Some(proposed) = &app.history.origin().proposed {
+        return proposed.clone();
     }
     match &app.history.present().source {
         Some(Source::Figure(figure)) => name_of_figure(figure),
         Some(Source::Picture(picture)) => picture
             .name()
             .map_or_else(|| "picture".to_owned(), |name| format!("{name} moved")),
-        None => {
-            let proposed = app.history.origin().proposed.as_deref();
-            proposed.unwrap_or("drawing").to_owned()
-        }
+        None => "drawing".to_owned(),
     }
+}
+
+/// Returns the name to save a changed shape under whose own name is taken, as that of a shipped shape is.
+pub(in crate::tui) fn name_of_copy(name: &str) -> String {
+    format!("{name} copy")
 }
 
 /// Returns the kind of a figure with its sizes.

@@ -8,7 +8,9 @@ use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
-use crate::storage::{Expected, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin, UNNAMED};
+use crate::storage::{
+    Expected, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin, UNNAMED, shipped,
+};
 use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse, resume};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
@@ -20,6 +22,7 @@ use crate::tui::app::state::{App, UnfinishedSave};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::live;
+use crate::tui::matrix::update::name_of_copy;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::runtime::effect::Effect;
 use crate::tui::shapes::state::{ListDialog, ListPurpose};
@@ -167,7 +170,14 @@ fn on_recovered(app: &mut App, shape: &StoredShape) {
             let taxels = counted(shape.imprint.count(), "taxel");
             origin.called(format!("{taxels} restored"))
         }
-        name => origin.called(format!("{name} restored")).proposing(name),
+        name => {
+            let is_shipped = shipped::has(&shape.name);
+            let proposed = is_shipped.then(|| name_of_copy(name));
+            let proposed = proposed.unwrap_or_else(|| name.to_owned());
+            origin
+                .called(format!("{name} restored"))
+                .proposing(proposed)
+        }
     };
     resume(app, origin, document);
     let save = app.key_of(&action::SAVE);

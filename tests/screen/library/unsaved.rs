@@ -146,6 +146,19 @@ fn restored_work_keeps_its_name() {
     );
 }
 
+/// A figure keeps the name that it was saved under, too; that of a shipped shape cannot be used again.
+#[test]
+fn a_restored_shape_is_proposed_under_a_name_that_can_be_used() {
+    for (keys, proposed) in [
+        ("f<Enter>sround<Enter><Right><Space>", "Save as: round"),
+        ("lsmile<Enter><Space>", "Save as: smile copy"),
+    ] {
+        let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+        drop(session_on(folder.path(), keys));
+        shows(&session_on(folder.path(), "ys"), &[proposed]);
+    }
+}
+
 /// An undo of the restoring would lose the work without a question.
 #[test]
 fn restored_work_is_not_lost_by_undo() {
