@@ -168,3 +168,30 @@ pub(super) fn read_beside(path: &Path) -> Option<Result<RecordingMetadata, Metad
         Err(error) => Some(Err(MetadataFileError::Io { path, error })),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn metadata_that_is_too_large_is_not_called_damaged() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let text = RecordingMetadata::default().text().expect("a text");
+        for (size, is_read) in [(1 << 22, true), ((1 << 22) + 1, false)] {
+            let blanks = vec![b' '; size - text.len()];
+            let written = [&blanks[..], &text].concat();
+            std::fs::write(path.with_extension("json"), written).expect("written");
+            match metadata_beside(&path).expect("there") {
+                Ok(_) => assert!(is_read),
+                Err(error) => {
+                    let message = error.to_string();
+                    assert!(
+                        !is_read && message.contains("larger than 4 MiB"),
+                        "{message}"
+                    );
+                }
+            }
+        }
+    }
+}

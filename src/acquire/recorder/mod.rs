@@ -18,28 +18,26 @@ mod metadata;
 
 mod naming;
 
+mod notes;
+
 use std::io;
 use std::path::{Path, PathBuf};
 
 use error::refused;
 use metadata::{MetadataDraft, is_array, overwrite, prepared, read_beside};
 use naming::{NamedArray, NamingState};
+use notes::MetadataNotes;
 use record_array::{RecordArray, empty};
 
 pub use error::{MetadataFileError, RecorderError};
 pub(crate) use metadata::PreparedMetadata;
 pub use metadata::metadata_beside;
 
-use crate::acquire::frame_rate::FrameRate;
 #[cfg(feature = "tui")]
 use crate::formats::recording::RecordedView;
 use crate::formats::recording::RecordingMetadata;
-use crate::formats::system_error::system_reason;
 use crate::frame::{Frame, FrameSize};
 use crate::storage::{Existing, FinishedFile, UnfinishedFile};
-
-/// The largest number of bursts over which the rate is measured: several minutes.
-const MOST_BURSTS: usize = 4096;
 
 /// A recorder that writes frames to a file, until [`Self::finish`] ends the recording and reports errors.
 ///
@@ -66,20 +64,12 @@ pub struct FrameRecorder {
     path: PathBuf,
     /// The handling of existing files when the recording gets its names.
     existing: Existing,
-    metadata: RecordingMetadata,
+    /// The metadata, and the notes for it.
+    notes: MetadataNotes,
     naming: NamingState,
     array: RecordArray,
-    /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have started again,
-    /// as when a recording is played in a loop.
-    numbers: Option<(u64, u64)>,
     /// The number of frames of another size than the first one.
     left_out: u64,
-    /// The message of the first error.
-    reason: Option<String>,
-    /// The measurement of the rate of frames.
-    rate: FrameRate,
-    /// Whether frames carry times, so that they are not only those of arrival.
-    carries_times: bool,
     /// The error if the files have their names, but their folder could not be synced.
     unsynced: Option<RecorderError>,
 }
@@ -105,25 +95,20 @@ impl FrameRecorder {
         if is_there && read_beside(path).is_none() {
             return Err(RecorderError::Foreign { path: beside });
         }
-        let mut metadata = metadata.clone();
-        metadata.ended = Some(false);
+        let notes = MetadataNotes::new(metadata);
         let array = || {
             let mut array = UnfinishedFile::new(path, existing)?;
             array.write(&empty())?;
             Ok((array.handle()?, array.finish()?))
         };
         let (file, array) = array().map_err(refused)?;
-        let beside = prepared(path, existing, &metadata)?;
+        let beside = prepared(path, existing, notes.metadata())?;
         Ok(Self {
             path: path.to_owned(),
             existing,
-            metadata,
+            notes,
             naming: NamingState::Waiting(array, beside),
-            numbers: None,
             left_out: 0,
-            reason: None,
-            rate: FrameRate::over(MOST_BURSTS),
-            carries_times: false,
             unsynced: None,
             array: RecordArray::new(file),
         })
@@ -135,7 +120,7 @@ impl FrameRecorder {
     /// Returns the errors of [`Self::create`].
     #[cfg(feature = "tui")]
     pub(crate) fn elsewhere(&self, path: &Path) -> Result<Self, RecorderError> {
-        Self::create(path, self.existing, &self.metadata)
+        Self::create(path, self.existing, self.notes.metadata())
     }
 
     /// Writes the metadata beside the file anew.
@@ -143,8 +128,7 @@ impl FrameRecorder {
     /// # Errors
     /// Returns the system's error, or the reason why the files did not get their names.
     pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
-        self.metadata.clone_from(metadata);
-        self.metadata.ended = Some(false);
+        self.notes.describe(metadata);
         let written = self.write_metadata();
         self.noted(written)
     }
@@ -152,17 +136,8 @@ impl FrameRecorder {
     /// Replaces threshold, tare and marks, and returns the metadata with them, for the caller to write.
     #[cfg(feature = "tui")]
     pub(crate) fn set_view(&mut self, view: RecordedView) -> MetadataDraft {
-        let RecordedView { rule, tare, marks } = view;
-        (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);
-        self.leave_out_marks();
+        self.notes.set_view(view);
         self.draft()
-    }
-
-    /// Drops the marks of frames before the first recorded one.
-    fn leave_out_marks(&mut self) {
-        if let Some((first, _)) = self.numbers {
-            self.metadata.marks.retain(|mark| mark.number >= first);
-        }
     }
 
     /// Keeps the message of the first failure for the metadata. Returns the result.
@@ -175,21 +150,19 @@ impl FrameRecorder {
 
     /// Keeps the message of a failure for the metadata, if it is the first.
     pub(crate) fn note_failure(&mut self, error: &RecorderError) {
-        match error {
-            RecorderError::Io { error, .. } => self.note_reason(&system_reason(error)),
-            error => self.note_reason(&error.to_string()),
-        }
+        self.notes.note_failure(error);
     }
 
     /// Keeps the reason why the recording ends early for the metadata, if it is the first.
+    #[cfg(feature = "cli")]
     pub(crate) fn note_reason(&mut self, reason: &str) {
-        self.reason.get_or_insert_with(|| reason.to_owned());
+        self.notes.note_reason(reason);
     }
 
     fn draft(&self) -> MetadataDraft {
         MetadataDraft {
             path: self.path.clone(),
-            metadata: self.metadata.clone(),
+            metadata: self.notes.metadata().clone(),
         }
     }
 
@@ -255,16 +228,7 @@ impl FrameRecorder {
             self.left_out += 1;
             return Ok(());
         }
-        if let Some(time) = time {
-            self.rate.add(time);
-            self.carries_times |= frame.time.is_some();
-        }
-        let (first, last) = self.numbers.unwrap_or((frame.number, frame.number));
-        let first = if frame.number < last { 0 } else { first };
-        let is_first = self.numbers.replace((first, frame.number)).is_none();
-        if is_first {
-            self.leave_out_marks();
-        }
+        self.notes.note_frame(frame, time);
         let added = self.array.add(frame, time);
         added.map_err(|error| self.refused(error))
     }
@@ -327,19 +291,10 @@ impl FrameRecorder {
         let synced = self.array.end();
         let synced = synced.map_err(|error| self.refused(error));
         let synced = self.noted(synced);
-        let stated = self.metadata.seconds_per_frame;
-        self.metadata.seconds_per_frame = stated.or_else(|| {
-            if self.carries_times {
-                self.rate.even_seconds_per_frame()
-            } else {
-                self.rate.seconds_per_frame()
-            }
-        });
-        self.metadata.ended = Some(true);
-        self.metadata.ended_by = self.reason.take();
+        self.notes.end();
         let described = self.write_metadata().or_else(|error| match error {
             RecorderError::Replaced { .. } => Err(error),
-            error => overwrite(&self.path, &self.metadata).map_err(|_| error),
+            error => overwrite(&self.path, self.notes.metadata()).map_err(|_| error),
         });
         // Frames that could not be written are not tried again.
         self.array.give_up();
@@ -440,92 +395,6 @@ mod tests {
     }
 
     #[test]
-    fn marks_of_frames_that_are_not_recorded_are_left_out() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.npy");
-        let mut recorder = begun(&path);
-        let mark = |number| FrameMark { number, time: None };
-        let view = |numbers: &[u64]| RecordedView {
-            marks: numbers.iter().copied().map(mark).collect(),
-            ..RecordedView::default()
-        };
-        recorder.set_view(view(&[3]));
-        for number in [5, 6] {
-            let mut frame = Frame::default();
-            frame.number = number;
-            recorder.add(&frame, None).expect("recorded");
-        }
-        recorder.set_view(view(&[4, 5, 6]));
-        recorder.finish().expect("finished");
-        let beside = metadata_beside(&path).expect("there").expect("read");
-        assert_eq!(beside.marks, [mark(5), mark(6)]);
-    }
-
-    #[test]
-    fn marks_of_frames_whose_numbers_begin_again_are_kept() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.npy");
-        let mut recorder = begun(&path);
-        for number in [5, 6, 0, 1] {
-            let mut frame = Frame::default();
-            frame.number = number;
-            recorder.add(&frame, None).expect("recorded");
-        }
-        let marks = vec![FrameMark {
-            number: 1,
-            time: None,
-        }];
-        recorder.set_view(RecordedView {
-            marks: marks.clone(),
-            ..RecordedView::default()
-        });
-        recorder.finish().expect("finished");
-        let beside = metadata_beside(&path).expect("there").expect("read");
-        assert_eq!(beside.marks, marks);
-    }
-
-    #[test]
-    fn the_time_of_a_frame_is_measured_unless_the_source_states_it() {
-        let folder = tempfile::tempdir().expect("a folder");
-        for (name, stated, expected) in [("a.npy", None, 0.25), ("b.npy", Some(0.2), 0.2)] {
-            let path = folder.path().join(name);
-            let metadata = RecordingMetadata {
-                seconds_per_frame: stated,
-                ..RecordingMetadata::default()
-            };
-            let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
-            let mut recorder = recorder.expect("begun");
-            for time in [0.0, 0.25, 0.5, 0.75] {
-                let added = recorder.add(&Frame::default(), Some(time));
-                added.expect("recorded");
-            }
-            recorder.finish().expect("finished");
-            let beside = metadata_beside(&path).expect("there").expect("read");
-            assert_eq!(beside.seconds_per_frame, Some(expected));
-        }
-    }
-
-    #[test]
-    fn times_that_the_source_gives_have_a_step_only_if_they_are_even() {
-        let folder = tempfile::tempdir().expect("a folder");
-        for (name, times, expected) in [
-            ("a.npy", [0.0, 0.25, 0.5, 0.75], Some(0.25)),
-            ("b.npy", [0.0, 0.1, 5.0, 5.2], None),
-        ] {
-            let path = folder.path().join(name);
-            let mut recorder = begun(&path);
-            for time in times.map(Some) {
-                let mut frame = Frame::default();
-                frame.time = time;
-                recorder.add(&frame, time).expect("recorded");
-            }
-            recorder.finish().expect("finished");
-            let beside = metadata_beside(&path).expect("there").expect("read");
-            assert_eq!(beside.seconds_per_frame, expected);
-        }
-    }
-
-    #[test]
     fn a_recorder_that_is_dropped_leaves_its_frames_but_no_end() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
@@ -615,54 +484,11 @@ mod tests {
     }
 
     #[test]
-    fn metadata_that_is_too_large_is_not_called_damaged() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.npy");
-        let text = RecordingMetadata::default().text().expect("a text");
-        for (size, is_read) in [(1 << 22, true), ((1 << 22) + 1, false)] {
-            let blanks = vec![b' '; size - text.len()];
-            let written = [&blanks[..], &text].concat();
-            std::fs::write(path.with_extension("json"), written).expect("written");
-            match metadata_beside(&path).expect("there") {
-                Ok(_) => assert!(is_read),
-                Err(error) => {
-                    let message = error.to_string();
-                    assert!(
-                        !is_read && message.contains("larger than 4 MiB"),
-                        "{message}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
     fn the_name_of_a_recording_must_end_like_that_of_an_array() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("touch.json");
         let metadata = RecordingMetadata::default();
         let refused = FrameRecorder::create(&path, Existing::Replaced, &metadata);
         assert!(matches!(refused, Err(RecorderError::Ending { .. })));
-    }
-
-    #[test]
-    fn a_value_that_a_reader_would_refuse_is_recorded_as_none() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.npy");
-        let mut recorder = begun(&path);
-        let mut frame = Frame::new(FrameSize::of(3, 1));
-        let values = [1e300, 1.1e300, f64::NEG_INFINITY];
-        frame.values_mut().copy_from_slice(&values);
-        recorder.add(&frame, None).expect("recorded");
-        recorder.finish().expect("finished");
-        let bytes = std::fs::read(&path).expect("there");
-        let words = bytes[256 + 16..].chunks_exact(8);
-        let found: Vec<String> = words
-            .map(|word| f64::from_le_bytes(word.try_into().expect("eight bytes")).to_string())
-            .collect();
-        assert_eq!(
-            found,
-            [1e300.to_string(), "NaN".to_owned(), "NaN".to_owned()]
-        );
     }
 }

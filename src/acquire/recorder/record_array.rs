@@ -215,3 +215,33 @@ pub(super) fn header(size: Option<FrameSize>, records: u64) -> Vec<u8> {
     );
     header_of(&text, index(HEADER))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::acquire::recorder::FrameRecorder;
+    use crate::formats::recording::RecordingMetadata;
+    use crate::storage::Existing;
+
+    #[test]
+    fn a_value_that_a_reader_would_refuse_is_recorded_as_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let recorder = FrameRecorder::create(&path, Existing::Kept, &RecordingMetadata::default());
+        let mut recorder = recorder.expect("begun");
+        let mut frame = Frame::new(FrameSize::of(3, 1));
+        let values = [1e300, 1.1e300, f64::NEG_INFINITY];
+        frame.values_mut().copy_from_slice(&values);
+        recorder.add(&frame, None).expect("recorded");
+        recorder.finish().expect("finished");
+        let bytes = std::fs::read(&path).expect("there");
+        let words = bytes[256 + 16..].chunks_exact(8);
+        let found: Vec<String> = words
+            .map(|word| f64::from_le_bytes(word.try_into().expect("eight bytes")).to_string())
+            .collect();
+        assert_eq!(
+            found,
+            [1e300.to_string(), "NaN".to_owned(), "NaN".to_owned()]
+        );
+    }
+}
