@@ -33,6 +33,8 @@ mod ticker;
 
 mod stream_start;
 
+mod stream_report;
+
 mod stream;
 
 mod pace;

@@ -1,69 +1,21 @@
-//! Reads a source of bytes and decodes it until it ends. If it may come back, taxel tries to open it again each
-//! second.
+//! Reads a source of bytes until it ends. If it may come back, taxel tries to open it again each second.
 
 use std::io;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::byte_input::{ByteInput, ReadOutcome};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, AcquireSink, Playback};
-use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
-use crate::acquire::stream_start::StreamStart;
-use crate::acquire::ticker::{TICK, Ticker};
-use crate::formats::stream::{StreamDecoder, StreamEvent, StreamSink};
+use crate::acquire::stream_report::StreamReporter;
+use crate::acquire::ticker::TICK;
 
 /// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
 /// The time after which a lost source is tried again.
 const RETRY: Duration = Duration::from_secs(1);
-
-/// The times that are measured while a stream is read.
-struct StreamClock {
-    /// Whether the source is read as it comes; false if it is read as fast as possible.
-    is_live: bool,
-    /// Whether a frame without a time of its own gets the time of its arrival.
-    timed: bool,
-    silence: SilenceWatch,
-    ticker: Ticker,
-    /// The times of frames.
-    times: ArrivalClock,
-}
-
-impl StreamClock {
-    fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
-        Self {
-            is_live: options.playback != Playback::Once,
-            // The present content of a file has arrived at some other time.
-            timed: source.arrives(options.playback),
-            silence: SilenceWatch::new(Instant::now()),
-            ticker: Ticker::new(),
-            times: ArrivalClock::default(),
-        }
-    }
-
-    /// Reports an event of the decoder. A frame without a time gets that of its arrival.
-    fn report(
-        &mut self,
-        event: StreamEvent<'_>,
-        consumer: &mut AcquireSink<'_>,
-    ) -> ControlFlow<()> {
-        consumer(match event {
-            StreamEvent::Frame(frame) => {
-                self.silence.note_frame(Instant::now());
-                let time = self.times.time(frame.time, self.timed);
-                AcquireEvent::Frame { frame, time }
-            }
-            StreamEvent::Channel(info) => AcquireEvent::Channel(info),
-            StreamEvent::Provisional(frame) => AcquireEvent::Provisional(frame),
-            StreamEvent::Withdrawn => AcquireEvent::Withdrawn,
-            StreamEvent::Note(note) => AcquireEvent::Note(note),
-        })
-    }
-}
 
 /// Reads a source of bytes.
 pub(super) fn run(
@@ -72,15 +24,11 @@ pub(super) fn run(
     stop: &AtomicBool,
     consumer: &mut AcquireSink<'_>,
 ) -> Result<(), AcquireError> {
-    let decoder = StreamDecoder::new(options.for_stream(source.begins()));
     let reader = StreamReader {
         source,
         options,
         stop,
-        start: StreamStart::new(source, options, decoder.counts()),
-        decoder,
-        clock: StreamClock::new(source, options),
-        consumer,
+        reporter: StreamReporter::new(source, options, consumer),
     };
     reader.read()
 }
@@ -90,10 +38,7 @@ struct StreamReader<'a, 'b> {
     source: &'a FrameSource,
     options: &'a AcquireOptions,
     stop: &'a AtomicBool,
-    decoder: StreamDecoder,
-    start: StreamStart,
-    clock: StreamClock,
-    consumer: &'a mut AcquireSink<'b>,
+    reporter: StreamReporter<'a, 'b>,
 }
 
 impl StreamReader<'_, '_> {
@@ -102,56 +47,47 @@ impl StreamReader<'_, '_> {
         let Some(mut input) = self.first_input()? else {
             return Ok(());
         };
-        // The wait for the source is not a silence.
-        self.clock.silence = SilenceWatch::new(Instant::now());
+        self.reporter.begin();
         let comes_back = self.source.comes_back() && self.options.playback != Playback::Once;
         let mut bytes = vec![0; CHUNK];
         while !self.stop.load(Ordering::Relaxed) {
             let lost = match input.read(&mut bytes) {
-                Ok(ReadOutcome::Bytes(count)) => match self.decode(&bytes[..count])? {
+                Ok(ReadOutcome::Bytes(count)) => match self.reporter.decode(&bytes[..count])? {
                     ControlFlow::Continue(()) => continue,
                     ControlFlow::Break(()) => return Ok(()),
                 },
                 Ok(ReadOutcome::Anew(how)) => {
-                    if self.step(StreamDecoder::finish).is_break()
-                        || (self.consumer)(AcquireEvent::Anew(how)).is_break()
-                    {
+                    if self.reporter.begin_anew(how).is_break() {
                         return Ok(());
                     }
-                    self.decoder.begin_anew();
-                    self.start = StreamStart::new(self.source, self.options, self.decoder.counts());
-                    self.clock.times.rejoin();
                     continue;
                 }
                 Ok(ReadOutcome::End) if comes_back => {
                     io::Error::new(io::ErrorKind::UnexpectedEof, "the other end has closed it")
                 }
                 Ok(ReadOutcome::End) => {
-                    self.start.finish(self.decoder.counts())?;
+                    self.reporter.check_start()?;
                     break;
                 }
                 Err(error) if comes_back => error,
                 Err(error) => {
                     // What came before counts.
-                    let _ = self.step(StreamDecoder::finish);
+                    let _ = self.reporter.finish();
                     return Err(AcquireError::reading(error));
                 }
             };
-            // The next bytes may begin inside a frame.
-            if self.step(StreamDecoder::restart).is_break() {
+            if self.reporter.interrupt().is_break() {
                 return Ok(());
             }
             match self.again(AcquireEvent::Lost(&lost)) {
                 Some(found) => input = found,
                 None => return Ok(()),
             }
-            self.clock.times.rejoin();
-            let bytes = self.decoder.counts().bytes;
-            self.clock.silence.reopen(bytes, Instant::now());
+            self.reporter.resume();
         }
-        let _ = self.step(StreamDecoder::finish);
+        let _ = self.reporter.finish();
         if !self.stop.load(Ordering::Relaxed) {
-            let _ = (self.consumer)(AcquireEvent::Ended(self.decoder.counts()));
+            let _ = self.reporter.report_end();
         }
         Ok(())
     }
@@ -166,7 +102,7 @@ impl StreamReader<'_, '_> {
         if self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
-        (self.consumer)(AcquireEvent::Tick(self.decoder.counts()))
+        self.reporter.wait()
     }
 
     /// Opens the source; if it does not exist yet, waits for it if the options say so. None if no more is wanted.
@@ -189,7 +125,7 @@ impl StreamReader<'_, '_> {
     /// wanted.
     fn again(&mut self, event: AcquireEvent<'_>) -> Option<ByteInput> {
         let since = Instant::now();
-        if (self.consumer)(event).is_break() {
+        if self.reporter.report(event).is_break() {
             return None;
         }
         loop {
@@ -203,68 +139,9 @@ impl StreamReader<'_, '_> {
             if let Ok(input) = self.open() {
                 let input = input?;
                 let gap = since.elapsed();
-                let back = (self.consumer)(AcquireEvent::Back { gap });
+                let back = self.reporter.report(AcquireEvent::Back { gap });
                 return back.is_continue().then_some(input);
             }
-        }
-    }
-
-    /// Decodes bytes, perhaps none, and reports their frames and a tick. No frame waits until it is certain that the
-    /// source is a stream: in a recording that is not one, that is certain before the first frame.
-    ///
-    /// # Errors
-    /// Returns [`AcquireError::NotStream`].
-    fn decode(&mut self, bytes: &[u8]) -> Result<ControlFlow<()>, AcquireError> {
-        // If no bytes came, the content that was in a file has been read.
-        self.clock.timed |= self.clock.is_live && bytes.is_empty();
-        let mut rest = bytes;
-        if let Some((count, kind)) = self.start.push(bytes, self.decoder.counts()) {
-            let (before, after) = bytes.split_at(count);
-            if self.push(before).is_break() {
-                return Ok(ControlFlow::Break(()));
-            }
-            self.start.check(kind, self.decoder.counts())?;
-            rest = after;
-        }
-        if self.push(rest).is_break() {
-            return Ok(ControlFlow::Break(()));
-        }
-        Ok(self.tick())
-    }
-
-    /// Decodes bytes, and reports their frames.
-    fn push(&mut self, bytes: &[u8]) -> ControlFlow<()> {
-        self.step(|decoder, sink| decoder.push(bytes, sink))
-    }
-
-    /// Calls one step of the decoder, and reports its events until no more are wanted.
-    fn step(
-        &mut self,
-        how: impl FnOnce(&mut StreamDecoder, &mut StreamSink<'_>),
-    ) -> ControlFlow<()> {
-        let mut flow = ControlFlow::Continue(());
-        how(&mut self.decoder, &mut |event| {
-            if flow.is_continue() {
-                flow = self.clock.report(event, self.consumer);
-            }
-        });
-        flow
-    }
-
-    /// Reports a tick if one is due, and whether the stream is silent.
-    fn tick(&mut self) -> ControlFlow<()> {
-        if !self.clock.ticker.is_due() {
-            return ControlFlow::Continue(());
-        }
-        let counts = self.decoder.counts();
-        (self.consumer)(AcquireEvent::Tick(counts))?;
-        match self.clock.silence.look(counts.bytes, Instant::now()) {
-            Some(bytes_per_second) => (self.consumer)(AcquireEvent::Silent {
-                bytes_per_second,
-                counts,
-                has_vanished: self.source.has_vanished(),
-            }),
-            None => ControlFlow::Continue(()),
         }
     }
 }
@@ -276,7 +153,6 @@ mod tests {
     use std::net::TcpListener;
 
     use super::*;
-    use crate::formats::recording::{LOOKED_AT, recognised};
     use crate::formats::stream::StreamFormat;
     use crate::frame::FrameSize;
 
@@ -379,111 +255,6 @@ mod tests {
             }
             ControlFlow::Continue(())
         })
-    }
-
-    /// Returns the frames of a pipe that brings these pieces, the number of dropped ones, and the error.
-    fn watched(pieces: &[&[u8]]) -> (Vec<String>, u64, Option<String>) {
-        let source = FrameSource::Fifo("pipe".into());
-        let options = AcquireOptions {
-            playback: Playback::Once,
-            ..AcquireOptions::default()
-        };
-        let mut frames = Vec::new();
-        let decoder = StreamDecoder::new(options.for_stream(source.begins()));
-        let mut reader = StreamReader {
-            source: &source,
-            options: &options,
-            stop: &AtomicBool::new(false),
-            start: StreamStart::new(&source, &options, decoder.counts()),
-            decoder,
-            clock: StreamClock::new(&source, &options),
-            consumer: &mut |event| {
-                if let AcquireEvent::Frame { frame, time } = event {
-                    frames.push(format!("{frame:?} {time:?}"));
-                }
-                ControlFlow::Continue(())
-            },
-        };
-        let mut decoded = pieces
-            .iter()
-            .try_for_each(|piece| reader.decode(piece).map(drop));
-        if decoded.is_ok() {
-            decoded = reader.start.finish(reader.decoder.counts());
-            let _ = reader.step(StreamDecoder::finish);
-        }
-        let dropped = reader.decoder.counts().dropped;
-        let error = decoded.err().map(|error| error.to_string());
-        (frames, dropped, error)
-    }
-
-    /// Returns what comes of a pipe with these bytes, after a check that it does not depend on the pieces.
-    fn watched_in_any_pieces(bytes: &[u8]) -> (Vec<String>, u64, Option<String>) {
-        let whole = watched(&[bytes]);
-        let single: Vec<_> = bytes.chunks(1).collect();
-        assert_eq!(watched(&single), whole, "{}", bytes.escape_ascii());
-        for cut in 1..bytes.len() {
-            let (start, rest) = bytes.split_at(cut);
-            assert_eq!(watched(&[start, rest]), whole, "{}|", start.escape_ascii());
-        }
-        whole
-    }
-
-    #[test]
-    fn a_sample_is_a_stream_or_refused_however_it_is_cut() {
-        let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files/frames/samples");
-        let (mut refused, mut names) = (0, 0);
-        for sample in std::fs::read_dir(samples).expect("the samples") {
-            let path = sample.expect("a sample").path();
-            let bytes = std::fs::read(&path).expect("read");
-            let format = recognised(&bytes).expect("a recording");
-            let (frames, _, error) = watched_in_any_pieces(&bytes);
-            let expected = (!format.can_be_streamed())
-                .then(|| format!("a recording ({}), not a stream", format.name()));
-            assert_eq!(error, expected, "{}", path.display());
-            assert!(error.is_none() || frames.is_empty(), "{}", path.display());
-            refused += usize::from(error.is_some());
-            names += 1;
-        }
-        assert!(refused > 5 && names > refused + 5, "{refused} of {names}");
-    }
-
-    #[test]
-    fn a_stream_with_words_of_recordings_is_a_stream_however_it_is_cut() {
-        for (stream, frames) in [
-            // A line of JSON is judged when it is whole.
-            ("{\"n_columns\":2,\"n_rows\":1,\"frame\":[[1,2]]}\n", 1),
-            ("{\"snapshots\":{},\"n_columns\":2,\"frame\":[[1,2]]}\n", 1),
-            (
-                "{\"snapshots\":{},\"n_columns\":2}\n{\"frame\":[[1,2]]}\n",
-                1,
-            ),
-            ("boot v1\nDATA_TYPE ready\n\n1 2\n3 4\n\n5 6\n7 8\n\n", 2),
-            ("PK ready\n\n1 2\n3 4\n\n5 6\n7 8\n\n", 2),
-            ("FRAME,1\n\n1 2\n3 4\n\nFRAME,2\n\n1 2\n3 4\n\n", 2),
-            // After its first frame, a stream may contain anything.
-            ("1 2\n3 4\n\n5 6\n7 8\n\nASCII_DATA @@\n\n", 2),
-            ("P1\n\n1 2\n3 4\n\n5 6\n7 8\n\nASCII_DATA @@\n\n", 2),
-        ] {
-            let (found, _, error) = watched_in_any_pieces(stream.as_bytes());
-            assert_eq!((found.len(), error), (frames, None), "{stream}");
-        }
-    }
-
-    #[test]
-    fn a_start_without_a_line_is_judged_after_64_kib() {
-        let popu =
-            "{\"a_columns\":1,\"a_rows\":1,\"snapshots\":{\"0\":{\"a_readings\":[".to_owned();
-        let long = popu.clone() + &" ".repeat(LOOKED_AT - popu.len());
-        let refused = Some("a recording (popu), not a stream".to_owned());
-        for (text, error) in [
-            (long.clone() + "\"frame\"", &refused),
-            (long[..LOOKED_AT - 7].to_owned() + "\"frame\"", &None),
-        ] {
-            for size in [1, 100, LOOKED_AT - 1, LOOKED_AT, text.len()] {
-                let pieces: Vec<_> = text.as_bytes().chunks(size).collect();
-                assert_eq!(&watched(&pieces).2, error, "{size}");
-            }
-        }
     }
 
     #[test]
