@@ -10,7 +10,7 @@ use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::tui::app::change::is_other;
 use crate::tui::app::state::App;
-use crate::tui::live::update::recording;
+use crate::tui::live::watch::recording;
 
 /// Returns the text of the title.
 pub fn title(app: &App) -> String {

@@ -21,6 +21,9 @@
 //! heat             the heat map, with the edge of the imprint
 //! title            the title: which frame of which source is shown, and how
 //! view             draws the page: the heat map, and beside it the numbers
+//! watch            the watched source and its page: opened, set aside, and opened again
+//! taken_imprint    the imprint of the shown frame, which Enter puts onto the matrix
+//! report           handles the reports of the source
 //! update           handles messages
 //! ```
 
@@ -63,5 +66,11 @@ mod heat;
 mod title;
 
 pub mod view;
+
+pub mod watch;
+
+mod taken_imprint;
+
+pub mod report;
 
 pub mod update;

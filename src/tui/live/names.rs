@@ -126,3 +126,33 @@ impl ShapeNames {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::tui::live::request::WatchRequest;
+    use crate::tui::live::state::Live;
+
+    #[test]
+    fn sets_are_the_requested_one_the_built_in_ones_the_own_ones_and_none() {
+        let own = ["asked", "other"].map(ModelChoice::from_text);
+        let mut request = WatchRequest::new("none");
+        request.model = Some(own[0].clone());
+        let mut page = Live::new(Arc::new(request), 1);
+        let mut sets = Vec::new();
+        while let Some(naming) = page.names.request().cloned() {
+            sets.push(naming.choice);
+            page.names.next(own.clone().into_iter(), naming.number + 1);
+        }
+        let [asked, other] = own;
+        let built_in = ModelChoice::BUILT_IN.to_vec();
+        assert_eq!(sets, [vec![asked.clone()], built_in, vec![other]].concat());
+        page.names.next(std::iter::once(asked.clone()), 9);
+        assert_eq!(
+            page.names.request().map(|naming| &naming.choice),
+            Some(&asked)
+        );
+    }
+}

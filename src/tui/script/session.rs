@@ -26,7 +26,7 @@ use crate::tui::keys::key::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveEvent, LiveMessage, SourceState};
 use crate::tui::live::named_source::NamedSource;
 use crate::tui::live::state::Live;
-use crate::tui::live::update::last_page;
+use crate::tui::live::watch::last_page;
 use crate::tui::runtime::World;
 use crate::tui::script::drawing;
 use crate::tui::widget::theme::letter;

@@ -31,7 +31,7 @@ use crate::tui::app::state::App;
 use crate::tui::app::view::view;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::action;
-use crate::tui::live::update::last_page;
+use crate::tui::live::watch::last_page;
 use crate::tui::runtime::World;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::mailbox::{Mailbox, Sender};
