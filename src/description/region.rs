@@ -26,6 +26,23 @@ impl RegionKind {
             Self::Hole => "hole",
         }
     }
+
+    /// Returns which taxels of such a region are neighbours.
+    fn connectivity(self) -> Connectivity {
+        match self {
+            Self::Exterior => Connectivity::Eight,
+            Self::Hole => Connectivity::Four,
+        }
+    }
+}
+
+/// The taxels that count as neighbours.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Connectivity {
+    /// The four taxels that share a side.
+    Four,
+    /// The eight taxels that share a side or a corner.
+    Eight,
 }
 
 named!(
@@ -181,9 +198,9 @@ fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
 
 /// Calls `visit` with the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
 fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
-    let diagonal = kind == RegionKind::Exterior;
+    let connectivity = kind.connectivity();
     let none = || Imprint::empty(matrix.size());
-    let [apart, gaps] = breaks(bounds.words(matrix), diagonal);
+    let [apart, gaps] = breaks(bounds.words(matrix), connectivity);
     if !apart {
         if gaps {
             show_filled(kind, matrix, bounds, &mut none(), visit);
@@ -200,7 +217,7 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
             let open = &mut rest.words_mut()[top..bottom];
             let seeds = &mut piece.words_mut()[top..bottom];
             seeds[0] = spread(open[0] & open[0].wrapping_neg(), open[0]);
-            let end = flood(seeds, open, 1, diagonal);
+            let end = flood(seeds, open, 1, connectivity);
             // A single pass computes everything that is needed of the piece. A processor predicts the number of rows
             // badly, so several passes would cost more.
             let (mut across, mut runs) = (0, true);
@@ -243,11 +260,11 @@ fn show_filled(
 /// Returns whether some rows may be apart, and whether a row has gaps. They hang together if the first row is one run,
 /// and every run of another row meets the row above: this holds for nearly every imprint of one figure, and for most
 /// holes. So all rows are examined in one pass without branches.
-fn breaks(rows: &[u64], diagonal: bool) -> [bool; 2] {
+fn breaks(rows: &[u64], connectivity: Connectivity) -> [bool; 2] {
     let mut above = rows.first().map_or(0, |first| first & first.wrapping_neg());
     let (mut missed, mut gaps) = (0, 0);
     for &word in rows {
-        missed |= missed_runs(near(above, diagonal) & word, word);
+        missed |= missed_runs(near(above, connectivity) & word, word);
         gaps |= behind_gap(word);
         above = word;
     }
@@ -255,11 +272,10 @@ fn breaks(rows: &[u64], diagonal: bool) -> [bool; 2] {
 }
 
 /// Returns the columns of the next row that are neighbours of a row's taxels.
-fn near(word: u64, diagonal: bool) -> u64 {
-    if diagonal {
-        word | word << 1 | word >> 1
-    } else {
-        word
+fn near(word: u64, connectivity: Connectivity) -> u64 {
+    match connectivity {
+        Connectivity::Four => word,
+        Connectivity::Eight => word | word << 1 | word >> 1,
     }
 }
 
@@ -294,10 +310,10 @@ fn spread(mut seeds: u64, open: u64) -> u64 {
 
 /// Grows the seeds through the open taxels as far as they reach, row by row. The seeds are whole runs, and none are in
 /// row `end` or below. Returns the first row from which on there are none after growing.
-fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, diagonal: bool) -> usize {
+fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, connectivity: Connectivity) -> usize {
     // Passes down through the rows, then up, and so on, until no taxel is left to reach.
     loop {
-        let mut wave = Wave::new(diagonal);
+        let mut wave = Wave::new(connectivity);
         for (row, (seeds, &open)) in seeds.iter_mut().zip(open).enumerate() {
             wave.enter(seeds, open);
             if row >= end {
@@ -310,7 +326,7 @@ fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, diagonal: bool) -> usi
         if wave.left == 0 {
             return end;
         }
-        let mut wave = Wave::new(diagonal);
+        let mut wave = Wave::new(connectivity);
         for (seeds, &open) in seeds[..end].iter_mut().zip(&open[..end]).rev() {
             wave.enter(seeds, open);
         }
@@ -322,7 +338,7 @@ fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, diagonal: bool) -> usi
 
 /// A flood that moves through the rows in one direction.
 struct Wave {
-    diagonal: bool,
+    connectivity: Connectivity,
     /// The seeds of the previous row.
     seeds: u64,
     /// The open taxels of the previous row that are not seeds.
@@ -333,9 +349,9 @@ struct Wave {
 }
 
 impl Wave {
-    fn new(diagonal: bool) -> Self {
+    fn new(connectivity: Connectivity) -> Self {
         Self {
-            diagonal,
+            connectivity,
             seeds: 0,
             dry: 0,
             left: 0,
@@ -344,7 +360,7 @@ impl Wave {
 
     /// Continues with the next row.
     fn enter(&mut self, seeds: &mut u64, open: u64) {
-        let entered = (*seeds | near(self.seeds, self.diagonal)) & open;
+        let entered = (*seeds | near(self.seeds, self.connectivity)) & open;
         if entered != *seeds {
             *seeds = if missed_runs(entered, open) == 0 {
                 open
@@ -352,7 +368,7 @@ impl Wave {
                 spread(entered, open)
             };
         }
-        self.left |= near(*seeds, self.diagonal) & self.dry;
+        self.left |= near(*seeds, self.connectivity) & self.dry;
         (self.seeds, self.dry) = (*seeds, open & !*seeds);
     }
 }
@@ -383,7 +399,7 @@ fn fill(piece: &Imprint, bounds: Bounds, filled: &mut Imprint) -> bool {
         let met = inner[row] & (far(row.wrapping_sub(1)) | far(row + 1));
         outside[row] = spread(met, inner[row]);
     }
-    flood(outside, inner, words.len(), false);
+    flood(outside, inner, words.len(), Connectivity::Four);
     let mut enclosed = 0;
     for ((filled, outside), inner) in filled.iter_mut().zip(outside).zip(inner) {
         *filled &= !*outside;
