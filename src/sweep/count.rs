@@ -4,6 +4,7 @@
 use crate::atlas::{ImprintCounter, Layout};
 use crate::imprint::Imprint;
 use crate::index::wide;
+use crate::sweep::plan::SweepDetail;
 use crate::sweep::run::Sweep;
 
 /// The distinct imprints of a grid, counted.
@@ -93,7 +94,7 @@ impl Sweep<'_> {
             partly_off,
         } = &mut counted;
         let width = self.grid.row_length();
-        let complete = self.each_portion(layout, false, |portion| {
+        let complete = self.each_portion(layout, SweepDetail::Counts, |portion| {
             for found in portion {
                 let orientations = found.orientations.len() as u64;
                 let own = &found.counter;
@@ -117,7 +118,7 @@ impl Sweep<'_> {
         let sensor = self.grid.sensor();
         let layout = Layout::new(sensor.size());
         let mut runs = Vec::new();
-        self.each_portion(&layout, true, |portion| {
+        self.each_portion(&layout, SweepDetail::Runs, |portion| {
             for found in portion {
                 let wanted: Vec<bool> = (0..found.counter.len())
                     .map(|index| wanted(&layout.imprint(found.counter.key(index))))

@@ -14,7 +14,7 @@ use crate::sensor::MAX_SIDE;
 use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::isolate::HollowEllipse;
 use crate::sweep::span::{DOUBT, Level, NEAR, Spans};
-use crate::sweep::track::Track;
+use crate::sweep::track::{Passage, Track};
 
 /// The passages of one row of the sensor: outer rising and falling, inner rising and falling.
 type Tracks = [Track; 4];
@@ -92,8 +92,8 @@ fn follow(ellipse: &HollowEllipse, tracks: &mut Tracks) -> Option<Passages> {
     let [from, to, hole, end] = tracks;
     let (outer, threshold) = (&ellipse.outer, ellipse.threshold);
     let (from, to) = (
-        from.follow(outer, threshold, true)?,
-        to.follow(outer, threshold, false)?,
+        from.follow(outer, threshold, Passage::Rising)?,
+        to.follow(outer, threshold, Passage::Falling)?,
     );
     let solid = Passages {
         from,
@@ -115,8 +115,8 @@ fn follow(ellipse: &HollowEllipse, tracks: &mut Tracks) -> Option<Passages> {
         return Some(solid);
     }
     let (hole, end) = (
-        hole.follow(inner, 1.0 - threshold, true)?,
-        end.follow(inner, 1.0 - threshold, false)?,
+        hole.follow(inner, 1.0 - threshold, Passage::Rising)?,
+        end.follow(inner, 1.0 - threshold, Passage::Falling)?,
     );
     let (full, full_end) = outer.full()?;
     let apart = full < hole - NEAR && full_end > end + NEAR;

@@ -54,17 +54,16 @@ impl FlipWriter<'_, '_, '_> {
 
     /// Marks the events that a span with two sharp ends causes in all columns.
     fn span(&mut self, span: &Span) {
-        let left = self.end(span.from, false);
-        let right = self.end(span.to, true);
+        let left = self.end(span.from, SpanEnd::Left);
+        let right = self.end(span.to, SpanEnd::Right);
         if left < right {
             let ones = u64::MAX >> (64 - (right - left));
             self.events.start(ones << left);
         }
     }
 
-    /// Marks where the taxels of the row pass the end of a span: they leave the span at its left end and enter it at
-    /// its right end. Returns the first taxel that does so after the first x0, or the number of columns.
-    fn end(&mut self, at: f64, right: bool) -> usize {
+    /// Marks where the taxels of the row pass an end of a span. Returns the first taxel that does so after the first x0, or the number of columns.
+    fn end(&mut self, at: f64, end: SpanEnd) -> usize {
         let columns = self.events.columns();
         let start = at + self.steps.first;
         let near = NEAR * self.steps.per_cell;
@@ -77,7 +76,7 @@ impl FlipWriter<'_, '_, '_> {
             if place > last {
                 return first.unwrap_or(column);
             }
-            let step = self.passing(column, place, right);
+            let step = self.passing(column, place, end);
             if step > 0 {
                 first = first.or(Some(column));
                 if step < self.steps.count {
@@ -91,7 +90,7 @@ impl FlipWriter<'_, '_, '_> {
 
     /// Returns the first step at which a taxel is past an end. `place` is where it passes the end, counted in steps;
     /// it is at most [`NEAR`] before the first step or after the last.
-    fn passing(&mut self, column: usize, place: f64, right: bool) -> i32 {
+    fn passing(&mut self, column: usize, place: f64, end: SpanEnd) -> i32 {
         let nearest = nearest(place);
         let after = place - f64::from(nearest);
         if after.abs() > NEAR * self.steps.per_cell {
@@ -102,7 +101,7 @@ impl FlipWriter<'_, '_, '_> {
         }
         // At exactly this step: past a right end the taxel is active, past a left end it is not.
         let active = self.active(column, nearest);
-        nearest + i32::from(active != right)
+        nearest + i32::from(active != (end == SpanEnd::Right))
     }
 
     /// Returns true if a taxel is active at a step, which is not negative; computed exactly.
@@ -156,6 +155,15 @@ impl FlipWriter<'_, '_, '_> {
             }
         }
     }
+}
+
+/// An end of a span. The taxels of a row pass it from right to left.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SpanEnd {
+    /// The left end, at which a taxel leaves the span.
+    Left,
+    /// The right end, at which a taxel enters the span.
+    Right,
 }
 
 /// A taxel that moves along the range of x0.

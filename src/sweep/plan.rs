@@ -158,6 +158,15 @@ pub enum ShardOrderError {
     },
 }
 
+/// The detail in which a sweep reports each row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SweepDetail {
+    /// The imprints, with the number of their poses.
+    Counts,
+    /// The runs of poses with the same imprint, too.
+    Runs,
+}
+
 /// Some rows of a group of orientations, and of the group of their mirror images.
 #[derive(Clone, Debug)]
 pub(crate) struct Task {
@@ -165,6 +174,8 @@ pub(crate) struct Task {
     pub(crate) groups: Arc<[Arc<[u64]>]>,
     /// The indices of the values of y0.
     pub(crate) rows: Range<u64>,
+    /// The detail of the result.
+    pub(crate) detail: SweepDetail,
 }
 
 impl Task {
@@ -184,13 +195,13 @@ const HALVED_TASK_POSES: u64 = 1_000_000;
 const TASKS: u64 = 16;
 
 /// Iterates over the tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order of
-/// the first of their orientations. They are made one at a time, because a large grid has millions. If `mirrored`,
-/// groups that are mirror images share tasks; rows then come far out of order.
+/// the first of their orientations. They are made one at a time, because a large grid has millions. If only counts are
+/// wanted, groups that are mirror images share tasks; rows then come far out of order.
 pub(crate) fn tasks(
     grid: &PoseGrid,
     shard: &Range<u64>,
     block: u64,
-    mirrored: bool,
+    detail: SweepDetail,
 ) -> impl Iterator<Item = Task> + use<> {
     let (angles, height) = (
         grid.ranges()[Axis::Angle].count(),
@@ -199,7 +210,7 @@ pub(crate) fn tasks(
     let first_row = block * angles * height;
     let clipped = |row: u64| row.clamp(first_row, first_row + angles * height) - first_row;
     let rows = clipped(shard.start)..clipped(shard.end);
-    let pieces = pieces(grid, rows, mirrored);
+    let pieces = pieces(grid, rows, detail);
     let length = task_rows(grid, pieces.len() as u64);
     pieces.into_iter().flat_map(move |(groups, rows)| {
         let orientations = |group: Vec<u64>| {
@@ -211,6 +222,7 @@ pub(crate) fn tasks(
         starts.map(move |start| Task {
             groups: Arc::clone(&groups),
             rows: rows.start + start..rows.end.min(rows.start + start + length),
+            detail,
         })
     })
 }
@@ -220,7 +232,7 @@ type Piece = (Vec<Vec<u64>>, Range<u64>);
 
 /// Gathers the angles of a block by the symmetries of the shape. `rows` are the rows of the block that a shard holds.
 /// Angles of which it holds only a part are pieces of their own.
-fn pieces(grid: &PoseGrid, rows: Range<u64>, mirrored: bool) -> Vec<Piece> {
+fn pieces(grid: &PoseGrid, rows: Range<u64>, detail: SweepDetail) -> Vec<Piece> {
     let height = grid.rows_per_orientation();
     let full = rows.start.div_ceil(height)..rows.end / height;
     let mut pieces: Vec<Piece> = Vec::new();
@@ -240,7 +252,8 @@ fn pieces(grid: &PoseGrid, rows: Range<u64>, mirrored: bool) -> Vec<Piece> {
     let mut places: HashMap<i128, (usize, usize)> = HashMap::new();
     for angle in full.clone() {
         let class = classes.class(angle);
-        let image = classes.mirrored(class).filter(|_| mirrored);
+        let image = classes.mirrored(class);
+        let image = image.filter(|_| detail == SweepDetail::Counts);
         let (piece, group) = match (
             places.get(&class),
             image.and_then(|image| places.get(&image)),

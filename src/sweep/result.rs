@@ -9,7 +9,7 @@ use crate::imprint::Imprint;
 use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid, PoseIndex};
 use crate::sweep::ideal::Ideal;
-use crate::sweep::plan::{Shard, Task};
+use crate::sweep::plan::{Shard, SweepDetail, Task};
 use crate::sweep::runs;
 
 /// The result of a sweep.
@@ -139,8 +139,9 @@ impl SweepResult {
         let task = Task {
             groups: Arc::from([Arc::from([0])]),
             rows: 0..rows,
+            detail: SweepDetail::Runs,
         };
-        let found = runs::sweep_task(&part, self.atlas.layout(), &task, true, |_| true);
+        let found = runs::sweep_task(&part, self.atlas.layout(), &task, |_| true);
         let Some(found) = found.as_deref().and_then(<[_]>::first) else {
             return Vec::new();
         };

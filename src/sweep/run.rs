@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::atlas::{Atlas, Layout, OrientationSums, Table, VarianceParts};
 use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid};
-use crate::sweep::plan::{Shard, Task, tasks};
+use crate::sweep::plan::{Shard, SweepDetail, Task, tasks};
 use crate::sweep::result::SweepResult;
 use crate::sweep::runs::{self, GroupResult};
 
@@ -102,8 +102,12 @@ impl<'a> Sweep<'a> {
             partly_off: 0,
             rows,
         };
-        let (layout, keep_runs) = (done.atlas.layout().clone(), done.rows.is_some());
-        self.each_portion(&layout, keep_runs, |portion| done.add(portion));
+        let detail = match done.rows {
+            Some(_) => SweepDetail::Runs,
+            None => SweepDetail::Counts,
+        };
+        let layout = done.atlas.layout().clone();
+        self.each_portion(&layout, detail, |portion| done.add(portion));
         let poses = (done.poses, done.partly_off);
         let (table, variance_parts) = (&done.table, done.variance_parts);
         let mut result = SweepResult::new(
@@ -114,19 +118,19 @@ impl<'a> Sweep<'a> {
             table,
             variance_parts,
         );
-        if !keep_runs {
+        if detail == SweepDetail::Counts {
             result.atlas.sort_by_first_pose();
         }
         result
     }
 
     /// Sweeps portion after portion. `take` receives the results of each portion while the next one is being swept;
-    /// if runs are kept, the portions come in the order of the grid. If a portion is stopped, its results are lost
+    /// if runs are found, the portions come in the order of the grid. If a portion is stopped, its results are lost
     /// and `false` is returned.
     pub(super) fn each_portion(
         self,
         layout: &Layout,
-        keep_runs: bool,
+        detail: SweepDetail,
         mut take: impl FnMut(&Portion) + Send,
     ) -> bool {
         let Self {
@@ -144,12 +148,12 @@ impl<'a> Sweep<'a> {
         };
         let found = |task: Task| {
             (!stopped.load(Ordering::Relaxed))
-                .then(|| runs::sweep_task(grid, layout, &task, keep_runs, go_on))
+                .then(|| runs::sweep_task(grid, layout, &task, go_on))
                 .flatten()
         };
         let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
         let blocks = rows.start / block_rows..rows.end.div_ceil(block_rows);
-        let mut tasks = blocks.flat_map(|block| tasks(grid, &rows, block, !keep_runs));
+        let mut tasks = blocks.flat_map(|block| tasks(grid, &rows, block, detail));
         let mut before = Portion::new();
         loop {
             let next = portion(&mut tasks, grid.row_length());

@@ -16,7 +16,7 @@ use crate::sweep::ellipse::Elliptic;
 use crate::sweep::events::Events;
 use crate::sweep::exact::{Exact, effort};
 use crate::sweep::flips::{FlipWriter, Steps};
-use crate::sweep::plan::Task;
+use crate::sweep::plan::{SweepDetail, Task};
 use crate::sweep::point_symmetry::PointSymmetry;
 use crate::sweep::polygon::Polygonal;
 use crate::sweep::reflected_rows::{ReflectedRows, Runs};
@@ -48,11 +48,10 @@ pub(crate) fn sweep_task(
     grid: &PoseGrid,
     layout: &Layout,
     task: &Task,
-    keep_runs: bool,
     progress: impl Fn(u64) -> bool,
 ) -> Option<Vec<GroupResult>> {
     let go_on = || progress(0);
-    let mut sweeper = Sweeper::new(grid, layout, task, keep_runs, &go_on);
+    let mut sweeper = Sweeper::new(grid, layout, task, &go_on);
     let (width, orientations) = (grid.row_length(), task.orientations());
     let mut unreported = 0;
     for y in task.rows.clone() {
@@ -66,7 +65,7 @@ pub(crate) fn sweep_task(
             return None;
         }
     }
-    let found = sweeper.finish(keep_runs);
+    let found = sweeper.finish(task.detail);
     progress(unreported * orientations).then_some(found)
 }
 
@@ -123,7 +122,6 @@ impl<'a> Sweeper<'a> {
         grid: &'a PoseGrid,
         layout: &'a Layout,
         task: &Task,
-        keep_runs: bool,
         go_on: &'a dyn Fn() -> bool,
     ) -> Self {
         let orientation = task.groups[0][0];
@@ -133,9 +131,7 @@ impl<'a> Sweeper<'a> {
         let (first, last) = (place(0), place(count - 1));
         let count = i32::try_from(count).unwrap_or(i32::MAX);
         let groups = task.groups.iter();
-        let groups = groups.map(|orientations| {
-            Group::new(grid, layout, orientations, &task.rows, keep_runs, go_on)
-        });
+        let groups = groups.map(|orientations| Group::new(grid, layout, orientations, task, go_on));
         Self {
             grid,
             shape: Shape::new(&boundary),
@@ -203,13 +199,12 @@ impl<'a> Sweeper<'a> {
     }
 
     /// Returns what was found, for each group.
-    fn finish(self, keep_runs: bool) -> Vec<GroupResult> {
+    fn finish(self, detail: SweepDetail) -> Vec<GroupResult> {
         let groups = self.groups.into_iter();
         let found = groups.map(|group| GroupResult {
-            runs: if keep_runs {
-                group.found.runs
-            } else {
-                Runs::default()
+            runs: match detail {
+                SweepDetail::Counts => Runs::default(),
+                SweepDetail::Runs => group.found.runs,
             },
             ..group.found
         });
@@ -242,8 +237,7 @@ impl<'a> Group<'a> {
         grid: &'a PoseGrid,
         layout: &'a Layout,
         orientations: &Arc<[u64]>,
-        rows: &Range<u64>,
-        keep_runs: bool,
+        task: &Task,
         go_on: &'a dyn Fn() -> bool,
     ) -> Self {
         let orientation = orientations[0];
@@ -268,10 +262,10 @@ impl<'a> Group<'a> {
             due: false,
             exact: Exact::new(grid, orientation, go_on),
             images: half_turn.map(|half_turn| ReflectedRows::new(layout, half_turn)),
-            keep_runs: keep_runs || half_turn.is_some(),
+            keep_runs: task.detail == SweepDetail::Runs || half_turn.is_some(),
             found: GroupResult {
                 orientations: Arc::clone(orientations),
-                rows: rows.clone(),
+                rows: task.rows.clone(),
                 counter: ImprintCounter::new(layout.words()),
                 partly_off: 0,
                 runs: Runs::default(),

@@ -12,6 +12,15 @@
 use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::span::{NEAR, STEEP};
 
+/// A direction in which the coverage passes through a level, from left to right.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Passage {
+    /// The coverage grows.
+    Rising,
+    /// The coverage shrinks.
+    Falling,
+}
+
 /// The positions of a passage in the last rows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Track {
@@ -40,14 +49,19 @@ impl Track {
         self.known = 0;
     }
 
-    /// Finds the passage through a level in the present band, rising or falling; None if it is not certain.
-    pub(crate) fn follow(&mut self, band: &EllipseBand, level: f64, rising: bool) -> Option<f64> {
+    /// Finds the passage through a level in the present band; None if it is not certain.
+    pub(crate) fn follow(
+        &mut self,
+        band: &EllipseBand,
+        level: f64,
+        passage: Passage,
+    ) -> Option<f64> {
         let mut u = self.expected()?;
         for _ in 0..4 {
             let (left, right) = (band.at(u), band.at(u + 1.0));
             let excess = band.coverage(&left, &right) - level;
             let slope = right.height - left.height;
-            if (slope > 0.0) != rising {
+            if (slope > 0.0) != (passage == Passage::Rising) {
                 return None;
             }
             let way = excess / slope;
