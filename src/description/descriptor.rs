@@ -85,6 +85,18 @@ impl ChangesUnder {
         quarter_turn: false,
         mirror: false,
     };
+    /// For a descriptor that depends on the orientation of the imprint, but is the same for its mirror image.
+    const QUARTER_TURNS: Self = Self {
+        shift: false,
+        quarter_turn: true,
+        mirror: false,
+    };
+    /// For a descriptor that depends on the orientation of the imprint, and differs for its mirror image.
+    const QUARTER_TURNS_AND_MIRRORING: Self = Self {
+        shift: false,
+        quarter_turn: true,
+        mirror: true,
+    };
     /// For a descriptor that depends on the position of the imprint.
     const SHIFTS: Self = Self {
         shift: true,
@@ -165,13 +177,8 @@ impl Descriptor {
         }
     }
 
-    /// Marks a descriptor that changes under quarter turns, and under mirroring if `mirror` is true.
-    const fn of_orientation(self, mirror: bool) -> Self {
-        let changes_under = ChangesUnder {
-            shift: false,
-            quarter_turn: true,
-            mirror,
-        };
+    /// Marks a descriptor that depends on the orientation of the imprint, and so changes under these changes.
+    const fn of_orientation(self, changes_under: ChangesUnder) -> Self {
         Self {
             changes_under,
             ..self
@@ -335,7 +342,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Pair(d.diagonals()),
         |d| direction(d.whole_sides().map(i64::from)),
     )
-    .of_orientation(false),
+    .of_orientation(ChangesUnder::QUARTER_TURNS),
     Descriptor::new(
         "side_ratio",
         "Ratio",
@@ -376,7 +383,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| d.cg_cd_direction().map_or(Value::None, Value::Number),
         |d| direction(d.exact_cg_to_cd()),
     )
-    .of_orientation(true),
+    .of_orientation(ChangesUnder::QUARTER_TURNS_AND_MIRRORING),
 ];
 
 #[cfg(test)]
