@@ -302,14 +302,14 @@ impl FormDialog {
         true
     }
 
-    /// Chooses the next kind; the previous one if `backwards`.
-    pub fn choose_kind(&mut self, backwards: bool) {
-        let step = if backwards {
-            FigureKind::ALL.len() - 1
-        } else {
-            1
-        };
-        self.next_kind(step, |_| true);
+    /// Chooses the next kind.
+    pub fn choose_next_kind(&mut self) {
+        self.next_kind(1, |_| true);
+    }
+
+    /// Chooses the previous kind.
+    pub fn choose_previous_kind(&mut self) {
+        self.next_kind(FigureKind::ALL.len() - 1, |_| true);
     }
 
     /// Chooses the first kind that fits, in steps of `step` from the present one; returns false if none fits.

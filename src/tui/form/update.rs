@@ -36,9 +36,9 @@ pub(in crate::tui) fn update(
         },
         // A click on the kind, if it already has the focus, chooses the next kind.
         Message::ToField(None) | Message::Choose(Arrow::Right) if on_kind => {
-            dialog.choose_kind(false);
+            dialog.choose_next_kind();
         }
-        Message::Choose(Arrow::Left) if on_kind => dialog.choose_kind(true),
+        Message::Choose(Arrow::Left) if on_kind => dialog.choose_previous_kind(),
         Message::Type(character) => {
             if !dialog.insert(character) {
                 let kind = quoted_character(character);

@@ -308,15 +308,15 @@ pub(in crate::tui) fn in_quiz(
     message: Message,
 ) -> Option<Effect> {
     match message {
-        Message::Accept => guess(app, *quiz, true),
-        Message::Cancel | Message::Quit => guess(app, *quiz, false),
+        Message::Accept => guess(app, *quiz),
+        Message::Cancel | Message::Quit => end_quiz(app, *quiz, None),
         Message::Recognise(RecogniseMessage::Touch) => touch_again(app, *quiz),
         Message::SwitchPane => {
             app.dialogs.push(Dialog::Quiz(quiz));
             return matrix::update::act(app, message);
         }
         message => match quiz.take(&message) {
-            Ok(true) => guess(app, *quiz, true),
+            Ok(true) => guess(app, *quiz),
             taken => {
                 app.dialogs.push(Dialog::Quiz(quiz));
                 if let Err(reason) = taken {
@@ -328,22 +328,28 @@ pub(in crate::tui) fn in_quiz(
     None
 }
 
-/// Ends the quiz, with the selected shape as the name or without a name. Its touches become the kept ones, so that
+/// Ends the quiz with the selected shape as the answer.
+fn guess(app: &mut App, quiz: Quiz) {
+    let selected = quiz.selected();
+    end_quiz(app, quiz, Some(selected));
+}
+
+/// Ends the quiz with the shape that the user named, if any. Its touches become the kept ones, so that
 /// the panel shows what could be known about them. `best` counts how often the most probable shape was the right one:
 /// nobody is right more often in the long run.
-fn guess(app: &mut App, quiz: Quiz, named: bool) {
-    let (shape, selected) = (quiz.shape(), quiz.selected());
-    let (right, name) = (named && shape == selected, quiz.name(shape).to_owned());
+fn end_quiz(app: &mut App, quiz: Quiz, named: Option<usize>) {
+    let shape = quiz.shape();
+    let (right, name) = (named == Some(shape), quiz.name(shape).to_owned());
     let touch = app.keymap().label(Context::Recognise, &action::QUIZ);
     let undo = app.key_of(&action::UNDO);
     let further = format!("{touch} for another, {undo} undoes the touch");
-    let text = match (named, right) {
-        (true, true) => format!("right: {name}; {further}"),
-        (true, false) => format!(
+    let text = match named {
+        Some(_) if right => format!("right: {name}; {further}"),
+        Some(named) => format!(
             "wrong: the shape is {name}, not {}; {further}",
-            quiz.name(selected)
+            quiz.name(named)
         ),
-        (false, _) => format!("it was the {name}; {undo} brings back what was there before"),
+        None => format!("it was the {name}; {undo} brings back what was there before"),
     };
     if let Some(page) = state(app) {
         page.set_touches(quiz.into_touches());
