@@ -265,13 +265,14 @@ impl Polygonal {
                 continue;
             }
             if next > u {
-                let from = (u, right - left - threshold, high - low);
+                let from = CurvePoint::new(u, excess, high - low);
                 (low, left) = behind.at(next);
                 (high, right) = ahead.at(next + 1.0);
                 if certain && near == far && behind.flat && behind.from > 0.5 {
                     spans.set_level(u, Level::Above);
                 } else {
-                    quadratic(from, (next, right - left - threshold, high - low), spans);
+                    let to = CurvePoint::new(next, right - left - threshold, high - low);
+                    quadratic(from, to, spans);
                 }
                 u = next;
             }
@@ -310,49 +311,64 @@ fn sort<T: Copy>(list: &mut [T], place: impl Fn(&T) -> f64) {
     }
 }
 
-/// Notes the levels that a quadratic takes between two places, each given with its value and slope.
-fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
-    let ((start, first, slope), (end, last, final_slope)) = (from, to);
-    let turning = (slope * final_slope < 0.0).then(|| {
-        let way = slope / (slope - final_slope) * (end - start);
-        (start + way, first + slope * way * 0.5, 0.0)
+/// A point of a quadratic.
+#[derive(Clone, Copy)]
+struct CurvePoint {
+    /// The place.
+    at: f64,
+    /// The value there.
+    value: f64,
+    /// The slope there.
+    slope: f64,
+}
+
+impl CurvePoint {
+    fn new(at: f64, value: f64, slope: f64) -> Self {
+        Self { at, value, slope }
+    }
+}
+
+/// Notes the levels that a quadratic takes between two points.
+fn quadratic(from: CurvePoint, to: CurvePoint, spans: &mut Spans) {
+    let turning = (from.slope * to.slope < 0.0).then(|| {
+        let way = from.slope / (from.slope - to.slope) * (to.at - from.at);
+        CurvePoint::new(from.at + way, from.value + from.slope * way * 0.5, 0.0)
     });
     // The usual case: on one side of the threshold throughout.
-    let extreme = turning.map_or(first, |(_, extreme, _)| extreme);
-    if Real::min(Real::min(first, last), extreme) > DOUBT {
-        return spans.set_level(start, Level::Above);
+    let extreme = turning.map_or(from.value, |turning| turning.value);
+    if Real::min(Real::min(from.value, to.value), extreme) > DOUBT {
+        return spans.set_level(from.at, Level::Above);
     }
-    if Real::max(Real::max(first, last), extreme) < -DOUBT {
-        return spans.set_level(start, Level::Below);
+    if Real::max(Real::max(from.value, to.value), extreme) < -DOUBT {
+        return spans.set_level(from.at, Level::Below);
     }
     match turning {
-        Some(extreme) => {
-            monotone(from, extreme, spans);
-            monotone(extreme, to, spans);
+        Some(turning) => {
+            monotone(from, turning, spans);
+            monotone(turning, to, spans);
         }
         None => monotone(from, to, spans),
     }
 }
 
-/// Notes the levels of a quadratic whose slope does not change sign.
-fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
-    let ((start, first, slope), (end, last, final_slope)) = (from, to);
-    let (before, after) = (Level::of(first), Level::of(last));
-    spans.set_level(start, before);
+/// Notes the levels of a quadratic whose slope does not change sign between two points.
+fn monotone(from: CurvePoint, to: CurvePoint, spans: &mut Spans) {
+    let (before, after) = (Level::of(from.value), Level::of(to.value));
+    spans.set_level(from.at, before);
     if before == after {
         return;
     }
-    // In shares of the way: at share `t`, the quadratic is `first + rise * t + bend * t²`.
-    let way = end - start;
-    let (rise, bend) = (slope * way, (final_slope - slope) * 0.5 * way);
-    let sense = if last > first { 1.0 } else { -1.0 };
+    // In shares of the way: at share `t`, the quadratic is `from.value + rise * t + bend * t²`.
+    let way = to.at - from.at;
+    let (rise, bend) = (from.slope * way, (to.slope - from.slope) * 0.5 * way);
+    let sense = if to.value > from.value { 1.0 } else { -1.0 };
     // The place where the quadratic reaches a height, and its slope there, times the way.
     let passage = |height: f64| {
-        let gap = first - height;
+        let gap = from.value - height;
         let root = (rise * rise - 4.0 * bend * gap).max(0.0).sqrt();
         let share = -2.0 * gap / (rise + sense * root);
         let share = if share.is_finite() { share } else { 1.0 };
-        ((start + way * share.max(0.0)).min(end), root)
+        ((from.at + way * share.max(0.0)).min(to.at), root)
     };
     if before != Level::Doubtful && after != Level::Doubtful {
         let (at, steepness) = passage(0.0);

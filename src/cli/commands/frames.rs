@@ -223,6 +223,16 @@ fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
     }
 }
 
+/// A frame that is answered.
+struct FoundFrame<'a> {
+    /// The name of the recording.
+    name: &'a str,
+    /// The channel of the frame.
+    listed: &'a ListedChannel,
+    frame: &'a Frame,
+    processed: Processed<'a>,
+}
+
 /// The frames that are answered, and how.
 struct Selection {
     /// The choice of the flags.
@@ -373,7 +383,13 @@ impl Selection {
                 name: name.clone(),
                 message: error.to_string() + frame_advice(&error),
             })?;
-            self.give(&name, frame, &processed, listed, answered, output)?;
+            let found = FoundFrame {
+                name: &name,
+                listed,
+                frame,
+                processed,
+            };
+            self.give(&found, answered, output)?;
             answered = true;
             Ok(match self.number {
                 Some(_) => ControlFlow::Break(()),
@@ -392,27 +408,24 @@ impl Selection {
     /// exporting and writing.
     fn give(
         &self,
-        name: &str,
-        frame: &Frame,
-        processed: &Processed<'_>,
-        listed: &ListedChannel,
+        found: &FoundFrame<'_>,
         again: bool,
         output: &mut FramesOutput<'_>,
     ) -> Result<(), CliError> {
-        let Some(imprint) = processed.imprint else {
+        let Some(imprint) = found.processed.imprint else {
             return Ok(());
         };
         let (Form::Json(pitch) | Form::Table(pitch)) = output.form;
-        let (pitch, without_pitch) = cell_size(name, pitch, &listed.info)?;
-        let heat = self.heat.then_some(processed.tared);
-        let titles = self.titles(name, frame, processed, listed);
+        let (pitch, without_pitch) = cell_size(found.name, pitch, &found.listed.info)?;
+        let heat = self.heat.then_some(found.processed.tared);
+        let titles = self.titles(found);
         let mut lines = titles.clone();
         if let Form::Table(_) = output.form {
             lines.extend(without_pitch);
             lines.push(report::size(&imprint, None, pitch));
         }
         let begin = |export: &Export| {
-            let export = export.numbered(frame.number);
+            let export = export.numbered(found.frame.number);
             export.begin_frame(&imprint, heat, &titles[0], pitch)
         };
         let shape = |name| stored(name, &imprint, pitch);
@@ -423,12 +436,12 @@ impl Selection {
                 for note in lines.split_off(titles.len()) {
                     (output.notes)(&note);
                 }
-                self.line((frame, processed), &imprint, listed, output)
+                self.line(found, &imprint, output)
             }
             (None, Form::Table(_)) => {
                 let gap = if again { "\n" } else { "" };
                 let map = heat.map_or_else(String::new, |values| {
-                    let unit = unit(&listed.info);
+                    let unit = unit(&found.listed.info);
                     heat_map(values, &output.charset.line(&unit), output.charset) + "\n"
                 });
                 let table = report::table(&imprint, &lines, pitch, output.charset);
@@ -447,15 +460,14 @@ impl Selection {
     /// Returns a frame as a line of JSON, with the name of its shape if a model is given.
     fn line(
         &self,
-        (frame, processed): (&Frame, &Processed<'_>),
+        found: &FoundFrame<'_>,
         imprint: &Imprint,
-        listed: &ListedChannel,
         output: &mut FramesOutput<'_>,
     ) -> Vec<u8> {
         let answer = FrameAnswer {
-            frame,
-            channel: listed.info.name.as_deref(),
-            processed: *processed,
+            frame: found.frame,
+            channel: found.listed.info.name.as_deref(),
+            processed: found.processed,
             rule: Some(self.rule),
             tare: self.tare,
             gain: self.gain,
@@ -470,13 +482,13 @@ impl Selection {
 
     /// Returns lines about the frame: `iscan.csv, frame 65 (label 66), 6.5 s`, then sum and maximum, then the
     /// threshold.
-    fn titles(
-        &self,
-        name: &str,
-        frame: &Frame,
-        processed: &Processed<'_>,
-        listed: &ListedChannel,
-    ) -> Vec<String> {
+    fn titles(&self, found: &FoundFrame<'_>) -> Vec<String> {
+        let &FoundFrame {
+            name,
+            listed,
+            frame,
+            processed,
+        } = found;
         let file = name.rsplit('/').next().unwrap_or(name);
         let mut title = format!("{file}, frame {}", frame.number);
         if let Some(label) = frame.label {

@@ -28,9 +28,18 @@ impl PoseSample {
 
 /// The touches that vote: a random sample, or all touches.
 pub(super) struct Sample {
-    /// The number of a key, a shape that leaves it, and the number of touches in which it does.
-    touches: Vec<(usize, usize, u64)>,
+    /// The touches, in the order of their keys.
+    touches: Vec<SampledTouches>,
     shapes: usize,
+}
+
+/// Touches of one shape that leave the same key.
+struct SampledTouches {
+    /// The number of the key.
+    key: usize,
+    shape: usize,
+    /// The number of the touches, each of which is a vote.
+    votes: u64,
 }
 
 impl Sample {
@@ -42,7 +51,11 @@ impl Sample {
         } else {
             let own = |key| {
                 let counts = model.counts(key).iter();
-                counts.map(move |count| (key, usize::from(count.shape), count.poses))
+                counts.map(move |count| SampledTouches {
+                    key,
+                    shape: usize::from(count.shape),
+                    votes: count.poses,
+                })
             };
             (0..model.keys().len()).flat_map(own).collect()
         };
@@ -50,7 +63,7 @@ impl Sample {
     }
 
     /// Draws touches. Returns them in the order of their keys.
-    fn drawn(model: &Model, sample: PoseSample) -> Vec<(usize, usize, u64)> {
+    fn drawn(model: &Model, sample: PoseSample) -> Vec<SampledTouches> {
         let mut random = Pcg64::seed_from_u64(sample.seed);
         let mut votes = BTreeMap::new();
         for (shape, draw) in Draw::all(model, |_| 1).iter().enumerate() {
@@ -60,7 +73,7 @@ impl Sample {
         }
         let votes = votes.into_iter();
         votes
-            .map(|((key, shape), votes)| (key, shape, votes))
+            .map(|((key, shape), votes)| SampledTouches { key, shape, votes })
             .collect()
     }
 
@@ -70,13 +83,13 @@ impl Sample {
         let row = table.row(key);
         let mut last = (usize::MAX, 0.0);
         let mut distances: Vec<(f64, usize, u64)> = Vec::with_capacity(self.touches.len());
-        for &(other, shape, votes) in &self.touches {
-            if other != last.0 {
-                let parts = row.iter().zip(table.row(other));
+        for touches in &self.touches {
+            if touches.key != last.0 {
+                let parts = row.iter().zip(table.row(touches.key));
                 let distance = parts.map(|(one, two)| (one - two) * (one - two)).sum();
-                last = (other, distance);
+                last = (touches.key, distance);
             }
-            distances.push((last.1, shape, votes));
+            distances.push((last.1, touches.shape, touches.votes));
         }
         let mut scores = vec![0.0; self.shapes];
         let Some(rank) = neighbours.min(distances.len()).checked_sub(1) else {
