@@ -65,10 +65,8 @@ pub fn run(
     let mut world = world.with_workers(post);
     // Before signals are handled: if the disk hangs here, they still end the program.
     world.remind(&mut app);
-    let device = Device::open()?;
-    let signals = SignalReceiver::new()?;
+    let mut event_loop = EventLoop::open(watch, app, world, *settings, mailbox)?;
     leave_on_panic();
-    let mut event_loop = EventLoop::new(watch, app, world, *settings, device, signals, mailbox);
     event_loop.first = first;
     let ended = catch_unwind(AssertUnwindSafe(|| {
         event_loop.run().or_else(|error| match error {
@@ -194,21 +192,24 @@ struct Ready {
 }
 
 impl<'a> EventLoop<'a> {
-    /// Creates the loop on a device that is set up.
-    fn new(
+    /// Opens the terminal, handles signals from now on, and creates the loop.
+    ///
+    /// # Errors
+    /// Returns an error if there is no terminal, or if signals cannot be handled.
+    fn open(
         watch: &'a mut dyn FnMut(SessionEvent<'_>),
         app: App,
         world: World,
         settings: TerminalSettings,
-        device: Device,
-        signals: SignalReceiver,
         mailbox: Mailbox,
-    ) -> Self {
+    ) -> io::Result<Self> {
+        let device = Device::open()?;
+        let signals = SignalReceiver::new()?;
         let size = size(&device, &settings);
         let screen = Screen::new(size, settings.abilities);
         // A buffer in memory cannot fail: its error type has no values.
         let Ok(screen) = Terminal::new(screen);
-        Self {
+        Ok(Self {
             watch,
             recorded: (0, 0),
             app,
@@ -226,7 +227,7 @@ impl<'a> EventLoop<'a> {
             frames_due: None,
             frames_at: None,
             pacing: PicturePacing::new(settings.kind.tells_status()),
-        }
+        })
     }
 
     /// Runs until the program ends.

@@ -48,13 +48,13 @@ enum RecorderState {
 impl Recording {
     /// Returns a recording whose file has not been created yet.
     pub(in crate::tui::runtime) fn new(path: PathBuf) -> Arc<Self> {
-        Arc::new(Self::with_name(path, false))
+        Arc::new(Self::unbegun(path))
     }
 
-    fn with_name(path: PathBuf, is_name_chosen: bool) -> Self {
+    fn unbegun(path: PathBuf) -> Self {
         Self {
             path: Mutex::new(path),
-            is_name_chosen,
+            is_name_chosen: false,
             metadata: Mutex::default(),
             recorder: Mutex::new(RecorderState::New),
         }
@@ -74,7 +74,10 @@ impl Recording {
             if !is_free(&path) {
                 continue;
             }
-            let recording = Self::with_name(path, true);
+            let recording = Self {
+                is_name_chosen: true,
+                ..Self::unbegun(path)
+            };
             recording.begin(Existing::Kept, metadata)?;
             return Ok((name, Arc::new(recording)));
         }
