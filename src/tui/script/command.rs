@@ -74,7 +74,7 @@ type ReadCommand = fn(&str) -> Result<ScriptCommand, String>;
 /// The names of all commands, and how the rest of their line is read.
 const COMMANDS: [(&str, ReadCommand); 21] = [
     ("Size", |text| {
-        let (columns, rows) = size(text)?;
+        let (columns, rows) = stated_size(text)?;
         Ok(ScriptCommand::Set(ScriptSetting::Size(columns, rows)))
     }),
     ("Set", |text| setting::read(text).map(ScriptCommand::Set)),
@@ -83,7 +83,7 @@ const COMMANDS: [(&str, ReadCommand); 21] = [
         Ok(ScriptCommand::Set(ScriptSetting::Seed(seed)))
     }),
     ("Resize", |text| {
-        let (columns, rows) = size(text)?;
+        let (columns, rows) = stated_size(text)?;
         Ok(ScriptCommand::Resize(columns, rows))
     }),
     ("Keys", |text| {
@@ -311,8 +311,9 @@ fn two<'a>(text: &'a str, what: &str) -> Result<(&'a str, &'a str), String> {
     Ok((first, second.trim()))
 }
 
-/// Reads a size like `80x24`; columns and rows are at most 1000.
-pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
+/// Reads a size like `80x24`; columns and rows are at most 1000. The error does not quote the text, because a message
+/// about a flag does so already.
+pub(crate) fn size(text: &str) -> Result<(u16, u16), &'static str> {
     let numbers = text
         .split_once('x')
         .and_then(|(columns, rows)| Some((columns.parse().ok()?, rows.parse().ok()?)));
@@ -320,10 +321,12 @@ pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
         .filter(|(columns, rows): &(u16, u16)| {
             (1..=1000).contains(columns) && (1..=1000).contains(rows)
         })
-        .ok_or_else(|| {
-            let found = shortened(text);
-            format!("expected a size like 80x24, from 1x1 to 1000x1000, found {found:?}")
-        })
+        .ok_or("expected a size like 80x24, from 1x1 to 1000x1000")
+}
+
+/// Reads the size in a line of a script.
+fn stated_size(text: &str) -> Result<(u16, u16), String> {
+    size(text).map_err(|error| format!("{error}, found {:?}", shortened(text)))
 }
 
 /// Reads a position like `12,5`: column and row of the screen.

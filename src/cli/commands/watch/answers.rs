@@ -137,12 +137,13 @@ impl Answers {
         }
     }
 
-    /// Waits until all answers are written, and reports the frames without one.
+    /// Waits until all answers are written, and reports the frames without one. A single frame of another size was
+    /// reported already.
     ///
     /// # Errors
     /// Returns the reason why answers could not be written. A recording does not need a reader of the answers.
     pub(super) fn finish(self, reports: &mut SourceReports<'_>) -> Result<(), CliError> {
-        if self.unfit > 0 {
+        if self.unfit > 1 {
             let frames = counted(self.unfit, "frame");
             reports.say(&format!("{frames} of another size not printed"));
         }
