@@ -24,7 +24,7 @@ pub use placed::Placed;
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
 #[cfg(feature = "cli")]
 pub(crate) use reach::check_given;
-pub use reach::{GivenRanges, common_ranges, default_ranges, smallest_sensor};
+pub use reach::{GivenRanges, common_ranges, default_ranges, figure_ranges, smallest_sensor};
 #[cfg(feature = "recognition")]
 pub(crate) use reach::{Reach, SensorSides};
 #[cfg(feature = "recognition")]

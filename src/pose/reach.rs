@@ -6,10 +6,12 @@
 //! cell sides, and the frame is that of the plane. The default positions are a convention of this project:
 //!
 //! If x0 or y0 is not given, a sweep takes one cell of positions, in steps of a hundredth of a cell unless another step
-//! is requested. It takes the cell in which the shape lies (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off
-//! there. Otherwise it takes the cell nearest to the middle among those in which nothing is cut off, starting at a
-//! whole number if possible. If something is cut off in every cell, it takes the middle of the sensor. All positions
-//! are multiples of the step, so that large and small shapes are touched at the same positions within a cell.
+//! is requested. For a shape that has a position ([`default_ranges`]), it is the cell in which the shape lies (1.99 lies
+//! in `1:1.99:0.01`); for a figure that has none, as on the command line ([`figure_ranges`]), it is the paper's cell.
+//! If the sensor cuts something off there, it takes the cell nearest to the middle among those in which nothing is cut
+//! off, starting at a whole number if possible. If something is cut off in every cell, it takes the middle of the
+//! sensor. All positions are multiples of the step, so that large and small shapes are touched at the same positions
+//! within a cell.
 
 use std::ops::Range;
 
@@ -214,6 +216,41 @@ pub fn default_ranges(
         }
     }
     Ok(ranges)
+}
+
+/// Returns the ranges in which a figure without a position is swept. If x0 or y0 is not given, it gets the paper's cell
+/// ([`Ranges::default`]) if the sensor cuts nothing off there; otherwise the cell of [`common_ranges`].
+///
+/// # Errors
+/// Returns an error if a given range exceeds that of its parameter, or zooms other than 1 are given.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::pose::{GivenRanges, figure_ranges};
+///
+/// let given = GivenRanges::default();
+/// let bar = Figure::rectangle(6.0, 3.0).on(&Sensor::default())?;
+/// let ranges = figure_ranges(&bar.into(), &Sensor::default(), Anchor::Corner, &given)?;
+/// assert_eq!(ranges[Axis::X0].to_string(), "5:5.99:0.01");
+///
+/// // A smaller sensor would cut it off there.
+/// let sensor = Sensor::new(10, 10)?;
+/// let bar = Figure::rectangle(6.0, 3.0).on(&sensor)?;
+/// let ranges = figure_ranges(&bar.into(), &sensor, Anchor::Corner, &given)?;
+/// assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn figure_ranges(
+    figure: &Source,
+    sensor: &Sensor,
+    anchor: Anchor,
+    given: &GivenRanges,
+) -> Result<Ranges, GridError> {
+    let ranges = filled(given);
+    match PoseGrid::new(figure.clone(), *sensor, anchor, ranges) {
+        Ok(grid) if grid.poses_beyond_sensor() == 0 => Ok(ranges),
+        _ => common_ranges([figure], sensor, anchor, given),
+    }
 }
 
 /// Returns the ranges in which several shapes are swept on the same sensor. If x0 or y0 is not given, it gets the cell

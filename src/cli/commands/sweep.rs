@@ -26,7 +26,7 @@ use crate::cli::signals::Signals;
 use crate::cli::threads;
 use crate::formats::value::{counted, grouped};
 use crate::memory::MemoryGuard;
-use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
+use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, default_ranges, figure_ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile, persist_pair};
@@ -46,8 +46,8 @@ impl Wanted {
 /// Returns the grid to sweep, and notes about the ranges of x0 and y0 that were not given: whether they span less than
 /// a cell, and how many poses are cut off nevertheless. The summary names the ranges.
 ///
-/// A figure gets the paper's cell, which starts at 5, if nothing is cut off there; a picture gets the cell that it
-/// lies in.
+/// A figure on the command line has no position, so it is swept in the [`figure_ranges`]; a picture is swept in the
+/// cell that it lies in.
 pub(crate) fn grid(
     source: Source,
     sensor: Sensor,
@@ -56,24 +56,14 @@ pub(crate) fn grid(
 ) -> Result<(PoseGrid, Vec<String>), CliError> {
     let mut missing = vec![Axis::X0, Axis::Y0];
     missing.retain(|&axis| given[axis].is_none());
-    let paper = Ranges::default();
-    let usual = Ranges::from_fn(|axis| given[axis].unwrap_or(paper[axis]));
-    let usual = PoseGrid::new(source.clone(), sensor, anchor, usual);
-    if missing.is_empty() {
-        return Ok((usual?, Vec::new()));
-    }
-    let whole = |grid: &PoseGrid| grid.poses_beyond_sensor() == 0;
-    let grid = match usual {
-        Ok(grid) if source.kind().is_some() && whole(&grid) => grid,
-        _ if source.kind().is_some() => {
-            let ranges = common_ranges([&source], &sensor, anchor, given)?;
-            PoseGrid::new(source, sensor, anchor, ranges)?
-        }
-        _ => {
-            let ranges = default_ranges(&source, &sensor, anchor, given)?;
-            PoseGrid::new(source, sensor, anchor, ranges)?
-        }
+    let ranges = match source {
+        Source::Figure(_) => figure_ranges(&source, &sensor, anchor, given)?,
+        Source::Picture(_) => default_ranges(&source, &sensor, anchor, given)?,
     };
+    let grid = PoseGrid::new(source, sensor, anchor, ranges)?;
+    if missing.is_empty() {
+        return Ok((grid, Vec::new()));
+    }
     let mut notes = Vec::new();
     let zoomed = [(Axis::X0, Axis::ZoomX), (Axis::Y0, Axis::ZoomY)];
     let mut zoomed = zoomed.iter().filter(|(axis, _)| missing.contains(axis));
