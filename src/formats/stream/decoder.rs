@@ -331,6 +331,33 @@ mod tests {
     }
 
     #[test]
+    fn a_stream_that_ends_within_a_line_says_so() {
+        let size = Some(FrameSize::of(2, 2));
+        let torn = Some("no line break after it");
+        let of_rows = "row 2 has 1 number, expected 2";
+        for (text, size, expected) in [
+            ("1,2,3,4\n5,6,7,8", size, (1, 1, None, torn)),
+            ("1 2\n3 4\n\n5 6\n7", None, (1, 1, None, torn)),
+            // The first fault of a frame counts.
+            ("1 2\n3 4\n\n5 6\n7\n8", None, (1, 1, None, Some(of_rows))),
+            // The rest of a line does not change the number of values in the lines above it.
+            ("1,2,3,4\n5,6", None, (0, 0, Some(4), None)),
+            ("1 2 3\n4 5\n", None, (0, 0, Some(0), None)),
+        ] {
+            let mut options = StreamOptions::default().from_start();
+            options.format = Some(StreamFormat::Lines);
+            options.size = size;
+            let mut decoder = StreamDecoder::new(options);
+            decoder.push(text.as_bytes(), &mut |_| ());
+            decoder.finish(&mut |_| ());
+            let counts = decoder.counts();
+            let reason = counts.reason.as_deref();
+            let found = (counts.frames, counts.dropped, counts.unshaped, reason);
+            assert_eq!(found, expected, "{text:?}");
+        }
+    }
+
+    #[test]
     fn a_json_line_that_is_dropped_has_a_reason() {
         let other = "{\"frame\":[[1,2]]}\n{\"frame\":[[1],[2]]}\n";
         let many = (0..257).map(|channel| format!("{{\"frame\":[[1]],\"channel\":{channel}}}\n"));

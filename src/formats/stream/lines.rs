@@ -304,15 +304,20 @@ impl LinesDecoder {
 
     /// Ends the input: the last frame may lack its empty line. An incomplete frame is dropped.
     pub(super) fn finish(&mut self, torn: &[u8], output: &mut StreamOutput<'_, '_>) {
-        if !torn.trim_ascii().is_empty() {
-            self.current.add_torn(torn);
-        }
+        let is_torn = !torn.trim_ascii().is_empty();
+        let has_rows = self.current.rows > 0 || is_torn;
         // Only lines and no empty one: they are frames, or the rows of a single frame.
-        if self.size.present().is_none() && !self.parted && self.current.rows > 0 {
-            output.counts.unshaped =
-                Some(self.current.values.len() as u64 / u64::from(self.current.rows));
+        if self.size.present().is_none() && !self.parted && has_rows {
+            let rows = usize::from(self.current.rows);
+            let values = self.current.values.len().checked_div(rows);
+            // Rows of different lengths do not show it.
+            let values = values.filter(|_| !self.current.broken);
+            output.counts.unshaped = Some(values.unwrap_or(0) as u64);
             self.current.clear();
             return;
+        }
+        if is_torn {
+            self.current.add_torn(torn);
         }
         self.boundary(output);
         let first = self.held.as_ref().and_then(|held| held.first());

@@ -25,6 +25,8 @@ pub(super) struct RowBlock {
     begins_alone: bool,
     /// Whether the line below a single value has several numbers.
     is_below_value: bool,
+    /// Whether the stream ended within the last row.
+    is_torn: bool,
     /// The decimal commas that its timestamps may have.
     pub(super) commas: DecimalCommas,
 }
@@ -80,10 +82,14 @@ impl RowBlock {
         self.wrong = wrong;
     }
 
-    /// Returns why the block is not a frame: a single value stands above it, or a row has another number of numbers
-    /// than the rows above it or than was given, or too many. None if something else is wrong. `named` are the given
+    /// Returns why the block is not a frame: the stream ended within a row, a single value stands above it, or a row has
+    /// another number of numbers than the rows above it or than was given, or too many. None if something else is wrong. `named` are the given
     /// rows and columns; `parted` tells whether the stream has empty lines.
     pub(super) fn reason(&self, named: Option<FrameSize>, parted: bool) -> Option<String> {
+        // Even the right number of numbers may lack the last digits.
+        if self.is_torn {
+            return Some("no line break after it".to_owned());
+        }
         if self.is_below_value {
             let end = if parted {
                 ""
@@ -121,14 +127,17 @@ impl RowBlock {
     /// Adds the beginning of a line whose end never came.
     pub(super) fn add_torn(&mut self, torn: &[u8]) {
         self.rows = self.rows.saturating_add(1);
-        self.broken = true;
-        self.note_row(torn, None);
+        if !std::mem::replace(&mut self.broken, true) {
+            self.is_torn = true;
+            self.note_row(torn, None);
+        }
     }
 
     /// Prepares for the next block, in the same memory.
     pub(super) fn clear(&mut self) {
         self.values.clear();
-        (self.rows, self.broken, self.is_below_value) = (0, false, false);
+        (self.rows, self.broken) = (0, false);
+        (self.is_below_value, self.is_torn) = (false, false);
         self.commas = DecimalCommas::default();
     }
 }
