@@ -67,12 +67,15 @@ impl StreamReader<'_, '_> {
                 }
                 Ok(ReadOutcome::End) => {
                     self.reporter.check_start()?;
-                    break;
+                    if self.reporter.finish().is_continue() {
+                        let _ = self.reporter.report_end();
+                    }
+                    return Ok(());
                 }
                 Err(error) if comes_back => error,
                 Err(error) => {
                     // What came before counts.
-                    let _ = self.reporter.finish();
+                    let _ = self.reporter.cut_off();
                     return Err(AcquireError::reading(error));
                 }
             };
@@ -85,10 +88,8 @@ impl StreamReader<'_, '_> {
             }
             self.reporter.resume();
         }
-        let _ = self.reporter.finish();
-        if !self.stop.load(Ordering::Relaxed) {
-            let _ = self.reporter.report_end();
-        }
+        // No more is wanted.
+        let _ = self.reporter.cut_off();
         Ok(())
     }
 

@@ -102,7 +102,7 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
 
     /// Reports the last frame of a file and that the file is read anew, and prepares for its first byte.
     pub(super) fn begin_anew(&mut self, how: ReadAnew) -> ControlFlow<()> {
-        self.finish()?;
+        self.cut_off()?;
         self.report(AcquireEvent::Anew(how))?;
         self.decoder.begin_anew();
         self.start = StreamStart::new(self.source, self.options, self.decoder.counts());
@@ -130,9 +130,14 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
         self.start.finish(self.decoder.counts())
     }
 
-    /// Reports what is left at the end of the bytes.
+    /// Reports what is left of a source that has ended.
     pub(super) fn finish(&mut self) -> ControlFlow<()> {
         self.step(StreamDecoder::finish)
+    }
+
+    /// Reports what is left of bytes that may end within a frame.
+    pub(super) fn cut_off(&mut self) -> ControlFlow<()> {
+        self.step(StreamDecoder::cut_off)
     }
 
     /// Reports that the source has ended.

@@ -66,6 +66,15 @@ enum State {
     Unshaped,
 }
 
+/// The end of an input.
+#[derive(Clone, Copy)]
+enum InputEnd {
+    /// The input ended by itself.
+    Whole,
+    /// It was cut off, perhaps within a line.
+    CutOff,
+}
+
 impl StreamDecoder {
     /// Prepares for a stream.
     pub fn new(options: StreamOptions) -> Self {
@@ -103,12 +112,12 @@ impl StreamDecoder {
         &self.counts
     }
 
-    /// Ends the stream so far like [`Self::finish`], and starts again in the middle of it, as after a cable was
+    /// Ends the stream so far like [`Self::cut_off`], and starts again in the middle of it, as after a cable was
     /// unplugged. Frames are counted on, and times count from the very first frame.
     pub fn restart(&mut self, sink: &mut StreamSink<'_>) {
-        // `finish` may guess the format from a few bytes, so it is not kept for the bytes to come.
+        // The end may guess the format from a few bytes, so it is not kept for the bytes to come.
         let format = self.format();
-        self.finish(sink);
+        self.cut_off(sink);
         self.reset(format, false);
     }
 
@@ -175,8 +184,19 @@ impl StreamDecoder {
         }
     }
 
-    /// Ends the input: reports the frames that are whole, and counts those that are not.
+    /// Ends an input that has ended by itself, like a file: reports the frames that are whole, and counts those that
+    /// are not. The last line may lack its line break.
     pub fn finish(&mut self, sink: &mut StreamSink<'_>) {
+        self.end(InputEnd::Whole, sink);
+    }
+
+    /// Ends an input that was cut off, perhaps within a frame, like a lost connection: as [`Self::finish`], but a line
+    /// of numbers without a line break may lack digits, so its frame is dropped.
+    pub fn cut_off(&mut self, sink: &mut StreamSink<'_>) {
+        self.end(InputEnd::CutOff, sink);
+    }
+
+    fn end(&mut self, how: InputEnd, sink: &mut StreamSink<'_>) {
         self.look(true, sink);
         let torn = take(&mut self.bytes);
         if self.first && is_parted_by_cr(&torn) {
@@ -188,7 +208,15 @@ impl StreamDecoder {
         let torn = self.without_mark(&torn);
         let output = &mut StreamOutput::new(&mut self.counts, sink);
         match &mut self.state {
-            State::Lines(decoder) => decoder.finish(torn, output),
+            State::Lines(decoder) => match how {
+                InputEnd::Whole => {
+                    if !torn.is_empty() {
+                        decoder.line(torn, output);
+                    }
+                    decoder.finish(b"", output);
+                }
+                InputEnd::CutOff => decoder.finish(torn, output),
+            },
             State::Json => self.json.line(torn, output),
             State::Ros(decoder) => {
                 decoder.line(torn, output);
@@ -331,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_that_ends_within_a_line_says_so() {
+    fn a_stream_that_is_cut_off_within_a_line_says_so() {
         let size = Some(FrameSize::of(2, 2));
         let torn = Some("no line break after it");
         let of_rows = "row 2 has 1 number, expected 2";
@@ -349,10 +377,32 @@ mod tests {
             options.size = size;
             let mut decoder = StreamDecoder::new(options);
             decoder.push(text.as_bytes(), &mut |_| ());
-            decoder.finish(&mut |_| ());
+            decoder.cut_off(&mut |_| ());
             let counts = decoder.counts();
             let reason = counts.reason.as_deref();
             let found = (counts.frames, counts.dropped, counts.unshaped, reason);
+            assert_eq!(found, expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn the_last_line_of_a_stream_that_has_ended_may_lack_its_line_break() {
+        let size = Some(FrameSize::of(2, 2));
+        let few = Some("3 numbers, expected 4 for a frame of 2 rows of 2, or 2 for a row");
+        for (text, size, expected) in [
+            ("1,2,3,4\n5,6,7,8", size, (2, 0, None)),
+            ("1 2\n3 4\n\n5 6\n7 8", None, (2, 0, None)),
+            ("1,2,3,4\n5,6,7,8\n", size, (2, 0, None)),
+            ("1,2,3,4\n5,6,7", size, (1, 1, few)),
+        ] {
+            let mut options = StreamOptions::default().from_start();
+            options.format = Some(StreamFormat::Lines);
+            options.size = size;
+            let mut decoder = StreamDecoder::new(options);
+            decoder.push(text.as_bytes(), &mut |_| ());
+            decoder.finish(&mut |_| ());
+            let counts = decoder.counts();
+            let found = (counts.frames, counts.dropped, counts.reason.as_deref());
             assert_eq!(found, expected, "{text:?}");
         }
     }

@@ -21,14 +21,24 @@ pub(super) struct RowBlock {
     pub(super) sample: Vec<u8>,
     /// The length of that row and the expected one, if it has only numbers; None otherwise.
     pub(super) wrong: Option<WrongRow>,
-    /// Whether the first line is a single value, which may be the time of the frame.
-    begins_alone: bool,
-    /// Whether the line below a single value has several numbers.
-    is_below_value: bool,
+    /// The form of the first line.
+    first: FirstLine,
     /// Whether the stream ended within the last row.
     is_torn: bool,
     /// The decimal commas that its timestamps may have.
     pub(super) commas: DecimalCommas,
+}
+
+/// The form of the first line of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum FirstLine {
+    /// A row.
+    #[default]
+    Row,
+    /// A single value, which may be the time of the frame, or a row of one column.
+    SingleValue,
+    /// A single value above a line with several numbers.
+    ValueAboveRow,
 }
 
 /// A row with the wrong number of numbers.
@@ -66,10 +76,15 @@ impl RowBlock {
         match self.rows {
             0 => {
                 let is_one = found.map_or_else(|| moment::is_alone(line), |count| count == 1);
-                self.begins_alone = time.is_none() && is_one;
+                self.first = match time {
+                    None if is_one => FirstLine::SingleValue,
+                    _ => FirstLine::Row,
+                };
                 self.time = time;
             }
-            1 => self.is_below_value = self.begins_alone && found.is_some_and(|count| count > 1),
+            1 if self.first == FirstLine::SingleValue && found.is_some_and(|count| count > 1) => {
+                self.first = FirstLine::ValueAboveRow;
+            }
             _ => {}
         }
         self.rows = self.rows.saturating_add(1);
@@ -90,7 +105,7 @@ impl RowBlock {
         if self.is_torn {
             return Some("no line break after it".to_owned());
         }
-        if self.is_below_value {
+        if self.first == FirstLine::ValueAboveRow {
             let end = if parted {
                 ""
             } else {
@@ -136,8 +151,8 @@ impl RowBlock {
     /// Prepares for the next block, in the same memory.
     pub(super) fn clear(&mut self) {
         self.values.clear();
-        (self.rows, self.broken) = (0, false);
-        (self.is_below_value, self.is_torn) = (false, false);
+        (self.rows, self.broken, self.is_torn) = (0, false, false);
+        self.first = FirstLine::Row;
         self.commas = DecimalCommas::default();
     }
 }
