@@ -3,9 +3,10 @@
 use crate::imprint::Imprint;
 use crate::parameter::named;
 use crate::recognition::likelihood::SearchMethod;
-use crate::recognition::model::{Model, add_log_counts};
+use crate::recognition::model::Model;
 use crate::recognition::nearest::Nearest;
 use crate::recognition::noise::{NEGLIGIBLE, Noise};
+use crate::recognition::posterior::{Odds, Posterior};
 
 /// The state of an answer: how far it can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -107,10 +108,6 @@ pub struct Answer {
     pub method: SearchMethod,
 }
 
-/// Two probabilities that differ by at most this share of the larger one are equal: multiplying the same whole numbers
-/// in another order changes the last digits.
-const SAME: f64 = 1e-12;
-
 impl Model {
     /// Names the shape that was touched. Without any touch, the answer is the prior. If taxels may flip, no answer is
     /// certain, since any shape may leave any imprint.
@@ -171,7 +168,7 @@ impl Model {
             // The sums are equal if nothing lies further away; `most` is not finite if no shape is possible.
             if all - least <= NEGLIGIBLE * least || !most.is_finite() {
                 let odds: Vec<f64> = odds.into_iter().map(|[odds, _]| odds).collect();
-                return (Posterior::of_logarithms(&odds), method);
+                return (Posterior::of_logarithms(&odds, touches.len()), method);
             }
             further = 2 * further + 4;
         }
@@ -185,36 +182,55 @@ impl Model {
         touches: &[Imprint],
         further: u32,
     ) -> (Vec<[f64; 2]>, SearchMethod) {
+        // The logarithms to add up for each shape: of its weight, and both bounds of each touch.
         let weights = self.log_weights().into_iter();
-        let mut odds: Vec<[f64; 2]> = weights.map(|weight| [weight; 2]).collect();
+        let mut parts: Vec<[Vec<f64>; 2]> =
+            weights.map(|weight| [vec![weight], vec![weight]]).collect();
         let mut method = SearchMethod::Exact;
         for touch in touches {
             let Some(distances) = self.distances_further(touch, noise, further) else {
-                odds.fill([f64::NEG_INFINITY; 2]);
+                let bounds = parts.iter_mut().flatten();
+                bounds.for_each(|own| own.push(f64::NEG_INFINITY));
                 continue;
             };
             method = method.max(distances.method);
             let likelihoods = self.log_likelihoods(touch, &distances, noise);
-            for (odds, likelihood) in odds.iter_mut().zip(likelihoods) {
-                odds[0] += likelihood[0];
-                odds[1] += likelihood[1];
+            for ([lower, upper], likelihood) in parts.iter_mut().zip(likelihoods) {
+                lower.push(likelihood[0]);
+                upper.push(likelihood[1]);
             }
         }
-        (odds, method)
+        // Sorted, so that their sum does not depend on the order of the touches.
+        let sum = |mut parts: Vec<f64>| -> f64 {
+            parts.sort_by(f64::total_cmp);
+            parts.into_iter().sum()
+        };
+        (
+            parts.into_iter().map(|bounds| bounds.map(sum)).collect(),
+            method,
+        )
     }
 
     /// Returns the probabilities of the shapes that leave all of the touches.
     fn possible(&self, touches: &[Imprint]) -> Posterior {
-        if let [touch] = touches {
-            let shares = self.posterior(touch).unwrap_or_default();
-            return Posterior::of_shares(shares.into_iter());
-        }
-        // ln(w Π n) for the shapes that leave all of the keys, −∞ for the others.
-        let mut logarithms = self.log_weights();
+        let weights = self
+            .head()
+            .shapes
+            .iter()
+            .map(|shape| vec![shape.weight.into()]);
+        let mut factors: Vec<Vec<u64>> = weights.collect();
         for touch in touches {
-            add_log_counts(&mut logarithms, self.counts_of(touch));
+            let mut counts = self.counts_of(touch).iter().peekable();
+            for (shape, factors) in factors.iter_mut().enumerate() {
+                let own = counts.next_if(|count| usize::from(count.shape) == shape);
+                factors.push(own.map_or(0, |own| own.poses));
+            }
         }
-        Posterior::of_logarithms(&logarithms)
+        let odds = factors.into_iter().map(Odds::of).enumerate();
+        Posterior::of_odds(
+            odds.filter_map(|(shape, odds)| Some((shape, odds?)))
+                .collect(),
+        )
     }
 
     /// Returns the imprint of the model that is nearest to the first touch that no shape leaves, or to the last touch
@@ -230,53 +246,6 @@ impl Model {
             }
         }
         last
-    }
-}
-
-/// The probabilities of the shapes.
-struct Posterior {
-    /// The shapes of positive probability, the likeliest first; equally likely ones in the order of the set.
-    ranking: Vec<(usize, f64)>,
-    /// The number of possible shapes. The ranking may have fewer: some probabilities may be too small for an `f64`.
-    possible: usize,
-}
-
-impl Posterior {
-    /// Creates a posterior from shares; 0 for shapes that are impossible.
-    fn of_shares(shares: impl Iterator<Item = f64>) -> Self {
-        let positive = shares.enumerate().filter(|&(_, share)| share > 0.0);
-        let mut ranking: Vec<(usize, f64)> = positive.collect();
-        ranking.sort_by(|(_, one), (_, other)| other.total_cmp(one));
-        let equal = |(_, one): &(usize, f64), (_, other): &(usize, f64)| one - other <= SAME * one;
-        for tied in ranking.chunk_by_mut(equal) {
-            let greatest = tied[0].1;
-            for (_, share) in tied.iter_mut() {
-                *share = greatest;
-            }
-            tied.sort_by_key(|&(shape, _)| shape);
-        }
-        Self {
-            possible: ranking.len(),
-            ranking,
-        }
-    }
-
-    /// Creates a posterior from the logarithms of odds; −∞ for odds of 0.
-    fn of_logarithms(logarithms: &[f64]) -> Self {
-        let possible = logarithms.iter().filter(|own| own.is_finite()).count();
-        if possible == 0 {
-            return Self {
-                ranking: Vec::new(),
-                possible,
-            };
-        }
-        let most = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let odds = logarithms.iter().map(|own| libm::exp(own - most));
-        let sum: f64 = odds.clone().sum();
-        Self {
-            possible,
-            ..Self::of_shares(odds.map(|odds| odds / sum))
-        }
     }
 }
 
@@ -310,36 +279,4 @@ fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answ
         AnswerState::Likely
     };
     answer
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shapes_whose_odds_differ_by_a_rounding_error_are_tied_in_the_order_of_the_set() {
-        let answer = |other: f64| {
-            let odds = [0.0, f64::NEG_INFINITY, other];
-            decide(Posterior::of_logarithms(&odds), false, None)
-        };
-        for rounding in [-1e-14, 0.0, 1e-14] {
-            let answer = answer(rounding);
-            assert_eq!(answer.state, AnswerState::Tied, "{rounding}");
-            assert_eq!(
-                (answer.shape, answer.tied),
-                (Some(0), vec![0, 2]),
-                "{rounding}"
-            );
-            let [(0, one), (2, other)] = answer.ranking[..] else {
-                panic!("{rounding}: {:?}", answer.ranking);
-            };
-            assert!(
-                one == other && (one - 0.5).abs() < 1e-12,
-                "{rounding}: {one}, {other}"
-            );
-        }
-        let answer = answer(1e-9);
-        assert_eq!((answer.state, answer.shape), (AnswerState::Likely, Some(2)));
-        assert!(answer.tied.is_empty());
-    }
 }

@@ -43,6 +43,8 @@ mod given;
 
 mod nearest;
 
+mod posterior;
+
 mod answer;
 
 mod noise;

@@ -1,5 +1,7 @@
 //! Tests of `taxel recognise`: answers for people and for programs, single and in bulk, and exit statuses.
 
+use std::fs;
+
 use serde_json::Value;
 
 use super::model::{COARSE, Place, keys};
@@ -230,6 +232,39 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
         1,
         "no stored shape or file named \"nothing.txt\"; to list all shapes: taxel library list",
     );
+}
+
+#[test]
+fn the_order_of_touches_does_not_matter() {
+    let place = Place::new();
+    let left = r####"["#..","#..","###","##."]"####;
+    let right = r####"["..#","..#","###",".##"]"####;
+    let set =
+        format!("{{\"name\":\"L\",\"picture\":{left}}}\n{{\"name\":\"R\",\"picture\":{right}}}\n");
+    fs::write(place.path("lr.jsonl"), set).expect("written");
+    place.done("model train lr.jsonl --positions 10 --angle 0:350:10 --out lr.npz --quiet");
+    // R leaves the mirror image of each imprint of L just as often.
+    let one = r#"[".....",".###.",".##..","....."]"#;
+    let mirrored = r#"[".....",".###.","..##.","....."]"#;
+    let touches = |order: [&str; 4]| {
+        format!(
+            "{{\"touches\":[{}]}}\n",
+            order.map(|own| [own; 50].join(",")).join(",")
+        )
+    };
+    let input = touches([one, mirrored, one, mirrored]) + &touches([mirrored, mirrored, one, one]);
+    for noise in ["", "--noise 0.01"] {
+        let run = place.run(&format!("recognise - --model lr.npz {noise}"), &input);
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        for line in run.stdout.lines() {
+            let answer: Value = serde_json::from_str(line).expect("JSON");
+            assert_eq!(answer["state"], "tied", "{line}");
+            for of_shape in answer["ranking"].as_array().expect("an array") {
+                assert_eq!(of_shape["probability"], 0.5, "{line}");
+            }
+        }
+        assert_eq!(run.stdout.lines().count(), 2);
+    }
 }
 
 #[test]
@@ -487,7 +522,7 @@ fn mistyped_names_are_refused_before_training() {
         let said = |name: &str| run.stderr.contains(name);
         let wrong = ["nowhere", "there.svg", "--dead 4000 is above 256"];
         assert!(wrong.into_iter().any(said), "{}", run.stderr);
-        let is_trained = std::fs::exists(place.path("cache")).expect("it can be looked at");
+        let is_trained = fs::exists(place.path("cache")).expect("it can be looked at");
         assert!(!is_trained, "{line}");
     }
     let run = place.run("recognise square.txt --noise 0.01 --mask there.svg", "");
