@@ -9,6 +9,7 @@ use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::parameter::number::to_decimals;
+use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::Existing;
 use crate::tui::app::dialog::Dialog;
@@ -48,6 +49,19 @@ pub(in crate::tui) fn change(app: &mut App, document: Document) {
 pub(in crate::tui) fn begin(app: &mut App, origin: DocumentOrigin, document: Document) {
     app.history.begin(document, origin);
     settle_elsewhere(app);
+}
+
+/// Puts an imprint onto the matrix as if it were drawn, without any trace of what made it. `brought_by` is the name of
+/// the step in the history.
+pub(in crate::tui) fn begin_drawn(
+    app: &mut App,
+    sensor: Sensor,
+    imprint: &Imprint,
+    brought_by: &str,
+) {
+    let document = Document::drawn(sensor, *imprint);
+    let origin = DocumentOrigin::of(&document).called(brought_by);
+    begin(app, origin, document);
 }
 
 /// Puts a document from an earlier run onto the matrix.

@@ -64,8 +64,8 @@ pub enum Dialog {
     Filter(FilterDialog),
     /// The prompt for the letter of a mark.
     Mark(MarkDialog),
-    /// Recognition of the shape on the matrix.
-    Recognition(Box<Recognition>),
+    /// Recognition of the shape on the matrix. Its state outlasts the page, so the program keeps it.
+    Recognition,
     /// The quiz: a random touch that the user names.
     Quiz(Box<Quiz>),
     /// The confusion matrix of a model.
@@ -77,8 +77,8 @@ pub enum Dialog {
 }
 
 impl Dialog {
-    /// Returns what the screen knows of the page.
-    pub fn page(&self) -> &dyn Page {
+    /// Returns what the screen knows of the page, given the state of recognition.
+    pub fn page<'a>(&'a self, recognition: &'a Recognition) -> &'a dyn Page {
         match self {
             Self::Form(page) => &**page,
             Self::List(page) => page,
@@ -95,18 +95,12 @@ impl Dialog {
             Self::Export(page) => page,
             Self::Filter(page) => page,
             Self::Mark(page) => page,
-            Self::Recognition(page) => &**page,
+            Self::Recognition => recognition,
             Self::Quiz(page) => &**page,
             Self::Confusion(page) => &**page,
             Self::Separate(page) => &**page,
             Self::Live(page) => &**page,
         }
-    }
-
-    /// Returns true if the page has a pane of its own. Prompts and questions stand in the line of notices, over the
-    /// page below.
-    pub fn has_pane(&self) -> bool {
-        !matches!(self.page().slot(), Slot::Prompt | Slot::Question)
     }
 }
 

@@ -14,7 +14,6 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::app::notice;
@@ -184,7 +183,7 @@ fn useful(app: &App, row: &Binding) -> bool {
     if matches!(row.context, Context::Matrix | Context::Hold) {
         return messages.any(|message| is_usable(app, message));
     }
-    let page = app.dialogs.last().map(Dialog::page);
+    let page = app.top_page();
     let Some((page, panes)) = page.zip(app.panes()) else {
         return true;
     };

@@ -7,7 +7,6 @@
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::{change, settle};
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::app::state::{App, NarrowPane};
@@ -92,7 +91,7 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
 
 /// Returns the message of a notch of the wheel, up if negative; None if there is nothing to scroll.
 fn scroll(app: &App, notch: i16) -> Option<Message> {
-    let top = app.dialogs.last().map(Dialog::page);
+    let top = app.top_page();
     let lines = top.map_or(Wheel::Idle, Page::wheel).lines()?;
     Some(Message::Scroll(notch * lines))
 }
@@ -111,8 +110,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         let mut meanings = items.iter().map(|item| item.click(place));
         return meanings.find_map(|meaning| meaning).map(Target::Key);
     }
-    if let Some(dialog) = app.dialogs.last() {
-        let page = dialog.page();
+    if let Some(page) = app.top_page() {
         // A narrow screen shows the matrix or the panel.
         let hidden = page.slot() == Slot::Panel
             && panes.panel.is_none()

@@ -64,7 +64,7 @@ fn lines(app: &App, panes: &Panes, text: &str) -> usize {
 /// Returns the lines that a notice takes. A prompt keeps its line, and the notice stands above it.
 pub fn block(app: &App, panes: &Panes, text: &str) -> Rect {
     let is_typed = |page: &dyn Page| page.slot() == Slot::Prompt;
-    let is_typed = app.dialogs.last().map(Dialog::page).is_some_and(is_typed);
+    let is_typed = app.top_page().is_some_and(is_typed);
     let last = Rect {
         y: panes.notice.y - u16::from(is_typed),
         ..panes.notice
@@ -85,7 +85,7 @@ pub fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
     if !page.makes_room() {
         return area;
     }
-    let top = app.dialogs.last().map(Dialog::page);
+    let top = app.top_page();
     let over = top.filter(|top| matches!(top.slot(), Slot::Prompt | Slot::Question));
     let text = notice(app, panes, over.or(Some(page))).map(|(text, _)| text);
     let end = text.map_or(area.bottom(), |text| block(app, panes, &text).y);

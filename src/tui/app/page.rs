@@ -69,6 +69,12 @@ pub trait Page {
     /// Returns its place on the screen.
     fn slot(&self) -> Slot;
 
+    /// Returns true if the page has a pane of its own. Prompts and questions stand in the line of notices, over the
+    /// page below.
+    fn has_pane(&self) -> bool {
+        !matches!(self.slot(), Slot::Prompt | Slot::Question)
+    }
+
     /// Draws the page into the area of its slot, which is empty. Returns the position of the text cursor, None if the
     /// page has none.
     fn draw(

@@ -222,8 +222,8 @@ pub struct App {
     pub(in crate::tui) removed: Vec<String>,
     /// The results of the last sweep, while their page is closed.
     pub(in crate::tui) results: Option<Box<Results>>,
-    /// The page of recognition, while it is closed.
-    pub(in crate::tui) recognition: Option<Box<Recognition>>,
+    /// The state of recognition, whether its page is open or closed.
+    pub(in crate::tui) recognition: Recognition,
     /// The settings for a source that is named at the prompt.
     pub(in crate::tui) watch_settings: WatchRequest,
     /// The page of a source of frames, while it is closed.
@@ -281,7 +281,7 @@ impl App {
             refused_at_end: Vec::new(),
             removed: Vec::new(),
             results: None,
-            recognition: Some(Box::new(Recognition::new(options.seed))),
+            recognition: Recognition::new(options.seed),
             watch_settings: WatchRequest::new(""),
             live: None,
             works: 0,
@@ -338,7 +338,7 @@ impl App {
 
     /// Returns the context in which keys are looked up.
     pub fn context(&self) -> Context {
-        self.context_on(self.dialogs.last().map(Dialog::page))
+        self.context_on(self.top_page())
     }
 
     /// Returns the context with this page on top; None for the matrix without pages.
@@ -357,10 +357,20 @@ impl App {
         message.unwrap_or(Message::Unknown(key))
     }
 
+    /// Returns the pages over the matrix; the last one is on top.
+    pub(in crate::tui) fn pages(&self) -> impl DoubleEndedIterator<Item = &dyn Page> {
+        let page = |dialog| Dialog::page(dialog, &self.recognition);
+        self.dialogs.iter().map(page)
+    }
+
+    /// Returns the page that receives the keys; None if the matrix does.
+    pub(in crate::tui) fn top_page(&self) -> Option<&dyn Page> {
+        self.pages().next_back()
+    }
+
     /// Returns the top page that has a pane of its own; None if no page has one.
     pub fn pane(&self) -> Option<&dyn Page> {
-        let dialog = self.dialogs.iter().rev().find(|dialog| dialog.has_pane());
-        dialog.map(Dialog::page)
+        self.pages().rev().find(|page| page.has_pane())
     }
 
     /// Returns the panes of the screen; None if it is too small.

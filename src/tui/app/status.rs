@@ -14,7 +14,6 @@ use ratatui::layout::Position;
 
 use crate::description::Descriptor;
 use crate::formats::value;
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::menu;
@@ -50,13 +49,13 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
         write::text(buffer, panes.taxel, theme, &line, Role::Text);
     }
     menu::draw(theme, buffer, &menu::hints(app, panes));
-    let prompt = app.dialogs.last().map(Dialog::page);
+    let prompt = app.top_page();
     let prompt = prompt.filter(|page| page.slot() == Slot::Prompt);
     if let Some(page) = prompt {
         page.draw_over(theme, buffer, panes.body);
     }
     let cursor = prompt.and_then(|page| page.draw(theme, app.keymap(), buffer, panes.notice));
-    let top = app.dialogs.last().map(Dialog::page);
+    let top = app.top_page();
     if let Some((text, role)) = notice::notice(app, panes, top) {
         let block = notice::block(app, panes, &text);
         write::clear(buffer, block);

@@ -236,7 +236,7 @@ fn unknown(app: &mut App, key: Key) {
 /// Handles a message on a page, which was taken off the stack and is put back unless it closes. Help opens over any
 /// page, with the keys of that page.
 fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
-    let page = dialog.page();
+    let page = dialog.page(&app.recognition);
     match message {
         Message::Cancel | Message::Quit if !page.cancels_itself() => {
             if let Dialog::Question(question) = dialog {
@@ -267,7 +267,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Export(dialog) => explore::update::in_export(app, dialog, &message),
         Dialog::Filter(dialog) => explore::prompts::in_filter(app, dialog, &message),
         Dialog::Mark(dialog) => explore::prompts::in_mark(app, dialog, &message),
-        Dialog::Recognition(page) => recognise::update::in_recognition(app, page, message),
+        Dialog::Recognition => recognise::update::in_recognition(app, message),
         Dialog::Quiz(page) => recognise::update::in_quiz(app, page, message),
         Dialog::Confusion(page) => recognise::update::in_confusion(app, page, &message),
         Dialog::Separate(page) => recognise::separate::update::in_separate(app, page, &message),

@@ -11,7 +11,6 @@
 //! quiz           a random touch to name, and the score
 //! confusion      which shapes are taken for which, with an imprint that two share
 //! separate       the limit of the set against the size of its shapes
-//! reach          the state wherever it is; imprints onto the matrix
 //! ```
 
 pub mod trained;
@@ -31,7 +30,5 @@ pub mod quiz;
 pub mod confusion;
 
 pub mod separate;
-
-pub(in crate::tui) mod reach;
 
 pub mod update;

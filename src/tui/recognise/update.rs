@@ -7,8 +7,8 @@ use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 
 use crate::storage::ModelChoice;
-use crate::tui::app::change::{inform, let_go, refuse};
-use crate::tui::app::dialog::{Dialog, topmost};
+use crate::tui::app::change::{begin_drawn, inform, let_go, refuse};
+use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::explore::message::SweepProgress;
@@ -20,18 +20,26 @@ use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::message::{RecogniseMessage, RecognitionEvent};
 use crate::tui::recognise::pose_searches::SearchStep;
 use crate::tui::recognise::quiz::Quiz;
-use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
-use crate::tui::recognise::separate::request::SeparationFlags;
-use crate::tui::recognise::state::{ModelState, NoModel, Recognition};
+use crate::tui::recognise::state::{ModelState, NoModel};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::effect::{Effect, Work};
+
+/// Returns true for the page of recognition.
+fn is_page(dialog: &Dialog) -> bool {
+    matches!(dialog, Dialog::Recognition)
+}
+
+/// Returns true if the page is open, perhaps under other pages.
+fn is_open(app: &App) -> bool {
+    app.dialogs.iter().any(is_page)
+}
 
 /// Opens the page for a request. What needs a model waits for it.
 fn open_for(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
     let choice = match &asked {
         RecogniseMessage::Choose(choice) => Some(choice.clone()),
-        RecogniseMessage::NextModel(by) => app.recognition.as_ref().map(|page| page.other(*by)),
+        RecogniseMessage::NextModel(by) => Some(app.recognition.other(*by)),
         _ => None,
     };
     let effect = open(app, choice);
@@ -51,26 +59,15 @@ fn open_for(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
 /// Handles a request over the matrix, whether the page is open or not.
 pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
     // A command may come while the page is closed; its result must be visible.
-    if app.recognition.is_some() && !matches!(asked, RecogniseMessage::Seed(_)) {
+    if !is_open(app) && !matches!(asked, RecogniseMessage::Seed(_)) {
         return open_for(app, asked);
-    }
-    let needs_model = matches!(
-        asked,
-        RecogniseMessage::Touch
-            | RecogniseMessage::Confusion
-            | RecogniseMessage::Separate(_)
-            | RecogniseMessage::Poses
-    );
-    if needs_model && state(app)?.trained().is_none() {
-        wait_for_model(app, asked);
-        return None;
     }
     match asked {
         RecogniseMessage::Open => open(app, None),
         RecogniseMessage::Choose(choice) => open(app, Some(choice)),
         RecogniseMessage::NextModel(by) => next_model(app, by),
         RecogniseMessage::Touch => {
-            touch(app);
+            with_model(app, asked, touch);
             None
         }
         RecogniseMessage::Keep => {
@@ -82,20 +79,26 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             None
         }
         RecogniseMessage::Confusion => {
-            open_confusion(app);
+            with_model(app, asked, |app, trained| {
+                let page = Box::new(Confusion::new(trained));
+                app.dialogs.push(Dialog::Confusion(page));
+            });
             None
         }
-        RecogniseMessage::Separate(flags) => {
-            separate(app, &flags);
+        RecogniseMessage::Separate(ref flags) => {
+            let flags = flags.clone();
+            with_model(app, asked, |app, trained| {
+                separate::update::open(app, flags.request(trained));
+            });
             None
         }
         RecogniseMessage::Poses => {
-            show_poses(app);
+            with_model(app, asked, |app, _| show_poses(app));
             None
         }
         RecogniseMessage::WriteSizes(name) => separate::update::write(app, name),
         RecogniseMessage::Seed(seed) => {
-            state(app)?.random = Pcg64::seed_from_u64(seed);
+            app.recognition.random = Pcg64::seed_from_u64(seed);
             inform(app, format!("random touches begin with the seed {seed}"));
             None
         }
@@ -105,7 +108,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
 
 /// Opens the model that comes `by` further on. Says how models of the user's own come about, as long as there are none.
 fn next_model(app: &mut App, by: i8) -> Option<Effect> {
-    let page = state(app)?;
+    let page = &app.recognition;
     let (choice, has_own) = (page.other(by), page.has_own_models());
     let effect = open(app, Some(choice));
     if !has_own {
@@ -120,14 +123,13 @@ fn next_model(app: &mut App, by: i8) -> Option<Effect> {
 /// since, when the page is opened or its set is asked for. The model arrives as an event with the number given here;
 /// an event with another number is out of date.
 fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
-    let closed = app.recognition.take();
-    let opened = closed.is_some();
+    let opened = !is_open(app);
     let looks_again = opened || choice.is_some();
-    if let Some(page) = closed {
-        app.dialogs.push(Dialog::Recognition(page));
+    if opened {
+        app.dialogs.push(Dialog::Recognition);
         app.narrow_pane = NarrowPane::Panel;
     }
-    let page = state(app)?;
+    let page = &mut app.recognition;
     let choice = choice.unwrap_or_else(|| page.choice().clone());
     let is_present = choice == *page.choice();
     let is_prepared = match page.state() {
@@ -141,29 +143,29 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     let known = page.trained().filter(|_| is_present).cloned();
     app.works += 1;
     let number = app.works;
-    state(app)?.prepare(choice.clone(), number, opened);
+    page.prepare(choice.clone(), number, opened);
     Some(Effect::Work(Work::Prepare(number, choice, known)))
 }
 
 /// Carries out a request once the model that is being prepared is ready; refuses it if none is.
 fn wait_for_model(app: &mut App, asked: RecogniseMessage) {
-    if state(app).is_some_and(|page| page.request_later(asked)) {
+    if app.recognition.request_later(asked) {
         inform(app, "a model is prepared first");
     } else {
         refuse(app, "the model is not prepared yet");
     }
 }
 
-/// Returns the model, once it is ready.
-fn trained(app: &mut App) -> Option<Arc<TrainedModel>> {
-    state(app)?.trained().cloned()
-}
-
-/// Opens the confusion matrix of the model.
-fn open_confusion(app: &mut App) {
-    let Some(trained) = trained(app) else { return };
-    let page = Box::new(Confusion::new(trained));
-    app.dialogs.push(Dialog::Confusion(page));
+/// Carries out a request that needs the model, now or once it is ready.
+fn with_model(
+    app: &mut App,
+    asked: RecogniseMessage,
+    carry_out: impl FnOnce(&mut App, Arc<TrainedModel>),
+) {
+    match app.recognition.trained().cloned() {
+        Some(trained) => carry_out(app, trained),
+        None => wait_for_model(app, asked),
+    }
 }
 
 /// Hides the outlines of poses if they are visible, otherwise shows them. At first the size of the taxels decides, so
@@ -172,7 +174,7 @@ fn show_poses(app: &mut App) {
     let Some(grid) = app.grid() else { return };
     // A page that was closed has not followed the matrix.
     let (imprint, source) = (app.reading().imprint, app.shown().source.clone());
-    let Some(page) = state(app) else { return };
+    let page = &mut app.recognition;
     page.show(imprint, source.as_ref());
     let seen = Layers::shown(page.outlines(), &grid);
     page.show_outlines(!seen);
@@ -196,9 +198,8 @@ fn show_poses(app: &mut App) {
 }
 
 /// Begins a quiz. Kept touches are forgotten: they were of another shape, and the answer is about one shape only.
-fn touch(app: &mut App) {
-    let Some(trained) = trained(app) else { return };
-    let Some(page) = state(app) else { return };
+fn touch(app: &mut App, trained: Arc<TrainedModel>) {
+    let page = &mut app.recognition;
     page.forget();
     let quiz = Quiz::new(trained, &mut page.random);
     touch_again(app, quiz);
@@ -208,24 +209,16 @@ fn touch(app: &mut App) {
 /// another pose, so that further touches narrow down what it may be.
 fn touch_again(app: &mut App, mut quiz: Quiz) {
     let sensor = app.history.present().sensor;
-    let Some(page) = state(app) else { return };
-    if let Some((sensor, imprint)) = quiz.touch(sensor, &mut page.random) {
-        put(app, sensor, &imprint, "random touch");
+    if let Some((sensor, imprint)) = quiz.touch(sensor, &mut app.recognition.random) {
+        begin_drawn(app, sensor, &imprint, "random touch");
     }
     let_go(app);
     app.dialogs.push(Dialog::Quiz(Box::new(quiz)));
 }
 
-/// Opens the page of sizes.
-fn separate(app: &mut App, flags: &SeparationFlags) {
-    if let Some(trained) = trained(app) {
-        separate::update::open(app, flags.request(trained));
-    }
-}
-
 /// Forgets the kept touches.
 fn forget(app: &mut App) {
-    if state(app).is_some_and(Recognition::forget) {
+    if app.recognition.forget() {
         inform(app, "the kept touches are forgotten");
     } else {
         refuse(app, "no touches are kept");
@@ -237,7 +230,7 @@ fn forget(app: &mut App) {
 fn add_touch(app: &mut App) {
     // A page that was closed has not followed the matrix.
     let (imprint, source) = (app.reading().imprint, app.shown().source.clone());
-    let Some(page) = state(app) else { return };
+    let page = &mut app.recognition;
     page.show(imprint, source.as_ref());
     let is_empty = page.present().is_empty();
     match (page.add_touch(), page.kept()) {
@@ -251,23 +244,19 @@ fn add_touch(app: &mut App) {
 /// Handles a message over the page; unknown messages go to the matrix. During a training, Cancel and Quit first stop
 /// the training and leave the page open; a second time they close it. A closed page is kept with its model and its
 /// touches.
-pub(in crate::tui) fn in_recognition(
-    app: &mut App,
-    mut page: Box<Recognition>,
-    message: Message,
-) -> Option<Effect> {
+pub(in crate::tui) fn in_recognition(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::Cancel | Message::Quit => {
-            if page.stop() {
-                app.dialogs.push(Dialog::Recognition(page));
+            if app.recognition.stop() {
+                app.dialogs.push(Dialog::Recognition);
                 inform(app, "stopping");
                 return Some(Effect::Work(Work::StopPreparing));
             }
-            close(app, page)
+            close(app)
         }
         message => {
-            page.withdraw();
-            app.dialogs.push(Dialog::Recognition(page));
+            app.recognition.withdraw();
+            app.dialogs.push(Dialog::Recognition);
             match message {
                 Message::Accept => prepare_again(app),
                 message => matrix::update::act(app, message),
@@ -278,7 +267,7 @@ pub(in crate::tui) fn in_recognition(
 
 /// Prepares the set again after a stop, unless its model is ready or on its way.
 fn prepare_again(app: &mut App) -> Option<Effect> {
-    let page = state(app)?;
+    let page = &mut app.recognition;
     let text = match page.state() {
         ModelState::Missing => return open(app, None),
         ModelState::Preparing(_) => {
@@ -291,10 +280,9 @@ fn prepare_again(app: &mut App) -> Option<Effect> {
     None
 }
 
-/// Keeps the page, which is no longer on the stack, until it is opened again. A search in progress is stopped.
-fn close(app: &mut App, mut page: Box<Recognition>) -> Option<Effect> {
-    let stops = page.stop_search();
-    app.recognition = Some(page);
+/// Cleans up after the page, which is no longer on the stack. A search in progress is stopped.
+fn close(app: &mut App) -> Option<Effect> {
+    let stops = app.recognition.stop_search();
     app.narrow_pane = NarrowPane::Matrix;
     let_go(app);
     stops.then_some(Effect::Work(Work::StopFindingPoses))
@@ -351,13 +339,12 @@ fn end_quiz(app: &mut App, quiz: Quiz, named: Option<usize>) {
         ),
         None => format!("it was the {name}; {undo} brings back what was there before"),
     };
-    if let Some(page) = state(app) {
-        page.set_touches(quiz.into_touches());
-        let best = page.answer().and_then(|answer| answer.shape);
-        page.score.asked += 1;
-        page.score.right += u32::from(right);
-        page.score.best += u32::from(best == Some(shape));
-    }
+    let page = &mut app.recognition;
+    page.set_touches(quiz.into_touches());
+    let best = page.answer().and_then(|answer| answer.shape);
+    page.score.asked += 1;
+    page.score.right += u32::from(right);
+    page.score.best += u32::from(best == Some(shape));
     app.narrow_pane = NarrowPane::Panel;
     inform(app, text);
 }
@@ -372,7 +359,7 @@ pub(in crate::tui) fn in_confusion(
     if *message == Message::Accept {
         let sensor = app.history.present().sensor;
         if let Some((sensor, imprint)) = page.imprint_on(sensor) {
-            put(app, sensor, &imprint, &page.of_cell());
+            begin_drawn(app, sensor, &imprint, &page.of_cell());
             return None;
         }
         refuse(app, "there is no imprint in this cell");
@@ -385,8 +372,8 @@ pub(in crate::tui) fn in_confusion(
 /// Handles a report from a worker. A request that has waited for the model is carried out now, if the page still has
 /// the keys.
 pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Option<Effect> {
-    let has_keys = matches!(app.dialogs.last(), Some(Dialog::Recognition(_)));
-    let page = state(app)?;
+    let has_keys = app.dialogs.last().is_some_and(is_page);
+    let page = &mut app.recognition;
     match event {
         RecognitionEvent::Begun(number, poses) => page.take_poses(number, poses),
         RecognitionEvent::GivenUp(number, what) => {
@@ -418,7 +405,7 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Optio
 /// waits for other work ignores it.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> Option<Effect> {
     separate::update::on_failure(app, number, reason);
-    let failed = state(app).and_then(|page| page.fail(number, reason.to_owned()));
+    let failed = app.recognition.fail(number, reason.to_owned());
     without_model(app, failed)
 }
 
@@ -430,13 +417,10 @@ fn without_model(app: &mut App, failed: Option<NoModel>) -> Option<Effect> {
         closes,
         prepares_again,
     } = failed?;
-    let is_page = |dialog: &Dialog| matches!(dialog, Dialog::Recognition(_));
-    if closes
-        && let Some(at) = app.dialogs.iter().position(is_page)
-        && let Dialog::Recognition(page) = app.dialogs.remove(at)
-    {
+    if closes && let Some(at) = app.dialogs.iter().position(is_page) {
+        app.dialogs.remove(at);
         // While a model is prepared, no search is in progress.
-        let _ = close(app, page);
+        let _ = close(app);
     }
     refuse(app, reason);
     prepares_again.then(|| open(app, None)).flatten()
@@ -445,9 +429,7 @@ fn without_model(app: &mut App, failed: Option<NoModel>) -> Option<Effect> {
 /// Handles the progress of a training.
 pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) {
     separate::update::on_progress(app, number, progress.poses);
-    if let Some(page) = state(app) {
-        page.take_progress(number, progress);
-    }
+    app.recognition.take_progress(number, progress);
 }
 
 /// Returns the next work for the page of sizes, or for the answer about the imprint on the matrix.
@@ -458,9 +440,12 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
 /// Passes the imprint of the matrix to the page. Returns the search that its answer needs, or the request to stop one
 /// that it no longer needs.
 fn search(app: &mut App) -> Option<Effect> {
+    if !is_open(app) {
+        return None;
+    }
     let (imprint, document) = (app.reading().imprint, app.shown());
     let (threshold, source) = (document.sensor.threshold(), document.source.clone());
-    let page = topmost!(&mut app.dialogs, Recognition)?;
+    let page = &mut app.recognition;
     page.show(imprint, source.as_ref());
     page.note_threshold(source.map(|_| threshold));
     let number = app.works + 1;

@@ -24,7 +24,6 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
 use crate::acquire::SourceName;
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
@@ -362,8 +361,7 @@ impl<'a> EventLoop<'a> {
 
     /// Records an input.
     fn record(&mut self, input: &Input) {
-        let mut pages = self.app.dialogs.iter().map(Dialog::page);
-        let at_work = pages.any(Page::awaits_work);
+        let at_work = self.app.pages().any(Page::awaits_work);
         (self.watch)(SessionEvent::Input { input, at_work });
     }
 

@@ -1,7 +1,7 @@
 //! The effects of messages on the page of sizes.
 
 use crate::formats::separation::size_label;
-use crate::tui::app::change::{inform, refuse, write_file};
+use crate::tui::app::change::{begin_drawn, inform, refuse, write_file};
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -9,15 +9,13 @@ use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::recognise::message::{RecogniseMessage, SizesFound};
 use crate::tui::recognise::quiz::onto;
-use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::runtime::effect::{Effect, Work};
 
 /// Opens the page. It still has its earlier results if the sizes are the same.
 pub(in crate::tui::recognise) fn open(app: &mut App, request: SeparationRequest) {
-    let known = state(app).and_then(|page| page.separate.take());
-    let page = match known {
+    let page = match app.recognition.separate.take() {
         Some(mut page) if **page.request() == request => {
             page.want_as(request);
             page.go_on();
@@ -51,17 +49,13 @@ pub(in crate::tui) fn in_separate(
                 effect = Some(Effect::Work(Work::StopSeparating));
             } else {
                 page.leave();
-                if let Some(state) = state(app) {
-                    state.separate = Some(page);
-                }
+                app.recognition.separate = Some(page);
                 return None;
             }
         }
         Message::Accept => {
             if put_example(app, &page) {
-                if let Some(state) = state(app) {
-                    state.separate = Some(page);
-                }
+                app.recognition.separate = Some(page);
                 return None;
             }
         }
@@ -108,7 +102,7 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
     };
     let own = *page.request().trained.model.sensor();
     let (sensor, imprint) = onto(&imprint, app.history.present().sensor, own);
-    put(app, sensor, &imprint, &about);
+    begin_drawn(app, sensor, &imprint, &about);
     true
 }
 

@@ -8,7 +8,6 @@ use crate::storage::ModelChoice;
 use crate::storage::{Library, RememberedFile};
 use crate::tui::app::state::App;
 use crate::tui::form::memory::FormMemory;
-use crate::tui::recognise::reach::trained_set;
 use crate::tui::runtime::disk::queue::DiskQueue;
 use crate::tui::runtime::disk::request::DiskRequest;
 
@@ -50,8 +49,8 @@ impl Reminders {
         self.chosen = set
             .and_then(|name| Name::new(&name).ok())
             .map(ModelChoice::from_name);
-        if let (Some(own), Some(page)) = (&self.chosen, app.recognition.as_mut()) {
-            page.begin_with(own.clone());
+        if let Some(own) = &self.chosen {
+            app.recognition.begin_with(own.clone());
         }
         self.values = FormMemory::read(&self.forms.read());
         app.forms = self.values.clone();
@@ -72,7 +71,8 @@ impl Reminders {
         let is_new = |now: &&ModelChoice| {
             !matches!(now, ModelChoice::File(_)) && self.chosen.as_ref() != Some(*now)
         };
-        let now = trained_set(app).filter(is_new);
+        let trained = app.recognition.trained();
+        let now = trained.map(|trained| &trained.choice).filter(is_new);
         if let Some(now) = now {
             write(&self.set, vec![now.name().to_owned()]);
             self.chosen = Some(now.clone());
