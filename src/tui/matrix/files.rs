@@ -10,14 +10,14 @@ use crate::formats::{Drawing, DrawingFormat, ImprintFormat, Name};
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::quote::shortened;
-use crate::storage::UNNAMED;
+use crate::storage::{Existing, UNNAMED};
 use crate::tui::app::change::{begin, inform, refuse, write_file};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::message::{FileEvent, Message, OpenedFile};
 use crate::tui::app::state::App;
-use crate::tui::runtime::effect::Effect;
+use crate::tui::runtime::effect::{Effect, FileRequest};
 
 /// The extensions that the name of a file to write can have.
 const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg .png";
@@ -31,6 +31,11 @@ pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
     }
     let content = content(app, &name);
     write_file(app, name, content)
+}
+
+/// Returns the request to write content over a file that exists.
+pub(in crate::tui) fn overwrite(name: String, content: Vec<u8>) -> Effect {
+    Effect::File(FileRequest::Write(name, content, Existing::Replaced))
 }
 
 /// Returns the content of a file of that name, in the format of its extension.

@@ -10,7 +10,7 @@ use crate::parameter::Parameter;
 use crate::parameter::number::short;
 use crate::picture::Picture;
 use crate::source::Source;
-use crate::storage::{Existing, ShapeOrigin};
+use crate::storage::ShapeOrigin;
 use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
     shift, travel, turn, zoom,
@@ -39,35 +39,20 @@ use crate::tui::{explore, live, recognise};
 /// and show this notice if there is none.
 const NO_REGION: &str = "no region: the matrix is empty";
 
-/// Handles a message. A message without an arm here opens a page or edits the matrix. Right after shapes were deleted,
-/// Undo restores them, the last one first, before any step of the drawing.
+/// Handles a message: this is the table of what each message does on the matrix. A new message has to be added here or
+/// to those that mean nothing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
-    let sensor = app.history.present().sensor;
+    use Message::{
+        Accept, Cancel, Choose, Count, Decline, Defaults, Erase, Field, File, Library, Match,
+        Mouse, Paste, Redraw, Resized, Scroll, ScrollScreen, ScrollTo, Search, Select, Step,
+        Suspend, Terminate, ToEdge, ToField, Type, Unknown, Worker,
+    };
     match message {
-        Message::New => {
-            let origin = app.history.origin();
-            if origin.name.is_none() && app.history.present().is_empty() {
-                refuse(app, "the matrix is empty already");
-            } else {
-                let empty = Document::empty(sensor);
-                begin(app, DocumentOrigin::of(&empty), empty);
-            }
-        }
+        Message::New => empty(app),
         Message::Become(document) => replace(app, *document),
-        Message::Compare => match app
-            .history
-            .before()
-            .map(|before| Reading::of(before).imprint)
-        {
-            Some(before) => compare_with(app, "the state before", &before),
-            None => refuse(app, "nothing to compare with: this is the first state"),
-        },
         Message::OpenFile(name) => return Some(Effect::File(FileRequest::Open(name))),
         Message::WriteFile(name) => return files::write(app, name),
-        Message::Overwrite(name, content) => {
-            let request = FileRequest::Write(name, content, Existing::Replaced);
-            return Some(Effect::File(request));
-        }
+        Message::Overwrite(name, content) => return Some(files::overwrite(name, content)),
         Message::Quit => quit(app),
         Message::QuitNow => app.run_state = RunState::Quit,
         Message::Copy(what) => return copy(app, what),
@@ -75,56 +60,94 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Explore(asked) => return explore::work::act(app, asked),
         Message::Live(asked) => return live::update::act(app, &asked),
         Message::Recognise(asked) => return recognise::update::act(app, asked),
-        Message::Undo if !app.removed.is_empty() => {
-            let name = app.removed.pop();
-            return Some(Effect::Library(LibraryRequest::Restore(name)));
-        }
-        Message::Request(request) => {
-            if let LibraryRequest::Store(shape, _) = &request {
-                begin_save(app, shape);
-            }
-            return Some(Effect::Library(request));
-        }
+        Message::Request(request) => return Some(send(app, request)),
         Message::Recover => return Some(Effect::Recover),
         Message::GiveUp => return Some(Effect::GiveUp),
-        other => return open_page(app, &other),
+        Message::Compare => compare_with_before(app),
+        Message::Load => return Some(open_list(app, ListPurpose::Load)),
+        Message::Delete => return Some(open_list(app, ListPurpose::Delete)),
+        Message::Picture => return open_picture(app),
+        Message::Figure => open_form(app, FormDialog::figure(app.history.present(), &app.forms)),
+        Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
+        Message::Save => save(app),
+        Message::Command => open_command(app),
+        Message::History => open_history(app),
+        Message::Help => app.dialogs.push(Dialog::Help(Help::new(app.context()))),
+        Message::Cursor(arrow) => move_cursor(app, arrow),
+        Message::PointAt(column, row) => point_at(app, column, row),
+        Message::ToColumn(end) => to_column(app, end),
+        Message::ToRow(end) => to_row(app, end),
+        Message::Toggle => toggle(app),
+        Message::Undo => return undo(app),
+        Message::Redo => travel(app, History::redo, "redone", "nothing to redo"),
+        Message::Region(by) => choose_region(app, by),
+        Message::Display => next_display(app),
+        Message::Layer(layer) => switch_layer(app, layer),
+        Message::SwitchPane => switch_pane(app),
+        Message::Hold => hold_or_let_go(app),
+        Message::PutBack => put_back(app),
+        Message::Nudge(arrow) => nudge(app, arrow),
+        Message::Move(dx, dy) => shift(app, dx, dy),
+        Message::Turn(degrees) => turn(app, degrees),
+        Message::Zoom(direction) => zoom(app, direction),
+        Message::ZoomCentre => switch_zoom_centre(app),
+        Message::NudgeStep(direction) => change_step(app, direction),
+        // These mean something only on a page, or never reach the matrix: `app::update` handles them.
+        Accept | Cancel | Choose(_) | Count(_) | Decline | Defaults | Erase(_) | Field(_)
+        | File(_) | Library(_) | Match(_) | Mouse(_) | Paste(_) | Redraw | Resized(..)
+        | Scroll(_) | ScrollScreen(_) | ScrollTo(_) | Search | Select(_) | Step(_) | Suspend
+        | Terminate | ToEdge(_) | ToField(_) | Type(_) | Unknown(_) | Worker(_) => {}
     }
     None
 }
 
-/// Opens the page that a message asks for; other messages act on the matrix. The picture has two pages: its form if
-/// there is a picture or a stored shape on the matrix, otherwise the list to choose one from.
-fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
-    match message {
-        Message::Load => return Some(open_list(app, ListPurpose::Load)),
-        Message::Delete => return Some(open_list(app, ListPurpose::Delete)),
-        Message::Picture if !edit_picture(app) => {
-            return Some(open_list(app, ListPurpose::Picture));
-        }
-        Message::Picture => {}
-        Message::Figure => {
-            let form = FormDialog::figure(app.history.present(), &app.forms);
-            open_form(app, form);
-        }
-        Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
-        Message::Save => save(app),
-        Message::Command => {
-            let dialog = CommandDialog::new(&app.commands);
-            app.dialogs.push(Dialog::Command(dialog));
-        }
-        Message::History => {
-            let (steps, present) = app.history.steps();
-            let start = app.history.start();
-            app.dialogs
-                .push(Dialog::History(HistoryDialog::new(start, steps, present)));
-        }
-        Message::Help => {
-            let help = Help::new(app.context());
-            app.dialogs.push(Dialog::Help(help));
-        }
-        other => edit(app, other),
+/// Empties the matrix.
+fn empty(app: &mut App) {
+    let origin = app.history.origin();
+    if origin.name.is_none() && app.history.present().is_empty() {
+        return refuse(app, "the matrix is empty already");
     }
+    let empty = Document::empty(app.history.present().sensor);
+    begin(app, DocumentOrigin::of(&empty), empty);
+}
+
+/// Opens the comparison with the state before the last step.
+fn compare_with_before(app: &mut App) {
+    let before = app.history.before().map(Reading::of);
+    match before {
+        Some(before) => compare_with(app, "the state before", &before.imprint),
+        None => refuse(app, "nothing to compare with: this is the first state"),
+    }
+}
+
+/// Returns the request to the library. Takes note of a shape that is being saved.
+fn send(app: &mut App, request: LibraryRequest) -> Effect {
+    if let LibraryRequest::Store(shape, _) = &request {
+        begin_save(app, shape);
+    }
+    Effect::Library(request)
+}
+
+/// Undoes the last change. Right after shapes were deleted, restores them instead, the last one first.
+fn undo(app: &mut App) -> Option<Effect> {
+    if let Some(name) = app.removed.pop() {
+        return Some(Effect::Library(LibraryRequest::Restore(Some(name))));
+    }
+    travel(app, History::undo, "undone", "nothing to undo");
     None
+}
+
+/// Opens the `:` prompt.
+fn open_command(app: &mut App) {
+    let prompt = CommandDialog::new(&app.commands);
+    app.dialogs.push(Dialog::Command(prompt));
+}
+
+/// Opens the list of the steps of the history.
+fn open_history(app: &mut App) {
+    let (steps, present) = app.history.steps();
+    let page = HistoryDialog::new(app.history.start(), steps, present);
+    app.dialogs.push(Dialog::History(page));
 }
 
 /// Takes note of what is being saved. Keys may change the matrix before the library answers.
@@ -145,10 +168,10 @@ fn begin_save(app: &mut App, shape: &StoredShape) {
     });
 }
 
-/// Opens the form of the picture on the matrix, or of the stored shape on the matrix as a picture. Returns false if
-/// there is neither. The name in the form is the name of the picture, or else of the document. The notice says how to
-/// get to another shape, because the key for a picture leads here and no longer to the list.
-fn edit_picture(app: &mut App) -> bool {
+/// Opens the form of the picture on the matrix, or of the stored shape on the matrix as a picture; without either, the
+/// list to choose one from. The name in the form is the name of the picture, or else of the document. The notice says
+/// how to get to another shape, because the key for a picture leads here and no longer to the list.
+fn open_picture(app: &mut App) -> Option<Effect> {
     let present = app.history.present();
     let (picture, name) = match (&present.source, app.loaded_imprint()) {
         (Some(Source::Picture(picture)), _) => {
@@ -156,13 +179,13 @@ fn edit_picture(app: &mut App) -> bool {
             (picture.clone(), name.unwrap_or("imprint"))
         }
         (None, Some((name, imprint))) => (Picture::at_home(*imprint).named(name), name),
-        _ => return false,
+        _ => return Some(open_list(app, ListPurpose::Picture)),
     };
     let form = FormDialog::picture(present, picture, name.to_owned());
     open_form(app, form);
     let load = app.key_of(&action::LOAD);
     inform(app, format!("{load} loads another shape"));
-    true
+    None
 }
 
 /// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own, unless the
@@ -259,8 +282,13 @@ fn switch_mouse(app: &mut App) -> Effect {
     Effect::Terminal(TerminalEffect::Mouse(app.mouse))
 }
 
-/// Shows the coverage in shades, then in percent, then the imprint again.
+/// Shows the coverage in shades, then in percent, then the imprint again. Coverage is the share of a taxel that a shape
+/// covers, so it is refused if there is no source.
 fn next_display(app: &mut App) {
+    if app.history.present().source.is_none() {
+        app.display = Display::Imprint;
+        return refuse(app, format!("no coverage to show: {}", has_none(app)));
+    }
     let (next, text) = match app.display {
         Display::Imprint => (Display::Shades, "coverage in shades"),
         Display::Shades if app.grid().is_some_and(|grid| grid.size.is_large()) => {
@@ -276,60 +304,42 @@ fn next_display(app: &mut App) {
     inform(app, text);
 }
 
-/// Handles messages that need nothing from outside: the cursor, the display, and the shape. Coverage is the share of
-/// a taxel that a shape covers, so it is refused if there is no source.
-fn edit(app: &mut App, message: &Message) {
-    let sensor = app.history.present().sensor;
-    match *message {
-        Message::Cursor(arrow) => move_cursor(app, arrow),
-        Message::PointAt(column, row) => {
-            app.cursor = (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1));
-        }
-        Message::ToColumn(end) => app.cursor = (at_end(end, sensor.columns()), app.cursor().1),
-        Message::ToRow(end) => app.cursor = (app.cursor().0, at_end(end, sensor.rows())),
-        Message::Toggle => {
-            let mut document = app.history.present().clone();
-            let (column, row) = app.cursor();
-            document.edits.toggle(column, row);
-            change(app, document);
-        }
-        Message::Undo => travel(app, History::undo, "undone", "nothing to undo"),
-        Message::Redo => travel(app, History::redo, "redone", "nothing to redo"),
-        Message::Region(by) => choose_region(app, by),
-        Message::Display if app.history.present().source.is_none() => {
-            app.display = Display::Imprint;
-            refuse(app, format!("no coverage to show: {}", has_none(app)));
-        }
-        Message::Display => next_display(app),
-        Message::Layer(layer) => switch_layer(app, layer),
-        Message::SwitchPane
-            if app
-                .panes()
-                .is_some_and(|panes| !app.can_switch_pane(&panes)) =>
-        {
-            refuse(app, "both sides of the screen are visible");
-        }
-        Message::SwitchPane => {
-            app.narrow_pane = match app.narrow_pane {
-                NarrowPane::Matrix => NarrowPane::Panel,
-                NarrowPane::Panel => NarrowPane::Matrix,
-            };
-        }
-        Message::Hold if app.held.is_some() => let_go(app),
-        Message::Hold => hold(app),
-        Message::PutBack => put_back(app),
-        Message::Nudge(arrow) => nudge(app, arrow),
-        Message::Move(dx, dy) => shift(app, dx, dy),
-        Message::Turn(degrees) => turn(app, degrees),
-        Message::Zoom(direction) => zoom(app, direction),
-        Message::ZoomCentre => {
-            app.zoom_centre = !app.zoom_centre;
-            let centre = ["the origin", "the picture's centre"][usize::from(app.zoom_centre)];
-            inform(app, format!("zoom about {centre}"));
-        }
-        Message::NudgeStep(direction) if movable(app).is_some() => change_step(app, direction),
-        _ => {}
+/// Switches the taxel under the cursor.
+fn toggle(app: &mut App) {
+    let mut document = app.history.present().clone();
+    let (column, row) = app.cursor();
+    document.edits.toggle(column, row);
+    change(app, document);
+}
+
+/// Shows the other one of matrix and descriptors where only one has room.
+fn switch_pane(app: &mut App) {
+    if app
+        .panes()
+        .is_some_and(|panes| !app.can_switch_pane(&panes))
+    {
+        return refuse(app, "both sides of the screen are visible");
     }
+    app.narrow_pane = match app.narrow_pane {
+        NarrowPane::Matrix => NarrowPane::Panel,
+        NarrowPane::Panel => NarrowPane::Matrix,
+    };
+}
+
+/// Takes hold of the shape, or lets it go if it is held.
+fn hold_or_let_go(app: &mut App) {
+    if app.held.is_some() {
+        let_go(app);
+    } else {
+        hold(app);
+    }
+}
+
+/// Zooms pictures about their centre, or about the origin again.
+fn switch_zoom_centre(app: &mut App) {
+    app.zoom_centre = !app.zoom_centre;
+    let centre = ["the origin", "the picture's centre"][usize::from(app.zoom_centre)];
+    inform(app, format!("zoom about {centre}"));
 }
 
 /// Sends a text to the terminal, which may put it into its clipboard, but never reports whether it does. Descriptors
@@ -420,14 +430,36 @@ fn at_end(end: Endpoint, count: u8) -> u8 {
     }
 }
 
-/// Takes the next larger or smaller step; at the end, the step stays, and a notice says so.
+/// Takes the next larger or smaller step; at the end, the step stays, and a notice says so. Refused if there is no shape
+/// to move.
 fn change_step(app: &mut App, direction: i8) {
+    if movable(app).is_none() {
+        return;
+    }
     let step = app.step.other(direction);
     if step == app.step {
         let end = ["smallest", "largest"][usize::from(direction > 0)];
         refuse(app, format!("{} is the {end} step", step.length()));
     }
     app.step = step;
+}
+
+/// Puts the cursor on a taxel; beyond the sensor, on the nearest one.
+fn point_at(app: &mut App, column: u8, row: u8) {
+    let sensor = app.history.present().sensor;
+    app.cursor = (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1));
+}
+
+/// Moves the cursor to the first or the last column.
+fn to_column(app: &mut App, end: Endpoint) {
+    let columns = app.history.present().sensor.columns();
+    app.cursor = (at_end(end, columns), app.cursor().1);
+}
+
+/// Moves the cursor to the first or the last row.
+fn to_row(app: &mut App, end: Endpoint) {
+    let rows = app.history.present().sensor.rows();
+    app.cursor = (app.cursor().0, at_end(end, rows));
 }
 
 /// Moves the cursor by one taxel; it stays at the edge.
