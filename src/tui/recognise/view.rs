@@ -308,12 +308,12 @@ impl Panel<'_> {
             // If shapes are tied, the pose is that of the first.
             let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
             let whose = if is_named { "" } else { trained.name(*shape) };
-            let [mut position, angle, poses] = pose_lines(whose, pose);
+            let mut position = position_line(whose, pose, " cells");
             // If lines are scarce, a line is worth more than the unit.
-            let is_scarce = self.gap_lines() == 0 && self.lines_of(&position) > 1;
-            if is_scarce {
-                position.truncate(position.trim_end_matches(" cells").len());
+            if self.gap_lines() == 0 && self.lines_of(&position) > 1 {
+                position = position_line(whose, pose, "");
             }
+            let [angle, poses] = angle_lines(pose);
             lines.extend([position, angle, poses].map(|line| (line, Role::Text)));
         }
         lines
@@ -404,11 +404,15 @@ fn legend(present: &Imprint, nearest: &Nearest) -> String {
 /// The marks of surplus and of missing taxels.
 const MARKS: [char; 2] = ['+', '-'];
 
-/// Returns the lines about the pose of a shape: mean and spread over the poses that leave the imprint. `whose` is the
-/// name of the shape if the answer does not name it, otherwise empty.
-fn pose_lines(whose: &str, pose: &PoseEstimate) -> [String; 3] {
-    let position = format!("{whose} centre {} cells", pose_words::centre(pose, 1.0));
-    let position = position.trim_start().to_owned();
+/// Returns the line about the position of a shape: mean and spread over the poses that leave the imprint. `whose` is the
+/// name of the shape if the answer does not name it, otherwise empty. `unit` is what follows the numbers.
+fn position_line(whose: &str, pose: &PoseEstimate, unit: &str) -> String {
+    let line = format!("{whose} centre {}{unit}", pose_words::centre(pose, 1.0));
+    line.trim_start().to_owned()
+}
+
+/// Returns the lines about the angle of a shape: mean and spread, and the number of poses that leave the imprint.
+fn angle_lines(pose: &PoseEstimate) -> [String; 2] {
     let poses = counted(pose.poses, "pose");
     let any = || ("any angle".to_owned(), poses.clone());
     let (angle, poses) = pose.angle.as_ref().map_or_else(any, |angle| {
@@ -421,7 +425,7 @@ fn pose_lines(whose: &str, pose: &PoseEstimate) -> [String; 3] {
             pose_words::arc(angle, pose.poses),
         )
     });
-    [position, angle, poses]
+    [angle, poses]
 }
 
 /// Rounds a number to a whole one, with a half rounded up. Formatting alone would make 22 of 22.5 and 24 of 23.5, and
