@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::atlas::feature::{Feature, features};
 use crate::atlas::sums::{ONE, Wide, mean, signed_mean};
-use crate::atlas::values::{Row, RowSums, Sum, Table, columns, row_width};
+use crate::atlas::values::{FeatureRow, RowSums, Sum, Table, columns, row_width};
 use crate::atlas::variance::VarianceParts;
 use crate::index::lower_word;
 
@@ -114,7 +114,7 @@ impl Totals {
         }
     }
 
-    fn add(&mut self, row: Row, poses: u64) {
+    fn add(&mut self, row: FeatureRow, poses: u64) {
         self.rows.add(row, poses);
         for (sums, value) in self.squares.iter_mut().zip(row.values) {
             let value = u128::from(value.unsigned_abs());

@@ -35,7 +35,7 @@ struct Part {
 
 /// The values of all features of an imprint.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Row<'a> {
+pub(crate) struct FeatureRow<'a> {
     /// The value of each feature, 0 if it does not exist. A circular feature has two values: its cosine and its sine.
     pub(crate) values: &'a [i64],
     /// The features that do not exist, with feature `i` in bit `i`.
@@ -108,9 +108,9 @@ impl Table {
     }
 
     /// Returns the values of an imprint.
-    pub(crate) fn row(&self, index: usize) -> Row<'_> {
+    pub(crate) fn row(&self, index: usize) -> FeatureRow<'_> {
         let (part, row) = (&self.parts[index / PART], index % PART);
-        Row {
+        FeatureRow {
             values: &part.values[row * self.width..][..self.width],
             missing: part.missing[row],
         }
@@ -208,7 +208,7 @@ impl RowSums {
     }
 
     /// Adds a row, times the number of poses that leave its imprint.
-    pub(crate) fn add(&mut self, row: Row, poses: u64) {
+    pub(crate) fn add(&mut self, row: FeatureRow, poses: u64) {
         self.poses += poses;
         // One multiplication of the processor is enough: both numbers fit into 64 bits with their signs.
         let times = i128::from(poses.cast_signed());

@@ -51,17 +51,18 @@ pub(crate) struct Rows<'a>(pub &'a Imprint);
 impl Serialize for Rows<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let columns = self.0.columns();
-        serializer.collect_seq(self.0.words().iter().map(|&word| Row { word, columns }))
+        let words = self.0.words().iter();
+        serializer.collect_seq(words.map(|&word| ImprintRow { word, columns }))
     }
 }
 
 /// A row of an imprint as a text.
-struct Row {
+struct ImprintRow {
     word: u64,
     columns: u8,
 }
 
-impl Serialize for Row {
+impl Serialize for ImprintRow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         /// Most rows of an imprint are empty, so their text is ready.
         const EMPTY: &str = "................................................................";

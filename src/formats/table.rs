@@ -182,7 +182,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TableError> {
 }
 
 /// A line's fields, without the spaces and quotes around them.
-struct Row<'a> {
+struct LineFields<'a> {
     /// The line number in the file, from 1.
     line: usize,
     fields: Vec<&'a str>,
@@ -192,7 +192,7 @@ struct Row<'a> {
 struct Table<'a> {
     /// The separator between the fields of a line; None for spaces.
     mark: Option<char>,
-    rows: Vec<Row<'a>>,
+    rows: Vec<LineFields<'a>>,
     /// The number of columns removed before the first.
     skipped: usize,
 }
@@ -241,7 +241,7 @@ impl<'a> Table<'a> {
                 return Err(TableError::Columns { line, found });
             }
             let fields = split(text, mark).map(bare).collect();
-            table.rows.push(Row { line, fields });
+            table.rows.push(LineFields { line, fields });
         }
         table.drop_names();
         Ok(table)

@@ -148,14 +148,14 @@ struct Descriptors<'a>(&'a [Statistic]);
 impl Serialize for Descriptors<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let rows = self.0.iter();
-        serializer.collect_map(rows.map(|row| (&row.feature.key, Row(row))))
+        serializer.collect_map(rows.map(|row| (&row.feature.key, FeatureStatistics(row))))
     }
 }
 
 /// The statistics of one feature, by column.
-struct Row<'a>(&'a Statistic);
+struct FeatureStatistics<'a>(&'a Statistic);
 
-impl Serialize for Row<'_> {
+impl Serialize for FeatureStatistics<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let value = |column: &StatisticColumn| (column.key, (column.value)(self.0));
         serializer.collect_map(STATISTIC_COLUMNS.iter().map(value))

@@ -86,8 +86,8 @@ fn read_arranged(
     let mut lines = TextLines::new(input);
     match &layout.lines {
         LineLayout::Row { parted } => {
-            let block = RowBlock::new(layout.separator, layout.size, *parted);
-            block.read(&mut lines, options, sink)
+            let frame = FrameInRows::new(layout.separator, layout.size, *parted);
+            frame.read(&mut lines, options, sink)
         }
         LineLayout::Frame(fields) => frames(&mut lines, layout, fields, options, sink),
     }
@@ -169,10 +169,10 @@ pub(crate) fn read_rows(
         rows += usize::from(!is_comment(lines.line()));
     }
     let size = FrameSize::of_sides(columns, side(rows)).ok_or(RecordingError::Unknown)?;
-    let block = RowBlock::new(separator, size, false);
+    let frame = FrameInRows::new(separator, size, false);
     let options = ReadOptions::default();
     until_enough(consumer, |sink| {
-        block.read(&mut TextLines::new(text), options, sink)
+        frame.read(&mut TextLines::new(text), options, sink)
     })
 }
 
@@ -279,8 +279,8 @@ impl FrameFields {
     }
 }
 
-/// A frame of several lines, of which some may have been read.
-struct RowBlock {
+/// A frame whose rows are lines, of which some may have been read.
+struct FrameInRows {
     /// The separator between fields.
     separator: Separator,
     /// The frame that is being read.
@@ -297,8 +297,8 @@ struct RowBlock {
     clock: FrameClock,
 }
 
-impl RowBlock {
-    /// Creates an empty block for a frame of this size.
+impl FrameInRows {
+    /// Creates an empty frame of this size.
     fn new(separator: Separator, size: FrameSize, parted: bool) -> Self {
         Self {
             separator,
