@@ -281,8 +281,8 @@ fn the_axes_of_points_need_not_begin_at_0() {
     let plot = PointPlot::new("na", "f <&>")
         .with_title("5 imprints")
         .with_points(&points)
-        .with_curve("mean", &curve, false)
-        .with_curve("largest", &curve, true)
+        .with_curve("mean", &curve)
+        .with_dashed_curve("largest", &curve)
         .with_chosen(42.0, 12.0);
     let svg = plot.svg();
     golden("points", &svg);

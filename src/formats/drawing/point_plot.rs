@@ -56,11 +56,17 @@ impl PointPlot {
         self
     }
 
-    /// Adds a curve through points, in their order, with a gap where a coordinate is not finite. A dashed curve can
-    /// be told from the others without colours.
+    /// Adds a curve through points, in their order, with a gap where a coordinate is not finite.
     #[must_use]
-    pub fn with_curve(mut self, name: &str, points: &[(f64, f64)], dashed: bool) -> Self {
-        self.curves.push((cut(name), points.to_vec(), dashed));
+    pub fn with_curve(mut self, name: &str, points: &[(f64, f64)]) -> Self {
+        self.curves.push((cut(name), points.to_vec(), false));
+        self
+    }
+
+    /// Adds a curve like [`Self::with_curve`], but dashed: it can be told from the others without colours.
+    #[must_use]
+    pub fn with_dashed_curve(mut self, name: &str, points: &[(f64, f64)]) -> Self {
+        self.curves.push((cut(name), points.to_vec(), true));
         self
     }
 

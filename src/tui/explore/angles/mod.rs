@@ -222,9 +222,11 @@ fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> 
             .iter()
             .filter_map(|at| Some((at.degrees, of(at)?)))
             .collect();
-        if !points.is_empty() {
-            plot = plot.with_curve(name, &points, dashed);
-        }
+        plot = match (points.is_empty(), dashed) {
+            (true, _) => plot,
+            (false, true) => plot.with_dashed_curve(name, &points),
+            (false, false) => plot.with_curve(name, &points),
+        };
     }
     plot.content(format).map_err(|error| error.to_string())
 }
