@@ -33,7 +33,7 @@ pub use distinct::{Atlas, AtlasEntry};
 pub use feature::{Feature, ImprintSummary, feature_values, features};
 pub use filter::{AtlasFilter, FilterError};
 pub use histogram::Histogram;
-pub use order::{SortKey, sorted};
+pub use order::{SortDirection, SortKey, sorted};
 pub(crate) use packing::Layout;
 #[cfg(feature = "tui")]
 pub(crate) use statistics::mean_direction;

@@ -6,9 +6,9 @@ use crate::atlas::distinct::Atlas;
 use crate::index::narrow;
 
 /// A key by which the imprints of an atlas can be sorted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum SortKey {
+pub enum SortKey<'a> {
     /// The number of the first pose, which is the order of the imprints' numbers too.
     FirstPose,
     /// The number of poses that leave an imprint.
@@ -17,16 +17,41 @@ pub enum SortKey {
     Pieces,
     /// The number of holes.
     Holes,
-    /// A value per imprint, which is given in addition to the atlas.
-    Value,
+    /// One value per imprint, such as those of a feature ([`Atlas::values`]); imprints beyond the end have no value.
+    Value(&'a [Option<f64>]),
 }
 
-/// Returns the numbers of all imprints, sorted by a key, ascending or `descending`.
-///
-/// In both directions, imprints with equal keys stay in the order of their first poses, and those without a value come
-/// last. `values` is for [`SortKey::Value`]: one value per imprint ([`Atlas::values`]); imprints beyond its end have no
-/// value.
-pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bool) -> Vec<u32> {
+/// The direction in which imprints are sorted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SortDirection {
+    /// The smallest comes first.
+    Ascending,
+    /// The largest comes first.
+    Descending,
+}
+
+impl SortDirection {
+    /// Returns the other direction.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Ascending => Self::Descending,
+            Self::Descending => Self::Ascending,
+        }
+    }
+
+    /// Returns the order, in this direction, of two keys that have an ascending order.
+    fn apply(self, ascending: Ordering) -> Ordering {
+        match self {
+            Self::Ascending => ascending,
+            Self::Descending => ascending.reverse(),
+        }
+    }
+}
+
+/// Returns the numbers of all imprints, sorted by a key. In both directions, imprints with equal keys stay in the order
+/// of their first poses, and those without a value come last.
+pub fn sorted(atlas: &Atlas, by: SortKey<'_>, direction: SortDirection) -> Vec<u32> {
     let count = narrow(atlas.len());
     let summaries = |of: fn(&crate::atlas::feature::ImprintSummary) -> u16| {
         let keys: Vec<u64> = atlas
@@ -41,28 +66,24 @@ pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bo
         SortKey::Poses => atlas.counts().collect(),
         SortKey::Pieces => summaries(|summary| summary.pieces),
         SortKey::Holes => summaries(|summary| summary.holes),
-        SortKey::Value => return by_value(count, values, descending),
+        SortKey::Value(values) => return by_value(count, values, direction),
     };
     let mut ids: Vec<(u64, u32)> = keys.into_iter().zip(0..count).collect();
     // The sort is stable, and the numbers are in order already. Many keys are equal, which makes a stable sort faster.
-    ids.sort_by(|(one, _), (other, _)| turned(one.cmp(other), descending));
+    ids.sort_by(|(one, _), (other, _)| direction.apply(one.cmp(other)));
     ids.into_iter().map(|(_, id)| id).collect()
 }
 
-fn by_value(count: u32, values: &[Option<f64>], descending: bool) -> Vec<u32> {
+fn by_value(count: u32, values: &[Option<f64>], direction: SortDirection) -> Vec<u32> {
     let values = values.iter().copied().chain(std::iter::repeat(None));
     let mut ids: Vec<(Option<f64>, u32)> = values.zip(0..count).collect();
     ids.sort_by(|(one, _), (other, _)| match (one, other) {
-        (Some(one), Some(other)) => turned(one.total_cmp(other), descending),
+        (Some(one), Some(other)) => direction.apply(one.total_cmp(other)),
         (Some(_), None) => Ordering::Less,
         (None, Some(_)) => Ordering::Greater,
         (None, None) => Ordering::Equal,
     });
     ids.into_iter().map(|(_, id)| id).collect()
-}
-
-fn turned(order: Ordering, descending: bool) -> Ordering {
-    if descending { order.reverse() } else { order }
 }
 
 #[cfg(test)]
@@ -102,10 +123,10 @@ mod tests {
             SortKey::Poses,
             SortKey::Pieces,
             SortKey::Holes,
-            SortKey::Value,
+            SortKey::Value(&values),
         ] {
-            for descending in [false, true] {
-                let ids = sorted(&atlas, &values, by, descending);
+            for direction in [SortDirection::Ascending, SortDirection::Descending] {
+                let ids = sorted(&atlas, by, direction);
                 let mut all = ids.clone();
                 all.sort_unstable();
                 assert!(all.into_iter().eq(0..count), "{by:?}");
@@ -117,17 +138,19 @@ mod tests {
                         SortKey::Poses => Some(entry.count as f64),
                         SortKey::Pieces => Some(entry.summary.pieces.into()),
                         SortKey::Holes => Some(entry.summary.holes.into()),
-                        SortKey::Value => entry.summary.description.map(|one| one.na.into()),
+                        SortKey::Value(_) => entry.summary.description.map(|one| one.na.into()),
                     }
                 };
                 for pair in ids.windows(2) {
                     let fits = match (key(pair[0]), key(pair[1])) {
                         (Some(one), Some(other)) if one == other => pair[0] < pair[1],
-                        (Some(one), Some(other)) => (one < other) != descending,
+                        (Some(one), Some(other)) => {
+                            (one < other) == (direction == SortDirection::Ascending)
+                        }
                         (None, None) => pair[0] < pair[1],
                         (one, _) => one.is_some(),
                     };
-                    assert!(fits, "{by:?}, descending {descending}: {pair:?}");
+                    assert!(fits, "{by:?}, {direction:?}: {pair:?}");
                 }
             }
         }
@@ -136,7 +159,8 @@ mod tests {
     #[test]
     fn imprints_without_a_value_come_last() {
         let atlas = atlas();
-        let ids = sorted(&atlas, &[None, Some(2.0), Some(1.0)], SortKey::Value, true);
+        let by = SortKey::Value(&[None, Some(2.0), Some(1.0)]);
+        let ids = sorted(&atlas, by, SortDirection::Descending);
         assert_eq!(ids[..4], [1, 2, 0, 3]);
     }
 }

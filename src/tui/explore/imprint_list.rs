@@ -1,6 +1,6 @@
 //! The list of imprints of a sweep: its order, its filter, the selected row and the first one on the screen.
 
-use crate::atlas::{Atlas, AtlasFilter};
+use crate::atlas::{Atlas, AtlasFilter, SortDirection};
 use crate::index::wide;
 use crate::sweep::SweepResult;
 use crate::tui::explore::column::ListColumn;
@@ -8,8 +8,8 @@ use crate::tui::explore::column::ListColumn;
 /// The list of imprints, by their numbers in the atlas.
 #[derive(Clone, Debug)]
 pub struct ImprintList {
-    /// The column that rows are sorted by, and whether the largest comes first.
-    sort: (ListColumn, bool),
+    /// The column that rows are sorted by, and the direction.
+    sort: (ListColumn, SortDirection),
     /// The chosen heading, which the sort key sorts by.
     heading: ListColumn,
     /// The filter of the rows, as it was typed; empty for none.
@@ -31,7 +31,7 @@ impl ImprintList {
     /// Creates the list of imprints in this order, the most frequent one first.
     pub fn new(by_poses: Vec<u32>) -> Self {
         Self {
-            sort: (ListColumn::Poses, true),
+            sort: (ListColumn::Poses, SortDirection::Descending),
             heading: ListColumn::Poses,
             filter: String::new(),
             rows: by_poses.clone(),
@@ -42,8 +42,8 @@ impl ImprintList {
         }
     }
 
-    /// Returns the column that rows are sorted by, and whether the largest comes first.
-    pub fn sort_key(&self) -> (ListColumn, bool) {
+    /// Returns the column that rows are sorted by, and the direction.
+    pub fn sort_key(&self) -> (ListColumn, SortDirection) {
         self.sort
     }
 
@@ -51,9 +51,9 @@ impl ImprintList {
     /// selected imprint stays selected. `values` are those of the chosen descriptor, by the imprints' numbers.
     pub fn sort(&mut self, by: ListColumn, sweep: &SweepResult, values: &[Option<f64>]) {
         self.sort = if self.sort.0 == by {
-            (by, !self.sort.1)
+            (by, self.sort.1.reversed())
         } else {
-            (by, by.largest_first())
+            (by, by.first_direction())
         };
         self.heading = by;
         self.arrange(sweep, values);
@@ -98,8 +98,8 @@ impl ImprintList {
 
     /// Sorts and filters the rows; `values` are those of the chosen descriptor, by the imprints' numbers.
     pub fn arrange(&mut self, sweep: &SweepResult, values: &[Option<f64>]) {
-        let (by, descending) = self.sort;
-        self.order = by.order(sweep, values, descending);
+        let (by, direction) = self.sort;
+        self.order = by.order(sweep, values, direction);
         self.apply_filter();
     }
 

@@ -221,7 +221,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
 /// Draws the headings, with an arrow at the column that rows are sorted by. The chosen heading looks like the
 /// selected row.
 fn draw_headings(theme: &Theme, results: &Results, list: &ImprintTable, buffer: &mut Buffer) {
-    let (by, descending) = results.list.sort_key();
+    let (by, direction) = results.list.sort_key();
     let key: String = results.feature().key.chars().take(VALUE - 1).collect();
     let mut pieces: Vec<(String, Role)> = Vec::new();
     for (column, width) in list.columns() {
@@ -233,7 +233,7 @@ fn draw_headings(theme: &Theme, results: &Results, list: &ImprintTable, buffer: 
             ListColumn::Holes => "ho",
             ListColumn::Value => &key,
         };
-        let arrow = (by == column).then(|| theme.sorted(descending));
+        let arrow = (by == column).then(|| theme.sorted(direction));
         let title: String = arrow.into_iter().chain(title.chars()).collect();
         let behind = if column == ListColumn::Poses {
             1 + SHARE

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::atlas::{SortKey, sorted};
+use crate::atlas::{SortDirection, SortKey, sorted};
 use crate::pose::{Axis, PoseGrid};
 use crate::source::Source;
 use crate::storage::Existing;
@@ -26,7 +26,7 @@ impl Findings {
     pub fn new(sweep: SweepResult) -> Self {
         Self {
             classes: sweep.atlas.distinct_classes(),
-            by_poses: sorted(&sweep.atlas, &[], SortKey::Poses, true),
+            by_poses: sorted(&sweep.atlas, SortKey::Poses, SortDirection::Descending),
             sweep,
         }
     }

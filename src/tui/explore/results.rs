@@ -368,6 +368,7 @@ impl Results {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::atlas::SortDirection;
     use crate::figure::{Figure, FigureKind};
     use crate::picture::Picture;
     use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
@@ -419,7 +420,10 @@ mod tests {
                 .all(|(_, entry)| entry.count <= most.count)
         );
         results.sort(ListColumn::Poses);
-        assert_eq!(results.list.sort_key(), (ListColumn::Poses, false));
+        assert_eq!(
+            results.list.sort_key(),
+            (ListColumn::Poses, SortDirection::Ascending)
+        );
     }
 
     #[test]

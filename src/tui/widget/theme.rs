@@ -14,6 +14,7 @@ use std::borrow::Cow;
 
 use ratatui::style::{Color, Modifier, Style};
 
+use crate::atlas::SortDirection;
 use crate::formats::value::fitting;
 
 /// The purpose of a piece of text on the screen.
@@ -319,10 +320,13 @@ impl Theme {
         }
     }
 
-    /// Returns the mark of the heading by which rows are sorted, in descending or ascending order.
-    pub fn sorted(&self, descending: bool) -> char {
+    /// Returns the mark of the heading by which rows are sorted, in this direction.
+    pub fn sorted(&self, direction: SortDirection) -> char {
         let [up, down, ..] = self.more();
-        if descending { down } else { up }
+        match direction {
+            SortDirection::Ascending => up,
+            SortDirection::Descending => down,
+        }
     }
 
     /// Returns the text for a value that does not exist.
