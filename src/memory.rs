@@ -108,6 +108,14 @@ impl MemoryGuard {
         }
     }
 
+    /// Creates a guard for a sweep on the screen, with its results in memory.
+    pub(crate) fn of_sweep() -> Self {
+        Self::new(
+            None,
+            "take coarser steps, or sweep it in shards on the command line (taxel sweep --shard)",
+        )
+    }
+
     /// Creates a guard for a search for poses, which keeps all poses of an imprint until they are counted.
     pub(crate) fn of_pose_search() -> Self {
         Self::new(None, "train the model in coarser steps to see poses")

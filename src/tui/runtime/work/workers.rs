@@ -216,7 +216,9 @@ impl Workers {
     ) -> Option<WorkerEvent> {
         let stop = self.begin();
         let run = move |clock: Option<&ProgressReporter<'_>>| {
-            write(number, &findings, (&name, &path), existing, &stop, clock)
+            let memory = MemoryGuard::of_sweep();
+            let to = (name.as_str(), path.as_path());
+            write(number, &findings, to, existing, &memory, &stop, clock)
         };
         let Execution::OnThreads(post) = &self.execution else {
             return Some(run(None));
@@ -269,10 +271,7 @@ fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
 
 /// Sweeps a grid and returns the event with the results, also after a stop.
 fn sweep(number: u64, grid: &PoseGrid, progress: &(dyn Fn(u64) -> bool + Sync)) -> WorkerEvent {
-    let memory = MemoryGuard::new(
-        None,
-        "take coarser steps, or sweep it in shards on the command line (taxel sweep --shard)",
-    );
+    let memory = MemoryGuard::of_sweep();
     if let Err(message) = memory.check(grid) {
         return WorkerEvent::Failed(number, message);
     }
@@ -291,12 +290,14 @@ fn write(
     findings: &Findings,
     (name, path): (&str, &Path),
     existing: Existing,
+    memory: &MemoryGuard,
     stop: &AtomicBool,
     clock: Option<&ProgressReporter<'_>>,
 ) -> WorkerEvent {
     let result = &findings.sweep;
     let written = if is_poses(path) {
-        write_poses(result, path, existing, stop, clock)
+        let go_on = |poses| proceed(poses, stop, clock) && memory.allows();
+        write_poses(result, path, existing, &go_on)
     } else {
         match AtlasFile::new(path) {
             Ok(file) => file.write(result, existing, stop).map(|()| true),
@@ -311,23 +312,23 @@ fn write(
         Err(error) if !stop.load(Ordering::Relaxed) => {
             WorkerEvent::Failed(number, error.to_string())
         }
+        _ if memory.exceeded() => WorkerEvent::Failed(number, memory.message()),
         _ => WorkerEvent::Failed(number, "stopped; nothing was written".to_owned()),
     }
 }
 
-/// Writes the poses of a sweep to a file. Sweeps the grid again, because the numbers of its poses are not kept.
-/// Returns true if the sweep was completed.
+/// Writes the poses of a sweep to a file. Sweeps the grid again, because the numbers of its poses are not kept, while
+/// the first result stays in memory. Returns true if the sweep was completed.
 fn write_poses(
     result: &SweepResult,
     path: &Path,
     existing: Existing,
-    stop: &AtomicBool,
-    clock: Option<&ProgressReporter<'_>>,
+    go_on: &(dyn Fn(u64) -> bool + Sync),
 ) -> Result<bool, ArchiveFileError> {
     let mut file = PoseFile::new(path, &result.grid, existing)?;
     // A full disk ends the work, too, but is reported as an error.
     let full = AtomicBool::new(false);
-    let progress = |poses: u64| proceed(poses, stop, clock) && !full.load(Ordering::Relaxed);
+    let progress = |poses: u64| go_on(poses) && !full.load(Ordering::Relaxed);
     let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
     let sweep = Sweep::new(&result.grid).progress(&progress);
     sweep.run_with_rows(&mut take);
@@ -336,4 +337,34 @@ fn write_poses(
     };
     whole.persist()?;
     Ok(true)
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::memory::MemorySize;
+    use crate::pose::{Anchor, Axis, Ranges};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+
+    #[test]
+    fn poses_that_need_too_much_memory_are_not_written_and_the_event_says_why() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
+        let ranges = Ranges::default().with(Axis::Angle, "0".parse().expect("a range"));
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        let findings = Findings::new(Sweep::new(&grid.expect("in range")).run());
+        let path = folder.path().join("poses.npy");
+        let to = ("poses.npy", path.as_path());
+        let stop = AtomicBool::new(false);
+        let written = |memory| write(7, &findings, to, Existing::Kept, &memory, &stop, None);
+        let small = MemoryGuard::new(Some(MemorySize(1)), "take coarser steps");
+        let refused = small.message();
+        assert_eq!(written(small), WorkerEvent::Failed(7, refused));
+        let left = std::fs::read_dir(folder.path()).expect("a folder").count();
+        assert_eq!(left, 0, "nothing is left");
+        let large = MemoryGuard::new(Some(MemorySize(1 << 50)), "");
+        assert!(matches!(written(large), WorkerEvent::Written(7, _)));
+    }
 }
