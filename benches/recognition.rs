@@ -7,6 +7,7 @@
 use std::hint::black_box;
 
 use taxel::prelude::*;
+use taxel::progress::ToTheEnd;
 use taxel::recognition::{Evaluation, Evidence, GridSteps, Model, Training, equal_figures};
 use taxel::sweep::Sweep;
 
@@ -75,7 +76,7 @@ fn answers(model: &Model) {
         black_box(model.nearest(black_box(&unknown)));
     });
     let pose = Work::new(|| {
-        black_box(model.pose_of(0, black_box(&known), &|_| true));
+        black_box(model.pose_of(0, black_box(&known), &ToTheEnd));
     });
     let answers = in_turn(100, [posterior, answer, nearest, pose]);
     let [posterior, answer, nearest, pose] = answers.map(|least| least.processor * 1e6);

@@ -59,6 +59,7 @@
 //!  frame        the measurements of a real sensor: crop, tare, gain, threshold -> imprint
 //!  pose         exact ranges, and the numbered poses of a grid
 //!  atlas        the distinct imprints of a grid, counted; statistics
+//!  progress     how long work reports what is done, and is stopped
 //!  sweep        every pose of a grid at once -> its atlas
 //!  recognition  models of shapes: how probable each is after a touch, and the limit of any method
 //!  prelude      the names that most programs import
@@ -91,7 +92,7 @@
 //!                     adds                                             requires
 //! (none)              everything except the items below; the only dependencies are glam, libm and serde
 //! json                formats::StoredShape, Job
-//! sweep               pose, atlas, sweep; formats::atlas, archive;     json
+//! sweep               pose, atlas, progress, sweep; formats::atlas, archive;     json
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile
 //! recognition         recognition; formats::read_model, write_model    sweep
 //! frames              formats::recording, stream                       json
@@ -170,6 +171,9 @@ pub mod pose;
 
 #[cfg(feature = "sweep")]
 pub mod atlas;
+
+#[cfg(feature = "sweep")]
+pub mod progress;
 
 #[cfg(feature = "sweep")]
 pub mod sweep;

@@ -12,7 +12,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::formats::value::counted;
+#[cfg(feature = "cli")]
+use crate::lock::locked;
+use crate::lock::try_locked;
 use crate::pose::PoseGrid;
+use crate::progress::{Progress, stop_if};
 use crate::sweep::{Sweep, TimingSample};
 
 /// The shortest time between two checks.
@@ -87,10 +91,17 @@ impl fmt::Display for MemorySize {
 /// Keeps a piece of work within its memory.
 #[derive(Debug)]
 pub(crate) struct MemoryGuard {
+    /// None if nobody set a limit and the system does not tell how much is free.
+    limits: Option<Limits>,
+}
+
+/// The limit on the memory of a piece of work.
+#[derive(Debug)]
+struct Limits {
     /// The end of each message, which says what the user can do about too little memory.
     advice: &'static str,
-    /// The allowed memory; None if the system does not tell how much is free.
-    allowed: Option<MemorySize>,
+    /// The allowed memory.
+    allowed: MemorySize,
     /// The time of the next check.
     due: Mutex<Instant>,
     /// Whether too much memory was in use at a check.
@@ -100,12 +111,14 @@ pub(crate) struct MemoryGuard {
 impl MemoryGuard {
     /// Creates a guard with this limit, or if None, with all memory that is free and within the system's limits.
     pub(crate) fn new(allowed: Option<MemorySize>, advice: &'static str) -> Self {
-        Self {
+        let allowed = allowed.or_else(|| free().map(|free| free.min(ADDRESSABLE)));
+        let limits = allowed.map(|allowed| Limits {
             advice,
-            allowed: allowed.or_else(|| free().map(|free| free.min(ADDRESSABLE))),
+            allowed,
             due: Mutex::new(Instant::now()),
             exceeded: AtomicBool::new(false),
-        }
+        });
+        Self { limits }
     }
 
     /// Creates a guard for a sweep on the screen, with its results in memory.
@@ -121,57 +134,39 @@ impl MemoryGuard {
         Self::new(None, "train the model in coarser steps to see poses")
     }
 
-    /// Returns true if the work may go on. It is cheap enough to be called often.
-    pub(crate) fn allows(&self) -> bool {
-        let Some(allowed) = self.allowed else {
-            return true;
+    /// Does work that reports to the progress it is given, which reports to `progress` and stops the work when memory
+    /// runs short.
+    ///
+    /// # Errors
+    /// Returns a message if memory ran short. The result is given up then, as there is no memory to use it.
+    pub(crate) fn limit<T, Done>(
+        &self,
+        progress: &dyn Progress<Done>,
+        work: impl FnOnce(&dyn Progress<Done>) -> T,
+    ) -> Result<T, String> {
+        let Some(limits) = &self.limits else {
+            return Ok(work(progress));
         };
-        if self.exceeded() {
-            return false;
+        let result = work(&|done| {
+            progress.add(done)?;
+            stop_if(!limits.allows())
+        });
+        if limits.exceeded() {
+            return Err(limits.message());
         }
-        // If another thread is checking, this one need not.
-        if let Ok(mut due) = self.due.try_lock()
-            && Instant::now() >= *due
-        {
-            *due = Instant::now() + PAUSE;
-            if used().is_some_and(|used| used.0 > allowed.min(ADDRESSABLE).0 / 2) {
-                self.exceeded.store(true, Ordering::Relaxed);
-                return false;
-            }
-        }
-        true
+        Ok(result)
     }
 
-    /// Like [`Self::allows`], but checks memory at each call: for work in few large steps.
+    /// Checks memory between two steps of a merge, which are few and large.
+    ///
+    /// # Errors
+    /// Returns a message if memory ran short.
     #[cfg(feature = "cli")]
-    pub(crate) fn allows_now(&self) -> bool {
-        if let Ok(mut due) = self.due.lock() {
-            *due = Instant::now();
+    pub(crate) fn check_merge(&self) -> Result<(), String> {
+        match &self.limits {
+            Some(limits) if !limits.allows_now() => Err(limits.message_of_merge()),
+            _ => Ok(()),
         }
-        self.allows()
-    }
-
-    /// Returns true if the work was stopped.
-    pub(crate) fn exceeded(&self) -> bool {
-        self.exceeded.load(Ordering::Relaxed)
-    }
-
-    /// Returns the message about work that was stopped.
-    pub(crate) fn message(&self) -> String {
-        let allowed = self.allowed.unwrap_or(MemorySize(0)).min(ADDRESSABLE);
-        let advice = self.advice;
-        format!("stopped: needs more memory than the {allowed} allowed; {advice}")
-    }
-
-    /// Returns the message about shards that cannot be merged within the limit.
-    #[cfg(feature = "cli")]
-    pub(crate) fn message_of_merge(&self) -> String {
-        let allowed = self.allowed.unwrap_or(MemorySize(0)).min(ADDRESSABLE);
-        let advice = self.advice;
-        format!(
-            "stopped: the merged imprints need more than half of the {allowed} of memory allowed, and writing them needs \
-             the other half; {advice}"
-        )
     }
 
     /// Refuses work that needs a known amount of memory, if that is too much.
@@ -180,8 +175,8 @@ impl MemoryGuard {
     /// Returns a message with both amounts.
     #[cfg(feature = "cli")]
     pub(crate) fn check_bytes(&self, needed: MemorySize) -> Result<(), String> {
-        match self.allowed {
-            Some(allowed) if needed > allowed => Err(self.refusal(needed, allowed)),
+        match &self.limits {
+            Some(limits) if needed > limits.allowed => Err(limits.refusal(needed)),
             _ => Ok(()),
         }
     }
@@ -191,19 +186,73 @@ impl MemoryGuard {
     /// # Errors
     /// Returns a message with the estimate.
     pub(crate) fn check(&self, grid: &PoseGrid) -> Result<(), String> {
-        let Some(allowed) = self.allowed else {
+        let Some(limits) = &self.limits else {
             return Ok(());
         };
         let expected = expected(grid);
         // The estimate may be twice too high: several angles may leave the same imprints.
-        if expected.0 / 2 <= allowed.0 {
+        if expected.0 / 2 <= limits.allowed.0 {
             return Ok(());
         }
-        Err(self.refusal(expected, allowed))
+        Err(limits.refusal(expected))
+    }
+}
+
+impl Limits {
+    /// Returns true if the work may go on. It is cheap enough to be called often.
+    fn allows(&self) -> bool {
+        if self.exceeded() {
+            return false;
+        }
+        // If another thread is checking, this one need not.
+        if let Some(mut due) = try_locked(&self.due)
+            && Instant::now() >= *due
+        {
+            *due = Instant::now() + PAUSE;
+            if used().is_some_and(|used| used.0 > self.addressable().0 / 2) {
+                self.exceeded.store(true, Ordering::Relaxed);
+                return false;
+            }
+        }
+        true
     }
 
-    fn refusal(&self, needed: MemorySize, allowed: MemorySize) -> String {
-        let advice = self.advice;
+    /// Like [`Self::allows`], but checks memory at each call.
+    #[cfg(feature = "cli")]
+    fn allows_now(&self) -> bool {
+        *locked(&self.due) = Instant::now();
+        self.allows()
+    }
+
+    /// Returns true if the work was stopped.
+    fn exceeded(&self) -> bool {
+        self.exceeded.load(Ordering::Relaxed)
+    }
+
+    /// Returns the part of the allowed memory that has addresses.
+    fn addressable(&self) -> MemorySize {
+        self.allowed.min(ADDRESSABLE)
+    }
+
+    /// Returns the message about work that was stopped.
+    fn message(&self) -> String {
+        let (allowed, advice) = (self.addressable(), self.advice);
+        format!("stopped: needs more memory than the {allowed} allowed; {advice}")
+    }
+
+    /// Returns the message about shards that cannot be merged within the limit.
+    #[cfg(feature = "cli")]
+    fn message_of_merge(&self) -> String {
+        let (allowed, advice) = (self.addressable(), self.advice);
+        format!(
+            "stopped: the merged imprints need more than half of the {allowed} of memory allowed, and writing them needs \
+             the other half; {advice}"
+        )
+    }
+
+    /// Returns the message about work that is not begun.
+    fn refusal(&self, needed: MemorySize) -> String {
+        let (allowed, advice) = (self.allowed, self.advice);
         format!("about {needed} of memory needed, but only {allowed} allowed; {advice}")
     }
 }
@@ -309,9 +358,12 @@ fn free() -> Option<MemorySize> {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
     use crate::figure::{Figure, FigureKind};
     use crate::pose::{Anchor, Axis, Ranges};
+    use crate::progress::ToTheEnd;
     use crate::sensor::Sensor;
     use crate::source::Source;
 
@@ -335,26 +387,27 @@ mod tests {
     #[test]
     fn work_stops_at_half_of_the_address_space_whatever_is_allowed() {
         assert!(ADDRESSABLE >= MemorySize((1 << 31) - 1));
-        assert!(free().is_none() || MemoryGuard::new(None, "").allowed <= Some(ADDRESSABLE));
-        let guard = MemoryGuard::new(Some(MemorySize(u64::MAX)), "");
+        let limits = |allowed| MemoryGuard::new(allowed, "").limits;
+        let free = limits(None);
+        assert!(free.is_none_or(|limits| limits.allowed <= ADDRESSABLE));
+        let limits = limits(Some(MemorySize(u64::MAX))).expect("one is set");
         let said = format!("more memory than the {ADDRESSABLE} ");
-        assert!(guard.message().contains(&said), "{}", guard.message());
+        assert!(limits.message().contains(&said), "{}", limits.message());
         // An estimate may be far too high: what is allowed decides whether the work begins.
-        assert_eq!(guard.allowed, Some(MemorySize(u64::MAX)));
+        assert_eq!(limits.allowed, MemorySize(u64::MAX));
     }
 
     #[test]
     fn a_guard_stops_what_needs_too_much() {
         let small = MemoryGuard::new(Some(MemorySize(1024)), "work in shards (--shard)");
         let large = MemoryGuard::new(Some(MemorySize(1 << 50)), "");
-        assert!(large.allows() && !large.exceeded());
-        assert_eq!(small.allows(), used().is_none());
-        assert_eq!(small.exceeded(), used().is_some());
-        assert!(
-            small.message().contains("more memory than the 1.0K"),
-            "{}",
-            small.message()
-        );
+        let flow = |guard: &MemoryGuard| guard.limit(&ToTheEnd, |progress| progress.add(1_u64));
+        assert_eq!(flow(&large), Ok(ControlFlow::Continue(())));
+        let stopped = "stopped: needs more memory than the 1.0K allowed; work in shards (--shard)";
+        match used() {
+            Some(_) => assert_eq!(flow(&small), Err(stopped.to_owned())),
+            None => assert_eq!(flow(&small), Ok(ControlFlow::Continue(()))),
+        }
         let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, &Sensor::default()));
         let cell = Ranges::default().with(Axis::Angle, "0:359.9:0.1".parse().expect("a range"));
         let grid =
@@ -362,6 +415,13 @@ mod tests {
         let refused = small.check(&grid).expect_err("far too little");
         assert!(refused.contains("--shard"), "{refused}");
         assert_eq!(large.check(&grid), Ok(()));
+    }
+
+    #[test]
+    fn work_that_its_own_progress_stops_is_no_matter_of_memory() {
+        let guard = MemoryGuard::new(Some(MemorySize(1 << 50)), "");
+        let stopped = guard.limit(&|_: u64| ControlFlow::Break(()), |progress| progress.add(1));
+        assert_eq!(stopped, Ok(ControlFlow::Break(())));
     }
 
     #[cfg(target_os = "linux")]

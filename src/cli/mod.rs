@@ -64,7 +64,7 @@ use input::lines::LineInput;
 use input::shapes::Shelf;
 use output::charset::Charset;
 use output::note::note;
-use output::progress::Progress;
+use output::progress::ProgressDisplay;
 use settings::resolved::Effective;
 
 use crate::sensor::Sensor;
@@ -235,7 +235,7 @@ impl Surroundings {
         let processing = input::processing::processing(&asked.processing)?;
         let model = asked.naming.find(&self.shelf)?;
         let recording = frames::open(asked)?;
-        let progress = |poses| Progress::new(poses, false, self.charset);
+        let progress = |poses| ProgressDisplay::new(poses, false, self.charset);
         let model = model.map(|model| model.ready(&progress)).transpose()?;
         let noise = asked.naming.noise_with(processing.view.mask.as_ref());
         let mut answers = BufWriter::new(io::stdout().lock());

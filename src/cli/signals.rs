@@ -9,7 +9,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 
 use crate::cli::error::CliError;
-use crate::memory::MemoryGuard;
+use crate::progress::{Progress, stop_if};
 use crate::recognition::TrainingError;
 
 /// The signals that stop the work, each with the exit status that a shell reports for it: 128 plus its number.
@@ -68,6 +68,17 @@ impl Signals {
         Ok(Self { stopped, last })
     }
 
+    /// Returns the progress of work that `display` shows, and that stops at a signal.
+    pub(crate) fn progress<'a, Done: 'a>(
+        &'a self,
+        display: &'a dyn Progress<Done>,
+    ) -> impl Progress<Done> + 'a {
+        move |done| {
+            display.add(done)?;
+            stop_if(!self.goes_on())
+        }
+    }
+
     /// Returns true until a signal asks to stop.
     pub(crate) fn goes_on(&self) -> bool {
         !self.stopped.load(Ordering::Relaxed)
@@ -82,10 +93,9 @@ impl Signals {
         }
     }
 
-    /// Returns the error of a training. If it was stopped, the error tells whether memory ran short or a signal came.
-    pub(crate) fn training_failure(&self, error: TrainingError, memory: &MemoryGuard) -> CliError {
+    /// Returns the error of a training, which only a signal stops.
+    pub(crate) fn training_failure(&self, error: TrainingError) -> CliError {
         match error {
-            TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
             TrainingError::Stopped => self.failure(),
             error => error.into(),
         }

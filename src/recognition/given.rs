@@ -9,6 +9,7 @@ use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactV
 use crate::imprint::Imprint;
 use crate::index::narrow;
 use crate::parameter::number::share;
+use crate::progress::Progress;
 use crate::quote::{did_you_mean, shortened};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, ShapeCount, first_of_most};
@@ -226,6 +227,7 @@ impl GivenDescriptors {
     /// as wrong. None if `progress` stops it, or if no imprint fits on the sensor of the touches.
     ///
     /// ```
+    /// use taxel::progress::ToTheEnd;
     /// use taxel::recognition::{GivenDescriptors, GridSteps, Noise, NoisyTouches, Training, equal_figures};
     ///
     /// let steps = GridSteps::new(4, 15)?;
@@ -234,7 +236,7 @@ impl GivenDescriptors {
     /// let rate = |noise: f64| {
     ///     let noise = Noise::new(noise).expect("below ½");
     ///     let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
-    ///     given.rate(&model, &touches, &|_| true).expect("not stopped")
+    ///     given.rate(&model, &touches, &ToTheEnd).expect("not stopped")
     /// };
     /// assert!(rate(0.0).accuracy() > rate(0.02).accuracy());
     /// assert_eq!(rate(0.0).held_share(), 1.0);
@@ -244,7 +246,7 @@ impl GivenDescriptors {
         &self,
         model: &Model,
         touches: &NoisyTouches,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Option<RecognitionRate> {
         let table = GivenTable::new(model);
         let mut counts: HashMap<Vec<ExactValue>, Vec<u128>> = HashMap::new();

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::imprint::Imprint;
 use crate::parameter::number::share;
 use crate::pose::{Axis, PoseGrid};
+use crate::progress::Progress;
 use crate::recognition::model::{Model, ShapeCount};
 use crate::recognition::training::{Training, TrainingError};
 use crate::sensor::MatrixSize;
@@ -63,15 +64,15 @@ impl Model {
     /// only forms and files have; what the sensor cuts off there leaves an imprint of its own, or an empty one.
     ///
     /// It takes about as long as the training, and more where many imprints are new. `progress` is called from time to
-    /// time, from any thread, with the work that is done; it stops the test by returning false.
+    /// time, from any thread, with the work that is done; it stops the test by returning `Break`.
     ///
     /// # Errors
     /// Returns [`TrainingError::Steps`] if half a step has too many decimals, or [`TrainingError::Stopped`].
     pub fn half_step(
         &self,
-        progress: &(dyn Fn(HalfStepWork) -> bool + Sync),
+        progress: &dyn Progress<HalfStepWork>,
     ) -> Result<HalfStep, TrainingError> {
-        let touched = |poses| progress(HalfStepWork::Poses(poses));
+        let touched = |poses| progress.add(HalfStepWork::Poses(poses));
         let between = self.shifted_by_half_a_step(&touched)?;
         let keys = between.keys();
         let known: Vec<Option<usize>> = (0..keys.len())
@@ -84,7 +85,7 @@ impl Model {
             of: missing.len() as u64,
         };
         let nearest = missing.par_iter().map(|&key| {
-            if !progress(search) {
+            if progress.add(search).is_break() {
                 return Err(TrainingError::Stopped);
             }
             let nearest = self.nearest(&with_margin(keys.imprint(key).as_ref()));
@@ -122,10 +123,7 @@ impl Model {
     }
 
     /// Trains the same shapes half a step beyond each pose of the model.
-    fn shifted_by_half_a_step(
-        &self,
-        progress: &(dyn Fn(u64) -> bool + Sync),
-    ) -> Result<Self, TrainingError> {
+    fn shifted_by_half_a_step(&self, progress: &dyn Progress) -> Result<Self, TrainingError> {
         let mut ranges = *self.ranges();
         for axis in [Axis::X0, Axis::Y0, Axis::Angle] {
             let shifted = ranges[axis].shifted_by_half_a_step();
@@ -164,6 +162,7 @@ mod tests {
 
     use super::*;
     use crate::pose::{Anchor, Ranges};
+    use crate::progress::{ToTheEnd, stop_if};
     use crate::recognition::sets::{GridSteps, equal_figures};
     use crate::sensor::Sensor;
     use crate::sweep::Shard;
@@ -176,7 +175,7 @@ mod tests {
         let calls = AtomicUsize::new(0);
         let stop_after = |most: usize| {
             calls.store(0, Ordering::Relaxed);
-            model.half_step(&|_| calls.fetch_add(1, Ordering::Relaxed) < most)
+            model.half_step(&|_| stop_if(calls.fetch_add(1, Ordering::Relaxed) >= most))
         };
         let result = stop_after(usize::MAX).expect("not stopped");
         assert!(result.missing() > 0.0);
@@ -189,7 +188,7 @@ mod tests {
                     all.swap(of, Ordering::Relaxed)
                 }
             };
-            true
+            stop_if(false)
         });
         assert_eq!(reported, Ok(result));
         let expected = model.poses() * model.shapes().len() as u64;
@@ -208,7 +207,7 @@ mod tests {
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
         let touches = |training: Training| {
             let model = training.run().expect("not stopped");
-            let result = model.half_step(&|_| true).expect("few decimals");
+            let result = model.half_step(&ToTheEnd).expect("few decimals");
             assert_eq!(result.touches, u128::from(model.poses()) * model.weights());
             result.touches
         };
@@ -266,7 +265,7 @@ mod tests {
                     }
                 }
             }
-            let result = model.half_step(&|_| true).expect("not stopped");
+            let result = model.half_step(&ToTheEnd).expect("not stopped");
             let found = (result.touches, result.held, result.right);
             assert_eq!(found, (touches, held, right), "{axis:?} {range}");
         }
@@ -312,6 +311,6 @@ mod tests {
             }
         }
         assert!(expected.right_with_nearest > expected.right);
-        assert_eq!(model.half_step(&|_| true), Ok(expected));
+        assert_eq!(model.half_step(&ToTheEnd), Ok(expected));
     }
 }

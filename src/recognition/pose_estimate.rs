@@ -3,6 +3,7 @@
 use crate::imprint::Imprint;
 use crate::index::narrow;
 use crate::pose::{Axis, PoseGrid, exact_period};
+use crate::progress::Progress;
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, float};
 use crate::source::Source;
@@ -86,6 +87,7 @@ impl Model {
     ///
     /// ```
     /// use taxel::prelude::*;
+    /// use taxel::progress::ToTheEnd;
     /// use taxel::recognition::{NamedShape, Training};
     ///
     /// let sensor = Sensor::default();
@@ -93,7 +95,7 @@ impl Model {
     /// let ranges = Ranges::default().with(Axis::Angle, "0:350:10".parse()?);
     /// let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
     /// let touch = "........\n.######.\n.######.\n........".parse()?;
-    /// let pose = model.pose_of(0, &touch, &|_| true).expect("the bar leaves it");
+    /// let pose = model.pose_of(0, &touch, &ToTheEnd).expect("the bar leaves it");
     /// let angle = pose.angle.expect("a bar has one");
     /// assert_eq!((angle.period, angle.known().is_some()), (180.0, true));
     /// assert!(angle.standard_deviation.is_some_and(|spread| spread < 10.0));
@@ -104,7 +106,7 @@ impl Model {
         &self,
         shape: usize,
         imprint: &Imprint,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Option<PoseEstimate> {
         self.poses_of(shape, imprint, 0, progress)
             .map(|(estimate, _)| estimate)
@@ -118,7 +120,7 @@ impl Model {
         shape: usize,
         imprint: &Imprint,
         most: usize,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Option<(PoseEstimate, Vec<PlacedSource>)> {
         let bounds = imprint.bounds()?;
         let key = ImprintKey::of(imprint);
@@ -354,6 +356,7 @@ fn fewest(degrees: &[u64], all: u64) -> (u32, u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::ToTheEnd;
     use crate::recognition::model::ShapeCount;
     use crate::recognition::sets::{GridSteps, equal_figures};
     use crate::recognition::training::Training;
@@ -371,7 +374,7 @@ mod tests {
             let mut plane = Plane::new(*grid.sensor());
             let imprint = plane.touch(&grid.placed(4321));
             let key = ImprintKey::of(&imprint);
-            let estimate = model.pose_of(shape, &imprint, &|_| true).expect("it does");
+            let estimate = model.pose_of(shape, &imprint, &ToTheEnd).expect("it does");
             let bounds = imprint.bounds().expect("not empty");
             let (mut poses, mut x, mut square) = (0_u32, 0.0, 0.0);
             for number in 0..grid.poses() {
@@ -393,7 +396,7 @@ mod tests {
             assert_eq!(own.map(|count| count.poses).sum::<u64>(), estimate.poses);
             assert!((estimate.position[0] - mean).abs() < 1e-9);
             assert!((estimate.standard_deviation[0] - spread).abs() < 1e-6);
-            let (same, poses) = (model.poses_of(shape, &imprint, 9, &|_| true)).expect("it does");
+            let (same, poses) = (model.poses_of(shape, &imprint, 9, &ToTheEnd)).expect("it does");
             assert_eq!(same, estimate);
             assert!((1..=9).contains(&poses.len()));
             for placed in &poses {
@@ -411,13 +414,13 @@ mod tests {
         }
         let imprint = Plane::new(*grids[0].sensor()).touch(&grids[0].placed(4321));
         let seen = |most| {
-            let poses = model.poses_of(0, &imprint, most, &|_| true);
+            let poses = model.poses_of(0, &imprint, most, &ToTheEnd);
             poses.map_or(0, |(_, poses)| poses.len())
         };
         assert!(seen(usize::MAX) > 2, "all of them");
         assert_eq!(seen(usize::MAX), seen(1_000_000));
         assert_eq!(
-            model.pose_of(7, &Imprint::empty(MatrixSize::of(4, 4)), &|_| true),
+            model.pose_of(7, &Imprint::empty(MatrixSize::of(4, 4)), &ToTheEnd),
             None
         );
     }
@@ -430,7 +433,7 @@ mod tests {
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(21));
         let poses = |model: &Model| {
             let held: u64 = model.counts_of(&imprint).iter().map(own_poses).sum();
-            let estimate = model.pose_of(1, &imprint, &|_| true);
+            let estimate = model.pose_of(1, &imprint, &ToTheEnd);
             assert_eq!(estimate.map_or(0, |estimate| estimate.poses), held);
             held
         };
@@ -458,7 +461,7 @@ mod tests {
         let grid = training.grids()[0].clone();
         let model = training.run().expect("not stopped");
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(21));
-        let pose = model.pose_of(0, &imprint, &|_| true).expect("it leaves it");
+        let pose = model.pose_of(0, &imprint, &ToTheEnd).expect("it leaves it");
         let angle = pose.angle.expect("it has one");
         assert!((angle.period - 360.0 / 7.0).abs() < 1e-12, "{angle:?}");
         assert!(angle.shortest_arc.1 <= 52, "{angle:?}");

@@ -7,6 +7,7 @@ use crate::parameter::{Parameter, named};
 use crate::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
 };
+use crate::progress::Progress;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, NamedShape, check_shapes};
 use crate::recognition::sets::CellPositions;
@@ -68,6 +69,7 @@ named!(SizeAxis, "axis", &SizeAxis::ALL);
 ///
 /// ```
 /// use taxel::prelude::*;
+/// use taxel::progress::ToTheEnd;
 /// use taxel::recognition::{CellPositions, NamedShape, Separation, SizeAxis};
 ///
 /// let sensor = Sensor::default();
@@ -77,7 +79,7 @@ named!(SizeAxis, "axis", &SizeAxis::ALL);
 /// ];
 /// let separation = Separation::new(shapes)?.positions(CellPositions::COARSE).angles("0:350:10".parse()?);
 /// let scales = "1:5:1".parse()?;
-/// let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &|_| true)?;
+/// let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &ToTheEnd)?;
 /// assert!(points[0].error() > 0.3 && points[4].error() < 0.05);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -258,7 +260,7 @@ impl Separation {
         axis: SizeAxis,
         value: f64,
         threshold: f64,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Result<SeparationPoint, TrainingError> {
         let (point, ..) = self.model_at(axis, value, threshold, progress)?;
         Ok(point)
@@ -274,7 +276,7 @@ impl Separation {
         axis: SizeAxis,
         value: f64,
         threshold: f64,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Result<(SeparationPoint, Model, Evaluation), TrainingError> {
         let scale = axis.scale(value);
         let training = self.training(scale, threshold)?;
@@ -303,7 +305,7 @@ impl Separation {
         axis: SizeAxis,
         values: &DecimalRange,
         threshold: f64,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Result<Vec<SeparationPoint>, TrainingError> {
         let values = axis.smallest_first(values);
         let points = values.into_iter();
@@ -325,7 +327,7 @@ impl Separation {
         axis: SizeAxis,
         scan: &[SeparationPoint],
         error: f64,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Result<Option<SmallestSize>, TrainingError> {
         let Some(first) = scan.iter().position(|point| point.error() <= error) else {
             return Ok(None);
@@ -378,6 +380,7 @@ mod tests {
     use super::*;
     use crate::picture::Picture;
     use crate::pose::Ranges;
+    use crate::progress::{ToTheEnd, stop_if};
     use crate::recognition::sets::equal_figures;
 
     fn coarse(shapes: Vec<NamedShape>) -> Separation {
@@ -402,7 +405,7 @@ mod tests {
             ]
         };
         for (scale, threshold) in [(1.0, 0.5), (1.5, 0.5), (2.0, 0.3)] {
-            let point = coarse(set(1.0)).at(SizeAxis::Scale, scale, threshold, &|_| true);
+            let point = coarse(set(1.0)).at(SizeAxis::Scale, scale, threshold, &ToTheEnd);
             let point = point.expect("it fits");
             let sensor = Sensor::new(32, 32).and_then(|s| s.with(Parameter::Threshold, threshold));
             let cell: DecimalRange = "15:15.9:0.1".parse().expect("a range");
@@ -444,7 +447,7 @@ mod tests {
             let separation = Separation::new(shapes.clone()).expect("a set");
             let separation = separation.positions(CellPositions::new(positions).expect("divides"));
             let separation = separation.angles("0:350:10".parse().expect("a range"));
-            let point = separation.at(SizeAxis::Scale, 1.0, 0.5, &|_| true);
+            let point = separation.at(SizeAxis::Scale, 1.0, 0.5, &ToTheEnd);
             let point = point.expect("it fits");
             assert_eq!(
                 (point.side, point.right, point.certain, point.keys),
@@ -472,7 +475,7 @@ mod tests {
                 SizeAxis::Scale,
                 &"1:3:1".parse().expect("a range"),
                 0.5,
-                &|_| true,
+                &ToTheEnd,
             )
             .expect("they fit")
             .iter()
@@ -480,11 +483,11 @@ mod tests {
             .collect();
         assert!(errors[0] > errors[2] && errors[2] < 0.01, "{errors:?}");
         // Half the pitch is twice the scale.
-        let pitch = separation.at(SizeAxis::Pitch, 0.5, 0.5, &|_| true);
+        let pitch = separation.at(SizeAxis::Pitch, 0.5, 0.5, &ToTheEnd);
         assert_eq!(pitch.expect("it fits").error(), errors[1]);
         assert_eq!(
             separation
-                .at(SizeAxis::Scale, 40.0, 0.5, &|_| true)
+                .at(SizeAxis::Scale, 40.0, 0.5, &ToTheEnd)
                 .expect_err("no sensor is that large"),
             TrainingError::Large
         );
@@ -495,13 +498,13 @@ mod tests {
         let separation = coarse(equal_figures());
         let scan = |range: &str| {
             let range: DecimalRange = range.parse().expect("a range");
-            let points = separation.scan(SizeAxis::Scale, &range, 0.5, &|_| true);
+            let points = separation.scan(SizeAxis::Scale, &range, 0.5, &ToTheEnd);
             points.expect("they fit")
         };
         let points = scan("0.5:1.7:0.2");
         assert!(points[0].error() > 0.5 && points[6].error() < 0.1);
         let wanted = 0.2;
-        let found = separation.smallest(SizeAxis::Scale, &points, wanted, &|_| true);
+        let found = separation.smallest(SizeAxis::Scale, &points, wanted, &ToTheEnd);
         let found = found.expect("not stopped").expect("it is reached");
         assert_eq!(found.step, 0.02);
         assert!(found.point.error() <= wanted);
@@ -514,12 +517,12 @@ mod tests {
         assert_eq!(first.map(|point| point.value), Some(found.point.value));
         // An error that is just reached is small enough.
         let just = found.point.error();
-        let again = separation.smallest(SizeAxis::Scale, &points, just, &|_| true);
+        let again = separation.smallest(SizeAxis::Scale, &points, just, &ToTheEnd);
         let again = again.expect("not stopped").expect("it is reached");
         assert_eq!((again.point, again.step), (found.point, found.step));
-        let never = separation.smallest(SizeAxis::Scale, &points, 0.001, &|_| true);
+        let never = separation.smallest(SizeAxis::Scale, &points, 0.001, &ToTheEnd);
         assert_eq!(never, Ok(None));
-        let at_once = separation.smallest(SizeAxis::Scale, &points[4..], 0.5, &|_| true);
+        let at_once = separation.smallest(SizeAxis::Scale, &points[4..], 0.5, &ToTheEnd);
         let at_once = at_once.expect("not stopped").expect("it is reached");
         assert_eq!((at_once.point.value, at_once.step), (1.3, 0.0));
     }
@@ -527,7 +530,7 @@ mod tests {
     #[test]
     fn it_can_be_stopped() {
         let separation = coarse(equal_figures());
-        let stopped = separation.at(SizeAxis::Scale, 1.0, 0.5, &|_| false);
+        let stopped = separation.at(SizeAxis::Scale, 1.0, 0.5, &|_| stop_if(true));
         assert_eq!(stopped, Err(TrainingError::Stopped));
         assert_eq!(separation.touches(), 7 * 100 * 72);
     }
@@ -546,7 +549,7 @@ mod tests {
         };
         let separation = coarse(equal_figures());
         let smallest = |scan: &[SeparationPoint]| {
-            let found = separation.smallest(SizeAxis::Scale, scan, 0.1, &|_| true);
+            let found = separation.smallest(SizeAxis::Scale, scan, 0.1, &ToTheEnd);
             found.expect("nothing is computed")
         };
         let scan = [point(1.0, 9), point(2.0, 8), point(3.0, 9), point(4.0, 10)];

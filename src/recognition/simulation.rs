@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::imprint::Imprint;
 use crate::index::index;
 use crate::parameter::number::share;
+use crate::progress::Progress;
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, first_of_most, float};
 use crate::recognition::noise::Noise;
@@ -202,17 +203,18 @@ impl Model {
     /// whose imprints fits has no touches.
     ///
     /// `progress` is called with the number of touches done since the last call, and stops the simulation by
-    /// returning `false`. Returns None if it was stopped, or if there is no touch.
+    /// returning `Break`. Returns None if it was stopped, or if there is no touch.
     ///
     /// ```
+    /// use taxel::progress::ToTheEnd;
     /// use taxel::recognition::{GridSteps, Noise, NoisyTouches, Training, equal_figures};
     ///
     /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
     /// let noise = Noise::new(0.01)?;
     /// let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
-    /// let rate = model.recognition_rate(&touches, &noise, &|_| true).expect("not stopped");
+    /// let rate = model.recognition_rate(&touches, &noise, &ToTheEnd).expect("not stopped");
     /// let touches = touches.with_random_dead(64);
-    /// let fewer = model.recognition_rate(&touches, &noise, &|_| true).expect("not stopped");
+    /// let fewer = model.recognition_rate(&touches, &noise, &ToTheEnd).expect("not stopped");
     /// assert!(fewer.accuracy() < rate.accuracy());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -220,7 +222,7 @@ impl Model {
         &self,
         touches: &NoisyTouches,
         assumed: &Noise,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Option<RecognitionRate> {
         let judge = |touch: &Imprint, dead: &Imprint| {
             let known = match assumed.dead() {
@@ -241,7 +243,7 @@ impl Model {
     pub(super) fn simulated(
         &self,
         touches: &NoisyTouches,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
         judge: &(dyn Fn(&Imprint, &Imprint) -> Judgement + Sync),
     ) -> Option<RecognitionRate> {
         /// Touches that one thread draws and counts at a time.
@@ -274,7 +276,7 @@ impl Model {
                 let dead = random_taxels(size, touches.random_dead, &mut random_of_dead);
                 let touch = self.touch_of(key, touches, &mut random).without(&dead);
                 rate.count(shape, &judge(&touch, &dead));
-                if !progress(1) {
+                if progress.add(1).is_break() {
                     stopped.store(true, Ordering::Relaxed);
                 }
             }
@@ -327,6 +329,7 @@ mod tests {
     use super::*;
     use crate::figure::Figure;
     use crate::pose::{Anchor, Ranges};
+    use crate::progress::ToTheEnd;
     use crate::recognition::{NamedShape, Training};
     use crate::sensor::Sensor;
 
@@ -347,7 +350,7 @@ mod tests {
         let model = training.expect("a set").run().expect("not stopped");
         let noise = Noise::new(0.0).expect("in range");
         let touches = NoisyTouches::new(sensor.size(), noise, 2000, 0);
-        let rate = model.recognition_rate(&touches, &noise, &|_| true);
+        let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
         let rate = rate.expect("not stopped");
         // The long one is always named, so only the confidence is left to chance.
         assert_eq!((rate.touches, rate.right), (4000, 2000));
@@ -373,7 +376,7 @@ mod tests {
         let noise = Noise::new(0.0).expect("in range");
         let rate = |seed| {
             let touches = NoisyTouches::new(sensor.size(), noise, 200, seed).with_random_dead(2);
-            let rate = model.recognition_rate(&touches, &noise, &|_| true);
+            let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
             rate.expect("not stopped")
         };
         let rates: Vec<RecognitionRate> = (0..100).map(rate).collect();
@@ -403,7 +406,7 @@ mod tests {
         let rate = |columns| {
             let sensor = Sensor::new(columns, 1).expect("in range");
             let touches = NoisyTouches::new(sensor.size(), noise, 10, 0);
-            let rate = model.recognition_rate(&touches, &noise, &|_| true);
+            let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
             rate.map(|rate| rate.touches)
         };
         assert_eq!((rate(5), rate(4), rate(1)), (Some(10), None, None));

@@ -4,6 +4,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::index::wide;
+use crate::progress::Progress;
 use crate::recognition::model::{Model, add_log_counts, first_of_most, float};
 use crate::recognition::random::generator;
 use crate::recognition::simulation::Draw;
@@ -34,14 +35,14 @@ impl Model {
     /// number of touches for each shape, in the order of the set. If `until` is above 1 or NaN, no run reaches it; if
     /// it is 0 or less, every run reaches it with its first touch.
     ///
-    /// `progress` is called with 1 after each run, from any thread, and stops the simulation by returning `false`.
+    /// `progress` is called with 1 after each run, from any thread, and stops the simulation by returning `Break`.
     /// Returns None if it was stopped.
     pub fn touches_until(
         &self,
         until: f64,
         runs: u64,
         seed: u64,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Option<Vec<TouchesUntil>> {
         let draws = Draw::all(self, |_| 1);
         let shapes = self.shapes().len() as u64;
@@ -50,7 +51,8 @@ impl Model {
                 let task = run.wrapping_mul(shapes).wrapping_add(shape as u64);
                 let mut random = generator(seed, task);
                 let length = self.run_until(until, draw, shape, &mut random);
-                progress(1).then(|| counts.with(length))
+                let flow = progress.add(1);
+                flow.is_continue().then(|| counts.with(length))
             };
             (0..runs)
                 .into_par_iter()
@@ -151,6 +153,7 @@ mod tests {
     use super::*;
     use crate::figure::Figure;
     use crate::pose::{Anchor, Ranges};
+    use crate::progress::{ToTheEnd, stop_if};
     use crate::recognition::{NamedShape, Noise, NoisyTouches, Training};
     use crate::sensor::Sensor;
 
@@ -172,7 +175,7 @@ mod tests {
         let training = Training::new(shapes, sensor, Anchor::Centre, Ranges::default());
         let model = training.expect("a set").run().expect("not stopped");
         for runs in [1_000_000_000, u64::MAX] {
-            assert_eq!(model.touches_until(0.9, runs, 0, &|_| false), None);
+            assert_eq!(model.touches_until(0.9, runs, 0, &|_| stop_if(true)), None);
         }
     }
 
@@ -193,15 +196,15 @@ mod tests {
         let shapes = ["one", "other"].map(|name| NamedShape::new(name, bar));
         let training = Training::new(shapes, sensor, Anchor::Centre, Ranges::default());
         let model = training.expect("a set").run().expect("not stopped");
-        let touches = model.touches_until(0.4, 10, 0, &|_| true);
+        let touches = model.touches_until(0.4, 10, 0, &ToTheEnd);
         let right = touches.map(|own| own.iter().map(|own| own.right).collect());
         assert_eq!(right, Some(vec![10, 0]));
         // Each has exactly this probability.
-        let half = model.touches_until(0.5, 2, 0, &|_| true);
+        let half = model.touches_until(0.5, 2, 0, &ToTheEnd);
         let means = half.map(|own| own.iter().map(|own| own.mean).collect());
         assert_eq!(means, Some(vec![Some(1.0), Some(1.0)]));
         // They are never told apart, so there is no mean.
-        let never = model.touches_until(0.9, 2, 0, &|_| true);
+        let never = model.touches_until(0.9, 2, 0, &ToTheEnd);
         let means = never.map(|own| {
             own.iter()
                 .map(|own| (own.mean, own.standard_error))
@@ -210,7 +213,7 @@ mod tests {
         assert_eq!(means, Some(vec![(None, None), (None, None)]));
         let noise = Noise::new(0.0).expect("in range");
         let touches = NoisyTouches::new(sensor.size(), noise, 10, 0);
-        let rate = model.recognition_rate(&touches, &noise, &|_| true);
+        let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
         assert_eq!(rate.map(|rate| (rate.touches, rate.right)), Some((20, 10)));
         // One is always named right, the other never: the accuracy is ½ for every seed.
         let error = rate.map(|rate| (rate.accuracy(), rate.standard_error()));

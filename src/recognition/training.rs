@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::parameter::number::grouped;
 use crate::pose::{Anchor, GridError, PoseGrid, Ranges};
+use crate::progress::{Progress, ToTheEnd};
 use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::model::{
     Gathered, Model, ModelError, ModelHead, NamedShape, ShapeCount, check_shapes,
@@ -45,7 +46,7 @@ pub struct Training<'a> {
     shapes: Vec<NamedShape>,
     allow_cut: bool,
     shard: Shard,
-    progress: &'a (dyn Fn(u64) -> bool + Sync),
+    progress: &'a dyn Progress,
 }
 
 impl fmt::Debug for Training<'_> {
@@ -147,7 +148,7 @@ impl<'a> Training<'a> {
             shapes,
             allow_cut: false,
             shard: Shard::WHOLE,
-            progress: &|_| true,
+            progress: &ToTheEnd,
         }
     }
 
@@ -163,9 +164,9 @@ impl<'a> Training<'a> {
         self
     }
 
-    /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call, which
-    /// is 0 within a long row. The training stops when it returns `false`.
-    pub fn progress(mut self, progress: &'a (dyn Fn(u64) -> bool + Sync)) -> Self {
+    /// Reports to `progress` from time to time, from any thread, the number of poses done since the last report, which
+    /// is 0 within a long row. The training stops when it returns `Break`.
+    pub fn progress(mut self, progress: &'a dyn Progress) -> Self {
         self.progress = progress;
         self
     }

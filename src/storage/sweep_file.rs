@@ -5,14 +5,16 @@
 
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom, Write};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use crate::formats::atlas::{write_csv, write_jsonl};
 use crate::formats::ending::has_ending;
 use crate::formats::npy::Dtype;
 use crate::formats::{ArchiveError, archive, npy};
 use crate::pose::PoseGrid;
+use crate::progress::stop_if;
 use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile, check_writable};
 use crate::storage::error::ArchiveFileError;
 use crate::storage::first_error::FirstErrorWriter;
@@ -147,7 +149,6 @@ pub fn is_poses(name: impl AsRef<Path>) -> bool {
 /// The array is that of a whole grid, so the rows must come from a sweep of the whole grid, not of a shard.
 ///
 /// ```
-/// use std::sync::atomic::{AtomicBool, Ordering};
 /// use taxel::prelude::*;
 /// use taxel::storage::{Existing, PoseFile};
 ///
@@ -157,10 +158,7 @@ pub fn is_poses(name: impl AsRef<Path>) -> bool {
 /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
 /// let grid = PoseGrid::new(hexagon, Sensor::default(), Anchor::Centre, ranges)?;
 /// let mut file = PoseFile::new(&path, &grid, Existing::Kept)?;
-/// let failed = AtomicBool::new(false);
-/// let go_on = |_| !failed.load(Ordering::Relaxed);
-/// let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &failed);
-/// let result = Sweep::new(&grid).progress(&go_on).run_with_rows(&mut take);
+/// let result = Sweep::new(&grid).run_with_rows(&mut |row, ids| file.take(row, ids));
 /// if let Some(whole) = file.finish()? {
 ///     whole.persist()?;
 /// }
@@ -211,19 +209,16 @@ impl PoseFile {
     }
 
     /// Writes a row: its number in the grid and the atlas numbers of its poses. Takes each row once, in any order. If
-    /// the row cannot be written, or is not one of the grid, `stopped` becomes true and [`Self::finish`] returns the
-    /// error.
-    pub fn take(&mut self, row: u64, ids: &[u32], stopped: &AtomicBool) {
-        if self.error.is_some() {
-            return;
-        }
-        match self.write_row(row, ids) {
-            Ok(()) => self.missing = self.missing.saturating_sub(1),
-            Err(error) => {
-                self.error = Some(error);
-                stopped.store(true, Ordering::Relaxed);
+    /// the row cannot be written, or is not one of the grid, returns `Break`, as for each row from then on, and
+    /// [`Self::finish`] returns the error.
+    pub fn take(&mut self, row: u64, ids: &[u32]) -> ControlFlow<()> {
+        if self.error.is_none() {
+            match self.write_row(row, ids) {
+                Ok(()) => self.missing = self.missing.saturating_sub(1),
+                Err(error) => self.error = Some(error),
             }
         }
+        stop_if(self.error.is_some())
     }
 
     fn write_row(&mut self, row: u64, ids: &[u32]) -> io::Result<()> {
@@ -280,8 +275,8 @@ mod tests {
     fn whole(path: &Path, grid: &PoseGrid, existing: Existing) -> FinishedFile {
         let mut file = PoseFile::new(path, grid, existing).expect("begun");
         let ids = vec![7; index(grid.row_length())];
-        let stopped = AtomicBool::new(false);
-        (0..grid.rows()).for_each(|row| file.take(row, &ids, &stopped));
+        let taken = (0..grid.rows()).try_for_each(|row| file.take(row, &ids));
+        assert!(taken.is_continue());
         file.finish().expect("written").expect("all rows")
     }
 
@@ -440,10 +435,9 @@ mod tests {
         let grid = result().grid;
         let swept = |shard: &str, go_on: bool| {
             let mut file = PoseFile::new(&path, &grid, Existing::Kept).expect("begun");
-            let stopped = AtomicBool::new(false);
-            let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &stopped);
+            let mut take = |row: u64, ids: &[u32]| file.take(row, ids);
             let shard: Shard = shard.parse().expect("a shard");
-            let progress = |_| go_on;
+            let progress = |_| stop_if(!go_on);
             let sweep = Sweep::new(&grid).shard(shard).progress(&progress);
             sweep.run_with_rows(&mut take);
             file.finish().expect("no error").is_some()
@@ -461,9 +455,9 @@ mod tests {
         let grid = result().grid;
         for (row, length) in [(100, 100), (u64::MAX, 100), (0, 99), (0, 0)] {
             let mut file = PoseFile::new(&path, &grid, Existing::Kept).expect("begun");
-            let stopped = AtomicBool::new(false);
-            file.take(row, &vec![0; length], &stopped);
-            assert!(stopped.into_inner());
+            assert!(file.take(row, &vec![0; length]).is_break());
+            let first = vec![0; index(grid.row_length())];
+            assert!(file.take(0, &first).is_break(), "it stays so");
             let error = file.finish().expect_err("no such row").to_string();
             let expected = format!(
                 "poses.npy: row {row} with {length} numbers, expected 100 rows of 100 numbers"

@@ -1,6 +1,8 @@
 //! Counts the distinct imprints of a grid without describing them, and finds the poses that leave an imprint. Models
 //! are made from these counts.
 
+use std::ops::ControlFlow;
+
 use crate::atlas::{ImprintCounter, Layout};
 use crate::imprint::Imprint;
 use crate::index::wide;
@@ -105,6 +107,7 @@ impl Sweep<'_> {
                 *poses += (found.rows.end - found.rows.start) * width * orientations;
                 *partly_off += found.partly_off * orientations;
             }
+            ControlFlow::Continue(())
         });
         counter.sort_by_first_pose();
         complete.then_some(counted)
@@ -137,6 +140,7 @@ impl Sweep<'_> {
                     }
                 }
             }
+            ControlFlow::Continue(())
         })
         .then_some(runs)
     }
@@ -189,7 +193,12 @@ mod tests {
         let source = Figure::default_of(FigureKind::Heptagon, &sensor).into();
         let grid = PoseGrid::new(source, sensor, Anchor::Corner, Ranges::default());
         let grid = grid.expect("in range");
-        assert!(Sweep::new(&grid).progress(&|_| false).count().is_none());
+        assert!(
+            Sweep::new(&grid)
+                .progress(&|_| ControlFlow::Break(()))
+                .count()
+                .is_none()
+        );
     }
 
     #[test]
@@ -204,11 +213,11 @@ mod tests {
             .with(Axis::Angle, range("0"));
         let grid = PoseGrid::new(source, sensor, Anchor::Corner, ranges).expect("in range");
         let done = AtomicU64::new(0);
-        let go_on = |poses| {
+        let progress = |poses| {
             done.fetch_add(poses, Ordering::Relaxed);
-            false
+            ControlFlow::Break(())
         };
-        assert!(Sweep::new(&grid).progress(&go_on).count().is_none());
+        assert!(Sweep::new(&grid).progress(&progress).count().is_none());
         assert_eq!(done.into_inner(), 0);
     }
 }

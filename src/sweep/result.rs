@@ -8,6 +8,7 @@ use crate::atlas::{Atlas, ImprintCounter, Statistic, Table, VarianceParts, stati
 use crate::imprint::Imprint;
 use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid, PoseIndex};
+use crate::progress::ToTheEnd;
 use crate::sweep::ideal::Ideal;
 use crate::sweep::plan::{Shard, SweepDetail, Task};
 use crate::sweep::runs;
@@ -141,7 +142,7 @@ impl SweepResult {
             rows: 0..rows,
             detail: SweepDetail::Runs,
         };
-        let found = runs::sweep_task(&part, self.atlas.layout(), &task, |_| true);
+        let found = runs::sweep_task(&part, self.atlas.layout(), &task, &ToTheEnd);
         let Some(found) = found.as_deref().and_then(<[_]>::first) else {
             return Vec::new();
         };
@@ -269,6 +270,7 @@ mod tests {
     use crate::figure::{Figure, FigureKind};
     use crate::picture::Picture;
     use crate::pose::{Anchor, Axis, DecimalRange, Ranges};
+    use crate::progress::stop_if;
     use crate::sensor::Sensor;
     use crate::source::Source;
     use crate::sweep::run::Sweep;
@@ -386,8 +388,8 @@ mod tests {
         let stopped = pool.expect("threads").install(|| {
             let done = AtomicU64::new(0);
             // Some orientations are complete by then, but far from all.
-            let go_on = |poses| done.fetch_add(poses, Ordering::Relaxed) < 1_000_000;
-            Sweep::new(&grid).progress(&go_on).run()
+            let progress = |poses| stop_if(done.fetch_add(poses, Ordering::Relaxed) >= 1_000_000);
+            Sweep::new(&grid).progress(&progress).run()
         });
         assert!(!stopped.complete() && stopped.poses > 0);
         assert_eq!(stopped.ids(PoseIndex::new([0; 5]), 0..1, 0..1), [Some(0)]);

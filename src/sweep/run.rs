@@ -8,6 +8,7 @@
 //! orientations, mirror images are swept separately, and the rows of a group come together.
 
 use std::fmt;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
@@ -15,12 +16,14 @@ use rayon::prelude::*;
 use crate::atlas::{Atlas, Layout, OrientationSums, Table, VarianceParts};
 use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid};
+use crate::progress::{Progress, ToTheEnd, stop_if};
 use crate::sweep::plan::{Shard, SweepDetail, Task, tasks};
 use crate::sweep::result::SweepResult;
 use crate::sweep::runs::{self, GroupResult};
 
-/// A function that takes a row: its number in the grid, and the atlas number of each of its poses.
-pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
+/// A function that takes a row: its number in the grid, and the atlas number of each of its poses. It stops the sweep by
+/// returning `Break`.
+pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) -> ControlFlow<()> + Send + 'a;
 
 /// A sweep to run: a grid of poses, and options.
 ///
@@ -32,18 +35,15 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 ///
 /// let hexagon = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
 /// let grid = PoseGrid::new(hexagon, Sensor::default(), Anchor::Centre, Ranges::default())?;
-/// // Stops after a million poses: what is complete by then is kept.
-/// let done = std::sync::atomic::AtomicU64::new(0);
-/// let go_on = |poses| done.fetch_add(poses, std::sync::atomic::Ordering::Relaxed) < 1_000_000;
-/// let result = Sweep::new(&grid).progress(&go_on).run();
-/// assert!(result.poses() <= grid.poses());
+/// let result = Sweep::new(&grid).run();
+/// assert_eq!(result.poses(), grid.poses());
 /// # Ok::<(), taxel::pose::GridError>(())
 /// ```
 #[must_use = "nothing is swept before `run`, `run_with_rows`, `count` or `poses_where`"]
 pub struct Sweep<'a> {
     pub(super) grid: &'a PoseGrid,
     shard: Shard,
-    progress: &'a (dyn Fn(u64) -> bool + Sync),
+    progress: &'a dyn Progress,
 }
 
 impl fmt::Debug for Sweep<'_> {
@@ -61,7 +61,7 @@ impl<'a> Sweep<'a> {
         Self {
             grid,
             shard: Shard::WHOLE,
-            progress: &|_| true,
+            progress: &ToTheEnd,
         }
     }
 
@@ -71,9 +71,9 @@ impl<'a> Sweep<'a> {
         self
     }
 
-    /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call, which
-    /// is 0 within a long row. The sweep stops when it returns `false`.
-    pub fn progress(mut self, progress: &'a (dyn Fn(u64) -> bool + Sync)) -> Self {
+    /// Reports to `progress` from time to time, from any thread, the number of poses done since the last report, which
+    /// is 0 within a long row. The sweep stops when it returns `Break`.
+    pub fn progress(mut self, progress: &'a dyn Progress) -> Self {
         self.progress = progress;
         self
     }
@@ -85,7 +85,8 @@ impl<'a> Sweep<'a> {
     }
 
     /// Runs the sweep as [`Self::run`] does, and calls `take` once for each complete row: one y0 at one angle and one
-    /// pair of zooms. Rows do not come in the order of the grid if several orientations show the same shape.
+    /// pair of zooms. Rows do not come in the order of the grid if several orientations show the same shape. After a
+    /// `Break`, `take` is not called again.
     pub fn run_with_rows(self, take: &mut TakeRow<'_>) -> SweepResult {
         self.run_to(Some(take))
     }
@@ -125,13 +126,13 @@ impl<'a> Sweep<'a> {
     }
 
     /// Sweeps portion after portion. `take` receives the results of each portion while the next one is being swept;
-    /// if runs are found, the portions come in the order of the grid. If a portion is stopped, its results are lost
-    /// and `false` is returned.
+    /// if runs are found, the portions come in the order of the grid. If `progress` stops a portion, its results are
+    /// lost; `take` stops the sweep, too. Returns true if nothing did.
     pub(super) fn each_portion(
         self,
         layout: &Layout,
         detail: SweepDetail,
-        mut take: impl FnMut(&Portion) + Send,
+        mut take: impl FnMut(&Portion) -> ControlFlow<()> + Send,
     ) -> bool {
         let Self {
             grid,
@@ -140,15 +141,16 @@ impl<'a> Sweep<'a> {
         } = self;
         let rows = shard.rows(grid.rows());
         let stopped = AtomicBool::new(false);
-        let go_on = |poses: u64| {
-            if !progress(poses) {
+        let stop = |flow: ControlFlow<()>| {
+            if flow.is_break() {
                 stopped.store(true, Ordering::Relaxed);
             }
-            !stopped.load(Ordering::Relaxed)
+            stop_if(stopped.load(Ordering::Relaxed))
         };
+        let report = |poses: u64| stop(progress.add(poses));
         let found = |task: Task| {
             (!stopped.load(Ordering::Relaxed))
-                .then(|| runs::sweep_task(grid, layout, &task, go_on))
+                .then(|| runs::sweep_task(grid, layout, &task, &report))
                 .flatten()
         };
         let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
@@ -158,15 +160,16 @@ impl<'a> Sweep<'a> {
         loop {
             let next = portion(&mut tasks, grid.row_length());
             if next.is_empty() {
-                take(&before);
-                return true;
+                return take(&before).is_continue();
             }
             let sweep =
                 || -> Option<Vec<Vec<GroupResult>>> { next.into_par_iter().map(found).collect() };
-            let (swept, ()) = rayon::join(sweep, || take(&before));
+            let (swept, taken) = rayon::join(sweep, || stop(take(&before)));
             match swept {
-                Some(swept) => before = swept.into_iter().flatten().collect(),
-                None => return false,
+                Some(swept) if taken.is_continue() => {
+                    before = swept.into_iter().flatten().collect();
+                }
+                _ => return false,
             }
         }
     }
@@ -202,7 +205,7 @@ struct Accumulator<'a, 'w, 'r> {
 }
 
 impl Accumulator<'_, '_, '_> {
-    fn add(&mut self, portion: &Portion) {
+    fn add(&mut self, portion: &Portion) -> ControlFlow<()> {
         let width = self.grid.row_length();
         let ids: Vec<Vec<u32>> = portion
             .iter()
@@ -223,20 +226,29 @@ impl Accumulator<'_, '_, '_> {
                 OrientationSums::of(table, found.orientations.len() as u64, counted)
             })
             .collect();
+        let mut flow = ControlFlow::Continue(());
         for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
             let multiplicity = found.orientations.len() as u64;
             self.variance_parts.add(found.orientations[0], sums);
             self.poses += (found.rows.end - found.rows.start) * width * multiplicity;
             self.partly_off += found.partly_off * multiplicity;
-            if let Some(rows) = &mut self.rows {
-                show_rows(self.grid, found, ids, rows);
+            if let Some(rows) = &mut self.rows
+                && flow.is_continue()
+            {
+                flow = show_rows(self.grid, found, ids, rows);
             }
         }
+        flow
     }
 }
 
-/// Calls `show` for each row of a group, in each of its orientations.
-fn show_rows(grid: &PoseGrid, found: &GroupResult, ids: &[u32], show: &mut TakeRow<'_>) {
+/// Calls `show` for each row of a group, in each of its orientations, until it stops.
+fn show_rows(
+    grid: &PoseGrid,
+    found: &GroupResult,
+    ids: &[u32],
+    show: &mut TakeRow<'_>,
+) -> ControlFlow<()> {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     let mut row = Vec::with_capacity(index(width));
     for (nth, y) in found.rows.clone().enumerate() {
@@ -245,7 +257,34 @@ fn show_rows(grid: &PoseGrid, found: &GroupResult, ids: &[u32], show: &mut TakeR
             row.extend(std::iter::repeat_n(ids[wide(imprint)], wide(length)));
         }
         for &orientation in found.orientations.iter() {
-            show(orientation * height + y, &row);
+            show(orientation * height + y, &row)?;
         }
+    }
+    ControlFlow::Continue(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::pose::{Anchor, Ranges};
+    use crate::sensor::Sensor;
+
+    #[test]
+    fn rows_that_are_not_taken_stop_the_sweep() {
+        let sensor = Sensor::default();
+        let source = Figure::default_of(FigureKind::Heptagon, &sensor).into();
+        let grid = PoseGrid::new(source, sensor, Anchor::Corner, Ranges::default());
+        let grid = grid.expect("in range");
+        let mut rows = 0;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let result = pool.expect("a thread").install(|| {
+            Sweep::new(&grid).run_with_rows(&mut |_, _| {
+                rows += 1;
+                stop_if(rows == 150)
+            })
+        });
+        assert_eq!(rows, 150);
+        assert!(!result.complete() && result.poses() >= 150 * grid.row_length());
     }
 }

@@ -12,6 +12,7 @@ use crate::geometry::Extent;
 use crate::geometry::Real;
 use crate::index::from_first;
 use crate::pose::{Axis, Boundary, PoseGrid};
+use crate::progress::Progress;
 use crate::sweep::ellipse::Elliptic;
 use crate::sweep::events::Events;
 use crate::sweep::exact::{Exact, effort};
@@ -41,16 +42,16 @@ pub(crate) struct GroupResult {
 /// The number of poses of an orientation between two reports of progress, for a shape with few edges.
 const REPORT_EVERY: u64 = 4_000;
 
-/// Sweeps the rows of a task. `progress` receives the number of poses done since the last call, counted over all
-/// orientations of the task, which is 0 within a long row; if it returns `false`, the sweep stops and the result is
+/// Sweeps the rows of a task. `progress` receives the number of poses done since the last report, counted over all
+/// orientations of the task, which is 0 within a long row; if it returns `Break`, the sweep stops and the result is
 /// None. Otherwise there is a result for each group of the task.
 pub(crate) fn sweep_task(
     grid: &PoseGrid,
     layout: &Layout,
     task: &Task,
-    progress: impl Fn(u64) -> bool,
+    progress: &impl Progress,
 ) -> Option<Vec<GroupResult>> {
-    let go_on = || progress(0);
+    let go_on = || progress.add(0).is_continue();
     let mut sweeper = Sweeper::new(grid, layout, task, &go_on);
     let (width, orientations) = (grid.row_length(), task.orientations());
     let mut unreported = 0;
@@ -60,13 +61,14 @@ pub(crate) fn sweep_task(
         }
         unreported += width;
         if unreported >= sweeper.report_every
-            && !progress(std::mem::take(&mut unreported) * orientations)
+            && (progress.add(std::mem::take(&mut unreported) * orientations)).is_break()
         {
             return None;
         }
     }
     let found = sweeper.finish(task.detail);
-    progress(unreported * orientations).then_some(found)
+    let flow = progress.add(unreported * orientations);
+    flow.is_continue().then_some(found)
 }
 
 /// A shape prepared for sweeping, by kind.

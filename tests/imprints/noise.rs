@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 use taxel::prelude::*;
+use taxel::progress::ToTheEnd;
 use taxel::recognition::{
     AnswerState, Evidence, Model, NamedShape, Noise, NoisyTouches, SearchMethod,
 };
@@ -412,7 +413,7 @@ fn the_recognition_rate_is_as_published_and_as_claimed() {
     let model = train(s1(), 32, published());
     let noise = Noise::new(0.01).expect("in range");
     let touches = NoisyTouches::new(Sensor::default().size(), noise, 1000, 7);
-    let rate = model.recognition_rate(&touches, &noise, &|_| true);
+    let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
     let rate = rate.expect("not stopped");
     let apart = |found: f64, expected: f64, error: f64| (found - expected).abs() / error;
     println!("{rate:?}");
@@ -441,7 +442,7 @@ fn the_claimed_accuracy_is_reached_at_every_noise() {
         for flip in [0.001, 0.01, 0.05] {
             let noise = Noise::new(flip).expect("in range");
             let touches = NoisyTouches::new(Sensor::default().size(), noise, 150, 11);
-            let rate = model.recognition_rate(&touches, &noise, &|_| true);
+            let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
             let rate = rate.expect("not stopped");
             let apart = (rate.mean_confidence() - rate.accuracy()).abs() / rate.standard_error();
             assert!(apart < 3.0, "{name} at {flip}: {rate:?}");
@@ -455,7 +456,7 @@ fn the_number_of_touches_until_certainty_is_as_published() {
     for (set, expected) in [(s1(), 6.68), (s4(), 4.96)] {
         let model = train(set, 32, published());
         let touches = model
-            .touches_until(0.99, 4000, 3, &|_| true)
+            .touches_until(0.99, 4000, 3, &ToTheEnd)
             .expect("not stopped");
         let mean = touches
             .iter()

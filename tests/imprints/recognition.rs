@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use taxel::prelude::*;
+use taxel::progress::ToTheEnd;
 use taxel::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
     ImprintKey, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding, SearchMethod,
@@ -117,7 +118,7 @@ fn seven_figures_are_told_apart_as_often_as_published() {
     // No classifier on descriptors passes it, either.
     let settings = ClassifierSettings::default();
     for classifier in Classifier::ALL {
-        let reached = classifier.evaluate(&model, &settings, &|_| true);
+        let reached = classifier.evaluate(&model, &settings, &ToTheEnd);
         let reached = reached.expect("not stopped").evaluation;
         let sum: u128 = reached.confusion.cells().map(|cell| cell.2).sum();
         println!("{} {:.4}", classifier.name(), reached.error());
@@ -506,7 +507,7 @@ fn a_shape_that_may_leave_an_empty_imprint_is_named_by_its_template() {
     let nothing = Imprint::empty(size(16, 16));
     assert_eq!(model.recognise(Evidence::of(&[nothing])).shape, Some(1));
     let settings = ClassifierSettings::default();
-    let reached = Classifier::Template.evaluate(&model, &settings, &|_| true);
+    let reached = Classifier::Template.evaluate(&model, &settings, &ToTheEnd);
     let reached = reached.expect("not stopped");
     assert_eq!(reached.evaluation.error(), 0.0);
 }
@@ -520,7 +521,7 @@ fn nearest_neighbours_with_equal_features_vote_together() {
         let mut settings = ClassifierSettings::default();
         settings.descriptors = Some(given.descriptors().to_vec());
         settings.sample = usize::MAX;
-        let reached = Classifier::Knn.evaluate(&model, &settings, &|_| true);
+        let reached = Classifier::Knn.evaluate(&model, &settings, &ToTheEnd);
         let reached = reached.expect("not stopped").evaluation;
         let (reached, limit) = (reached.right, given.evaluate(&model).right);
         assert!(reached <= limit, "{descriptors}: {reached} of {limit}");

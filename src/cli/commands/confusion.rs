@@ -18,7 +18,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::note::note;
-use crate::cli::output::progress::Progress;
+use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
 use crate::formats::value::percent;
 use crate::formats::{ConfusionMap, DrawingFormat, json};
@@ -38,7 +38,7 @@ pub(crate) fn confusion(
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
     check(asked, &model)?;
-    let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
+    let model = model.ready(&|poses| ProgressDisplay::new(poses, asked.quiet, charset))?;
     let as_json = asked.form == EvaluationForm::Json;
     let text = match &asked.of {
         Evaluated::Imprints => shown(asked, &Evaluation::of(&model), None, charset),
@@ -154,12 +154,9 @@ fn reached(
     signals: &Signals,
 ) -> Result<ClassifierEvaluation, CliError> {
     let keys = model.keys().len() as u64;
-    let progress = Progress::counting("imprints", keys, asked.quiet, charset);
-    let report = |keys| {
-        progress.add(keys);
-        signals.goes_on()
-    };
-    let reached = classifier.evaluate(model, &asked.classifiers, &report);
+    let display = ProgressDisplay::counting("imprints", keys, asked.quiet, charset);
+    let progress = signals.progress(&display);
+    let reached = classifier.evaluate(model, &asked.classifiers, &progress);
     reached.ok_or_else(|| signals.failure())
 }
 

@@ -234,14 +234,6 @@ fn bound(parts: &[Part], memory: &MemoryGuard) -> Result<String, CliError> {
     ))
 }
 
-/// Stops a merge that comes near to the limit of memory.
-fn within(memory: &MemoryGuard) -> Result<(), CliError> {
-    if memory.allows_now() {
-        return Ok(());
-    }
-    Err(CliError::Memory(memory.message_of_merge()))
-}
-
 /// Refuses a file name without the extension of a model, which has one format.
 fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     match &wanted.atlas {
@@ -266,7 +258,7 @@ fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError>
             MergeError::Order(ShardOrderError::Twice { .. }) => part.refused(&error),
             other => other.into(),
         })?;
-        within(memory)?;
+        memory.check_merge().map_err(CliError::Memory)?;
     }
     Ok(merge.finish()?)
 }
@@ -291,7 +283,7 @@ fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model
             ModelError::Shards(ShardOrderError::Twice { .. }) => part.refused(&error),
             other => TrainingError::from(other).into(),
         })?;
-        within(memory)?;
+        memory.check_merge().map_err(CliError::Memory)?;
     }
     Ok(merge.finish().map_err(TrainingError::from)?)
 }

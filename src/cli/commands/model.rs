@@ -14,7 +14,6 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::json;
 
@@ -29,7 +28,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::note::note;
-use crate::cli::output::progress::Progress;
+use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::ranges::ranges_in_words;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
@@ -86,14 +85,19 @@ pub(crate) fn train(
         note(&grid_text(&sensor, anchor, &ranges), charset);
     }
     let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
-    let progress = |poses| Progress::new(poses, asked.quiet, charset);
     let pool = threads::pool(asked.jobs)?;
-    let model = pool.install(|| run(training, &memory, &progress, stopped));
+    let display = ProgressDisplay::new(training.poses(), asked.quiet, charset);
+    let model = memory.limit(&signals.progress(&display), |progress| {
+        pool.install(|| training.progress(progress).run())
+    });
+    drop(display);
     let remedy = grid.remedy;
-    let model = model.map_err(|error| match error {
-        error @ TrainingError::Cut { .. } => CliError::Cut { error, remedy },
-        error => signals.training_failure(error, &memory),
-    })?;
+    let model = model
+        .map_err(CliError::Memory)?
+        .map_err(|error| match error {
+            error @ TrainingError::Cut { .. } => CliError::Cut { error, remedy },
+            error => signals.training_failure(error),
+        })?;
     // Another training that was stopped may have removed the folder, which was empty. If it cannot be made again,
     // `save_model` says so.
     let _again = make_folder();
@@ -111,25 +115,6 @@ pub(crate) fn train(
     };
     let text = trained(&model, &path, done, asked, charset)?;
     Ok(Summary::new(text, written))
-}
-
-/// Runs a training until it is done, memory runs short or `stopped` becomes true. `progress` starts to show the
-/// progress of a number of poses.
-///
-/// # Errors
-/// Returns the error of the training, which is [`TrainingError::Stopped`] for both kinds of stop.
-fn run(
-    training: Training<'_>,
-    memory: &MemoryGuard,
-    progress: &dyn Fn(u64) -> Progress,
-    stopped: &AtomicBool,
-) -> Result<Model, TrainingError> {
-    let progress = progress(training.poses());
-    let report = |poses: u64| {
-        progress.add(poses);
-        !stopped.load(Ordering::Relaxed) && memory.allows()
-    };
-    training.progress(&report).run()
 }
 
 /// Returns the text to print about a model. `done` tells whether its file was written or existed already; None if there
@@ -236,12 +221,12 @@ impl FoundModel {
     }
 
     /// Returns the model. A built-in set comes from the user's cache, or if it is not there, it is trained, which
-    /// takes some seconds; `progress` makes the display of its progress. Signals are not caught meanwhile: nothing
+    /// takes some seconds; `display` makes the display of its progress. Signals are not caught meanwhile: nothing
     /// would have to be removed.
     ///
     /// # Errors
     /// Returns [`CliError::Memory`].
-    pub(crate) fn ready(self, progress: &dyn Fn(u64) -> Progress) -> Result<Model, CliError> {
+    pub(crate) fn ready(self, display: &dyn Fn(u64) -> ProgressDisplay) -> Result<Model, CliError> {
         let training = match self {
             Self::Read(model) => return Ok(*model),
             Self::BuiltIn(training) => training,
@@ -252,11 +237,9 @@ impl FoundModel {
                 None,
                 "train a model of fewer shapes or coarser steps (taxel model train)",
             );
-            let model = run(training, &memory, progress, &AtomicBool::new(false));
-            model.map_err(|error| match error {
-                TrainingError::Stopped => CliError::Memory(memory.message()),
-                error => error.into(),
-            })
+            let display = display(training.poses());
+            let model = memory.limit(&display, |progress| training.progress(progress).run());
+            Ok(model.map_err(CliError::Memory)??)
         })
     }
 }
@@ -325,7 +308,7 @@ pub(crate) fn show(
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = found(which, shelf, &load_model)?;
-    let model = model.ready(&|poses| Progress::new(poses, false, charset))?;
+    let model = model.ready(&|poses| ProgressDisplay::new(poses, false, charset))?;
     let limit = Evaluation::of(&model);
     if json {
         return Ok(json::ascii(&card_json(&model, &limit)?) + "\n");

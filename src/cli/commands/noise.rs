@@ -31,12 +31,13 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, bar, percent_fine};
 use crate::cli::output::note::note;
 use crate::cli::output::plot;
-use crate::cli::output::progress::Progress;
+use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
 use crate::formats::value::{counted, grouped, percent};
 use crate::formats::{DrawingFormat, LinePlot, json};
 use crate::memory::MemoryGuard;
 use crate::parameter::number::share;
+use crate::progress::Progress;
 use crate::recognition::{
     GivenDescriptors, HalfStepWork, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate,
     TouchesUntil,
@@ -75,11 +76,8 @@ pub(crate) fn degradation(
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
-    let progress = Progress::counting("touches", all, all_asked.quiet, charset);
-    let report = |touches: u64| {
-        progress.add(touches);
-        signals.goes_on()
-    };
+    let display = ProgressDisplay::counting("touches", all, all_asked.quiet, charset);
+    let progress = signals.progress(&display);
     let mut table = Vec::new();
     for &dead in &asked.dead {
         for &value in &values {
@@ -87,8 +85,8 @@ pub(crate) fn degradation(
             let touches = NoisyTouches::new(sensor.size(), noise, asked.touches, asked.seed);
             let touches = touches.with_random_dead(dead);
             let rate = match &given {
-                None => model.recognition_rate(&touches, &noise, &report),
-                Some(given) => given.rate(model, &touches, &report),
+                None => model.recognition_rate(&touches, &noise, &progress),
+                Some(given) => given.rate(model, &touches, &progress),
             };
             let rate = rate.ok_or_else(|| signals.failure())?;
             table.push(NoiseRow {
@@ -328,23 +326,24 @@ pub(crate) fn half_step(
     let signals = Signals::catch()?;
     let memory = MemoryGuard::new(None, "test a model of fewer shapes or coarser steps");
     let poses = model.poses() * model.shapes().len() as u64;
-    let progress = Progress::new(poses, asked.quiet, charset);
+    let touching = ProgressDisplay::new(poses, asked.quiet, charset);
     let search = OnceLock::new();
-    let report = |work| {
-        match work {
-            HalfStepWork::Poses(poses) => progress.add(poses),
-            HalfStepWork::Search { of } => {
-                let begun = || {
-                    progress.clear();
-                    Progress::counting("imprints", of, asked.quiet, charset)
-                };
-                search.get_or_init(begun).add(1);
-            }
+    let display = |work| match work {
+        HalfStepWork::Poses(poses) => touching.add(poses),
+        HalfStepWork::Search { of } => {
+            let begun = || {
+                touching.clear();
+                ProgressDisplay::counting("imprints", of, asked.quiet, charset)
+            };
+            search.get_or_init(begun).add(1)
         }
-        signals.goes_on() && memory.allows()
     };
-    let result = model.half_step(&report);
-    let result = result.map_err(|error| signals.training_failure(error, &memory))?;
+    let result = memory.limit(&signals.progress(&display), |progress| {
+        model.half_step(progress)
+    });
+    let result = result
+        .map_err(CliError::Memory)?
+        .map_err(|error| signals.training_failure(error))?;
     if asked.form == EvaluationForm::Json {
         let answer = json!({
             "touches": evaluation::number(result.touches),
@@ -376,15 +375,12 @@ pub(crate) fn touches(
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
-    let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
+    let model = model.ready(&|poses| ProgressDisplay::new(poses, asked.quiet, charset))?;
     let signals = Signals::catch()?;
     let all = asked.runs * model.shapes().len() as u64;
-    let progress = Progress::counting("runs", all, asked.quiet, charset);
-    let report = |runs: u64| {
-        progress.add(runs);
-        signals.goes_on()
-    };
-    let results = model.touches_until(asked.until, asked.runs, asked.seed, &report);
+    let display = ProgressDisplay::counting("runs", all, asked.quiet, charset);
+    let progress = signals.progress(&display);
+    let results = model.touches_until(asked.until, asked.runs, asked.seed, &progress);
     let results = results.ok_or_else(|| signals.failure())?;
     let names = model.shapes().iter().map(|shape| shape.name.as_str());
     let shapes: Vec<_> = names.zip(&results).collect();

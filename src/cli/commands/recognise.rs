@@ -27,7 +27,7 @@ use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::note::note;
 use crate::cli::output::pose::PoseReport;
-use crate::cli::output::progress::Progress;
+use crate::cli::output::progress::ProgressDisplay;
 use crate::formats::Content;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::framed::{FrameRows, RuleRecord};
@@ -36,6 +36,7 @@ use crate::formats::value::counted;
 use crate::formats::{json, json_object};
 use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
+use crate::progress::ToTheEnd;
 use crate::quote::{did_you_mean, shortened_message};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, NamedShape, Noise};
 use crate::sensor::Sensor;
@@ -58,7 +59,7 @@ pub(crate) fn recognise(
     if let Some(expected) = &asked.expect {
         check_expected(expected, model.shapes())?;
     }
-    let model = model.ready(&|poses| Progress::new(poses, false, charset))?;
+    let model = model.ready(&|poses| ProgressDisplay::new(poses, false, charset))?;
     let recogniser = Recogniser {
         asked,
         model: &model,
@@ -257,10 +258,10 @@ impl Recogniser<'_> {
             return Ok(None);
         };
         let memory = MemoryGuard::of_pose_search();
-        let estimate = self.model.pose_of(shape, touch, &|_| memory.allows());
-        if memory.exceeded() {
-            return Err(CliError::Memory(memory.message()));
-        }
+        let estimate = memory.limit(&ToTheEnd, |progress| {
+            self.model.pose_of(shape, touch, progress)
+        });
+        let estimate = estimate.map_err(CliError::Memory)?;
         Ok(estimate.and_then(|estimate| {
             PoseReport::new(self.model, shape, touch, estimate, self.asked.pitch_mm)
         }))

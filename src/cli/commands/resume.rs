@@ -162,6 +162,7 @@ mod tests {
 
     use super::*;
     use crate::figure::Figure;
+    use crate::progress::stop_if;
     use crate::storage::{AtlasFile, Existing};
     use crate::sweep::Sweep;
 
@@ -176,8 +177,8 @@ mod tests {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let stopped = pool.expect("threads").install(|| {
             let done = AtomicU64::new(0);
-            let go_on = |poses| done.fetch_add(poses, Ordering::Relaxed) < 100_000;
-            Sweep::new(&grid).progress(&go_on).run()
+            let progress = |poses| stop_if(done.fetch_add(poses, Ordering::Relaxed) >= 100_000);
+            Sweep::new(&grid).progress(&progress).run()
         });
         assert!(!stopped.complete());
         let file = AtlasFile::new(&path).expect("an archive");

@@ -18,7 +18,7 @@ use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::note::note;
-use crate::cli::output::progress::Progress;
+use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::separation;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
@@ -27,6 +27,7 @@ use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::formats::{DrawingFormat, Name};
 use crate::memory::MemoryGuard;
 use crate::pose::{Axis, DecimalRange, Ranges};
+use crate::progress::Progress;
 use crate::quote::shortened_message;
 use crate::recognition::{CellPositions, Model, Separation, TrainingError};
 use crate::sensor::Sensor;
@@ -61,16 +62,16 @@ pub(crate) fn separate(
     }
     let more = asked.wanted.map_or(0, |_| REFINED);
     let points = (sizes.len() as u64 + more) * thresholds.len() as u64;
-    let progress = Progress::new(separation.touches() * points, asked.quiet, charset);
+    let display = ProgressDisplay::new(separation.touches() * points, asked.quiet, charset);
     let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
-    let report = |poses: u64| {
-        progress.add(poses);
-        signals.goes_on() && memory.allows()
-    };
     let pool = threads::pool(asked.jobs)?;
-    let curves = pool.install(|| curves(asked, &separation, (&sizes, &thresholds), &report));
-    drop(progress);
-    let curves = curves.map_err(|error| signals.training_failure(error, &memory))?;
+    let curves = memory.limit(&signals.progress(&display), |progress| {
+        pool.install(|| curves(asked, &separation, (&sizes, &thresholds), progress))
+    });
+    drop(display);
+    let curves = curves
+        .map_err(CliError::Memory)?
+        .map_err(|error| signals.training_failure(error))?;
     if let Some(path) = &asked.export {
         let content = match DrawingFormat::of_path(path) {
             Some(format) => drawing(asked.axis, &curves, asked.wanted)
@@ -105,15 +106,15 @@ fn curves(
     asked: &SeparateArguments,
     separation: &Separation,
     (sizes, thresholds): (&[f64], &[f64]),
-    report: &(dyn Fn(u64) -> bool + Sync),
+    progress: &dyn Progress,
 ) -> Result<Vec<SeparationCurve>, TrainingError> {
     let mut curves = Vec::with_capacity(thresholds.len());
     for &threshold in thresholds {
         let points = sizes.iter();
-        let points = points.map(|&size| separation.at(asked.axis, size, threshold, report));
+        let points = points.map(|&size| separation.at(asked.axis, size, threshold, progress));
         let points = points.collect::<Result<Vec<_>, _>>()?;
         let smallest = match asked.wanted {
-            Some(error) => separation.smallest(asked.axis, &points, error, report)?,
+            Some(error) => separation.smallest(asked.axis, &points, error, progress)?,
             None => None,
         };
         curves.push(SeparationCurve {
@@ -192,7 +193,7 @@ fn set(
     ) && is_model(what, shelf)
     {
         let model = model::find(what, shelf)?;
-        let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
+        let model = model.ready(&|poses| ProgressDisplay::new(poses, asked.quiet, charset))?;
         let positions = asked.positions.or_else(|| positions_of(&model));
         let positions = positions.unwrap_or(CellPositions::FINE);
         for text in departures(&model, asked) {

@@ -20,7 +20,7 @@ use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::note::note;
-use crate::cli::output::progress::Progress;
+use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::sweep_summary::SweepSummary;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
@@ -97,7 +97,6 @@ pub(crate) fn sweep(
 ) -> Result<Summary, CliError> {
     let start = Instant::now();
     let signals = Signals::catch()?;
-    let stopped = &signals.stopped;
     let summary = |kept| Summary::new(text(kept, start, wanted, charset), Ok(()));
     if let Some(kept) = kept(grid, shard, wanted, charset)? {
         return Ok(summary(&kept));
@@ -110,20 +109,16 @@ pub(crate) fn sweep(
     memory.check(grid).map_err(CliError::Memory)?;
     let new = |path| PoseFile::new(path, grid, wanted.existing.at_writing());
     let mut poses = wanted.poses.as_ref().map(new).transpose()?;
-    let progress = Progress::new(shard.poses(grid), wanted.quiet, charset);
-    let report = |poses: u64| {
-        progress.add(poses);
-        signals.goes_on() && memory.allows()
-    };
-    let sweep = Sweep::new(grid).shard(shard).progress(&report);
-    let result = pool.install(|| match &mut poses {
-        Some(file) => sweep.run_with_rows(&mut |row, ids| file.take(row, ids, stopped)),
-        None => sweep.run(),
+    let display = ProgressDisplay::new(shard.poses(grid), wanted.quiet, charset);
+    let result = memory.limit(&signals.progress(&display), |progress| {
+        let sweep = Sweep::new(grid).shard(shard).progress(progress);
+        pool.install(|| match &mut poses {
+            Some(file) => sweep.run_with_rows(&mut |row, ids| file.take(row, ids)),
+            None => sweep.run(),
+        })
     });
-    drop(progress);
-    if memory.exceeded() {
-        return Err(CliError::Memory(memory.message()));
-    }
+    drop(display);
+    let result = result.map_err(CliError::Memory)?;
     let poses = poses.map(PoseFile::finish).transpose().map(Option::flatten);
     if !result.complete() {
         poses?;

@@ -8,6 +8,7 @@
 //! ```
 
 use std::io::{IsTerminal, Write};
+use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -16,12 +17,14 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::cli::output::charset::Charset;
 use crate::formats::value::grouped;
+use crate::lock::try_locked;
+use crate::progress::Progress;
 
 /// The time between two lines, without a terminal.
 const PAUSE: Duration = Duration::from_secs(10);
 
 /// Shows how many poses of a sweep are done. It is shared by all threads of the sweep.
-pub(crate) struct Progress {
+pub(crate) struct ProgressDisplay {
     /// The name of what is counted, in the plural.
     noun: &'static str,
     /// The number of poses in all.
@@ -42,7 +45,7 @@ enum Shown {
     Lines(Instant, Mutex<Instant>),
 }
 
-impl Progress {
+impl ProgressDisplay {
     /// Starts to show the progress of `all` poses.
     pub(crate) fn new(all: u64, quiet: bool, charset: Charset) -> Self {
         Self::counting("poses", all, quiet, charset)
@@ -84,15 +87,15 @@ impl Progress {
         }
     }
 
-    /// Reports that `poses` more are done. Any thread may call it.
-    pub(crate) fn add(&self, poses: u64) {
+    /// Shows that `poses` more are done. Any thread may call it.
+    fn show(&self, poses: u64) {
         let done = self.done.fetch_add(poses, Ordering::Relaxed) + poses;
         match &self.shown {
             Shown::Nothing => {}
             Shown::Bar(bar) => bar.set_position(done),
             Shown::Lines(start, last) => {
                 // If another thread is writing a line, this one need not.
-                let Ok(mut last) = last.try_lock() else {
+                let Some(mut last) = try_locked(last) else {
                     return;
                 };
                 if last.elapsed() >= PAUSE {
@@ -128,13 +131,21 @@ impl Progress {
     }
 }
 
+impl Progress for ProgressDisplay {
+    /// Shows that more is done. Stops nothing.
+    fn add(&self, done: u64) -> ControlFlow<()> {
+        self.show(done);
+        ControlFlow::Continue(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_line_tells_what_is_left() {
-        let progress = Progress::new(1000, true, Charset::Ascii);
+        let progress = ProgressDisplay::new(1000, true, Charset::Ascii);
         let line = progress.line(250, Duration::from_secs(10));
         assert_eq!(line, "250 of 1,000 poses, 25 %, 30 s left\n");
     }

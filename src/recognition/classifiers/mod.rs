@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::parameter::named;
 use crate::parameter::number::share;
+use crate::progress::Progress;
 use crate::recognition::classifiers::features::FeatureTable;
 use crate::recognition::classifiers::gaussian::Gaussian;
 use crate::recognition::classifiers::knn::Sample;
@@ -132,16 +133,17 @@ impl Classifier {
     ///
     /// Ties go to the first shape in the order of the set. `progress` is called from time to time, from any thread,
     /// with the number of keys of the model that were classified since the last call, and stops the evaluation by
-    /// returning `false`. Returns None if it was stopped.
+    /// returning `Break`. Returns None if it was stopped.
     ///
     /// ```
+    /// use taxel::progress::ToTheEnd;
     /// use taxel::recognition::{
     ///     Classifier, ClassifierSettings, Evaluation, GridSteps, Training, equal_figures,
     /// };
     ///
     /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
     /// let settings = ClassifierSettings::default();
-    /// let result = Classifier::Lda.evaluate(&model, &settings, &|_| true).expect("not stopped");
+    /// let result = Classifier::Lda.evaluate(&model, &settings, &ToTheEnd).expect("not stopped");
     /// // No classifier of one touch is better than the model.
     /// assert!(result.evaluation.right <= Evaluation::of(&model).right);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -150,7 +152,7 @@ impl Classifier {
         self,
         model: &Model,
         settings: &ClassifierSettings,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &dyn Progress,
     ) -> Option<ClassifierEvaluation> {
         let evaluate =
             |scores: &(dyn Fn(usize) -> Scores + Sync)| evaluate(model, scores, progress);
@@ -212,11 +214,11 @@ impl Classifier {
 fn evaluate(
     model: &Model,
     scores: &(dyn Fn(usize) -> Scores + Sync),
-    progress: &(dyn Fn(u64) -> bool + Sync),
+    progress: &dyn Progress,
 ) -> Option<Evaluation> {
     let ranked = (0..model.keys().len()).into_par_iter().map(|key| {
         let ranked = first_two(&scores(key));
-        progress(1).then_some(ranked)
+        progress.add(1).is_continue().then_some(ranked)
     });
     let ranked: Vec<[Option<usize>; 3]> = ranked.collect::<Option<_>>()?;
     let mut evaluation = Evaluation::new(model);
@@ -283,6 +285,7 @@ mod tests {
 
     use super::*;
     use crate::figure::Figure;
+    use crate::progress::{ToTheEnd, stop_if};
     use crate::recognition::model::NamedShape;
     use crate::recognition::sets::GridSteps;
     use crate::recognition::training::Training;
@@ -306,7 +309,7 @@ mod tests {
                 neighbours: 3,
                 ..ClassifierSettings::default()
             };
-            let reached = Classifier::Knn.evaluate(&model, &settings, &|_| true);
+            let reached = Classifier::Knn.evaluate(&model, &settings, &ToTheEnd);
             reached.expect("not stopped")
         };
         let all = reached(usize::MAX, 0);
@@ -328,11 +331,14 @@ mod tests {
             let settings = ClassifierSettings::default();
             let add = |more| {
                 keys.fetch_add(more, Ordering::Relaxed);
-                true
+                stop_if(false)
             };
             assert!(classifier.evaluate(&model, &settings, &add).is_some());
             assert_eq!(keys.into_inner(), model.keys().len() as u64);
-            assert_eq!(classifier.evaluate(&model, &settings, &|_| false), None);
+            assert_eq!(
+                classifier.evaluate(&model, &settings, &|_| stop_if(true)),
+                None
+            );
         }
     }
 

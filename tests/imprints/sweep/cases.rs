@@ -1,5 +1,7 @@
 //! Figures and pictures whose sweeps are measured and compared with single touches, and the comparison.
 
+use std::ops::ControlFlow;
+
 use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
@@ -276,6 +278,7 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
         let start = usize::try_from(row).expect("a small grid") * width;
         assert!(ids[start..start + width].iter().all(|&id| id == u32::MAX));
         ids[start..start + width].copy_from_slice(numbers);
+        ControlFlow::Continue(())
     };
     let result = Sweep::new(grid).run_with_rows(&mut take);
     let imprints: Vec<_> = result.atlas().entries().collect();

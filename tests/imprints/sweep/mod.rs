@@ -18,6 +18,7 @@ use self::cases::{cases, differences, figure, picture};
 use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
 use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
+use taxel::progress::stop_if;
 use taxel::sensor::Sensor;
 use taxel::source::Source;
 use taxel::sweep::{MergeError, Shard, ShardOrderError, Sweep, SweepMerge, SweepResult};
@@ -290,8 +291,8 @@ fn a_stopped_sweep_keeps_what_is_complete() {
     let done = AtomicU64::new(0);
     let stopped_after = |most: u64| {
         done.store(0, Ordering::Relaxed);
-        let enough = |poses| done.fetch_add(poses, Ordering::Relaxed) + poses < most;
-        pool.install(|| Sweep::new(&grid).progress(&enough).run())
+        let progress = |poses| stop_if(done.fetch_add(poses, Ordering::Relaxed) + poses >= most);
+        pool.install(|| Sweep::new(&grid).progress(&progress).run())
     };
     let result = stopped_after(500_000);
     assert!(!result.complete());

@@ -53,7 +53,7 @@ use crate::cli::input::processing;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::line_writer::LineWriter;
-use crate::cli::output::progress::Progress;
+use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
 use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::stream::StreamCounts;
@@ -143,7 +143,7 @@ fn line_writer(
         let Some(found) = found else {
             return lines.write(&mut |_, _| ());
         };
-        let model = found.ready(&|poses| Progress::new(poses, true, Charset::Ascii))?;
+        let model = found.ready(&|poses| ProgressDisplay::new(poses, true, Charset::Ascii))?;
         let namer = FrameNamer::new(&model, noise.as_ref());
         lines.write(&mut |line, imprint| namer.extend(line, imprint))
     })

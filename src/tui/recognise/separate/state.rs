@@ -266,6 +266,7 @@ impl Separate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::ToTheEnd;
     use crate::storage::ModelChoice;
     use crate::tui::recognise::separate::request::SeparationFlags;
     use crate::tui::recognise::trained::TrainedModel;
@@ -277,7 +278,7 @@ mod tests {
         let mut page = Separate::new(SeparationFlags::NONE.request(trained));
         let request = Arc::clone(page.request());
         let set = request.separation().expect("a set");
-        let point = set.at(request.axis, 0.5, request.threshold, &|_| true);
+        let point = set.at(request.axis, 0.5, request.threshold, &ToTheEnd);
         let size = SizeFound {
             point: point.expect("not stopped"),
             worst: None,

@@ -29,7 +29,7 @@ use crate::tui::recognise::message::{Prepared, RecognitionEvent};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::slow_work::SlowWork;
 use crate::tui::runtime::work::execution::{Execution, StopFlag};
-use crate::tui::runtime::work::progress::{ProgressReporter, guarded, on_a_thread, proceed};
+use crate::tui::runtime::work::progress::{ProgressReporter, WorkProgress, guarded, on_a_thread};
 
 /// The places where models are stored.
 #[derive(Clone, Debug, Default)]
@@ -60,13 +60,13 @@ impl ModelStore {
         self.folder.iter().flat_map(names).collect()
     }
 
-    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training; `progress` is
-    /// called during it, as by a sweep.
+    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training, which
+    /// reports to `progress`.
     pub(in crate::tui::runtime) fn model(
         &self,
         choice: &ModelChoice,
         begins: &dyn Fn(u64),
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &WorkProgress<'_>,
     ) -> Result<Model, String> {
         let Some(training) = choice.training() else {
             return load_whole_model(&self.file(choice)?).map_err(|error| error.to_string());
@@ -78,12 +78,9 @@ impl ModelStore {
                 None,
                 "take fewer shapes or coarser steps, or train it in shards on the command line (taxel model train --shard)",
             );
-            let within = |poses| progress(poses) && memory.allows();
-            training
-                .progress(&within)
-                .run()
+            progress
+                .within(&memory, |progress| training.progress(progress).run())?
                 .map_err(|error| match error {
-                    TrainingError::Stopped if memory.exceeded() => memory.message(),
                     TrainingError::Stopped => "training was stopped".to_owned(),
                     error => error.to_string(),
                 })
@@ -187,7 +184,7 @@ impl ModelWorker {
         let (store, reading) = (self.store.clone(), self.reading.clone());
         let post = match execution {
             Execution::AtOnce(limit) => {
-                let progress = limit.count();
+                let progress = WorkProgress::up_to(*limit);
                 let calls: Calls<'_> = (&|_| {}, &progress);
                 let event = prepare(&store, number, choice, known, &reading, calls);
                 return Some(WorkerEvent::Recognition(event));
@@ -203,7 +200,7 @@ impl ModelWorker {
                     number, poses,
                 )));
             };
-            let progress = |poses| proceed(poses, &stop, Some(&clock));
+            let progress = WorkProgress::until(&stop, Some(&clock));
             let event = guarded(number, || {
                 let calls: Calls<'_> = (&begins, &progress);
                 let event = prepare(&store, number, choice, known, &reading, calls);
@@ -252,9 +249,8 @@ impl ModelWorker {
     }
 }
 
-/// Two functions. The first is called with the number of poses before a training, the second during it with the number
-/// of poses done, as by a sweep.
-type Calls<'a> = (&'a dyn Fn(u64), &'a (dyn Fn(u64) -> bool + Sync));
+/// A function that is called with the number of poses before a training, and the progress of the training.
+type Calls<'a> = (&'a dyn Fn(u64), &'a WorkProgress<'a>);
 
 /// Reads a model from the cache or trains it, and evaluates it. The event also has the names of stored models, which
 /// may have changed.

@@ -20,7 +20,7 @@ use crate::tui::live::message::LiveEvent;
 use crate::tui::live::naming::{NamedImprint, NamingRequest};
 use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::models::ModelStore;
-use crate::tui::runtime::work::progress::{PoseLimit, caught};
+use crate::tui::runtime::work::progress::{PoseLimit, WorkProgress, caught};
 use crate::tui::runtime::work::threads;
 
 /// A model that is used on the thread that waits for its answer.
@@ -114,7 +114,10 @@ impl ShapeNamer {
             choice,
             noise,
         } = &own.naming;
-        let train = || own.store.model(choice, &|_| {}, &own.limit.count());
+        let train = || {
+            own.store
+                .model(choice, &|_| {}, &WorkProgress::up_to(own.limit))
+        };
         let event = match own.model.get_or_init(train) {
             Ok(model) => {
                 let named = NamedImprint::new(model, imprint, noise.as_ref());
@@ -151,7 +154,7 @@ fn answer(
     stop: &AtomicBool,
     say: &dyn Fn(LiveEvent),
 ) -> Result<(), String> {
-    let progress = |_: u64| !stop.load(Ordering::Relaxed);
+    let progress = WorkProgress::until(stop, None);
     let model = store.model(&naming.choice, &|_| {}, &progress)?;
     while let Ok(imprint) = imprints.recv() {
         let named = NamedImprint::new(&model, &imprint, naming.noise.as_ref());

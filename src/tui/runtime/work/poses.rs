@@ -6,13 +6,12 @@
 //! The nearest imprint is found soon. Its poses take a sweep of the whole grid, and are not kept in the model.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 use crate::memory::MemoryGuard;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, RecognitionEvent};
 use crate::tui::runtime::work::execution::{Execution, StopFlag};
-use crate::tui::runtime::work::progress::caught;
+use crate::tui::runtime::work::progress::{WorkProgress, caught};
 use crate::tui::runtime::work::threads;
 
 /// The largest number of poses whose outlines are drawn; more cannot be told apart over a matrix.
@@ -30,15 +29,15 @@ pub(in crate::tui::runtime) fn find(
         let searched = RecognitionEvent::Searched(number, found.map(Box::new));
         WorkerEvent::Recognition(searched)
     };
-    let run = move |progress: &(dyn Fn(u64) -> bool + Sync)| {
+    let run = move |progress: &WorkProgress<'_>| {
         search(&request, &MemoryGuard::of_pose_search(), progress)
     };
     let post = match execution {
-        Execution::AtOnce(limit) => return Some(event(Ok(run(&limit.count())))),
+        Execution::AtOnce(limit) => return Some(event(Ok(run(&WorkProgress::up_to(*limit))))),
         Execution::OnThreads(post) => Arc::clone(post),
     };
     let work = move || {
-        let progress = |_: u64| !stop.load(Ordering::Relaxed);
+        let progress = WorkProgress::until(&stop, None);
         post(event(caught(|| run(&progress))));
     };
     let thread = threads::start(move || threads::run(work));
@@ -49,25 +48,26 @@ pub(in crate::tui::runtime) fn find(
 fn search(
     request: &PoseSearch,
     memory: &MemoryGuard,
-    progress: &(dyn Fn(u64) -> bool + Sync),
+    progress: &WorkProgress<'_>,
 ) -> PoseSearchResult {
     let model = &request.trained.model;
     let nearest = model.nearest(&request.imprint);
-    let within = |poses| progress(poses) && memory.allows();
-    let found = nearest.as_ref().and_then(|nearest| {
+    let found = progress.within(memory, |progress| {
+        let nearest = nearest.as_ref()?;
         let shape = request.named.unwrap_or(nearest.shape);
-        let (pose, poses) = model.poses_of(shape, &nearest.imprint, POSES, &within)?;
+        let (pose, poses) = model.poses_of(shape, &nearest.imprint, POSES, progress)?;
         Some(((shape, pose), poses))
     });
-    let (pose, poses) = match found {
-        Some((pose, poses)) => (Some(pose), poses),
-        None => (None, Vec::new()),
+    let (pose, poses, refused) = match found {
+        Ok(Some((pose, poses))) => (Some(pose), poses, None),
+        Ok(None) => (None, Vec::new(), None),
+        Err(refused) => (None, Vec::new(), Some(refused)),
     };
     PoseSearchResult {
         nearest,
         pose,
         poses,
-        refused: memory.exceeded().then(|| memory.message()),
+        refused,
     }
 }
 
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn a_search_that_needs_too_much_memory_keeps_the_nearest_imprint_and_says_why() {
         let small = MemoryGuard::new(Some(crate::memory::MemorySize(1)), "less");
-        let found = search(&request(), &small, &|_| true);
+        let found = search(&request(), &small, &WorkProgress::up_to(PoseLimit(None)));
         assert!(found.pose.is_none() && found.nearest.is_some());
         assert!(found.refused.is_some_and(|why| why.contains("more memory")));
     }

@@ -6,6 +6,9 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use crate::lock::try_locked;
+use crate::memory::MemoryGuard;
+use crate::progress::{Progress, stop_if};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::runtime::work::threads;
@@ -47,7 +50,7 @@ impl<'a> ProgressReporter<'a> {
     fn add(&self, poses: u64) {
         let poses = self.poses.fetch_add(poses, Ordering::Relaxed) + poses;
         // A thread that finds the lock taken leaves the report to the other one.
-        if let Ok(mut last) = self.last.try_lock()
+        if let Some(mut last) = try_locked(&self.last)
             && last.elapsed() >= PROGRESS_INTERVAL
         {
             *last = Instant::now();
@@ -95,26 +98,41 @@ pub(in crate::tui::runtime) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, 
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::tui::runtime) struct PoseLimit(pub(in crate::tui::runtime) Option<u64>);
 
-impl PoseLimit {
-    /// Returns the progress function of a piece of work. It is called with the number of poses done since the last
-    /// call, and returns whether to go on.
-    pub(in crate::tui::runtime) fn count(self) -> impl Fn(u64) -> bool + Sync {
-        let done = AtomicU64::new(0);
-        move |poses| {
-            let done = done.fetch_add(poses, Ordering::Relaxed) + poses;
-            self.0.is_none_or(|most| done <= most)
-        }
-    }
-}
+/// The progress of a piece of work on the screen. It knows nothing of memory, so work reports to it only within a guard.
+pub(in crate::tui::runtime) struct WorkProgress<'a>(Box<dyn Progress + 'a>);
 
-/// Counts poses that are done, and returns whether to go on.
-pub(in crate::tui::runtime) fn proceed(
-    poses: u64,
-    stop: &AtomicBool,
-    clock: Option<&ProgressReporter<'_>>,
-) -> bool {
-    if let Some(clock) = clock {
-        clock.add(poses);
+impl<'a> WorkProgress<'a> {
+    /// Returns the progress of work that is done at once, and stopped after a number of poses.
+    pub(in crate::tui::runtime) fn up_to(limit: PoseLimit) -> Self {
+        let all = AtomicU64::new(0);
+        Self(Box::new(move |poses| {
+            let all = all.fetch_add(poses, Ordering::Relaxed) + poses;
+            stop_if(limit.0.is_some_and(|most| all > most))
+        }))
     }
-    !stop.load(Ordering::Relaxed)
+
+    /// Returns the progress of work that is stopped by a flag. The clock, if there is one, counts its poses.
+    pub(in crate::tui::runtime) fn until(
+        stop: &'a AtomicBool,
+        clock: Option<&'a ProgressReporter<'a>>,
+    ) -> Self {
+        Self(Box::new(move |poses| {
+            if let Some(clock) = clock {
+                clock.add(poses);
+            }
+            stop_if(stop.load(Ordering::Relaxed))
+        }))
+    }
+
+    /// Does work that reports its progress, and is stopped when memory runs short.
+    ///
+    /// # Errors
+    /// Returns a message if memory ran short.
+    pub(in crate::tui::runtime) fn within<T>(
+        &self,
+        memory: &MemoryGuard,
+        work: impl FnOnce(&dyn Progress) -> T,
+    ) -> Result<T, String> {
+        memory.limit(&*self.0, work)
+    }
 }

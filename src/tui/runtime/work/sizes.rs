@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use crate::formats::separation::size_label;
 use crate::memory::MemoryGuard;
+use crate::progress::Progress;
 use crate::recognition::{SeparationPoint, SmallestSize, TrainingError};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::confused::ConfusedPair;
 use crate::tui::recognise::message::{RecognitionEvent, SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::runtime::work::execution::{Execution, StopFlag};
-use crate::tui::runtime::work::progress::{ProgressReporter, guarded, on_a_thread, proceed};
+use crate::tui::runtime::work::progress::{ProgressReporter, WorkProgress, guarded, on_a_thread};
 
 /// Computes the limits of the sizes that are not known yet, on a thread of its own in place of the work before; or at
 /// once, and returns the event.
@@ -27,14 +28,14 @@ pub(in crate::tui::runtime) fn separate(
         Execution::AtOnce(limit) => {
             let mut sizes = Vec::new();
             let mut take = |size| sizes.push(size);
-            let end = scan(&request, known, &mut take, &limit.count());
+            let end = scan(&request, known, &mut take, &WorkProgress::up_to(*limit));
             return Some(event(number, sizes, Some(end)));
         }
         Execution::OnThreads(post) => post,
     };
     let thread = on_a_thread(number, post, move |post| {
         let clock = ProgressReporter::new(number, post);
-        let progress = |poses| proceed(poses, &stop, Some(&clock));
+        let progress = WorkProgress::until(&stop, Some(&clock));
         let last = guarded(number, || {
             let mut take = |size| post(event(number, vec![size], None));
             let end = scan(&request, known, &mut take, &progress);
@@ -60,14 +61,21 @@ fn scan(
     request: &SeparationRequest,
     known: Vec<SeparationPoint>,
     take: &mut dyn FnMut(SizeFound),
-    progress: &(dyn Fn(u64) -> bool + Sync),
+    progress: &WorkProgress<'_>,
 ) -> Result<Option<SmallestSize>, String> {
     let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
-    let progress = &|poses| progress(poses) && memory.allows();
-    let memory = &memory;
+    progress.within(&memory, |progress| limits(request, known, take, progress))?
+}
+
+/// Does the same without a limit of memory.
+fn limits(
+    request: &SeparationRequest,
+    known: Vec<SeparationPoint>,
+    take: &mut dyn FnMut(SizeFound),
+    progress: &dyn Progress,
+) -> Result<Option<SmallestSize>, String> {
     let sentence = |place: String| {
         move |error: TrainingError| match error {
-            TrainingError::Stopped if memory.exceeded() => memory.message(),
             TrainingError::Stopped => "stopped; what was found stays".to_owned(),
             error => format!("{place}: {error}"),
         }

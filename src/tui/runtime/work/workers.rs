@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use crate::memory::MemoryGuard;
 use crate::pose::{PoseGrid, PoseIndex};
+use crate::progress::Progress;
 use crate::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile, is_poses};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::app::worker_event::WorkerEvent;
@@ -33,7 +34,7 @@ use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::models::{ModelStore, ModelWorker};
 use crate::tui::runtime::work::naming::ShapeNamer;
 use crate::tui::runtime::work::progress::{
-    PoseLimit, ProgressReporter, WorkerEventSink, caught, guarded, on_a_thread, proceed,
+    PoseLimit, ProgressReporter, WorkProgress, WorkerEventSink, caught, guarded, on_a_thread,
 };
 use crate::tui::runtime::work::{poses, sizes, threads};
 
@@ -180,12 +181,14 @@ impl Workers {
     fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
         let stop = self.begin();
         let post = match &self.execution {
-            Execution::AtOnce(limit) => return Some(sweep(number, &grid, &limit.count())),
+            Execution::AtOnce(limit) => {
+                return Some(sweep(number, &grid, &WorkProgress::up_to(*limit)));
+            }
             Execution::OnThreads(post) => post,
         };
         let thread = on_a_thread(number, post, move |post| {
             let clock = ProgressReporter::new(number, post);
-            let progress = |poses| proceed(poses, &stop, Some(&clock));
+            let progress = WorkProgress::until(&stop, Some(&clock));
             post(guarded(number, || sweep(number, &grid, &progress)));
         });
         thread.err()
@@ -270,18 +273,18 @@ fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
 }
 
 /// Sweeps a grid and returns the event with the results, also after a stop.
-fn sweep(number: u64, grid: &PoseGrid, progress: &(dyn Fn(u64) -> bool + Sync)) -> WorkerEvent {
+fn sweep(number: u64, grid: &PoseGrid, progress: &WorkProgress<'_>) -> WorkerEvent {
     let memory = MemoryGuard::of_sweep();
     if let Err(message) = memory.check(grid) {
         return WorkerEvent::Failed(number, message);
     }
-    let progress = |poses: u64| progress(poses) && memory.allows();
-    let result = Sweep::new(grid).progress(&progress).run();
-    if memory.exceeded() {
-        // The results are given up: there is no memory to show them.
-        return WorkerEvent::Failed(number, memory.message());
+    let swept = progress.within(&memory, |progress| {
+        Sweep::new(grid).progress(progress).run()
+    });
+    match swept {
+        Ok(result) => WorkerEvent::Swept(number, Arc::new(Findings::new(result))),
+        Err(message) => WorkerEvent::Failed(number, message),
     }
-    WorkerEvent::Swept(number, Arc::new(Findings::new(result)))
 }
 
 /// Writes the results to a file and returns the event that tells whether that worked.
@@ -296,8 +299,14 @@ fn write(
 ) -> WorkerEvent {
     let result = &findings.sweep;
     let written = if is_poses(path) {
-        let go_on = |poses| proceed(poses, stop, clock) && memory.allows();
-        write_poses(result, path, existing, &go_on)
+        let progress = WorkProgress::until(stop, clock);
+        let written = progress.within(memory, |progress| {
+            write_poses(result, path, existing, progress)
+        });
+        match written {
+            Ok(written) => written,
+            Err(message) => return WorkerEvent::Failed(number, message),
+        }
     } else {
         match AtlasFile::new(path) {
             Ok(file) => file.write(result, existing, stop).map(|()| true),
@@ -312,7 +321,6 @@ fn write(
         Err(error) if !stop.load(Ordering::Relaxed) => {
             WorkerEvent::Failed(number, error.to_string())
         }
-        _ if memory.exceeded() => WorkerEvent::Failed(number, memory.message()),
         _ => WorkerEvent::Failed(number, "stopped; nothing was written".to_owned()),
     }
 }
@@ -323,15 +331,11 @@ fn write_poses(
     result: &SweepResult,
     path: &Path,
     existing: Existing,
-    go_on: &(dyn Fn(u64) -> bool + Sync),
+    progress: &dyn Progress,
 ) -> Result<bool, ArchiveFileError> {
     let mut file = PoseFile::new(path, &result.grid, existing)?;
-    // A full disk ends the work, too, but is reported as an error.
-    let full = AtomicBool::new(false);
-    let progress = |poses: u64| go_on(poses) && !full.load(Ordering::Relaxed);
-    let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
-    let sweep = Sweep::new(&result.grid).progress(&progress);
-    sweep.run_with_rows(&mut take);
+    let sweep = Sweep::new(&result.grid).progress(progress);
+    sweep.run_with_rows(&mut |row, ids| file.take(row, ids));
     let Some(whole) = file.finish()? else {
         return Ok(false);
     };
@@ -360,8 +364,8 @@ mod tests {
         let stop = AtomicBool::new(false);
         let written = |memory| write(7, &findings, to, Existing::Kept, &memory, &stop, None);
         let small = MemoryGuard::new(Some(MemorySize(1)), "take coarser steps");
-        let refused = small.message();
-        assert_eq!(written(small), WorkerEvent::Failed(7, refused));
+        let refused = "stopped: needs more memory than the 1 byte allowed; take coarser steps";
+        assert_eq!(written(small), WorkerEvent::Failed(7, refused.to_owned()));
         let left = std::fs::read_dir(folder.path()).expect("a folder").count();
         assert_eq!(left, 0, "nothing is left");
         let large = MemoryGuard::new(Some(MemorySize(1 << 50)), "");
