@@ -3,11 +3,12 @@
 //!
 //! **Nothing is lost.** A file is written under another name, synced and renamed into place; then the folder is synced.
 //! So at every moment, whatever fails, either the complete old file or the complete new one exists; of the two files of
-//! a sweep, the second may be missing ([`persist_pair`]). Deleting moves a file to a trash inside the folder. Writers
-//! of shapes hold the folder's lock while they write, so that two programs see each other's work; the three files of
-//! what was typed are written without it, and of two programs that add a line at once, one may lose it. A half-written
-//! file for which nobody holds a lock was left by a program that died, and is removed (one of a journal together with
-//! that journal). Reading needs neither a lock nor write access to the folder.
+//! a sweep, the second may be missing ([`persist_pair`]). Deleting a shape moves its file to a trash inside the folder;
+//! a model is removed for good, because it can be trained again. Writers of shapes hold the folder's lock while they
+//! write, so that two programs see each other's work; the three files of what was typed are written without it, and of
+//! two programs that add a line at once, one may lose it. A half-written file for which nobody holds a lock was left by
+//! a program that died, and is removed (one of a journal together with that journal). Reading needs neither a lock nor
+//! write access to the folder.
 //!
 //! ```text
 //! FOLDER/washer.json                    a shape

@@ -19,7 +19,7 @@ use crate::formats::byte_order_mark::without_mark;
 use crate::formats::name::folded;
 use crate::formats::{ArchiveError, Name, model_header, read_model, write_model};
 use crate::recognition::{Model, Training};
-use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
+use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile, sync_folder};
 use crate::storage::error::{ArchiveFileError, LibraryError};
 use crate::storage::first_error::FirstErrorWriter;
 use crate::storage::folder;
@@ -214,7 +214,7 @@ impl ModelFolder {
         Ok(path)
     }
 
-    /// Removes a model for good. Returns its name as it was stored.
+    /// Removes a model for good: it can be trained again. Returns its name as it was stored.
     ///
     /// # Errors
     /// Returns the system's error, with the file's name.
@@ -222,6 +222,8 @@ impl ModelFolder {
         let stored = self.stored_name(name);
         let path = self.path_of(&stored);
         fs::remove_file(&path).map_err(|error| ArchiveFileError::new(&path, error))?;
+        sync_folder(&self.0)
+            .map_err(|error| ArchiveFileError::doing("delete", &path, &error.into_io()))?;
         Ok(stored)
     }
 }

@@ -6,7 +6,7 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
 use std::path::Path;
 use std::process::Command;
 
-use taxel::storage::{Library, Orphan};
+use taxel::storage::{Library, ModelFolder, Orphan};
 
 use super::array;
 use super::state::{State, program, shape, taxel};
@@ -58,8 +58,22 @@ pub(crate) fn done_without() -> String {
         message.contains("fresh.svg: ") && !message.contains(".taxel-"),
         "{message}"
     );
+    delete_a_model(&state);
     "no locks, no links, no names without replacing: saved; what is refused is told by its own name"
         .to_owned()
+}
+
+/// A model is removed for good, so its folder is synced before the deletion is reported.
+fn delete_a_model(state: &State) {
+    let models = ModelFolder::beside(&state.folder);
+    fs::create_dir_all(models.path()).expect("made");
+    fs::write(models.path().join("parts.npz"), "").expect("written");
+    let delete = program(&["model", "delete", "parts"], &state.folder);
+    let run = strace::refused(&delete, "?fsync,?fdatasync", "EIO");
+    let message = String::from_utf8_lossy(&run.stderr).into_owned();
+    let expected = "parts.npz: cannot delete: the folder was changed but cannot be synced";
+    assert_eq!(run.status.code(), Some(1), "{run:?}");
+    assert!(message.contains(expected), "{message}");
 }
 
 /// On file systems without modes and owners, and for users who may not set them.
