@@ -280,7 +280,7 @@ impl Player<'_, '_> {
             return ControlFlow::Break(());
         }
         let mut damage = self.damage.borrow_mut();
-        damage.get_or_insert_with(|| error.copied());
+        damage.get_or_insert_with(|| error.clone());
         let mut counts = self.counts.borrow_mut();
         counts.drop_frames(1, bytes);
         counts.reason = Some(error.to_string());

@@ -10,7 +10,7 @@ use crate::acquire::event::{AcquireError, AcquireOptions, Playback};
 use crate::acquire::recorder::RecorderError;
 use crate::acquire::source_name::SourceName;
 use crate::formats::recording::{ReadOptions, RecordingError, RecordingFormat, format_of};
-use crate::formats::system_error::system_reason;
+use crate::formats::system_error::{system_reason, unshared};
 use crate::storage::FileId;
 
 /// A file that is played as a recording.
@@ -86,7 +86,7 @@ impl FrameSource {
         };
         let file = File::open(path)?;
         match format_of(&file, ReadOptions::default()) {
-            Err(RecordingError::Io(error)) => Err(error),
+            Err(RecordingError::Io(error)) => Err(unshared(error)),
             format @ (Ok(_) | Err(RecordingError::Foreign { .. })) => {
                 Ok(Some(OpenRecording { path, file, format }))
             }

@@ -2,13 +2,14 @@
 
 use std::io;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::formats::recording::MetadataError;
 use crate::formats::system_error::{system_reason, write_reason};
 use crate::storage::FileError;
 
 /// The error for frames that cannot be recorded.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecorderError {
     /// The system cannot write the file.
@@ -17,7 +18,7 @@ pub enum RecorderError {
         /// The file.
         path: PathBuf,
         /// The error that the system reports.
-        error: io::Error,
+        error: Arc<io::Error>,
     },
     /// The file exists already.
     #[error("{:?} already exists", path.to_string_lossy())]
@@ -55,22 +56,10 @@ pub enum RecorderError {
 }
 
 impl RecorderError {
-    /// Returns an error with the same message and kind.
-    pub(super) fn copied(&self) -> Self {
-        match self {
-            Self::Io { path, error } => Self::Io {
-                path: path.clone(),
-                error: match error.raw_os_error() {
-                    Some(number) => io::Error::from_raw_os_error(number),
-                    None => io::Error::new(error.kind(), error.to_string()),
-                },
-            },
-            Self::Exists { path } => Self::Exists { path: path.clone() },
-            Self::Foreign { path } => Self::Foreign { path: path.clone() },
-            Self::Ending { path } => Self::Ending { path: path.clone() },
-            Self::Replaced { path } => Self::Replaced { path: path.clone() },
-            Self::IsSource { path } => Self::IsSource { path: path.clone() },
-        }
+    /// Creates the error for a file that the system cannot write.
+    pub(super) fn io(path: PathBuf, error: io::Error) -> Self {
+        let error = Arc::new(error);
+        Self::Io { path, error }
     }
 }
 
@@ -122,6 +111,6 @@ pub(super) fn refused(error: FileError) -> RecorderError {
     let path = error.path.clone();
     match error.into_io() {
         exists if exists.kind() == io::ErrorKind::AlreadyExists => RecorderError::Exists { path },
-        error => RecorderError::Io { path, error },
+        error => RecorderError::io(path, error),
     }
 }

@@ -72,10 +72,7 @@ pub(super) fn prepared(
     metadata: &RecordingMetadata,
 ) -> Result<FinishedFile, RecorderError> {
     let path = array.with_extension("json");
-    let json = metadata.text().map_err(|error| RecorderError::Io {
-        path: path.clone(),
-        error,
-    })?;
+    let json = (metadata.text()).map_err(|error| RecorderError::io(path.clone(), error))?;
     FinishedFile::new(&path, &json, existing).map_err(refused)
 }
 

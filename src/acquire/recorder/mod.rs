@@ -270,8 +270,7 @@ impl FrameRecorder {
     }
 
     fn refused(&self, error: io::Error) -> RecorderError {
-        let path = self.path.clone();
-        RecorderError::Io { path, error }
+        RecorderError::io(self.path.clone(), error)
     }
 
     /// Writes out everything, syncs the file, and returns the number of frames. Without a frame, no file appears, and

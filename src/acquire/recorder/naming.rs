@@ -36,7 +36,7 @@ impl NamingState {
         match self {
             Self::Waiting(..) => Ok(None),
             Self::Given(array) => Ok(Some(*array)),
-            Self::Refused(reason) => Err(reason.copied()),
+            Self::Refused(reason) => Err(reason.clone()),
         }
     }
 
@@ -49,10 +49,8 @@ impl NamingState {
             return Ok(None);
         }
         // Until the names are given below.
-        let unnamed = Self::Refused(RecorderError::Io {
-            path: PathBuf::new(),
-            error: io::ErrorKind::Interrupted.into(),
-        });
+        let interrupted = io::ErrorKind::Interrupted.into();
+        let unnamed = Self::Refused(RecorderError::io(PathBuf::new(), interrupted));
         let Self::Waiting(array, beside) = std::mem::replace(self, unnamed) else {
             return Ok(None);
         };
@@ -62,7 +60,7 @@ impl NamingState {
                 Ok(Some(array))
             }
             Err(error) => {
-                *self = Self::Refused(error.copied());
+                *self = Self::Refused(error.clone());
                 Err(error)
             }
         }
@@ -76,7 +74,7 @@ impl NamingState {
 fn given(array: FinishedFile, beside: FinishedFile) -> Result<(NamedArray, FileId), RecorderError> {
     let path = array.path().to_owned();
     let (file, synced) = persist_pair(array, beside).map_err(refused)?;
-    let id = FileId::of(&file).map_err(|error| RecorderError::Io { path, error })?;
+    let id = FileId::of(&file).map_err(|error| RecorderError::io(path, error))?;
     let unsynced = synced.err().map(refused);
     Ok((NamedArray { file, unsynced }, id))
 }

@@ -1,6 +1,7 @@
 //! The errors of a recording, with their places.
 
 use std::io;
+use std::sync::Arc;
 
 use crate::formats::recording::format::RecordingFormat;
 use crate::formats::system_error::system_reason;
@@ -10,12 +11,12 @@ use crate::frame::MAX_FRAME_SIDE;
 use crate::parameter::number::counted;
 
 /// The error for a recording that cannot be read, or not to its end.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
     /// An error of the system.
     #[error("cannot read: {}", system_reason(.0))]
-    Io(io::Error),
+    Io(Arc<io::Error>),
     /// Not one of the known formats.
     #[error("not a recording of a known format: expected {}", readable_formats())]
     Unknown,
@@ -90,7 +91,7 @@ fn prefix(line: Option<u64>, column: Option<u64>) -> String {
 impl From<io::Error> for RecordingError {
     /// Converts an error of the system. It is part of the message, so it is not the source of this error, too.
     fn from(error: io::Error) -> Self {
-        Self::Io(error)
+        Self::Io(Arc::new(error))
     }
 }
 
@@ -112,16 +113,6 @@ impl RecordingError {
                 size.cells(),
                 size.in_words()
             )),
-        }
-    }
-
-    /// Returns an error with the same message, and the same hint at rows and columns.
-    #[cfg(feature = "acquire")]
-    pub(crate) fn copied(&self) -> Self {
-        match *self {
-            Self::Shape { values } => Self::Shape { values },
-            Self::Columns { numbers } => Self::Columns { numbers },
-            _ => Self::damaged(self.to_string()),
         }
     }
 

@@ -10,7 +10,7 @@
 
 use std::borrow::Cow;
 use std::fmt;
-use std::io::BufRead;
+use std::io::{self, BufRead};
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Visitor};
 
@@ -52,7 +52,7 @@ pub(in crate::formats::recording) fn read(
     }
     read.map_err(|error| {
         if error.is_io() {
-            return RecordingError::Io(error.into());
+            return io::Error::from(error).into();
         }
         RecordingError::in_field(error.line() as u64, error.column(), json::message(&error))
     })?;

@@ -34,7 +34,7 @@ const MOST_ARRAYS: usize = 256;
 /// Returns the error for an archive, in words that require no knowledge of its layout.
 fn damaged(error: ZipError) -> RecordingError {
     match error {
-        ZipError::Io(error) => RecordingError::Io(error),
+        ZipError::Io(error) => error.into(),
         ZipError::UnsupportedArchive(what) => {
             RecordingError::damaged(format!("an archive: {what}"))
         }

@@ -47,7 +47,7 @@ pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
     let mut start = [0; 8];
     let mut whole = |bytes: &mut [u8]| match input.read_exact(bytes) {
         Err(error) if error.kind() == ErrorKind::UnexpectedEof => Err(wrong()),
-        read => read.map_err(RecordingError::Io),
+        read => read.map_err(RecordingError::from),
     };
     whole(&mut start)?;
     let mut bytes = start.to_vec();

@@ -112,7 +112,7 @@ fn layout_after(
         None => layout(input, options),
     };
     match own {
-        Err(RecordingError::Io(error)) => Err(error.into()),
+        Err(error @ RecordingError::Io(_)) => Err(error),
         own => Ok(own.unwrap_or(earlier)),
     }
 }
@@ -139,7 +139,7 @@ fn first_fitting(
         Ok(())
     });
     match read {
-        Err(EarlyEnd::Failed(RecordingError::Io(error))) => Err(error.into()),
+        Err(EarlyEnd::Failed(error @ RecordingError::Io(_))) => Err(error),
         _ => Ok(fitting),
     }
 }
