@@ -12,6 +12,7 @@ use std::io::{Read, Seek, Write};
 use serde::{Deserialize, Serialize};
 
 use crate::atlas::{Atlas, ImprintSummary, feature_values, features};
+use crate::formats::json;
 use crate::formats::npy::Dtype;
 use crate::formats::npz::{
     ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
@@ -58,7 +59,7 @@ struct ArchiveHeader<Shape, Size> {
 pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
     let mut archive = ArrayWriter::new(&mut output);
     let (grid, parts) = (&result.grid, result.parts());
-    let header = header(result, &parts)?;
+    let header = header(result, &parts);
     archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
     let count = parts.counts.len() as u64;
     let height = u64::from(grid.sensor().rows());
@@ -97,9 +98,9 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), 
 }
 
 /// Returns the header as JSON: what was swept, over which ranges, and the counts of the whole result.
-fn header(result: &SweepResult, parts: &Parts) -> Result<Vec<u8>, ArchiveError> {
+fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
     let (grid, ranges) = (&result.grid, result.grid.ranges());
-    serde_json::to_vec(&ArchiveHeader {
+    json::written(serde_json::to_vec(&ArchiveHeader {
         format: FORMAT.to_owned(),
         source: grid.source(),
         sensor: grid.sensor(),
@@ -112,8 +113,7 @@ fn header(result: &SweepResult, parts: &Parts) -> Result<Vec<u8>, ArchiveError> 
         shard: result.shard.to_string(),
         poses: parts.poses,
         partly_off: parts.partly_off,
-    })
-    .map_err(|error| ArchiveError::Io(error.into()))
+    }))
 }
 
 /// Returns the number of pieces, or of holes, of each imprint, as the bytes of an array.

@@ -72,6 +72,12 @@ pub(crate) fn pretty(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| failure(&error))
 }
 
+/// Returns what was written as JSON in memory, for a file. It cannot fail: the keys of all values of this crate are texts.
+#[cfg(any(feature = "sweep", feature = "frames"))]
+pub(crate) fn written(text: serde_json::Result<Vec<u8>>) -> Vec<u8> {
+    text.expect("keys are texts, and memory takes every byte")
+}
+
 /// Returns an object with the error, for a value that cannot be written as JSON. All values of this crate can be
 /// written: their keys are texts and their numbers finite. If one ever fails, the error takes its place, as in the
 /// answers of a batch, so nobody mistakes it for an empty answer.

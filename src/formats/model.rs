@@ -5,6 +5,7 @@ use std::io::{Read, Seek, Write};
 use serde::{Deserialize, Serialize};
 
 use crate::formats::archive::{anchor, ranges};
+use crate::formats::json;
 use crate::formats::npy::Dtype;
 use crate::formats::npz::{
     ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
@@ -71,7 +72,7 @@ struct ShapeHeader<Shape> {
 /// Returns the errors of the writer.
 pub fn write(model: &Model, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
     let mut archive = ArrayWriter::new(&mut output);
-    let header = header(model.head())?;
+    let header = header(model.head());
     archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
     let keys = model.keys();
     let imprints = || (0..keys.len()).map(|key| keys.imprint(key));
@@ -124,13 +125,10 @@ fn row_type(columns: u8) -> Dtype {
 }
 
 /// Returns the header of a model as JSON, which begins its file. Equal heads have equal headers.
-///
-/// # Errors
-/// Returns an error if a name or a number cannot be written as JSON, which does not happen.
-pub fn header(head: &ModelHead) -> Result<Vec<u8>, ArchiveError> {
+pub fn header(head: &ModelHead) -> Vec<u8> {
     let ranges = &head.ranges;
     let shapes = head.shapes.iter().zip(&head.cut);
-    serde_json::to_vec(&ModelHeader {
+    json::written(serde_json::to_vec(&ModelHeader {
         format: FORMAT.to_owned(),
         shapes: shapes
             .map(|(shape, &cut)| ShapeHeader {
@@ -149,8 +147,7 @@ pub fn header(head: &ModelHead) -> Result<Vec<u8>, ArchiveError> {
         zoom_y: ranges[Axis::ZoomY].to_string(),
         shard: head.shard.to_string(),
         poses: head.poses,
-    })
-    .map_err(|error| ArchiveError::Io(error.into()))
+    }))
 }
 
 /// Reads a model that [`write_model`](crate::formats::write_model) has written.

@@ -72,8 +72,7 @@ pub(super) fn prepared(
     metadata: &RecordingMetadata,
 ) -> Result<FinishedFile, RecorderError> {
     let path = array.with_extension("json");
-    let json = (metadata.text()).map_err(|error| RecorderError::io(path.clone(), error))?;
-    FinishedFile::new(&path, &json, existing).map_err(refused)
+    FinishedFile::new(&path, &metadata.text(), existing).map_err(refused)
 }
 
 /// Writes the metadata over the old one, if a full disk has no room for both.
@@ -81,7 +80,7 @@ pub(super) fn prepared(
 /// # Errors
 /// Returns the system's error.
 pub(super) fn overwrite(array: &Path, metadata: &RecordingMetadata) -> io::Result<()> {
-    let text = metadata.text()?;
+    let text = metadata.text();
     let path = array.with_extension("json");
     let mut file = File::options().write(true).open(path)?;
     let old = file.seek(SeekFrom::End(0))?;
@@ -174,7 +173,7 @@ mod tests {
     fn metadata_that_is_too_large_is_not_called_damaged() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
-        let text = RecordingMetadata::default().text().expect("a text");
+        let text = RecordingMetadata::default().text();
         for (size, is_read) in [(1 << 22, true), ((1 << 22) + 1, false)] {
             let blanks = vec![b' '; size - text.len()];
             let written = [&blanks[..], &text].concat();

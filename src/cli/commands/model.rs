@@ -72,7 +72,7 @@ pub(crate) fn train(
         ShardFile::Refused | ShardFile::Replaced => Ok(None),
     };
     if let Some(model) = kept()? {
-        let text = trained(&model, &path, Some(KEPT), asked, charset)?;
+        let text = trained(&model, &path, Some(KEPT), asked, charset);
         return Ok(Summary::new(text, Ok(())));
     }
     let make_folder = || match &asked.to {
@@ -113,26 +113,23 @@ pub(crate) fn train(
         },
         Err(error) => (None, unless_stopped(Err(signals.failure_or(error.into())))?),
     };
-    let text = trained(&model, &path, done, asked, charset)?;
+    let text = trained(&model, &path, done, asked, charset);
     Ok(Summary::new(text, written))
 }
 
 /// Returns the text to print about a model. `done` tells whether its file was written or existed already; None if there
 /// is none.
-///
-/// # Errors
-/// Returns the errors of [`card_json`].
 fn trained(
     model: &Model,
     path: &Path,
     done: Option<&str>,
     asked: &TrainArguments,
     charset: Charset,
-) -> Result<String, CliError> {
+) -> String {
     let limit = Evaluation::of(model);
     let name = path.to_string_lossy();
-    Ok(if asked.json {
-        let mut text = card_json(model, &limit)?;
+    if asked.json {
+        let mut text = card_json(model, &limit);
         if done.is_some() {
             text.insert("file".to_owned(), json!(name));
         }
@@ -144,7 +141,7 @@ fn trained(
             text.insert_str(0, &(said + "\n"));
         }
         text
-    })
+    }
 }
 
 /// Returns the file of a new model. Its folder may not exist yet.
@@ -311,7 +308,7 @@ pub(crate) fn show(
     let model = model.ready(&|poses| ProgressDisplay::new(poses, false, charset))?;
     let limit = Evaluation::of(&model);
     if json {
-        return Ok(json::ascii(&card_json(&model, &limit)?) + "\n");
+        return Ok(json::ascii(&card_json(&model, &limit)) + "\n");
     }
     let mut text = format!(
         "{}\n",
@@ -349,7 +346,7 @@ pub(crate) fn show(
         text += &evaluation::summary(&limit, NamedBy::Imprint);
         text += &never_certain(&model);
     }
-    text += &format!("hash {}\n", model_hash(&model)?);
+    text += &format!("hash {}\n", model_hash(&model));
     Ok(charset.lines(&text))
 }
 
@@ -395,10 +392,7 @@ fn described(shape: &NamedShape) -> String {
 
 /// Returns the card of a model as JSON: what was trained, and its evaluation. Keys are sorted by name. Ranges are
 /// `START:END:STEP` texts, as in flags; counts beyond 64 bits are texts.
-fn card_json(
-    model: &Model,
-    limit: &Evaluation,
-) -> Result<serde_json::Map<String, serde_json::Value>, CliError> {
+fn card_json(model: &Model, limit: &Evaluation) -> serde_json::Map<String, serde_json::Value> {
     let mut card = serde_json::Map::new();
     let shapes = model.shapes().iter().enumerate().map(|(index, shape)| {
         json!({
@@ -436,8 +430,8 @@ fn card_json(
     card.insert("certain".into(), evaluation::number(limit.certain));
     card.insert("information_bits".into(), json!(limit.information_bits));
     card.insert("never_certain".into(), never.collect());
-    card.insert("hash".into(), json!(model_hash(model)?));
-    Ok(card)
+    card.insert("hash".into(), json!(model_hash(model)));
+    card
 }
 
 /// Returns the answer of `taxel model list --names`, for scripts and for shell completions. No file is read.

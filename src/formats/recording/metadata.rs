@@ -1,8 +1,6 @@
 //! The metadata beside one of taxel's own recordings: `touch.json` says where the frames of `touch.npy` come from,
 //! their unit, and how they were viewed.
 
-use std::io;
-
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
@@ -255,12 +253,9 @@ impl RecordingMetadata {
     }
 
     /// Returns the metadata as the text of a file.
-    ///
-    /// # Errors
-    /// Returns the errors of the JSON writer; none are known.
-    pub fn text(&self) -> io::Result<Vec<u8>> {
+    pub fn text(&self) -> Vec<u8> {
         let tare = self.tare.as_ref();
-        let text = serde_json::to_vec_pretty(&Described {
+        json::written(serde_json::to_vec_pretty(&Described {
             format: FORMAT.to_owned(),
             source: self.source.clone(),
             unit: self.unit.clone(),
@@ -274,8 +269,7 @@ impl RecordingMetadata {
             marks: self.marks.clone(),
             ended: self.ended,
             ended_by: self.ended_by.clone(),
-        });
-        text.map_err(io::Error::from)
+        }))
     }
 }
 
@@ -339,7 +333,7 @@ mod tests {
                 ended: Some(true),
                 ended_by: Some("no room".to_owned()),
             };
-            let text = metadata.text().expect("JSON");
+            let text = metadata.text();
             let read = RecordingMetadata::read(&text).expect("metadata");
             let read = read.expect("a right one");
             // NaN is not equal to itself.
@@ -371,7 +365,7 @@ mod tests {
                 }],
                 ..RecordingMetadata::default()
             };
-            let text = metadata.text().expect("JSON");
+            let text = metadata.text();
             let read = RecordingMetadata::read(&text).expect("metadata");
             let expected = RecordingMetadata {
                 pitch_mm: None,

@@ -45,10 +45,10 @@ pub(crate) fn recording(bytes: &[u8]) -> bool {
 pub(crate) fn metadata(bytes: &[u8]) -> bool {
     match RecordingMetadata::read(bytes) {
         Some(Ok(metadata)) => {
-            let text = metadata.text().expect("it is written");
+            let text = metadata.text();
             let again = RecordingMetadata::read(&text).expect("it is one");
             let again = again.expect("it is a right one").text();
-            assert_eq!(again.expect("it is written"), text);
+            assert_eq!(again, text);
             true
         }
         Some(Err(error)) => refused(&error.to_string()),
