@@ -82,7 +82,7 @@ impl StreamReader<'_, '_> {
             if self.reporter.interrupt().is_break() {
                 return Ok(());
             }
-            match self.again(AcquireEvent::Lost(&lost)) {
+            match self.again(AcquireEvent::Lost(&lost))? {
                 Some(found) => input = found,
                 None => return Ok(()),
             }
@@ -110,13 +110,8 @@ impl StreamReader<'_, '_> {
     fn first_input(&mut self) -> Result<Option<ByteInput>, AcquireError> {
         match self.open() {
             Ok(input) => Ok(input),
-            // Waiting does not make an invalid source valid.
-            Err(error)
-                if self.options.waits
-                    && self.source.comes_back()
-                    && error.kind() != io::ErrorKind::InvalidInput =>
-            {
-                Ok(self.again(AcquireEvent::Absent(&error)))
+            Err(error) if self.options.waits && self.source.comes_back() && !is_invalid(&error) => {
+                self.again(AcquireEvent::Absent(&error))
             }
             Err(error) => Err(AcquireError::opening(error)),
         }
@@ -124,32 +119,44 @@ impl StreamReader<'_, '_> {
 
     /// Reports why it waits for the source, and tries to open it each second until it exists. None if no more is
     /// wanted.
-    fn again(&mut self, event: AcquireEvent<'_>) -> Option<ByteInput> {
+    ///
+    /// # Errors
+    /// Returns an error if what exists by then is invalid.
+    fn again(&mut self, event: AcquireEvent<'_>) -> Result<Option<ByteInput>, AcquireError> {
         let since = Instant::now();
         if self.reporter.report(event).is_break() {
-            return None;
+            return Ok(None);
         }
         loop {
             let next = Instant::now() + RETRY;
             while Instant::now() < next {
                 if self.wait().is_break() {
-                    return None;
+                    return Ok(None);
                 }
                 std::thread::sleep(TICK);
             }
-            if let Ok(input) = self.open() {
-                let input = input?;
-                let gap = since.elapsed();
-                let back = self.reporter.report(AcquireEvent::Back { gap });
-                return back.is_continue().then_some(input);
+            match self.open() {
+                Ok(None) => return Ok(None),
+                Ok(Some(input)) => {
+                    let gap = since.elapsed();
+                    let back = self.reporter.report(AcquireEvent::Back { gap });
+                    return Ok(back.is_continue().then_some(input));
+                }
+                Err(error) if is_invalid(&error) => return Err(AcquireError::opening(error)),
+                Err(_) => {}
             }
         }
     }
 }
 
+/// Returns true if the source is not one that can be opened. Waiting does not make it valid.
+fn is_invalid(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::InvalidInput
+}
+
 #[cfg(test)]
 mod tests {
-    use std::fs::File;
+    use std::fs::{self, File};
     use std::io::Write;
     use std::net::TcpListener;
 
@@ -231,6 +238,31 @@ mod tests {
         times
     }
 
+    #[test]
+    fn a_source_that_turns_out_to_be_invalid_is_not_waited_for() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("line");
+        let source = FrameSource::Serial(path.clone());
+        let options = AcquireOptions {
+            waits: true,
+            ..AcquireOptions::default()
+        };
+        let mut events = 0;
+        let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
+            match event {
+                AcquireEvent::Absent(_) => fs::write(&path, "").expect("written"),
+                _ => events += 1,
+            }
+            if events == 100 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        let error = result.expect_err("a file").to_string();
+        assert!(error.contains("it is not a serial line"), "{error}");
+    }
+
     /// Reads a FIFO into which these pieces are written, each once the one before was read. Returns the result.
     fn read_in_pieces(pieces: &[&[u8]]) -> Result<(), AcquireError> {
         let folder = tempfile::tempdir().expect("a folder");
@@ -301,7 +333,7 @@ mod tests {
                 && counts.frames == 2
                 && other.exists()
             {
-                std::fs::rename(&other, &path).expect("renamed");
+                fs::rename(&other, &path).expect("renamed");
             }
             ControlFlow::Continue(())
         });
