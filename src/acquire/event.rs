@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crate::acquire::growing_file::ReadAnew;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingFormat, RecordingNote};
-use crate::formats::stream::{StreamCounts, StreamFormat, StreamOptions};
+use crate::formats::stream::{Silence, StreamCounts, StreamFormat, StreamOptions};
 use crate::formats::system_error::system_reason;
 #[cfg(feature = "tui")]
 use crate::formats::value::decimal;
@@ -75,6 +75,27 @@ impl AcquireOptions {
     #[must_use]
     pub fn with_size(mut self, size: FrameSize) -> Self {
         self.size = Some(size);
+        self
+    }
+
+    /// Sets the format of streams only. A file that is a recording is still played as one.
+    #[must_use]
+    pub fn with_stream_format(mut self, format: StreamFormat) -> Self {
+        self.stream_format = Some(format);
+        self
+    }
+
+    /// Sets the rows and columns of frames of streams only. Recordings state their own.
+    #[must_use]
+    pub fn with_stream_size(mut self, size: FrameSize) -> Self {
+        self.stream_size = Some(size);
+        self
+    }
+
+    /// Sets whether to wait for a connection or a serial line that cannot be opened at first.
+    #[must_use]
+    pub fn with_waits(mut self, waits: bool) -> Self {
+        self.waits = waits;
         self
     }
 
@@ -181,14 +202,7 @@ pub enum AcquireEvent<'a> {
     Tick(&'a StreamCounts),
     /// There was no frame for at least two seconds, and for three times as long as the source took for the last one
     /// (but a minute is enough). Reported once until the next frame, and again if bytes begin to arrive.
-    Silent {
-        /// The bytes per second that arrived meanwhile.
-        bytes_per_second: f64,
-        /// The counts so far.
-        counts: &'a StreamCounts,
-        /// Whether the source is a file that was moved or removed, so that no file has its name.
-        has_vanished: bool,
-    },
+    Silent(Silence<'a>),
     /// The source cannot be opened yet; opening it is tried again each second.
     Absent(&'a io::Error),
     /// The source is lost; opening it is tried again each second.
@@ -210,20 +224,6 @@ pub enum AcquireEvent<'a> {
 
 #[cfg(feature = "tui")]
 impl AcquireEvent<'_> {
-    /// Returns the words for [`Self::Silent`]; `has_baud` tells whether the source may be a serial line.
-    pub(crate) fn silence(
-        has_baud: bool,
-        bytes_per_second: f64,
-        counts: &StreamCounts,
-        has_vanished: bool,
-    ) -> String {
-        let silence = counts.silence(bytes_per_second, has_baud);
-        if has_vanished {
-            return format!("{silence}; its file was moved or removed");
-        }
-        silence
-    }
-
     /// Returns the words for [`Self::Lost`].
     pub(crate) fn lost(error: &io::Error) -> String {
         format!("lost: {}; trying again each second", system_reason(error))

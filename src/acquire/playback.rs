@@ -20,7 +20,7 @@ use crate::formats::recording::{
     ChannelInfo, EarlierLayout, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
     RecordingInput, RecordingMetadata, RecordingNote, format_after, read_as,
 };
-use crate::formats::stream::StreamCounts;
+use crate::formats::stream::{Silence, StreamCounts};
 use crate::frame::Frame;
 
 /// Creates the error for a followed file that was replaced by a recording of another kind.
@@ -259,11 +259,11 @@ impl Player<'_, '_> {
         }
         let looked = (self.silence.borrow_mut()).look(growth.bytes(), Instant::now());
         looked.map_or(ControlFlow::Continue(()), |bytes_per_second| {
-            self.report(AcquireEvent::Silent {
+            self.report(AcquireEvent::Silent(Silence {
                 bytes_per_second,
                 counts: &self.counts.borrow(),
                 has_vanished: has_no_file(path),
-            })
+            }))
         })
     }
 

@@ -156,7 +156,7 @@ fn is_invalid(error: &io::Error) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::fs::{self, File};
+    use std::fs::File;
     use std::io::Write;
     use std::net::TcpListener;
 
@@ -243,10 +243,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("line");
         let source = FrameSource::Serial(path.clone());
-        let options = AcquireOptions {
-            waits: true,
-            ..AcquireOptions::default()
-        };
+        let options = AcquireOptions::default().with_waits(true);
         let mut events = 0;
         let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
             match event {
@@ -311,7 +308,7 @@ mod tests {
     fn a_file_that_becomes_a_recording_is_not_taken_for_a_stream() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("touch.npy");
-        std::fs::write(&path, b"\x93NUM").expect("written");
+        fs::write(&path, b"\x93NUM").expect("written");
         let source = FrameSource::File(path.clone());
         let options = AcquireOptions::default();
         let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
@@ -325,9 +322,9 @@ mod tests {
         });
         assert!(matches!(result, Err(AcquireError::NotStream { .. })));
         // The frames before the file was replaced do not make it a stream.
-        std::fs::write(&path, b"1 2\n3 4\n\n5 6\n7 8\n\n").expect("written");
+        fs::write(&path, b"1 2\n3 4\n\n5 6\n7 8\n\n").expect("written");
         let other = folder.path().join("other");
-        std::fs::write(&other, b"\x93NUMPY\x01\x00v\x00{").expect("written");
+        fs::write(&other, b"\x93NUMPY\x01\x00v\x00{").expect("written");
         let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
             if let AcquireEvent::Tick(counts) = event
                 && counts.frames == 2

@@ -10,7 +10,7 @@ use crate::acquire::silence::SilenceWatch;
 use crate::acquire::source::FrameSource;
 use crate::acquire::stream_start::StreamStart;
 use crate::acquire::ticker::Ticker;
-use crate::formats::stream::{StreamDecoder, StreamEvent, StreamSink};
+use crate::formats::stream::{Silence, StreamDecoder, StreamEvent, StreamSink};
 
 /// The times that are measured while a stream is read.
 struct StreamClock {
@@ -195,11 +195,11 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
         let counts = self.decoder.counts();
         (self.consumer)(AcquireEvent::Tick(counts))?;
         match self.clock.silence.look(counts.bytes, Instant::now()) {
-            Some(bytes_per_second) => (self.consumer)(AcquireEvent::Silent {
+            Some(bytes_per_second) => (self.consumer)(AcquireEvent::Silent(Silence {
                 bytes_per_second,
                 counts,
                 has_vanished: self.source.has_vanished(),
-            }),
+            })),
             None => ControlFlow::Continue(()),
         }
     }

@@ -138,33 +138,6 @@ impl StreamCounts {
         }
     }
 
-    /// Returns the reason why no frame has arrived for some time, given the bytes per second in that time and whether
-    /// the source has a baud rate, which may be wrong.
-    pub fn silence(&self, bytes_per_second: f64, has_baud: bool) -> String {
-        if let Some(refusal) = self.refusal() {
-            return refusal.to_string();
-        }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a rate for a message"
-        )]
-        // Round up, so that a byte now and then is not shown as 0.
-        let rate = grouped(bytes_per_second.ceil() as u64);
-        match (self.bytes, bytes_per_second > 0.0) {
-            (_, true) => {
-                let why = match (&self.reason, has_baud) {
-                    (Some(reason), _) => &format!("the last one dropped: {reason}"),
-                    (None, true) => "baud, rows, columns or format?",
-                    (None, false) => "rows, columns or format?",
-                };
-                format!("{rate} B/s, none of it a frame; {why}")
-            }
-            (0, _) => "nothing has come yet; is it sending?".to_owned(),
-            _ => "the source has gone silent".to_owned(),
-        }
-    }
-
     /// Returns the reason why a stream has come to its end without a frame; None if there was one.
     pub fn no_frame_reason(&self) -> Option<NoFrameReason<'_>> {
         if self.frames > 0 {
@@ -255,6 +228,55 @@ pub enum NoFrameReason<'a> {
     },
 }
 
+/// A time in which a stream has brought no frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Silence<'a> {
+    /// The bytes per second that arrived meanwhile.
+    pub bytes_per_second: f64,
+    /// The counts so far.
+    pub counts: &'a StreamCounts,
+    /// Whether the source is a file that was moved or removed, so that no file has its name.
+    pub has_vanished: bool,
+}
+
+impl Silence<'_> {
+    /// Returns the reason for it in words. `has_baud` tells whether the source has a baud rate, which may be wrong.
+    pub fn reason(&self, has_baud: bool) -> String {
+        let reason = self.reason_of_stream(has_baud);
+        if self.has_vanished {
+            return format!("{reason}; its file was moved or removed");
+        }
+        reason
+    }
+
+    /// Returns the same, without what has become of a file.
+    fn reason_of_stream(&self, has_baud: bool) -> String {
+        let counts = self.counts;
+        if let Some(refusal) = counts.refusal() {
+            return refusal.to_string();
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a rate for a message"
+        )]
+        // Round up, so that a byte now and then is not shown as 0.
+        let rate = grouped(self.bytes_per_second.ceil() as u64);
+        match (counts.bytes, self.bytes_per_second > 0.0) {
+            (_, true) => {
+                let why = match (&counts.reason, has_baud) {
+                    (Some(reason), _) => &format!("the last one dropped: {reason}"),
+                    (None, true) => "baud, rows, columns or format?",
+                    (None, false) => "rows, columns or format?",
+                };
+                format!("{rate} B/s, none of it a frame; {why}")
+            }
+            (0, _) => "nothing has come yet; is it sending?".to_owned(),
+            _ => "the source has gone silent".to_owned(),
+        }
+    }
+}
+
 /// A function that takes the events of a decoder.
 pub type StreamSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;
 
@@ -271,14 +293,23 @@ mod tests {
             ..StreamCounts::default()
         };
         assert_eq!(counts.refusal(), Some(StreamRefusal::Cut));
-        assert_eq!(counts.silence(0.0, false), StreamRefusal::Cut.to_string());
+        let reason = |counts: &StreamCounts, bytes_per_second, has_baud| {
+            let has_vanished = false;
+            let silence = Silence {
+                bytes_per_second,
+                counts,
+                has_vanished,
+            };
+            silence.reason(has_baud)
+        };
+        assert_eq!(reason(&counts, 0.0, false), StreamRefusal::Cut.to_string());
         counts.frames = 1;
         assert_eq!(counts.refusal(), None);
-        assert_eq!(counts.silence(0.0, false), "the source has gone silent");
+        assert_eq!(reason(&counts, 0.0, false), "the source has gone silent");
         counts.reason = Some("row 2 has 1 number, expected 2".to_owned());
         let said =
             "8 B/s, none of it a frame; the last one dropped: row 2 has 1 number, expected 2";
-        assert_eq!(counts.silence(8.0, true), said);
+        assert_eq!(reason(&counts, 8.0, true), said);
     }
 
     #[test]

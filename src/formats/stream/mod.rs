@@ -43,7 +43,7 @@ mod decoder;
 
 pub use decoder::StreamDecoder;
 pub use event::{
-    NoFrameReason, StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal,
+    NoFrameReason, Silence, StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal,
     StreamSink,
 };
 pub(in crate::formats) use flexitac::MARKER as FLEXITAC_MARKER;

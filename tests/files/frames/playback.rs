@@ -320,11 +320,10 @@ fn a_file_that_no_longer_grows_is_silent() {
         let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
             match event {
                 AcquireEvent::Tick(_) => ticks += 1,
-                AcquireEvent::Silent {
-                    bytes_per_second,
-                    counts,
-                    has_vanished,
-                } => silence = Some((bytes_per_second, counts.frames, has_vanished)),
+                AcquireEvent::Silent(found) => {
+                    let frames = found.counts.frames;
+                    silence = Some((found.bytes_per_second, frames, found.has_vanished));
+                }
                 _ => {}
             }
             if ticks == 1 {

@@ -49,14 +49,7 @@ impl<'a> SourceReports<'a> {
     /// Returns the note about an oddity of the source; None for any other event.
     pub(super) fn remark(&self, event: AcquireEvent<'_>) -> Option<String> {
         Some(match event {
-            AcquireEvent::Silent {
-                bytes_per_second,
-                counts,
-                has_vanished,
-            } => {
-                let has_baud = self.source.unused_baud().is_none();
-                AcquireEvent::silence(has_baud, bytes_per_second, counts, has_vanished)
-            }
+            AcquireEvent::Silent(silence) => silence.reason(self.source.unused_baud().is_none()),
             AcquireEvent::Lost(error) => AcquireEvent::lost(error),
             AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
             AcquireEvent::Note(note) => format!("warning: {note}{}", note_advice(note)),

@@ -130,7 +130,7 @@ impl FrameFeed {
     ) {
         let mut wanted = ControlFlow::Continue(());
         let mut consumer = |event: AcquireEvent<'_>| {
-            let is_time = matches!(event, AcquireEvent::Tick(_) | AcquireEvent::Silent { .. });
+            let is_time = matches!(event, AcquireEvent::Tick(_) | AcquireEvent::Silent(_));
             // A script has no clock: the time between its frames is its own, not a silence of the source.
             if is_time && options.playback == Playback::Once {
                 return ControlFlow::Continue(());
@@ -212,15 +212,10 @@ impl FrameFeed {
                 pending.note_recorded(written);
                 is_new && pending.set_new()
             }
-            AcquireEvent::Silent {
-                bytes_per_second,
-                counts,
-                has_vanished,
-            } => self.change(|pending| {
+            AcquireEvent::Silent(silence) => self.change(|pending| {
                 let source = source::named(&request.source);
                 let has_baud = source.unused_baud().is_none();
-                let what = AcquireEvent::silence(has_baud, bytes_per_second, counts, has_vanished);
-                let why = no_frame::silence(&source, counts, &what);
+                let why = no_frame::silence(&source, silence.counts, &silence.reason(has_baud));
                 pending.status().state = SourceState::Silent(why);
             }),
             AcquireEvent::Absent(error) => self.change(|pending| {

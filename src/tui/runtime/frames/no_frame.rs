@@ -72,6 +72,7 @@ fn hint(source: &FrameSource, refusal: StreamRefusal) -> &'static str {
 mod tests {
     use super::*;
     use crate::formats::recording::RecordingFormat;
+    use crate::formats::stream::Silence;
 
     #[test]
     fn standard_input_is_not_read_again_by_watch() {
@@ -110,8 +111,13 @@ mod tests {
         };
         let said = "no frame yet: none in 272 bytes; rows, columns or format?";
         // The message stays the same when nothing more comes.
-        for rate in [136.0, 0.0] {
-            assert_eq!(silence(&file, &counts, &counts.silence(rate, false)), said);
+        for bytes_per_second in [136.0, 0.0] {
+            let what = Silence {
+                bytes_per_second,
+                counts: &counts,
+                has_vanished: false,
+            };
+            assert_eq!(silence(&file, &counts, &what.reason(false)), said);
         }
     }
 }
