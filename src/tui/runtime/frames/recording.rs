@@ -15,6 +15,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::acquire::{FrameRecorder, PreparedMetadata, RecorderError};
 use crate::formats::recording::{RecordedView, RecordingMetadata};
+use crate::formats::value::grouped;
 use crate::frame::Frame;
 use crate::lock::locked;
 use crate::storage::Existing;
@@ -81,7 +82,10 @@ impl Recording {
             recording.begin(Existing::Kept, metadata)?;
             return Ok((name, Arc::new(recording)));
         }
-        Err("10,000 recordings are here already; move some elsewhere".to_owned())
+        let most = grouped(MOST_CHOSEN);
+        Err(format!(
+            "{most} recordings are here already; move some elsewhere"
+        ))
     }
 
     /// Returns the path of the file.
@@ -244,9 +248,12 @@ impl Recording {
     }
 }
 
+/// The most recordings in a folder whose names the program chooses.
+const MOST_CHOSEN: u64 = 10_000;
+
 /// Iterates over the names that the program chooses.
 fn chosen_names() -> impl Iterator<Item = String> {
-    (1..10_000).map(|number| format!("touch-{number}.npy"))
+    (1..=MOST_CHOSEN).map(|number| format!("touch-{number}.npy"))
 }
 
 /// Returns true if neither an array nor metadata has the name.
@@ -257,6 +264,20 @@ fn is_free(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_message_about_too_many_recordings_counts_them_right() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let access = WriteAccess::below(folder.path().to_owned());
+        for name in chosen_names() {
+            std::fs::write(folder.path().join(name), "").expect("written");
+        }
+        let refused = Recording::in_free_file(&access, &RecordingMetadata::default());
+        let expected = "10,000 recordings are here already; move some elsewhere";
+        assert_eq!(refused.err().as_deref(), Some(expected));
+        let found = std::fs::read_dir(folder.path()).expect("a folder").count();
+        assert_eq!(found, 10_000);
+    }
 
     #[test]
     fn a_chosen_name_that_another_program_has_taken_is_replaced_by_the_next_free_one() {
