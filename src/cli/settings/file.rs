@@ -16,7 +16,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::cli::settings::sensors::{
-    SENSOR_SETTINGS, SensorSetting, SensorSettings, SettingKind, SettingValue, Written,
+    FormatSetting, SENSOR_SETTINGS, SensorSetting, SensorSettings, SettingKind, Written,
 };
 use crate::formats::stream::StreamFormat;
 use crate::parameter::{Parameter, ParameterError};
@@ -246,8 +246,7 @@ impl Config {
                 unknown(key, byte, &names)
             })?;
             let line = line_and_column(text, byte).0;
-            let value = sensor_value(text, row, value)?;
-            self.sensors.add(row.key, Written { value, line });
+            fill_sensor(&mut self.sensors, text, row, (value, line))?;
             places.push((row.key, byte));
         }
         let conflict = self.sensors.conflict();
@@ -358,23 +357,34 @@ fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Ref
     table.ok_or_else(|| other_kind("a table", value))
 }
 
-/// Reads the value of a setting of real sensors.
-fn sensor_value(
+/// Reads the value of a setting of real sensors, which is in that line.
+fn fill_sensor(
+    sensors: &mut SensorSettings,
     text: &str,
     row: &SensorSetting,
-    value: &Spanned<DeValue<'_>>,
-) -> Result<SettingValue, Refusal> {
-    if row.kind == SettingKind::Format {
+    (value, line): (&Spanned<DeValue<'_>>, usize),
+) -> Result<(), Refusal> {
+    let (is_filled, found) = if let SettingKind::Format { fill } = row.kind {
         let name = string(value)?;
         let format = name.parse::<StreamFormat>().ok();
-        if format.is_none() && name != AUTO {
-            return Err(unfit(row.kind.expected(), name, value));
-        }
-        return Ok(SettingValue::Format(format));
+        let setting = Written {
+            value: FormatSetting(format),
+            line,
+        };
+        let is_known = format.is_some() || name == AUTO;
+        (is_known && fill(sensors, setting), name)
+    } else {
+        let number = number(text, value)?;
+        let setting = Written {
+            value: number,
+            line,
+        };
+        (row.kind.fill(sensors, setting), written(text, value))
+    };
+    if is_filled {
+        return Ok(());
     }
-    let found = number(text, value)?;
-    let wrong = || unfit(row.kind.expected(), written(text, value), value);
-    row.kind.value(found).ok_or_else(wrong)
+    Err(unfit(row.kind.expected(), found, value))
 }
 
 /// Reads a number in decimal notation. NaN and infinities are accepted here; the parameter's range refuses them.

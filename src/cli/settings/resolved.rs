@@ -374,13 +374,16 @@ impl Effective {
         for table in TABLES {
             text += &format!("\n[{table}]\n");
             for setting in SENSOR_SETTINGS.iter().filter(|row| row.table == table) {
-                let entry = match sensors.text(setting) {
+                let (value, origin) = if let Some(own) = sensors.written(setting) {
+                    (Some(own.value), SettingOrigin::File(own.line))
+                } else {
+                    let default = SensorSettings::default_text(setting.key);
+                    (default, SettingOrigin::Default)
+                };
+                let entry = match value {
                     Some(value) => format!("{} = {value}", setting.name),
                     None => format!("# {} is not set", setting.name),
                 };
-                let written = sensors.get(setting.key);
-                let origin =
-                    written.map_or(SettingOrigin::Default, |own| SettingOrigin::File(own.line));
                 text += &commented(&entry, &origin);
             }
         }

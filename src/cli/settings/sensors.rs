@@ -2,6 +2,7 @@
 //!
 //! Flags of `taxel watch` and `taxel frames` override them. On the screen, `:watch SOURCE` starts with them.
 
+use std::fmt;
 use std::ops::RangeInclusive;
 
 use crate::acquire::AcquireOptions;
@@ -17,6 +18,29 @@ pub struct Written<T> {
     pub value: T,
     /// The line, from 1.
     pub line: usize,
+}
+
+impl<T> Written<T> {
+    /// Puts the value into a field of its type. Returns false if it does not fit in.
+    fn fill<U: TryFrom<T>>(self, field: &mut Option<Written<U>>) -> bool {
+        let Ok(value) = U::try_from(self.value) else {
+            return false;
+        };
+        let line = self.line;
+        *field = Some(Written { value, line });
+        true
+    }
+
+    /// Returns the value as it is written in the file.
+    fn shown(&self) -> Written<String>
+    where
+        T: fmt::Display,
+    {
+        Written {
+            value: self.value.to_string(),
+            line: self.line,
+        }
+    }
 }
 
 /// A setting of real sensors.
@@ -35,17 +59,39 @@ pub(crate) enum SensorKey {
     HistoryBytes,
 }
 
-/// The values that a setting may have.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The format of a stream; None for `auto`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FormatSetting(pub(crate) Option<StreamFormat>);
+
+impl fmt::Display for FormatSetting {
+    /// Writes the name in quotes, as in the file.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.0.map_or("auto", StreamFormat::name))
+    }
+}
+
+/// A function that puts a value into its field. It returns false if the value does not fit in.
+type Fill<T> = fn(&mut SensorSettings, Written<T>) -> bool;
+
+/// The values that a setting may have, and how one gets into its field.
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum SettingKind {
     /// The name of a format of streams, or `auto`.
-    Format,
+    Format { fill: Fill<FormatSetting> },
     /// A whole number in a range.
-    Whole(u64, u64),
+    Whole {
+        least: u64,
+        most: u64,
+        fill: Fill<u64>,
+    },
     /// A number in a range.
-    Number(f64, f64),
+    Number {
+        least: f64,
+        most: f64,
+        fill: Fill<f64>,
+    },
     /// A share above 0 %.
-    Percent,
+    Percent { fill: Fill<f64> },
 }
 
 /// A row of the table of settings.
@@ -56,6 +102,8 @@ pub(crate) struct SensorSetting {
     pub(crate) table: &'static str,
     pub(crate) name: &'static str,
     pub(crate) kind: SettingKind,
+    /// Returns the value as the file has it; None if it does not set it.
+    shown: fn(&SensorSettings) -> Option<Written<String>>,
 }
 
 /// The tables, in the order in which they are shown.
@@ -64,78 +112,85 @@ pub(crate) const TABLES: [&str; 2] = ["source", "frames"];
 /// The number of taxels below which pieces may be dropped.
 pub(crate) const LEAST: RangeInclusive<u32> = 1..=4096;
 
-/// All settings of real sensors.
-pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
-    use SensorKey as Key;
-    use SettingKind::{Format, Number, Percent, Whole};
-    const fn row(
-        table: &'static str,
-        name: &'static str,
-        key: SensorKey,
-        kind: SettingKind,
-    ) -> SensorSetting {
-        SensorSetting {
-            key,
-            table,
-            name,
-            kind,
-        }
+/// The most memory for the history of frames, in bytes.
+const MOST_HISTORY_BYTES: u64 = {
+    let (most, addressable) = (1 << 40, usize::MAX as u64);
+    if most < addressable {
+        most
+    } else {
+        addressable
     }
-    let value = Number(-LARGEST_VALUE, LARGEST_VALUE);
-    let side = Whole(
+};
+
+/// All settings of real sensors. Each has the name of its field.
+pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
+    macro_rules! row {
+        ($table:literal, $key:ident, $field:ident, $kind:ident $(, $least:expr, $most:expr)?) => {
+            SensorSetting {
+                key: SensorKey::$key,
+                table: $table,
+                name: stringify!($field),
+                kind: SettingKind::$kind {
+                    $(least: $least, most: $most,)?
+                    fill: |own, written| written.fill(&mut own.$field),
+                },
+                shown: |own| own.$field.as_ref().map(Written::shown),
+            }
+        };
+    }
+    let (side, most_side) = (
         *FrameSize::SIDES.start() as u64,
         *FrameSize::SIDES.end() as u64,
     );
-    let least = Whole(*LEAST.start() as u64, *LEAST.end() as u64);
-    let baud = &AcquireOptions::BAUDS;
-    let baud = Whole(*baud.start() as u64, *baud.end() as u64);
+    let (least, most_least) = (*LEAST.start() as u64, *LEAST.end() as u64);
+    let bauds = &AcquireOptions::BAUDS;
+    let (baud, most_baud) = (*bauds.start() as u64, *bauds.end() as u64);
     [
-        row("source", "format", Key::Format, Format),
-        row("source", "baud", Key::Baud, baud),
-        row("source", "rows", Key::Rows, side),
-        row("source", "columns", Key::Columns, side),
-        row("frames", "at_least", Key::AtLeast, value),
-        row("frames", "percent", Key::Percent, Percent),
-        row("frames", "low", Key::Low, value),
-        row("frames", "high", Key::High, value),
-        row("frames", "least", Key::Least, least),
-        row("frames", "tare", Key::Tare, Whole(0, 1_000_000)),
-        row(
+        row!("source", Format, format, Format),
+        row!("source", Baud, baud, Whole, baud, most_baud),
+        row!("source", Rows, rows, Whole, side, most_side),
+        row!("source", Columns, columns, Whole, side, most_side),
+        row!(
             "frames",
-            "history_bytes",
-            Key::HistoryBytes,
-            Whole(1 << 16, 1 << 40),
+            AtLeast,
+            at_least,
+            Number,
+            -LARGEST_VALUE,
+            LARGEST_VALUE
+        ),
+        row!("frames", Percent, percent, Percent),
+        row!("frames", Low, low, Number, -LARGEST_VALUE, LARGEST_VALUE),
+        row!("frames", High, high, Number, -LARGEST_VALUE, LARGEST_VALUE),
+        row!("frames", Least, least, Whole, least, most_least),
+        row!("frames", Tare, tare, Whole, 0, 1_000_000),
+        row!(
+            "frames",
+            HistoryBytes,
+            history_bytes,
+            Whole,
+            1 << 16,
+            MOST_HISTORY_BYTES
         ),
     ]
 };
-
-/// A value of a setting of real sensors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum SettingValue {
-    /// The format of a stream; None for `auto`.
-    Format(Option<StreamFormat>),
-    /// A whole number.
-    Whole(u64),
-    /// A number.
-    Number(f64),
-}
 
 impl SettingKind {
     /// Returns the possible values, for messages.
     pub(crate) fn expected(self) -> String {
         match self {
-            Self::Format => {
+            Self::Format { .. } => {
                 let names = StreamFormat::ALL.map(|format| format!("{:?}", format.name()));
                 format!("one of \"auto\", {}", names.join(", "))
             }
-            Self::Whole(least, most) => format!("a whole number from {least} to {most}"),
-            Self::Number(least, most) => format!("a number from {least:?} to {most:?}"),
-            Self::Percent => "a number above 0, up to 100".to_owned(),
+            Self::Whole { least, most, .. } => format!("a whole number from {least} to {most}"),
+            Self::Number { least, most, .. } => format!("a number from {least:?} to {most:?}"),
+            Self::Percent { .. } => "a number above 0, up to 100".to_owned(),
         }
     }
 
-    /// Returns the value of a number; None if it is out of range.
-    pub(crate) fn value(self, number: f64) -> Option<SettingValue> {
+    /// Puts a number into its field. Returns false if it is out of range, or if no number is expected.
+    pub(crate) fn fill(self, settings: &mut SensorSettings, written: Written<f64>) -> bool {
+        let (number, line) = (written.value, written.line);
         #[expect(
             clippy::cast_precision_loss,
             clippy::cast_possible_truncation,
@@ -143,16 +198,18 @@ impl SettingKind {
             reason = "the limits are below 2^53, and the number is whole and between them"
         )]
         match self {
-            Self::Format => None,
-            Self::Whole(least, most) => (number.fract() == 0.0
-                && (least as f64..=most as f64).contains(&number))
-            .then_some(SettingValue::Whole(number as u64)),
-            Self::Number(least, most) => (least..=most)
-                .contains(&number)
-                .then_some(SettingValue::Number(number)),
-            Self::Percent => Rule::percent(number)
-                .is_ok()
-                .then_some(SettingValue::Number(number)),
+            Self::Format { .. } => false,
+            Self::Whole { least, most, fill } => {
+                let range = least as f64..=most as f64;
+                let value = number as u64;
+                number.fract() == 0.0
+                    && range.contains(&number)
+                    && fill(settings, Written { value, line })
+            }
+            Self::Number { least, most, fill } => {
+                (least..=most).contains(&number) && fill(settings, written)
+            }
+            Self::Percent { fill } => Rule::percent(number).is_ok() && fill(settings, written),
         }
     }
 }
@@ -160,39 +217,40 @@ impl SettingKind {
 /// The settings of real sensors that the file sets.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SensorSettings {
-    entries: Vec<(SensorKey, Written<SettingValue>)>,
+    format: Option<Written<FormatSetting>>,
+    baud: Option<Written<u32>>,
+    rows: Option<Written<u16>>,
+    columns: Option<Written<u16>>,
+    at_least: Option<Written<f64>>,
+    percent: Option<Written<f64>>,
+    low: Option<Written<f64>>,
+    high: Option<Written<f64>>,
+    least: Option<Written<u32>>,
+    tare: Option<Written<u64>>,
+    history_bytes: Option<Written<usize>>,
+}
+
+/// Returns the value of a field; None if the file does not set it.
+fn value<T: Copy>(field: Option<&Written<T>>) -> Option<T> {
+    field.map(|written| written.value)
 }
 
 impl SensorSettings {
-    /// Adds an entry of the file.
-    pub(crate) fn add(&mut self, key: SensorKey, written: Written<SettingValue>) {
-        self.entries.push((key, written));
+    /// Returns true if the file sets it.
+    fn is_set(&self, key: SensorKey) -> bool {
+        let mut rows = SENSOR_SETTINGS.iter();
+        rows.any(|row| row.key == key && (row.shown)(self).is_some())
     }
 
-    /// Returns the entry of the file, if there is one.
-    pub(crate) fn get(&self, key: SensorKey) -> Option<&Written<SettingValue>> {
-        let found = self.entries.iter().find(|(own, _)| *own == key);
-        found.map(|(_, written)| written)
-    }
-
-    fn number(&self, key: SensorKey) -> Option<f64> {
-        match self.get(key)?.value {
-            SettingValue::Number(number) => Some(number),
-            _ => None,
-        }
-    }
-
-    fn whole<T: TryFrom<u64>>(&self, key: SensorKey) -> Option<T> {
-        match self.get(key)?.value {
-            SettingValue::Whole(whole) => T::try_from(whole).ok(),
-            _ => None,
-        }
+    /// Returns low and high, if both are set.
+    fn low_and_high(&self) -> Option<(f64, f64)> {
+        value(self.low.as_ref()).zip(value(self.high.as_ref()))
     }
 
     /// Returns the first key that conflicts with the others or lacks one, what was expected, and the key with which it
     /// conflicts, if there is one.
     pub(crate) fn conflict(&self) -> Option<(SensorKey, &'static str, Option<SensorKey>)> {
-        let has = |key: SensorKey| self.get(key).is_some();
+        let has = |key: SensorKey| self.is_set(key);
         let pair = |one: SensorKey, other: SensorKey, why| {
             let found = [(one, other), (other, one)].into_iter();
             let mut lone = found.filter(|&(own, other)| has(own) && !has(other));
@@ -205,10 +263,7 @@ impl SensorSettings {
             let why = "one threshold: at_least, percent, or low and high";
             two.map(|(first, second)| (second, why, Some(first)))
         };
-        let low = self
-            .number(SensorKey::Low)
-            .zip(self.number(SensorKey::High));
-        let order = || low.is_some_and(|(low, high)| low > high);
+        let order = || self.low_and_high().is_some_and(|(low, high)| low > high);
         pair(
             SensorKey::Rows,
             SensorKey::Columns,
@@ -221,43 +276,36 @@ impl SensorSettings {
 
     /// Returns the rule for imprints.
     pub(crate) fn rule(&self) -> Option<Rule> {
-        let made = |key, make: fn(f64) -> Result<Rule, _>| make(self.number(key)?).ok();
-        let both = self
-            .number(SensorKey::Low)
-            .zip(self.number(SensorKey::High));
-        made(SensorKey::AtLeast, Rule::at_least)
-            .or_else(|| made(SensorKey::Percent, Rule::percent))
-            .or_else(|| both.and_then(|(low, high)| Rule::hysteresis(low, high).ok()))
+        let made = |field, make: fn(f64) -> Result<Rule, _>| make(value(field)?).ok();
+        let both = || self.low_and_high();
+        made(self.at_least.as_ref(), Rule::at_least)
+            .or_else(|| made(self.percent.as_ref(), Rule::percent))
+            .or_else(|| both().and_then(|(low, high)| Rule::hysteresis(low, high).ok()))
     }
 
     /// Returns the smallest piece that is kept, in taxels.
     pub(crate) fn least(&self) -> Option<u32> {
-        self.whole(SensorKey::Least)
+        value(self.least.as_ref())
     }
 
     /// Returns the number of frames for a tare.
     pub(crate) fn tare(&self) -> Option<u64> {
-        self.whole(SensorKey::Tare)
+        value(self.tare.as_ref())
     }
 
     /// Returns the memory for the history of frames, in bytes.
     pub(crate) fn history_bytes(&self) -> usize {
-        let bytes = self.whole(SensorKey::HistoryBytes);
-        bytes.unwrap_or(HISTORY_BYTES)
+        value(self.history_bytes.as_ref()).unwrap_or(HISTORY_BYTES)
     }
 
     /// Sets how a source is read, for the settings that the file has.
     pub(crate) fn apply(&self, options: &mut AcquireOptions) {
-        if let Some(Written {
-            value: SettingValue::Format(format),
-            ..
-        }) = self.get(SensorKey::Format)
-        {
-            options.stream_format = *format;
+        if let Some(FormatSetting(format)) = value(self.format.as_ref()) {
+            options.stream_format = format;
         }
-        options.baud = self.whole(SensorKey::Baud).unwrap_or(options.baud);
-        let sides = [SensorKey::Columns, SensorKey::Rows].map(|key| self.whole(key));
-        options.stream_size = FrameSize::of_sides(sides[0], sides[1]);
+        options.baud = value(self.baud.as_ref()).unwrap_or(options.baud);
+        options.stream_size =
+            FrameSize::of_sides(value(self.columns.as_ref()), value(self.rows.as_ref()));
     }
 
     /// Returns the request that `:watch` starts with; its source is still missing.
@@ -274,20 +322,57 @@ impl SensorSettings {
         request
     }
 
-    /// Returns the value of a setting as it is written in the file; None if it is not set and has no default.
-    pub(crate) fn text(&self, setting: &SensorSetting) -> Option<String> {
-        match self.get(setting.key).map(|own| own.value) {
-            Some(SettingValue::Whole(whole)) => Some(whole.to_string()),
-            Some(SettingValue::Number(number)) => Some(number.to_string()),
-            Some(SettingValue::Format(Some(format))) => Some(format!("{:?}", format.name())),
-            Some(SettingValue::Format(None)) => Some("\"auto\"".to_owned()),
-            None => match setting.key {
-                SensorKey::Format => Some("\"auto\"".to_owned()),
-                SensorKey::Baud => Some(AcquireOptions::default().baud.to_string()),
-                SensorKey::Tare => Some("0".to_owned()),
-                SensorKey::HistoryBytes => Some(HISTORY_BYTES.to_string()),
-                _ => None,
-            },
+    /// Returns the value of a setting as it is written in the file, with its line.
+    pub(crate) fn written(&self, setting: &SensorSetting) -> Option<Written<String>> {
+        (setting.shown)(self)
+    }
+
+    /// Returns the default of a setting as it would be written in the file; None if it has no default.
+    pub(crate) fn default_text(key: SensorKey) -> Option<String> {
+        match key {
+            SensorKey::Format => Some(FormatSetting(None).to_string()),
+            SensorKey::Baud => Some(AcquireOptions::default().baud.to_string()),
+            SensorKey::Tare => Some("0".to_owned()),
+            SensorKey::HistoryBytes => Some(HISTORY_BYTES.to_string()),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_row_fills_the_field_that_it_shows_over_its_whole_range() {
+        #[expect(clippy::cast_precision_loss, reason = "the limits are below 2^53")]
+        let ends = |kind| match kind {
+            SettingKind::Format { .. } => [None, None],
+            SettingKind::Whole { least, most, .. } => [least as f64, most as f64].map(Some),
+            SettingKind::Number { least, most, .. } => [least, most].map(Some),
+            SettingKind::Percent { .. } => [1e-3, 100.0].map(Some),
+        };
+        for row in &SENSOR_SETTINGS {
+            for end in ends(row.kind) {
+                let mut settings = SensorSettings::default();
+                let line = 7;
+                let is_filled = match (row.kind, end) {
+                    (SettingKind::Format { fill }, _) => {
+                        let value = FormatSetting(None);
+                        fill(&mut settings, Written { value, line })
+                    }
+                    (kind, Some(value)) => kind.fill(&mut settings, Written { value, line }),
+                    (_, None) => false,
+                };
+                assert!(is_filled, "{row:?} {end:?}");
+                let value = end.map_or("\"auto\"".to_owned(), |end| end.to_string());
+                let shown = |other: &SensorSetting| settings.written(other);
+                assert_eq!(shown(row), Some(Written { value, line }));
+                let all = SENSOR_SETTINGS
+                    .iter()
+                    .filter(|other| shown(other).is_some());
+                assert_eq!(all.count(), 1, "{row:?}");
+            }
         }
     }
 }
