@@ -180,9 +180,20 @@ fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
     Ok(ModelFolder::beside(shelf.library()?.folder()))
 }
 
-/// Returns the folder of the models to read. Without a folder for a library, it has none.
-fn readable(shelf: &Shelf) -> ModelFolder {
-    ModelFolder::beside(shelf.readable().folder())
+/// Returns the names of the models beside the library, each with its file; none without a folder for a library.
+///
+/// # Errors
+/// Returns the system's error, except if the folder does not exist.
+fn stored(shelf: &Shelf) -> Result<Vec<(Name, PathBuf)>, CliError> {
+    let Ok(models) = folder(shelf) else {
+        return Ok(Vec::new());
+    };
+    let names = models.names()?.into_iter();
+    let with_file = |name| {
+        let path = models.file(&name);
+        (name, path)
+    };
+    Ok(names.map(with_file).collect())
 }
 
 /// Returns true if there is a model of this name beside the library. The file is not opened: a damaged model counts
@@ -436,8 +447,8 @@ fn card_json(model: &Model, limit: &Evaluation) -> serde_json::Map<String, serde
 
 /// Returns the answer of `taxel model list --names`, for scripts and for shell completions. No file is read.
 pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
-    let names = readable(shelf).names()?.into_iter();
-    Ok(names.map(|name| format!("{name}\n")).collect())
+    let names = stored(shelf)?.into_iter();
+    Ok(names.map(|(name, _)| format!("{name}\n")).collect())
 }
 
 /// Lists the built-in models, which are trained when they are first used, and those beside the library, sorted by name.
@@ -447,15 +458,13 @@ pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
 /// parts: 3 shapes, 845 keys, error 1.6 %
 /// ```
 pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String, CliError> {
-    let models = readable(shelf);
     let mut text = String::new();
     if !json {
         for set in ModelChoice::BUILT_IN {
             text += &format!("{}: built in\n", set.name());
         }
     }
-    for name in models.names()? {
-        let path = models.file(&name);
+    for (name, path) in stored(shelf)? {
         let model = load_model(&path);
         if json {
             let line = match &model {
