@@ -84,20 +84,7 @@ pub(crate) fn train(
     if !asked.quiet {
         note(&grid_text(&sensor, anchor, &ranges), charset);
     }
-    let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
-    let pool = threads::pool(asked.jobs)?;
-    let display = ProgressDisplay::new(training.poses(), asked.quiet, charset);
-    let model = memory.limit(&signals.progress(&display), |progress| {
-        pool.install(|| training.progress(progress).run())
-    });
-    drop(display);
-    let remedy = grid.remedy;
-    let model = model
-        .map_err(CliError::Memory)?
-        .map_err(|error| match error {
-            error @ TrainingError::Cut { .. } => CliError::Cut { error, remedy },
-            error => signals.training_failure(error),
-        })?;
+    let model = run(training, asked, grid.remedy, &signals, charset)?;
     // Another training that was stopped may have removed the folder, which was empty. If it cannot be made again,
     // `save_model` says so.
     let _again = make_folder();
@@ -115,6 +102,32 @@ pub(crate) fn train(
     };
     let text = trained(&model, &path, done, asked, charset);
     Ok(Summary::new(text, written))
+}
+
+/// Runs a training and shows its progress. `remedy` is the advice about poses that the sensor cuts off.
+///
+/// # Errors
+/// Returns [`CliError::Stopped`] after a signal; [`CliError::Memory`]; the error of the training.
+fn run(
+    training: Training<'_>,
+    asked: &TrainArguments,
+    remedy: &'static str,
+    signals: &Signals,
+    charset: Charset,
+) -> Result<Model, CliError> {
+    let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
+    let pool = threads::pool(asked.jobs)?;
+    let display = ProgressDisplay::new(training.poses(), asked.quiet, charset);
+    let model = memory.limit(&signals.progress(&display), |progress| {
+        pool.install(|| training.progress(progress).run())
+    });
+    drop(display);
+    model
+        .map_err(CliError::Memory)?
+        .map_err(|error| match error {
+            error @ TrainingError::Cut { .. } => CliError::Cut { error, remedy },
+            error => signals.training_failure(error),
+        })
 }
 
 /// Returns the text to print about a model. `done` tells whether its file was written or existed already; None if there
