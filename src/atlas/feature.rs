@@ -59,40 +59,39 @@ pub fn features() -> &'static [Feature] {
 }
 
 fn all() -> Vec<Feature> {
-    // All descriptors of this imprint exist, so they show which parts each one has.
-    let corner: Option<Imprint> = "##\n#.".parse().ok();
-    let Some(sample) = corner.and_then(|corner| ImprintSummary::of(&corner).description) else {
-        return Vec::new();
-    };
-    let mut all = Vec::new();
-    for descriptor in DESCRIPTORS {
-        let parts: &[&str] = match (descriptor.measure)(&sample) {
-            Value::Point(_) => &["_x", "_y"],
-            Value::Pair(_) => &["_1", "_2"],
-            Value::Rect(_) => &["_left", "_top", "_right", "_bottom"],
-            _ => &[""],
-        };
-        all.extend(parts.iter().enumerate().map(|(index, part)| Feature {
-            key: format!("{}{part}", descriptor.key),
+    let features = DESCRIPTORS.iter().flat_map(|descriptor| {
+        let parts = descriptor.parts.iter().enumerate();
+        parts.map(move |(part, suffix)| Feature {
+            key: format!("{}{suffix}", descriptor.key),
             descriptor,
-            circular: descriptor.dimension == Dimension::Direction && part.is_empty(),
-            part: index,
-        }));
-    }
-    all
+            circular: descriptor.dimension == Dimension::Direction && descriptor.parts.len() == 1,
+            part,
+        })
+    });
+    features.collect()
 }
+
+/// The number of [`features`].
+pub(crate) const FEATURE_COUNT: usize = {
+    let (mut count, mut index) = (0, 0);
+    while index < DESCRIPTORS.len() {
+        count += DESCRIPTORS[index].parts.len();
+        index += 1;
+    }
+    count
+};
 
 /// Calls `take` with the index in [`features`] and the value of each feature that has a value.
 pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64)) {
-    let mut index = 0;
+    let mut first = 0;
     for descriptor in DESCRIPTORS {
-        match (descriptor.measure)(description) {
-            Value::None => index += 1,
-            value => each_part(value, |part| {
-                take(index, part);
-                index += 1;
-            }),
-        }
+        let mut indices = first..first + descriptor.parts.len();
+        first = indices.end;
+        each_part((descriptor.measure)(description), |value| {
+            if let Some(index) = indices.next() {
+                take(index, value);
+            }
+        });
     }
 }
 
@@ -144,5 +143,45 @@ impl ImprintSummary {
             }
         });
         summary
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Otherwise the numbers of a value would not belong to the features of its descriptor.
+    #[test]
+    fn every_value_has_the_parts_that_its_descriptor_states() {
+        let mut measured = vec![0; DESCRIPTORS.len()];
+        for rows in ["#", "##\n#.", "###\n#.#\n###"] {
+            let imprint: Imprint = rows.parse().expect("rows");
+            each_region(&imprint, |region| {
+                let description = Description::of(region);
+                for (descriptor, measured) in DESCRIPTORS.iter().zip(&mut measured) {
+                    let mut numbers = 0;
+                    each_part((descriptor.measure)(&description), |_| numbers += 1);
+                    let is_none = (descriptor.measure)(&description) == Value::None;
+                    let stated = if is_none { 0 } else { descriptor.parts.len() };
+                    assert_eq!(numbers, stated, "{} of {rows}", descriptor.key);
+                    *measured += numbers;
+                }
+            });
+        }
+        assert!(measured.iter().all(|&numbers| numbers > 0), "{measured:?}");
+    }
+
+    #[test]
+    fn a_feature_has_the_same_value_by_itself_and_among_all() {
+        // A square: the direction from its centre of gravity to that of its rectangle does not exist.
+        for rows in ["##\n##", "##\n#."] {
+            let imprint = rows.parse().expect("rows");
+            let description = ImprintSummary::of(&imprint).description;
+            let description = description.expect("not empty");
+            let mut all = vec![None; FEATURE_COUNT];
+            feature_values(&description, |index, value| all[index] = Some(value));
+            let single = features().iter().map(|own| own.value(&description));
+            assert_eq!(all, single.collect::<Vec<_>>(), "{rows}");
+        }
     }
 }

@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use crate::atlas::feature::{ImprintSummary, feature_values, features};
+use crate::atlas::feature::{FEATURE_COUNT, ImprintSummary, feature_values, features};
 use crate::atlas::sums::{fixed, signed};
 use crate::geometry::Real;
 use crate::index::wide;
@@ -41,6 +41,12 @@ pub(crate) struct FeatureRow<'a> {
     /// The features that do not exist, with feature `i` in bit `i`.
     pub(crate) missing: u32,
 }
+
+/// The missing features of an imprint without values: all of them.
+const ALL_MISSING: u32 = (1 << FEATURE_COUNT) - 1;
+
+/// Checks at compile time that [`Row::missing`] has a bit for each feature.
+const _: () = assert!(FEATURE_COUNT < 32);
 
 /// The extremes of a feature without values.
 const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -135,7 +141,7 @@ fn note(
         let start = part.values.len();
         part.values.resize(start + width, 0);
         let row = &mut part.values[start..];
-        let mut missing = (1 << columns.len()) - 1;
+        let mut missing = ALL_MISSING;
         let mut note = |index: usize, value: f64| {
             missing &= !(1 << index);
             let (column, circular) = columns[index];
@@ -203,7 +209,7 @@ impl RowSums {
         Self {
             poses: 0,
             columns: vec![0; row_width()],
-            missing: vec![0; features().len()],
+            missing: vec![0; FEATURE_COUNT],
         }
     }
 

@@ -117,6 +117,16 @@ pub struct Descriptor {
     pub name: &'static str,
     /// The quantity that it measures.
     pub dimension: Dimension,
+    /// The numbers of a value, in its order, as suffixes of the key; a single empty one for a count or a number. A
+    /// value that exists has exactly these numbers.
+    ///
+    /// ```
+    /// use taxel::description::Descriptor;
+    /// let parts = |key| Descriptor::from_key(key).expect("in the table").parts;
+    /// assert_eq!(parts("cg"), ["_x", "_y"]);
+    /// assert_eq!(parts("cg_cd_direction"), [""]);
+    /// ```
+    pub parts: &'static [&'static str],
     /// Whether it is part of the JSON answers. Their form is fixed; the other descriptors can be computed from those in
     /// them.
     pub in_answer: bool,
@@ -153,12 +163,18 @@ impl Descriptor {
             symbol,
             name,
             dimension,
+            parts: &[""],
             in_answer: true,
             changes_under: ChangesUnder::NOTHING,
             of_nothing: Value::None,
             measure,
             exact,
         }
+    }
+
+    /// Gives a descriptor the parts of its values: points, pairs and rectangles have several numbers.
+    const fn with_parts(self, parts: &'static [&'static str]) -> Self {
+        Self { parts, ..self }
     }
 
     /// Marks a descriptor of the imprint's position.
@@ -278,6 +294,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Point(d.cg()),
         |d| Some(ratios(d.doubled_sums(), 2 * i64::from(d.na))),
     )
+    .with_parts(&["_x", "_y"])
     .of_place(),
     Descriptor::new(
         "p",
@@ -315,6 +332,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
             Some(whole(sides.map(u32::from)))
         },
     )
+    .with_parts(&["_left", "_top", "_right", "_bottom"])
     .of_place(),
     Descriptor::new(
         "cd",
@@ -324,6 +342,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Point(d.cd()),
         |d| Some(ratios(d.doubled_centre().map(i64::from), 2)),
     )
+    .with_parts(&["_x", "_y"])
     .of_place(),
     Descriptor::new(
         "area",
@@ -342,6 +361,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Pair(d.diagonals()),
         |d| direction(d.whole_sides().map(i64::from)),
     )
+    .with_parts(&["_1", "_2"])
     .of_orientation(ChangesUnder::QUARTER_TURNS),
     Descriptor::new(
         "side_ratio",
