@@ -115,6 +115,8 @@ pub struct Descriptor {
     pub symbol: &'static str,
     /// A description in a few words.
     pub name: &'static str,
+    /// The description for a hole, whose taxels are inactive.
+    pub name_in_hole: &'static str,
     /// The quantity that it measures.
     pub dimension: Dimension,
     /// The numbers of a value, in its order, as suffixes of the key; a single empty one for a count or a number. A
@@ -162,6 +164,7 @@ impl Descriptor {
             key,
             symbol,
             name,
+            name_in_hole: name,
             dimension,
             parts: &[""],
             in_answer: true,
@@ -169,6 +172,14 @@ impl Descriptor {
             of_nothing: Value::None,
             measure,
             exact,
+        }
+    }
+
+    /// Gives a descriptor another description for holes.
+    const fn named_in_hole(self, name_in_hole: &'static str) -> Self {
+        Self {
+            name_in_hole,
+            ..self
         }
     }
 
@@ -209,7 +220,7 @@ impl Descriptor {
         }
     }
 
-    /// Returns the description for a region of a kind, in a few words. It differs for holes, whose taxels are inactive.
+    /// Returns the description for a region of a kind, in a few words.
     ///
     /// ```
     /// use taxel::description::{Descriptor, RegionKind};
@@ -219,8 +230,8 @@ impl Descriptor {
     /// ```
     pub fn name_of(&self, kind: RegionKind) -> &'static str {
         match kind {
-            RegionKind::Hole if self.key == "na" => "inactive taxels",
-            _ => self.name,
+            RegionKind::Exterior => self.name,
+            RegionKind::Hole => self.name_in_hole,
         }
     }
 
@@ -247,6 +258,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Count(d.na),
         |d| Some(whole([d.na])),
     )
+    .named_in_hole("inactive taxels")
     .zero_of_nothing(Value::Count(0)),
     Descriptor::new(
         "nae",
