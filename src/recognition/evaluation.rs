@@ -24,7 +24,8 @@ use crate::recognition::model::{Model, ShapeCount, first_of_most};
 /// let model = Training::new(shapes, sensor, Anchor::Centre, ranges)?.run()?;
 /// let limit = Evaluation::of(&model);
 /// // Two names for one shape: half of the touches are named right, none is certain, a touch tells nothing.
-/// assert_eq!((limit.error(), limit.certain, limit.information_bits), (0.5, 0, 0.0));
+/// assert_eq!((limit.error(), limit.information_bits), (0.5, 0.0));
+/// assert_eq!(limit.certainty.map(|certainty| certainty.touches), Some(0));
 /// assert_eq!(limit.tied, limit.touches);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -37,8 +38,9 @@ pub struct Evaluation {
     pub touches: u128,
     /// Touches that are named right.
     pub right: u128,
-    /// Touches that only one shape can leave.
-    pub certain: u128,
+    /// The touches and keys that only one shape can leave; None for a [`Classifier`](crate::recognition::Classifier),
+    /// which does not know when it is certain.
+    pub certainty: Option<Certainty>,
     /// Touches with a key that two or more shapes leave equally often, and no other shape more often. The first of
     /// these shapes in the set is the answer.
     pub tied: u128,
@@ -50,23 +52,52 @@ pub struct Evaluation {
     pub prior_bits: f64,
     /// The number of distinct keys, or of distinct values if descriptors are given instead of keys.
     pub keys: usize,
-    /// The number of keys or values that only one shape leaves.
-    pub keys_of_one_shape: usize,
     /// The confusion matrix: which shapes are named as which.
     pub confusion: ConfusionMatrix,
     /// The sum of the weights of all shapes.
     weights: u128,
 }
 
+/// The touches and the keys of which the best classifier knows that no other shape can leave them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Certainty {
+    /// Touches that only one shape can leave.
+    pub touches: u128,
+    /// The number of keys that only one shape leaves, or of values if descriptors are given instead of keys.
+    pub keys: usize,
+}
+
 impl Evaluation {
     /// Evaluates a model: all poses that it holds, so only those of the shard if it is one ([`Model::shard`]).
     pub fn of(model: &Model) -> Self {
+        let (evaluation, _) = Self::with_certainty(model);
+        evaluation
+    }
+
+    /// Evaluates a model, and returns the certainty of the evaluation beside it.
+    pub(super) fn with_certainty(model: &Model) -> (Self, Certainty) {
         let keys = 0..model.keys().len();
+        Self::of_classes(model, keys.map(|key| model.counts(key)))
+    }
+
+    /// Evaluates the best classifier of a model's touches, which fall into classes that it can tell apart. Each class
+    /// has at least one touch. Returns the certainty of the evaluation beside it.
+    pub(super) fn of_classes<'a>(
+        model: &Model,
+        classes: impl IntoIterator<Item = &'a [ShapeCount]>,
+    ) -> (Self, Certainty) {
         let mut evaluation = Self::new(model);
-        for key in keys {
-            evaluation.add(model, model.counts(key));
+        let mut certainty = Certainty::default();
+        for counts in classes {
+            let touches = evaluation.add(model, counts);
+            if counts.len() == 1 {
+                certainty.touches += touches;
+                certainty.keys += 1;
+            }
         }
-        evaluation.finished()
+        evaluation.certainty = Some(certainty);
+        (evaluation.finished(), certainty)
     }
 
     /// Creates an evaluation that has counted no touch yet.
@@ -76,25 +107,25 @@ impl Evaluation {
             labels: shapes.iter().map(|shape| shape.name.clone()).collect(),
             touches: u128::from(model.poses()) * model.weights(),
             right: 0,
-            certain: 0,
+            certainty: None,
             tied: 0,
             right_in_top_two: 0,
             information_bits: 0.0,
             prior_bits: prior_bits(model),
             keys: 0,
-            keys_of_one_shape: 0,
             confusion: ConfusionMatrix::new(shapes.len()),
             weights: model.weights(),
         }
     }
 
-    /// Adds all touches of one key, or of one value if descriptors are given; at least one touch.
-    pub(super) fn add(&mut self, model: &Model, counts: &[ShapeCount]) {
+    /// Adds all touches of one key, or of one value if descriptors are given; at least one touch. Returns their
+    /// number.
+    fn add(&mut self, model: &Model, counts: &[ShapeCount]) -> u128 {
         self.keys += 1;
         let shapes = model.weighted_shapes(counts);
         let sum: u128 = shapes.clone().map(|(_, touches)| touches).sum();
         let Some((named, most)) = first_of_most(shapes.clone()) else {
-            return;
+            return sum;
         };
         let others = shapes.clone().filter(|&(shape, _)| shape != named);
         let second = others.map(|(_, touches)| touches).fold(0, u128::max);
@@ -102,10 +133,6 @@ impl Evaluation {
         self.right_in_top_two += most + second;
         if second == most {
             self.tied += sum;
-        }
-        if counts.len() == 1 {
-            self.certain += sum;
-            self.keys_of_one_shape += 1;
         }
         for (shape, touches) in shapes {
             self.confusion.add(shape, named, touches);
@@ -115,6 +142,7 @@ impl Evaluation {
             let ratio = share(touches, sum) / share(prior, self.weights);
             self.information_bits += joint * libm::log2(ratio);
         }
+        sum
     }
 
     /// Clamps rounding errors: information is neither negative nor more than there is.

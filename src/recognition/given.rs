@@ -388,14 +388,15 @@ impl<'a> GivenTable<'a> {
             }
             same
         });
-        let mut evaluation = Evaluation::new(self.model);
-        let mut own = Vec::new();
-        for class in counts.chunk_by(|one, other| one.0 == other.0) {
-            own.clear();
-            own.extend(class.iter().map(|&(_, count)| count));
-            evaluation.add(self.model, &own);
-        }
-        evaluation.finished()
+        let (classes, counts): (Vec<u32>, Vec<ShapeCount>) = counts.into_iter().unzip();
+        let mut rest = &*counts;
+        let of_class = classes.chunk_by(u32::eq).map(|class| {
+            let (own, others) = rest.split_at(class.len());
+            rest = others;
+            own
+        });
+        let (evaluation, _) = Evaluation::of_classes(self.model, of_class);
+        evaluation
     }
 }
 

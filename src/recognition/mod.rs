@@ -68,7 +68,7 @@ mod scan;
 pub use answer::{Answer, AnswerState, Evidence};
 pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
 pub use confusion::ConfusionMatrix;
-pub use evaluation::Evaluation;
+pub use evaluation::{Certainty, Evaluation};
 pub use given::{GivenDescriptors, GivenError, Rounding, ShapeDescriptor, greedy};
 pub use half_step::{HalfStep, HalfStepWork};
 pub use key::{ImprintKey, KeyTable};

@@ -282,7 +282,7 @@ impl Separation {
         let training = self.training(scale, threshold)?;
         let side = training.grids()[0].sensor().side();
         let model = training.progress(progress).run()?;
-        let limit = Evaluation::of(&model);
+        let (limit, certainty) = Evaluation::with_certainty(&model);
         let point = SeparationPoint {
             value,
             scale,
@@ -290,7 +290,7 @@ impl Separation {
             side,
             touches: limit.touches,
             right: limit.right,
-            certain: limit.certain,
+            certain: certainty.touches,
             keys: limit.keys,
         };
         Ok((point, model, limit))
@@ -383,6 +383,10 @@ mod tests {
     use crate::progress::{ToTheEnd, stop_if};
     use crate::recognition::sets::equal_figures;
 
+    fn certain(limit: &Evaluation) -> Option<u128> {
+        limit.certainty.map(|certainty| certainty.touches)
+    }
+
     fn coarse(shapes: Vec<NamedShape>) -> Separation {
         let separation = Separation::new(shapes).expect("a set");
         separation
@@ -422,8 +426,8 @@ mod tests {
             let model: Model = by_hand.and_then(Training::run).expect("not cut");
             let limit = Evaluation::of(&model);
             assert_eq!(
-                (point.touches, point.right, point.certain, point.keys),
-                (limit.touches, limit.right, limit.certain, limit.keys),
+                (point.touches, point.right, Some(point.certain), point.keys),
+                (limit.touches, limit.right, certain(&limit), limit.keys),
                 "{scale} {threshold}"
             );
         }
@@ -450,8 +454,8 @@ mod tests {
             let point = separation.at(SizeAxis::Scale, 1.0, 0.5, &ToTheEnd);
             let point = point.expect("it fits");
             assert_eq!(
-                (point.side, point.right, point.certain, point.keys),
-                (side, limit.right, limit.certain, limit.keys),
+                (point.side, point.right, Some(point.certain), point.keys),
+                (side, limit.right, certain(&limit), limit.keys),
                 "{positions} positions"
             );
         }

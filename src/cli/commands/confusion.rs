@@ -202,11 +202,7 @@ fn shown(
     charset: Charset,
 ) -> Result<String, CliError> {
     if let Some(path) = &asked.export {
-        put(
-            path,
-            &file(path, own, classifier.is_none())?,
-            asked.existing,
-        )?;
+        put(path, &file(path, own)?, asked.existing)?;
     }
     Ok(match asked.form {
         EvaluationForm::Json => {
@@ -254,19 +250,18 @@ fn advice(asked: &ConfusionArguments) -> String {
     })
 }
 
-/// Returns the matrix as the content of a file, in the format of its extension. `knows_certain` tells whether the
-/// method knows when it is certain.
+/// Returns the matrix as the content of a file, in the format of its extension.
 ///
 /// # Errors
 /// Returns the errors of [`drawing`].
-fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, CliError> {
+fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
     let Some(format) = DrawingFormat::of_path(path) else {
         return Ok(evaluation::csv(own).into_bytes());
     };
     let map = drawing(path, &own.labels, own.confusion.rows())?;
     let mut title = format!("error {}", percent(own.error()));
-    if knows_certain {
-        let certain = share(own.certain, own.touches);
+    if let Some(certainty) = own.certainty {
+        let certain = share(certainty.touches, own.touches);
         title += &format!(", certain {}", percent(certain));
     }
     let map = map.with_title(&title);

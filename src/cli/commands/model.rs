@@ -451,7 +451,8 @@ fn card_json(model: &Model, limit: &Evaluation) -> serde_json::Map<String, serde
     card.insert("touches".into(), evaluation::number(limit.touches));
     card.insert("right".into(), evaluation::number(limit.right));
     card.insert("error".into(), json!(limit.error()));
-    card.insert("certain".into(), evaluation::number(limit.certain));
+    let certain = limit.certainty.map(|own| evaluation::number(own.touches));
+    card.insert("certain".into(), json!(certain));
     card.insert("information_bits".into(), json!(limit.information_bits));
     card.insert("never_certain".into(), never.collect());
     card.insert("hash".into(), json!(model_hash(model)));

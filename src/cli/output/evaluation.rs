@@ -33,28 +33,28 @@ use crate::tui::widget::columns::width;
 pub(crate) struct EvaluationJson<'a> {
     /// The evaluation to show.
     pub(crate) evaluation: &'a Evaluation,
-    /// The classifier, if it is not the best one. It does not know when it is certain: `certain` and
-    /// `keys_of_one_shape` are null then.
+    /// The classifier, if it is not the best one.
     pub(crate) classifier: Option<&'a ClassifierEvaluation>,
 }
 
 impl Serialize for EvaluationJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let own = self.evaluation;
-        let known = |count: u128| self.classifier.is_none().then(|| number(count));
+        let certain = own.certainty.map(|certainty| number(certainty.touches));
+        let keys_of_one_shape = own.certainty.map(|certainty| certainty.keys);
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("labels", &own.labels)?;
         map.serialize_entry("touches", &number(own.touches))?;
         map.serialize_entry("right", &number(own.right))?;
         map.serialize_entry("accuracy", &own.accuracy())?;
         map.serialize_entry("error", &own.error())?;
-        map.serialize_entry("certain", &known(own.certain))?;
+        map.serialize_entry("certain", &certain)?;
         map.serialize_entry("tied", &number(own.tied))?;
         map.serialize_entry("right_in_top_two", &number(own.right_in_top_two))?;
         map.serialize_entry("information_bits", &own.information_bits)?;
         map.serialize_entry("prior_bits", &own.prior_bits)?;
         map.serialize_entry("keys", &own.keys)?;
-        map.serialize_entry("keys_of_one_shape", &known(own.keys_of_one_shape as u128))?;
+        map.serialize_entry("keys_of_one_shape", &keys_of_one_shape)?;
         map.serialize_entry("confusion", &MatrixRows(&own.confusion))?;
         if let Some(reached) = self.classifier {
             map.serialize_entry("classifier", reached.classifier.name())?;
@@ -158,7 +158,7 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     let Evaluation {
         touches,
         right,
-        certain,
+        certainty,
         tied,
         right_in_top_two,
         ..
@@ -183,9 +183,8 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     };
     line("right", *right, "");
     line("wrong", touches - right, named.remark());
-    // Another classifier does not know when it is certain.
-    if named != NamedBy::Classifier {
-        line("certain", *certain, named.certain());
+    if let Some(certainty) = certainty {
+        line("certain", certainty.touches, named.certain());
     }
     line("tied", *tied, "  the first of the tied shapes is named");
     line("in top two", *right_in_top_two, "");

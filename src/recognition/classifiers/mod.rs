@@ -115,7 +115,7 @@ pub struct ClassifierEvaluation {
     /// The classifier.
     pub classifier: Classifier,
     /// The counts, as for the best classifier. `information_bits` is the information that the given name has about the
-    /// shape; `certain` and `keys_of_one_shape` are 0, since these classifiers do not know when they are certain.
+    /// shape.
     pub evaluation: Evaluation,
     /// The features that the classifier used; empty for [`Classifier::Template`].
     pub features: Vec<String>,

@@ -211,9 +211,11 @@ impl Panel<'_> {
             counted(evaluation.touches, "touch"),
         );
         self.text(&steps, Role::Quiet);
-        let certain = percent_of(evaluation.certain, evaluation.touches);
-        let error = percent(evaluation.error());
-        let limit = format!("error {error}, certain {certain}");
+        let mut limit = format!("error {}", percent(evaluation.error()));
+        if let Some(certainty) = evaluation.certainty {
+            let certain = percent_of(certainty.touches, evaluation.touches);
+            limit += &format!(", certain {certain}");
+        }
         let [long, short] = ["limit of one touch", "limit"].map(|what| format!("{what}: {limit}"));
         // If even the shorter text needs two lines, the longer one says more.
         let limits = [&*long, &*short, &*long];

@@ -83,7 +83,8 @@ fn is_sound(model: &Model) {
         limit.confusion.cells().map(|cell| cell.2).sum::<u128>(),
         limit.touches
     );
-    assert!(limit.certain <= limit.right && limit.right <= limit.touches);
+    let certainty = limit.certainty.expect("the model knows it");
+    assert!(certainty.touches <= limit.right && limit.right <= limit.touches);
     assert!(limit.error().is_finite() && limit.information_bits <= limit.prior_bits);
     let touch: Imprint = "....\n.##.\n.##.\n....".parse().expect("rows");
     let answer = model.recognise(Evidence::of(&[touch]));
