@@ -322,7 +322,15 @@ const RECORD_KEYS: KnownKeys = KnownKeys {
 };
 /// The keys of a sensor.
 const SENSOR_KEYS: KnownKeys = KnownKeys {
-    named: &["columns", "rows", "threshold", "pitch_mm"],
+    named: &{
+        let mut keys = [""; SENSOR_PARAMETERS.len()];
+        let mut index = 0;
+        while index < keys.len() {
+            keys[index] = SENSOR_PARAMETERS[index].row().key;
+            index += 1;
+        }
+        keys
+    },
     others: &[],
     parameters: false,
 };
@@ -519,14 +527,27 @@ impl Serialize for Source {
     }
 }
 
+/// The parameters of a sensor in the order of files, which is not that of forms.
+const SENSOR_IN_FILES: [Parameter; SENSOR_PARAMETERS.len()] = [
+    Parameter::Columns,
+    Parameter::Rows,
+    Parameter::Pitch,
+    Parameter::Threshold,
+];
+
 /// There is no `Deserialize`: a sensor is read as a part of a stored shape or of a line of a batch.
 impl Serialize for Sensor {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(4))?;
-        map.serialize_entry(Parameter::Columns.row().key, &self.columns())?;
-        map.serialize_entry(Parameter::Rows.row().key, &self.rows())?;
-        map.serialize_entry(Parameter::Pitch.row().key, &self.pitch_mm())?;
-        map.serialize_entry(Parameter::Threshold.row().key, &self.threshold())?;
+        let mut map = serializer.serialize_map(Some(SENSOR_IN_FILES.len()))?;
+        for parameter in SENSOR_IN_FILES {
+            let key = parameter.row().key;
+            match parameter {
+                // Whole numbers are written without decimals.
+                Parameter::Columns => map.serialize_entry(key, &self.columns())?,
+                Parameter::Rows => map.serialize_entry(key, &self.rows())?,
+                _ => map.serialize_entry(key, &self.get(parameter))?,
+            }
+        }
         map.end()
     }
 }

@@ -47,14 +47,19 @@ impl Parameter {
     }
 
     /// Returns the row of the parameter in [`PARAMETERS`].
-    pub fn row(self) -> &'static ParameterRow {
+    pub const fn row(self) -> &'static ParameterRow {
         &PARAMETERS[self as usize]
     }
 
     /// Returns the name of the parameter's flag, without dashes in front: the key with `-` for `_` and without a unit.
     pub fn flag(self) -> String {
+        self.key_without_unit().replace('_', "-")
+    }
+
+    /// Returns the key without a unit, as in the settings file.
+    pub(crate) fn key_without_unit(self) -> &'static str {
         let key = self.row().key;
-        key.strip_suffix("_mm").unwrap_or(key).replace('_', "-")
+        key.strip_suffix("_mm").unwrap_or(key)
     }
 
     /// Returns the parameter with a flag, given without dashes in front; None if there is none.

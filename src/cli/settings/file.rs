@@ -21,7 +21,7 @@ use crate::cli::settings::sensors::{
 use crate::formats::stream::StreamFormat;
 use crate::parameter::{Parameter, ParameterError};
 use crate::quote::{did_you_mean, shortened_message};
-use crate::sensor::Sensor;
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::{Key, parse};
@@ -34,14 +34,6 @@ pub(crate) const AUTO: &str = "auto";
 /// The keys at the top level of the file, in the order in which messages list them.
 const TOP: [&str; 9] = [
     "theme", "color", "charset", "mouse", "library", "sensor", "source", "frames", "keys",
-];
-
-/// The parameters of a sensor with the names of their flags.
-pub(crate) const SENSOR: [(&str, Parameter); 4] = [
-    ("columns", Parameter::Columns),
-    ("rows", Parameter::Rows),
-    ("threshold", Parameter::Threshold),
-    ("pitch", Parameter::Pitch),
 ];
 
 /// The names of the character sets, and whether each is ASCII only.
@@ -210,16 +202,19 @@ impl Config {
             }
             "sensor" => {
                 for (key, byte, value) in entries(table(value)?) {
-                    let known = SENSOR.iter().find(|(name, _)| *name == key);
-                    let names = || SENSOR.map(|(name, _)| name);
-                    let (_, parameter) = known.ok_or_else(|| unknown(key, byte, &names()))?;
+                    let mut known = SENSOR_PARAMETERS.iter().copied();
+                    let known = known.find(|own| own.key_without_unit() == key);
+                    let parameter = known.ok_or_else(|| {
+                        let names = SENSOR_PARAMETERS.iter().map(|own| own.key_without_unit());
+                        unknown(key, byte, &names.collect::<Vec<_>>())
+                    })?;
                     let number = number(text, value)?;
                     self.sensor = self
                         .sensor
-                        .with(*parameter, number)
+                        .with(parameter, number)
                         .map_err(|error| (value.span().start, error.into()))?;
                     self.sensor_entries.push(Written {
-                        value: *parameter,
+                        value: parameter,
                         line: line_and_column(text, byte).0,
                     });
                 }

@@ -21,12 +21,12 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
-use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Wrong};
+use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, Wrong};
 use crate::cli::settings::flags::Chosen;
 use crate::cli::settings::sensors::{SENSOR_SETTINGS, SensorSettings, TABLES, Written};
 use crate::formats::system_error::{is_missing, system_reason};
 use crate::parameter::Parameter;
-use crate::sensor::Sensor;
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::storage::location;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -182,8 +182,8 @@ pub(crate) struct Effective {
     library: Settled<Option<PathBuf>>,
     /// The sensor of figures that are given without one.
     sensor: Sensor,
-    /// The parameters of the sensor, each with the name of its flag and its origin.
-    of_sensor: [(&'static str, Parameter, SettingOrigin); SENSOR.len()],
+    /// The parameters of the sensor, each with its origin.
+    of_sensor: Vec<(Parameter, SettingOrigin)>,
 }
 
 impl Effective {
@@ -202,14 +202,14 @@ impl Effective {
             value: location::below_home(&own.value),
             line: own.line,
         });
-        let of_sensor = SENSOR.map(|(name, parameter)| {
+        let of_sensor = SENSOR_PARAMETERS.iter().map(|&parameter| {
             let mut entries = config.sensor_entries().iter();
             let origin = match entries.find(|own| own.value == parameter) {
-                _ if chosen.sensor.has(parameter) => SettingOrigin::Flag(name.to_owned()),
+                _ if chosen.sensor.has(parameter) => SettingOrigin::Flag(parameter.flag()),
                 Some(own) => SettingOrigin::File(own.line),
                 None => SettingOrigin::Default,
             };
-            (name, parameter, origin)
+            (parameter, origin)
         });
         Ok(Self {
             theme: settled(
@@ -244,7 +244,7 @@ impl Effective {
                 location::folder(None, None).ok(),
             ),
             sensor: chosen.sensor.sensor(*config.sensor())?,
-            of_sensor,
+            of_sensor: of_sensor.collect(),
             loaded,
         })
     }
@@ -281,7 +281,7 @@ impl Effective {
 
     /// Returns the pitch in mm, if the file or a flag sets it. With the default pitch, nothing is shown in mm.
     pub(crate) fn pitch(&self) -> Option<f64> {
-        let set = |(_, parameter, origin): &&(_, Parameter, SettingOrigin)| {
+        let set = |(parameter, origin): &&(Parameter, SettingOrigin)| {
             *parameter == Parameter::Pitch && *origin != SettingOrigin::Default
         };
         let pitch = self.of_sensor.iter().find(set);
@@ -353,7 +353,8 @@ impl Effective {
 
     /// Returns the table `[sensor]`.
     fn sensor_text(&self) -> String {
-        let line = |(name, parameter, origin): &(&str, Parameter, SettingOrigin)| {
+        let line = |(parameter, origin): &(Parameter, SettingOrigin)| {
+            let name = parameter.key_without_unit();
             let entry = match (parameter, origin) {
                 // Even an entry with the default value would make lengths appear in mm.
                 (Parameter::Pitch, SettingOrigin::Default) => "# pitch is not set".to_owned(),
