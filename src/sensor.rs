@@ -295,27 +295,31 @@ impl Sensor {
     /// Returns `value` if it is allowed for the parameter; a negative zero becomes 0.
     ///
     /// # Errors
-    /// Returns [`ParameterError::Range`] if the value is out of range, NaN or infinite, or should be whole and is
-    /// not.
+    /// Returns [`ParameterError::Range`] if the value is out of range, NaN or infinite, and
+    /// [`ParameterError::Fraction`] if it should be whole and is not.
     pub fn check(&self, parameter: Parameter, value: f64) -> Result<f64, ParameterError> {
         let range = self.range(parameter);
-        let whole = parameter.row().unit != Unit::Taxels || value.fract() == 0.0;
-        if range.contains(value) && whole {
-            Ok(value + 0.0)
-        } else {
-            Err(ParameterError::Range {
+        if !range.contains(value) {
+            return Err(ParameterError::Range {
                 parameter,
                 value,
                 range,
-            })
+            });
         }
+        if parameter.row().unit == Unit::Taxels && value.fract() != 0.0 {
+            return Err(ParameterError::Fraction {
+                parameter,
+                value,
+                range,
+            });
+        }
+        Ok(value + 0.0)
     }
 
     /// Parses a value from the text of a flag, a command or a form's field.
     ///
     /// # Errors
-    /// Returns [`ParameterError::Number`] if the text is not a number, and [`ParameterError::Range`] as
-    /// [`Self::check`] does.
+    /// Returns [`ParameterError::Number`] if the text is not a number, and the errors of [`Self::check`].
     pub fn read(&self, parameter: Parameter, text: &str) -> Result<f64, ParameterError> {
         let value = number::read(text).ok_or_else(|| not_a_number(parameter, text))?;
         self.check(parameter, value)
@@ -392,6 +396,16 @@ mod tests {
             );
         }
         assert_eq!(sensor.step(Parameter::X0, 1.236, 0), 1.24);
+    }
+
+    #[test]
+    fn a_fraction_is_not_reported_as_out_of_range() {
+        let sensor = Sensor::default();
+        let refused = |value| sensor.check(Parameter::Rows, value).expect_err("refused");
+        assert!(matches!(refused(2.5), ParameterError::Fraction { .. }));
+        for value in [0.5, 64.5, f64::NAN, f64::INFINITY] {
+            assert!(matches!(refused(value), ParameterError::Range { .. }));
+        }
     }
 
     #[test]

@@ -463,7 +463,9 @@ pub(crate) fn frame_advice(error: &FrameError) -> &'static str {
 /// Returns the message about ranges. A number out of range is named by its flag, as in [`CliError::Range`].
 fn with_flag(error: &GridError) -> String {
     match error {
-        GridError::Parameter(error @ ParameterError::Range { value, .. }) => {
+        GridError::Parameter(
+            error @ (ParameterError::Range { value, .. } | ParameterError::Fraction { value, .. }),
+        ) => {
             let flag = error.parameter().flag();
             format!("--{flag} {} {}", short(*value), error.complaint())
         }

@@ -27,6 +27,15 @@ pub enum ParameterError {
         /// The allowed range.
         range: Range,
     },
+    /// The number is in range, but the parameter counts taxels and the number is not whole.
+    Fraction {
+        /// The parameter.
+        parameter: Parameter,
+        /// The number.
+        value: f64,
+        /// The allowed range.
+        range: Range,
+    },
     /// A required value is missing.
     Missing {
         /// The parameter.
@@ -60,6 +69,7 @@ impl ParameterError {
         match self {
             Self::Number { parameter, .. }
             | Self::Range { parameter, .. }
+            | Self::Fraction { parameter, .. }
             | Self::Missing { parameter, .. }
             | Self::Foreign { parameter, .. } => *parameter,
         }
@@ -80,7 +90,9 @@ impl ParameterError {
     fn about(&self, name: &str) -> String {
         match self {
             Self::Number { text, .. } => format!("{name}: {text:?} is {}", complaint(text)),
-            Self::Range { value, .. } => format!("{name}: {} {}", short(*value), self.complaint()),
+            Self::Range { value, .. } | Self::Fraction { value, .. } => {
+                format!("{name}: {} {}", short(*value), self.complaint())
+            }
             Self::Missing { range, .. } => {
                 format!("{name}: missing, expected a number (allowed: {range})")
             }
@@ -106,11 +118,9 @@ impl ParameterError {
         match self {
             Self::Number { text, .. } => format!("is {}", complaint(text)),
             Self::Range { value, range, .. } => {
-                let missed = range.missed_by(*value);
-                // If the number is in range, it was refused because it is not whole.
-                let missed = missed.unwrap_or_else(|| "is not a whole number".to_owned());
-                format!("{missed} (allowed: {range})")
+                format!("{} (allowed: {range})", range.missed_by(*value))
             }
+            Self::Fraction { range, .. } => format!("is not a whole number (allowed: {range})"),
             Self::Missing { .. } => "is missing".to_owned(),
             Self::Foreign { owner, .. } => format!("is a parameter that the {owner} does not have"),
         }
@@ -121,6 +131,9 @@ impl ParameterError {
         match self {
             Self::Number { text, .. } => complaint(text),
             Self::Range {
+                parameter, range, ..
+            }
+            | Self::Fraction {
                 parameter, range, ..
             } => format!("expected {range}{}", whole(*parameter)),
             Self::Missing { range, .. } => format!("missing, expected {range}"),

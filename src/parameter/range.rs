@@ -42,22 +42,20 @@ impl Range {
         (value > low || with_low && value == low) && (value < high || with_high && value == high)
     }
 
-    /// Returns the message that names the bound that excludes a number: "is below -16", "is not above 0". None if the
-    /// number is allowed.
-    pub(super) fn missed_by(&self, value: f64) -> Option<String> {
+    /// Returns the message that names the bound that excludes a number: "is below -16", "is not above 0". The number
+    /// must not be in the range.
+    pub(super) fn missed_by(&self, value: f64) -> String {
         let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
         if value.is_nan() {
-            Some("is not a number".to_owned())
-        } else if value < low && with_low {
-            Some(format!("is below {low}"))
-        } else if value > high && with_high {
-            Some(format!("is above {high}"))
-        } else if value <= low && !with_low {
-            Some(format!("is not above {low}"))
-        } else if value >= high && !with_high {
-            Some(format!("is not below {high}"))
+            "is not a number".to_owned()
+        } else if with_low && value < low {
+            format!("is below {low}")
+        } else if !with_low && value <= low {
+            format!("is not above {low}")
+        } else if with_high {
+            format!("is above {high}")
         } else {
-            None
+            format!("is not below {high}")
         }
     }
 
