@@ -325,9 +325,11 @@ impl Sensor {
         self.check(parameter, value)
     }
 
-    /// Returns the next value up or down, by the sign of `direction`; 0 only rounds to the nearest one. Values are in
-    /// steps of the last decimal that the paper gives: hundredths below ten, tenths from ten on, whole degrees. Angles
-    /// wrap around; other parameters stop at the ends of their range. The value must be a number, not NaN.
+    /// Returns the next value up or down, by the sign of `direction`; 0 only rounds to the nearest one. A step is one of
+    /// the last decimal that a form shows. For lengths, positions and zooms that is the paper's: hundredths below ten,
+    /// tenths from ten on. Angles are in whole degrees, columns and rows whole numbers, threshold and pitch in
+    /// thousandths. Angles wrap around; other parameters stop at the ends of their range. The value must be a number,
+    /// not NaN.
     pub fn step(&self, parameter: Parameter, value: f64, direction: i32) -> f64 {
         // Upwards from ten the steps are tenths, downwards from ten hundredths. Below zero it is the other way round.
         let towards = match direction {
@@ -383,6 +385,9 @@ mod tests {
             (Parameter::Angle, 17.5, 18.0, 17.0),
             (Parameter::Angle, 359.5, 0.0, 359.0),
             (Parameter::Angle, 0.0, 1.0, 359.0),
+            (Parameter::Columns, 16.0, 17.0, 15.0),
+            (Parameter::Threshold, 0.5, 0.501, 0.499),
+            (Parameter::Pitch, 20.0, 20.001, 19.999),
         ] {
             assert_eq!(
                 sensor.step(parameter, value, 1),

@@ -14,7 +14,8 @@ use crate::recognition::posterior::{Odds, Posterior};
 pub enum AnswerState {
     /// No other shape of the set leaves these imprints.
     Certain,
-    /// Other shapes leave these imprints less often, or an imprint may be cut off.
+    /// Other shapes leave these imprints less often, an imprint may be cut off, or taxels may flip, so that any shape
+    /// may leave any imprint.
     Likely,
     /// Another shape leaves these imprints just as often.
     Tied,
