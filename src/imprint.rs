@@ -322,8 +322,7 @@ impl ImprintRows {
             return Err(ImprintError::Character { row, column, found });
         }
         let found = text.len();
-        let columns = u8::try_from(found).ok();
-        let size = columns.and_then(|columns| MatrixSize::new(columns, MAX_SIDE).ok());
+        let size = MatrixSize::of_sides(found, MAX_SIDE);
         let size = size.ok_or(ImprintError::Columns { row, found })?;
         let active = text.bytes().map(|byte| u64::from(byte == b'#'));
         let word = active.rev().fold(0, |word, active| word << 1 | active);

@@ -52,6 +52,11 @@ impl MatrixSize {
         Ok(Self { columns, rows })
     }
 
+    /// Returns the size of a matrix from sides of any integer type; None if one is not from 1 to [`MAX_SIDE`].
+    pub(crate) fn of_sides(columns: impl TryInto<u8>, rows: impl TryInto<u8>) -> Option<Self> {
+        Self::new(columns.try_into().ok()?, rows.try_into().ok()?).ok()
+    }
+
     /// Returns the number of columns.
     pub fn columns(self) -> u8 {
         self.columns

@@ -148,10 +148,9 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
         found: shortened(&header.code),
     })?;
     let size = match &header.shape[..] {
-        [rows, columns] => u8::try_from(*columns).ok().zip(u8::try_from(*rows).ok()),
+        [rows, columns] => MatrixSize::of_sides(*columns, *rows),
         _ => None,
     };
-    let size = size.and_then(|(columns, rows)| MatrixSize::new(columns, rows).ok());
     let size = size.ok_or_else(|| ArrayError::Shape {
         found: header.shape.iter().copied().take(8).collect(),
     })?;

@@ -122,10 +122,7 @@ const MOST_TAXELS: u32 = MAX_SIDE as u32 * MAX_SIDE as u32;
 /// value is beyond ±[`LARGEST_VALUE`].
 pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
     let (height, width) = (rows.len(), rows.first().map_or(0, Vec::len));
-    let side = |length: usize| u8::try_from(length).ok();
-    let sides = side(width).zip(side(height));
-    let size = sides.and_then(|(columns, rows)| MatrixSize::new(columns, rows).ok());
-    let Some(size) = size else {
+    let Some(size) = MatrixSize::of_sides(width, height) else {
         return Err(format!(
             "{} of {width}, expected 1 to {MAX_SIDE} of each",
             counted(height as u64, "row")

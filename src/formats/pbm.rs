@@ -44,8 +44,10 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
     };
     let grey = matches!(bytes.get(1), Some(b'2' | b'5'));
     let mut cursor = Cursor { bytes, at: 2 };
-    let one_row = cursor.side("width", |columns| MatrixSize::new(columns, 1))?;
-    let size = cursor.side("height", |rows| MatrixSize::new(one_row.columns(), rows))?;
+    let one_row = cursor.side("width", |columns| MatrixSize::of_sides(columns, 1))?;
+    let size = cursor.side("height", |rows| {
+        MatrixSize::of_sides(one_row.columns(), rows)
+    })?;
     let mut imprint = Imprint::empty(size);
     let end = if grey {
         pgm::shades(&mut cursor, raw, &mut imprint)?

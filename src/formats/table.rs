@@ -297,8 +297,7 @@ impl<'a> Table<'a> {
     fn size(&self) -> Result<MatrixSize, TableError> {
         let most = usize::from(MAX_SIDE);
         let found = self.rows.len();
-        let side = |count: usize| u8::try_from(count).ok();
-        let one_column = side(found).and_then(|rows| MatrixSize::new(1, rows).ok());
+        let one_column = MatrixSize::of_sides(1, found);
         let Some((first, one_column)) = self.rows.first().zip(one_column) else {
             return Err(TableError::Lines { found });
         };
@@ -317,12 +316,10 @@ impl<'a> Table<'a> {
                 });
             }
         }
-        side(expected)
-            .and_then(|columns| MatrixSize::new(columns, one_column.rows()).ok())
-            .ok_or(TableError::Columns {
-                line: first.line,
-                found: expected,
-            })
+        MatrixSize::of_sides(expected, one_column.rows()).ok_or(TableError::Columns {
+            line: first.line,
+            found: expected,
+        })
     }
 
     /// Returns the number in a field; None if it is not a number, or not finite.

@@ -157,11 +157,7 @@ impl View {
 
 /// Converts the size of the visible part of a frame to that of a matrix. Returns an error if it is too large.
 fn matrix_size(left: FrameSize) -> Result<MatrixSize, FrameError> {
-    let side = |length: u16| u8::try_from(length).ok();
-    side(left.columns())
-        .zip(side(left.rows()))
-        .and_then(|(columns, rows)| MatrixSize::new(columns, rows).ok())
-        .ok_or(FrameError::Large { size: left })
+    MatrixSize::of_sides(left.columns(), left.rows()).ok_or(FrameError::Large { size: left })
 }
 
 #[cfg(test)]

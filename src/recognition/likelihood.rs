@@ -8,7 +8,7 @@
 //! [`scan`](super::scan) finds the near keys.
 
 use crate::imprint::Imprint;
-use crate::index::wide;
+use crate::index::{narrow, wide};
 use crate::parameter::named;
 use crate::recognition::model::{Model, float};
 use crate::recognition::noise::Noise;
@@ -116,7 +116,7 @@ impl Model {
         noise: &Noise,
     ) -> Vec<[f64; 2]> {
         let fall = libm::log(noise.ratio());
-        let all = u32::from(imprint.columns()) * u32::from(imprint.rows());
+        let all = narrow(imprint.size().cells());
         let bounds = |(touches, total): (&Vec<u64>, u64)| {
             if total == 0 {
                 return [f64::NEG_INFINITY; 2];
@@ -218,7 +218,7 @@ impl Model {
             return None;
         }
         // No distance is larger than the number of taxels.
-        let all = u32::from(imprint.columns()) * u32::from(imprint.rows());
+        let all = narrow(imprint.size().cells());
         let most = all.min(least + reach);
         Some(Distances {
             least,

@@ -4,6 +4,7 @@
 use std::fmt;
 
 use crate::imprint::Imprint;
+use crate::index::narrow;
 
 /// The largest change of a probability that leaving out far keys may cause.
 pub(super) const NEGLIGIBLE: f64 = 1e-9;
@@ -119,7 +120,7 @@ impl Noise {
     pub fn unexplained(&self, touch: &Imprint, found: u32) -> Option<UnexplainedDifference> {
         let size = touch.size();
         let dead = self.dead.map_or(0, |dead| dead.resized(size).count());
-        let cells = u32::from(size.columns()) * u32::from(size.rows()) - dead;
+        let cells = narrow(size.cells()) - dead;
         (self.at_least(found, cells) < EXPLAINED).then(|| UnexplainedDifference {
             found,
             expected: self.flip * f64::from(cells),

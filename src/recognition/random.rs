@@ -4,7 +4,7 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
 use crate::imprint::Imprint;
-use crate::index::lower_word;
+use crate::index::{lower_word, narrow};
 use crate::recognition::model::float;
 use crate::sensor::MatrixSize;
 
@@ -28,8 +28,7 @@ pub(super) fn unit(random: &mut Pcg64) -> f64 {
 pub(super) fn random_taxels(size: MatrixSize, count: u32, random: &mut Pcg64) -> Imprint {
     let mut taxels = Imprint::empty(size);
     let (columns, rows) = (size.columns(), size.rows());
-    let cells = u32::from(columns) * u32::from(rows);
-    let mut missing = count.min(cells);
+    let mut missing = count.min(narrow(size.cells()));
     while missing > 0 {
         let [column, row] = [columns, rows].map(|side| below(random, side.into()));
         if let (Ok(column), Ok(row)) = (u8::try_from(column), u8::try_from(row))

@@ -35,6 +35,7 @@ use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
 use crate::formats::value::{counted, grouped, percent};
 use crate::formats::{DrawingFormat, LinePlot, json};
+use crate::index::narrow;
 use crate::memory::MemoryGuard;
 use crate::parameter::number::share;
 use crate::progress::Progress;
@@ -112,7 +113,7 @@ pub(crate) fn degradation(
 /// # Errors
 /// Returns [`CliError::Range`].
 pub(crate) fn check_dead(dead: &[u32], sensor: &Sensor) -> Result<(), CliError> {
-    let cells = u32::from(sensor.columns()) * u32::from(sensor.rows());
+    let cells = narrow(sensor.size().cells());
     match dead.iter().find(|&&dead| dead > cells) {
         None => Ok(()),
         Some(dead) => Err(CliError::Range {

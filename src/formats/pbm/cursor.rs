@@ -2,7 +2,6 @@
 
 use crate::formats::pbm::error::PbmError;
 use crate::imprint::Imprint;
-use crate::parameter::ParameterError;
 use crate::sensor::MatrixSize;
 
 /// A position in the bytes of a file.
@@ -39,11 +38,10 @@ impl Cursor<'_> {
     pub(super) fn side(
         &mut self,
         what: &'static str,
-        size: impl Fn(u8) -> Result<MatrixSize, ParameterError>,
+        size: impl Fn(u32) -> Option<MatrixSize>,
     ) -> Result<MatrixSize, PbmError> {
         let (side, offset) = self.number();
-        let side = side.and_then(|side| u8::try_from(side).ok());
-        side.and_then(|side| size(side).ok()).ok_or_else(|| {
+        side.and_then(size).ok_or_else(|| {
             let (line, column) = self.line_and_column(offset);
             PbmError::Side { line, column, what }
         })
@@ -71,7 +69,7 @@ impl Cursor<'_> {
 
     /// Reads a digit for each taxel; returns the offset after the last.
     pub(super) fn digits(&mut self, imprint: &mut Imprint) -> Result<usize, PbmError> {
-        let expected = usize::from(imprint.columns()) * usize::from(imprint.rows());
+        let expected = imprint.size().cells();
         let mut found = 0;
         for row in 0..imprint.rows() {
             for column in 0..imprint.columns() {

@@ -20,7 +20,7 @@ pub(super) fn shades(
         let (line, column) = cursor.line_and_column(offset);
         PbmError::Maximum { line, column }
     })?;
-    let expected = usize::from(imprint.columns()) * usize::from(imprint.rows());
+    let expected = imprint.size().cells();
     let shades = if raw {
         raw_shades(cursor, brightest, expected)?
     } else {
