@@ -17,7 +17,7 @@ use std::ops::ControlFlow;
 /// // Stops after a million poses: what is complete by then is kept.
 /// let done = AtomicU64::new(0);
 /// let progress = |poses| stop_if(done.fetch_add(poses, Ordering::Relaxed) >= 1_000_000);
-/// let result = Sweep::new(&grid).progress(&progress).run();
+/// let result = Sweep::new(&grid).with_progress(&progress).run();
 /// assert!(result.poses() <= grid.poses());
 /// # Ok::<(), taxel::pose::GridError>(())
 /// ```

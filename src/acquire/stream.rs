@@ -156,7 +156,7 @@ fn is_invalid(error: &io::Error) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::fs::File;
+    use std::fs::{self, File};
     use std::io::Write;
     use std::net::TcpListener;
 

@@ -133,8 +133,8 @@ impl Model {
         let training = Training::of_poses(shapes, |source| {
             PoseGrid::going_beyond(source, *self.sensor(), self.anchor(), ranges)
         })?;
-        let training = training.shard(self.shard()).allow_cut(true);
-        training.progress(progress).run()
+        let training = training.with_shard(self.shard()).allow_cut(true);
+        training.with_progress(progress).run()
     }
 }
 
@@ -213,7 +213,7 @@ mod tests {
         };
         let shards = [1, 2].map(|number| {
             let shard = Shard::new(number, 2).expect("one of two");
-            touches(training.clone().shard(shard))
+            touches(training.clone().with_shard(shard))
         });
         assert_eq!(shards.iter().sum::<u128>(), touches(training));
     }

@@ -372,7 +372,7 @@ mod tests {
         let mask = |columns, rows| {
             let mut dead = Imprint::empty(MatrixSize::of(columns, rows));
             dead.set(1, 4, true);
-            let noise = Noise::new(0.01).expect("in range").without(dead);
+            let noise = Noise::new(0.01).expect("in range").with_dead(dead);
             model.posterior_under(&touch, &noise)
         };
         let own = mask(6, 6);

@@ -13,7 +13,7 @@ use crate::sweep::{Shard, ShardOrderError};
 /// let mut merge = ModelMerge::default();
 /// for number in 1..=2 {
 ///     let shard = Shard::new(number, 2).unwrap();
-///     merge.add(&training.clone().shard(shard).run()?)?;
+///     merge.add(&training.clone().with_shard(shard).run()?)?;
 /// }
 /// assert_eq!(merge.finish()?, training.run()?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -88,9 +88,10 @@ impl Noise {
         }
     }
 
-    /// Ignores the active taxels of `dead`, which are stuck on or off. Taxels beyond an imprint do not matter.
+    /// Returns the same noise with the active taxels of `dead` as its dead taxels, in place of those that it had. They
+    /// are stuck on or off, so they are ignored. Taxels beyond an imprint do not matter.
     #[must_use]
-    pub fn without(self, dead: Imprint) -> Self {
+    pub fn with_dead(self, dead: Imprint) -> Self {
         let dead = (!dead.is_empty()).then_some(dead);
         Self { dead, ..self }
     }
@@ -184,7 +185,7 @@ mod tests {
         );
         // No flips are expected in a dead row.
         let dead = "################".parse().expect("a row");
-        let found = noise.without(dead).unexplained(&touch, 14);
+        let found = noise.with_dead(dead).unexplained(&touch, 14);
         assert_eq!(found.map(|own| own.expected), Some(2.4));
         // The largest matrix, where the probability of no flip is too small for an `f64`.
         let most = Noise::new(0.49).expect("in range");

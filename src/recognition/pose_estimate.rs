@@ -82,8 +82,8 @@ fn whole_degrees(period: f64) -> u32 {
 
 impl Model {
     /// Finds the poses in which a shape leaves an imprint, by touching with the shape in every pose of the model.
-    /// Of a shard, only its own poses count. `progress` is called as by [`Sweep::progress`]. None if there is no such
-    /// shape, if it does not leave the imprint, if the imprint is empty, or if it was stopped.
+    /// Of a shard, only its own poses count. `progress` is called as by [`Sweep::with_progress`]. None if there is no
+    /// such shape, if it does not leave the imprint, if the imprint is empty, or if it was stopped.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -128,7 +128,9 @@ impl Model {
         let period = exact_period(&source, self.ranges());
         let grid = PoseGrid::new(source, *self.sensor(), self.anchor(), *self.ranges()).ok()?;
         let wanted = |other: &Imprint| ImprintKey::of(other) == key;
-        let sweep = Sweep::new(&grid).shard(self.shard()).progress(progress);
+        let sweep = Sweep::new(&grid)
+            .with_shard(self.shard())
+            .with_progress(progress);
         let runs = sweep.poses_where(&wanted)?;
         let mut plane = Plane::new(*grid.sensor());
         let mut sums = PoseMoments::default();
@@ -439,7 +441,13 @@ mod tests {
         };
         let shards = [1, 2, 3].map(|number| {
             let shard = Shard::new(number, 3).expect("one of three");
-            poses(&training.clone().shard(shard).run().expect("not stopped"))
+            poses(
+                &training
+                    .clone()
+                    .with_shard(shard)
+                    .run()
+                    .expect("not stopped"),
+            )
         });
         let whole = poses(&training.run().expect("not stopped"));
         assert_eq!(shards.iter().sum::<u64>(), whole);

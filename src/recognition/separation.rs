@@ -77,7 +77,7 @@ named!(SizeAxis, "axis", &SizeAxis::ALL);
 ///     NamedShape::new("square", Figure::rectangle(2.0, 2.0).on(&sensor)?),
 ///     NamedShape::new("disc", Figure::ellipse(1.13, 1.13).on(&sensor)?),
 /// ];
-/// let separation = Separation::new(shapes)?.positions(CellPositions::COARSE).angles("0:350:10".parse()?);
+/// let separation = Separation::new(shapes)?.with_positions(CellPositions::COARSE).with_angles("0:350:10".parse()?);
 /// let scales = "1:5:1".parse()?;
 /// let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &ToTheEnd)?;
 /// assert!(points[0].error() > 0.3 && points[4].error() < 0.05);
@@ -152,14 +152,14 @@ impl Separation {
 
     /// Sets the number of positions of a cell in each direction.
     #[must_use]
-    pub fn positions(mut self, positions: CellPositions) -> Self {
+    pub fn with_positions(mut self, positions: CellPositions) -> Self {
         self.positions = positions;
         self
     }
 
     /// Sets the angles.
     #[must_use]
-    pub fn angles(mut self, angles: DecimalRange) -> Self {
+    pub fn with_angles(mut self, angles: DecimalRange) -> Self {
         self.angles = angles;
         self
     }
@@ -251,7 +251,7 @@ impl Separation {
         Ok(Some((source, given)))
     }
 
-    /// Returns the limit for one value and one threshold. `progress` is called as by [`Training::progress`].
+    /// Returns the limit for one value and one threshold. `progress` is called as by [`Training::with_progress`].
     ///
     /// # Errors
     /// Returns the errors of [`Self::training`], or [`TrainingError::Stopped`].
@@ -281,7 +281,7 @@ impl Separation {
         let scale = axis.scale(value);
         let training = self.training(scale, threshold)?;
         let side = training.grids()[0].sensor().side();
-        let model = training.progress(progress).run()?;
+        let model = training.with_progress(progress).run()?;
         let (limit, certainty) = Evaluation::with_certainty(&model);
         let point = SeparationPoint {
             value,
@@ -390,8 +390,8 @@ mod tests {
     fn coarse(shapes: Vec<NamedShape>) -> Separation {
         let separation = Separation::new(shapes).expect("a set");
         separation
-            .positions(CellPositions::COARSE)
-            .angles("0:355:5".parse().expect("a range"))
+            .with_positions(CellPositions::COARSE)
+            .with_angles("0:355:5".parse().expect("a range"))
     }
 
     /// Shapes that are enlarged by hand and trained like any other set give the same touches and keys.
@@ -449,8 +449,9 @@ mod tests {
             assert_eq!(side, 16);
             let limit = Evaluation::of(&training.run().expect("not stopped"));
             let separation = Separation::new(shapes.clone()).expect("a set");
-            let separation = separation.positions(CellPositions::new(positions).expect("divides"));
-            let separation = separation.angles("0:350:10".parse().expect("a range"));
+            let separation =
+                separation.with_positions(CellPositions::new(positions).expect("divides"));
+            let separation = separation.with_angles("0:350:10".parse().expect("a range"));
             let point = separation.at(SizeAxis::Scale, 1.0, 0.5, &ToTheEnd);
             let point = point.expect("it fits");
             assert_eq!(

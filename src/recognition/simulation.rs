@@ -229,7 +229,7 @@ impl Model {
                 Some(known) => known.resized(dead.size()).union(dead),
                 None => *dead,
             };
-            let posterior = self.posterior_under(touch, &assumed.without(known));
+            let posterior = self.posterior_under(touch, &assumed.with_dead(known));
             Judgement {
                 is_held: self.keys().find(&ImprintKey::of(touch)).is_some(),
                 named: posterior.and_then(|own| first_of_most(own.into_iter().enumerate())),

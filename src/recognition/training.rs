@@ -159,14 +159,14 @@ impl<'a> Training<'a> {
     }
 
     /// Takes only one part of the poses; [`ModelMerge`](crate::recognition::ModelMerge) merges all parts.
-    pub fn shard(mut self, shard: Shard) -> Self {
+    pub fn with_shard(mut self, shard: Shard) -> Self {
         self.shard = shard;
         self
     }
 
     /// Reports to `progress` from time to time, from any thread, the number of poses done since the last report, which
     /// is 0 within a long row. The training stops when it returns `Break`.
-    pub fn progress(mut self, progress: &'a dyn Progress) -> Self {
+    pub fn with_progress(mut self, progress: &'a dyn Progress) -> Self {
         self.progress = progress;
         self
     }
@@ -215,7 +215,9 @@ impl<'a> Training<'a> {
         let mut head = self.head();
         head.cut.clear();
         for (shape, grid) in (0..).zip(&self.grids) {
-            let sweep = Sweep::new(grid).shard(self.shard).progress(self.progress);
+            let sweep = Sweep::new(grid)
+                .with_shard(self.shard)
+                .with_progress(self.progress);
             let counted = sweep.count().ok_or(TrainingError::Stopped)?;
             if counted.partly_off > 0 && !self.allow_cut {
                 return Err(TrainingError::Cut {

@@ -466,7 +466,7 @@ mod tests {
             of(&whole.shapes()[..1], Anchor::Centre),
             of(whole.shapes(), Anchor::Corner),
             of(&heavier, Anchor::Centre),
-            whole.clone().shard("1/2".parse().expect("a shard")),
+            whole.clone().with_shard("1/2".parse().expect("a shard")),
         ]
         .into_iter()
         .enumerate()

@@ -438,7 +438,7 @@ mod tests {
             let mut take = |row: u64, ids: &[u32]| file.take(row, ids);
             let shard: Shard = shard.parse().expect("a shard");
             let progress = |_| stop_if(!go_on);
-            let sweep = Sweep::new(&grid).shard(shard).progress(&progress);
+            let sweep = Sweep::new(&grid).with_shard(shard).with_progress(&progress);
             sweep.run_with_rows(&mut take);
             file.finish().expect("no error").is_some()
         };

@@ -195,7 +195,7 @@ mod tests {
         let grid = grid.expect("in range");
         assert!(
             Sweep::new(&grid)
-                .progress(&|_| ControlFlow::Break(()))
+                .with_progress(&|_| ControlFlow::Break(()))
                 .count()
                 .is_none()
         );
@@ -217,7 +217,7 @@ mod tests {
             done.fetch_add(poses, Ordering::Relaxed);
             ControlFlow::Break(())
         };
-        assert!(Sweep::new(&grid).progress(&progress).count().is_none());
+        assert!(Sweep::new(&grid).with_progress(&progress).count().is_none());
         assert_eq!(done.into_inner(), 0);
     }
 }

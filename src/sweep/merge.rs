@@ -19,7 +19,7 @@ use crate::sweep::result::SweepResult;
 /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
 /// let mut merge = SweepMerge::default();
 /// for number in 1..=2 {
-///     merge.add(Sweep::new(&grid).shard(Shard::new(number, 2).unwrap()).run())?;
+///     merge.add(Sweep::new(&grid).with_shard(Shard::new(number, 2).unwrap()).run())?;
 /// }
 /// assert_eq!(merge.finish()?, Sweep::new(&grid).run());
 /// # Ok::<(), Box<dyn std::error::Error>>(())

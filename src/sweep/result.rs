@@ -283,7 +283,7 @@ mod tests {
         let grid =
             PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid");
         let shard = Shard::new(2, 2).expect("a shard");
-        let parts = Sweep::new(&grid).shard(shard).run().parts();
+        let parts = Sweep::new(&grid).with_shard(shard).run().parts();
         let read = |first: u64| {
             let mut parts = parts.clone();
             parts.first_poses[0] = first;
@@ -294,7 +294,7 @@ mod tests {
         assert_eq!(read(5000), Ok(true));
         assert_eq!(read(4999), Err(PartsError("first poses out of order")));
         let first = Shard::new(1, 2).expect("a shard");
-        let mut parts = Sweep::new(&grid).shard(first).run().parts();
+        let mut parts = Sweep::new(&grid).with_shard(first).run().parts();
         *parts.first_poses.last_mut().expect("some") = 5000;
         let read = SweepResult::from_parts(grid.clone(), first, &parts);
         assert_eq!(read.err(), Some(PartsError("first poses out of order")));
@@ -389,7 +389,7 @@ mod tests {
             let done = AtomicU64::new(0);
             // Some orientations are complete by then, but far from all.
             let progress = |poses| stop_if(done.fetch_add(poses, Ordering::Relaxed) >= 1_000_000);
-            Sweep::new(&grid).progress(&progress).run()
+            Sweep::new(&grid).with_progress(&progress).run()
         });
         assert!(!stopped.complete() && stopped.poses > 0);
         assert_eq!(stopped.ids(PoseIndex::new([0; 5]), 0..1, 0..1), [Some(0)]);

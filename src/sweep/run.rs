@@ -66,14 +66,14 @@ impl<'a> Sweep<'a> {
     }
 
     /// Sweeps only one shard of the grid.
-    pub fn shard(mut self, shard: Shard) -> Self {
+    pub fn with_shard(mut self, shard: Shard) -> Self {
         self.shard = shard;
         self
     }
 
     /// Reports to `progress` from time to time, from any thread, the number of poses done since the last report, which
     /// is 0 within a long row. The sweep stops when it returns `Break`.
-    pub fn progress(mut self, progress: &'a dyn Progress) -> Self {
+    pub fn with_progress(mut self, progress: &'a dyn Progress) -> Self {
         self.progress = progress;
         self
     }

@@ -111,7 +111,7 @@ fn posteriors_equal_those_from_the_definition() {
         for imprint in imprints() {
             for (noise, dead) in [
                 (noise, Imprint::empty(size(5, 5))),
-                (noise.without(dead), dead),
+                (noise.with_dead(dead), dead),
             ] {
                 let expected = by_definition(&model, &imprint, flip, &dead);
                 let found = model.posterior_under(&imprint, &noise).expect("keys fit");
@@ -220,14 +220,14 @@ fn without_noise_dead_taxels_do_not_make_an_impossible_touch_certain() {
         .expect("an imprint");
     let mut dead = Imprint::empty(size(5, 5));
     dead.set(0, 4, true);
-    let noise = Noise::new(0.0).expect("in range").without(dead);
+    let noise = Noise::new(0.0).expect("in range").with_dead(dead);
     assert_eq!(model.posterior_under(&torn, &noise), None);
     let answer = model.recognise(Evidence::of(&[torn]).under(Some(&noise)));
     assert_eq!(answer.state, AnswerState::Unknown);
     // If the stray taxel is known to be dead, the touch is possible.
     let mut dead = Imprint::empty(size(5, 5));
     dead.set(4, 3, true);
-    let noise = Noise::new(0.0).expect("in range").without(dead);
+    let noise = Noise::new(0.0).expect("in range").with_dead(dead);
     let touches = [torn];
     let evidence = Evidence::of(&touches).under(Some(&noise));
     assert_ne!(model.recognise(evidence).state, AnswerState::Unknown);
@@ -241,7 +241,7 @@ fn without_noise_dead_taxels_do_not_make_an_impossible_touch_certain() {
         .expect("an imprint");
     let mut hole = Imprint::empty(size(5, 5));
     hole.set(1, 1, true);
-    let noise = Noise::new(0.0).expect("in range").without(hole);
+    let noise = Noise::new(0.0).expect("in range").with_dead(hole);
     let touches = [square, torn];
     let nearest = model.nearest_of(Evidence::of(&touches).under(Some(&noise)));
     assert_eq!(nearest.map(|near| near.distance), Some(1));
@@ -282,7 +282,7 @@ fn a_dead_taxel_at_the_rim_is_not_taken_for_contact_there() {
             .recognise(Evidence::of(&touches).under(Some(noise)))
             .at_rim
     };
-    assert!(at_rim(&noise) && !at_rim(&noise.without(dead)));
+    assert!(at_rim(&noise) && !at_rim(&noise.with_dead(dead)));
 }
 
 #[test]

@@ -259,7 +259,7 @@ fn merged_shards_equal_the_whole_model() {
         let shard = Shard::new(number, 3).expect("a shard");
         training
             .expect("a set")
-            .shard(shard)
+            .with_shard(shard)
             .run()
             .expect("no pose is cut off")
     };
@@ -324,7 +324,7 @@ fn cut_poses_are_refused_unless_allowed() {
     // The numbers of cut poses in the shards add up.
     let part = |number| {
         let shard = Shard::new(number, 3).expect("a shard");
-        let part = set().allow_cut(true).shard(shard).run();
+        let part = set().allow_cut(true).with_shard(shard).run();
         part.expect("allowed")
     };
     let merged = merge_all(&[1, 2, 3].map(part)).expect("all three");
@@ -556,7 +556,7 @@ fn the_evaluation_of_a_shard_without_poses_has_numbers() {
     let shard = "1/2".parse().expect("a shard");
     let model = training
         .expect("a set")
-        .shard(shard)
+        .with_shard(shard)
         .run()
         .expect("trained");
     assert_eq!(model.poses(), 0);

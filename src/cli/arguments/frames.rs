@@ -341,7 +341,7 @@ impl NamingArguments {
     /// Returns the noise, with the dead cells of a mask left out.
     pub(crate) fn noise_with(&self, mask: Option<&Imprint>) -> Option<Noise> {
         let noise = self.noise?;
-        Some(mask.map_or(noise, |mask| noise.without(*mask)))
+        Some(mask.map_or(noise, |mask| noise.with_dead(*mask)))
     }
 }
 

@@ -64,7 +64,7 @@ pub(crate) fn train(
     let signals = Signals::catch()?;
     let stopped = &signals.stopped;
     let training = Training::new(shapes, sensor, anchor, ranges)?
-        .shard(asked.shard)
+        .with_shard(asked.shard)
         .allow_cut(asked.allow_cut);
     let wanted = training.clone();
     let kept = || match asked.existing {
@@ -119,7 +119,7 @@ fn run(
     let pool = threads::pool(asked.jobs)?;
     let display = ProgressDisplay::new(training.poses(), asked.quiet, charset);
     let model = memory.limit(&signals.progress(&display), |progress| {
-        pool.install(|| training.progress(progress).run())
+        pool.install(|| training.with_progress(progress).run())
     });
     drop(display);
     model
@@ -259,7 +259,7 @@ impl FoundModel {
                 "train a model of fewer shapes or coarser steps (taxel model train)",
             );
             let display = display(training.poses());
-            let model = memory.limit(&display, |progress| training.progress(progress).run());
+            let model = memory.limit(&display, |progress| training.with_progress(progress).run());
             Ok(model.map_err(CliError::Memory)??)
         })
     }

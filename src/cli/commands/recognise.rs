@@ -299,7 +299,7 @@ fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, Cli
     Ok(match (asked.noise, &asked.mask) {
         (Some(noise), Some(mask)) => {
             let mask = shelf.find(mask).map_err(|error| error.of_flag("--mask"))?;
-            Some(noise.without(*mask.imprint()))
+            Some(noise.with_dead(*mask.imprint()))
         }
         (noise, _) => noise,
     })

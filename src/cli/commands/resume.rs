@@ -178,7 +178,7 @@ mod tests {
         let stopped = pool.expect("threads").install(|| {
             let done = AtomicU64::new(0);
             let progress = |poses| stop_if(done.fetch_add(poses, Ordering::Relaxed) >= 100_000);
-            Sweep::new(&grid).progress(&progress).run()
+            Sweep::new(&grid).with_progress(&progress).run()
         });
         assert!(!stopped.complete());
         let file = AtlasFile::new(&path).expect("an archive");

@@ -200,8 +200,8 @@ fn set(
             note(&text, charset);
         }
         let separation = Separation::new(model.shapes().to_vec())?
-            .positions(positions)
-            .angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
+            .with_positions(positions)
+            .with_angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
         return Ok((separation, model.sensor().threshold()));
     }
     let no_shape = |name: &str| shelf.imprint(name).is_err();
@@ -214,9 +214,9 @@ fn set(
         });
     }
     let mut separation = Separation::new(shape_set::read(&asked.set, shelf)?)?
-        .angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));
+        .with_angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));
     if let Some(positions) = asked.positions {
-        separation = separation.positions(positions);
+        separation = separation.with_positions(positions);
     }
     Ok((separation, Sensor::default().threshold()))
 }

@@ -111,7 +111,7 @@ pub(crate) fn sweep(
     let mut poses = wanted.poses.as_ref().map(new).transpose()?;
     let display = ProgressDisplay::new(shard.poses(grid), wanted.quiet, charset);
     let result = memory.limit(&signals.progress(&display), |progress| {
-        let sweep = Sweep::new(grid).shard(shard).progress(progress);
+        let sweep = Sweep::new(grid).with_shard(shard).with_progress(progress);
         pool.install(|| match &mut poses {
             Some(file) => sweep.run_with_rows(&mut |row, ids| file.take(row, ids)),
             None => sweep.run(),

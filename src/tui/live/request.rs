@@ -76,7 +76,7 @@ impl WatchRequest {
     pub fn noise(&self) -> Option<Noise> {
         let noise = self.noise?;
         Some(match self.processing.view.mask {
-            Some(mask) => noise.without(mask),
+            Some(mask) => noise.with_dead(mask),
             None => noise,
         })
     }

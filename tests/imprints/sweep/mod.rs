@@ -136,7 +136,7 @@ fn the_result_does_not_depend_on_threads_and_shards() {
         for of in [1, 2, 3, 7, 40] {
             let shards = (1..=of).map(|number| {
                 let shard = Shard::new(number, of).expect("a shard");
-                Sweep::new(&grid).shard(shard).run()
+                Sweep::new(&grid).with_shard(shard).run()
             });
             let merged = merge_all(shards).expect("all shards");
             assert_eq!(told(&merged), whole, "{of} shards");
@@ -191,7 +191,7 @@ fn rows_taken_from_symmetry_equal_computed_rows() {
         let rows = u32::try_from(grid.rows()).expect("a small grid");
         let one_by_one = (1..=rows).map(|number| {
             let row = Shard::new(number, rows).expect("a shard");
-            Sweep::new(&grid).shard(row).run()
+            Sweep::new(&grid).with_shard(row).run()
         });
         let merged = merge_all(one_by_one).expect("all shards");
         assert_eq!(told(&whole), told(&merged), "{:?}", grid.source());
@@ -218,7 +218,7 @@ fn shards_are_merged_only_if_all_are_there() {
     );
     let shard = |grid: &PoseGrid, number, of| {
         Sweep::new(grid)
-            .shard(Shard::new(number, of).expect("a shard"))
+            .with_shard(Shard::new(number, of).expect("a shard"))
             .run()
     };
     let merge = |results: Vec<SweepResult>| merge_all(results).map(|result| result.poses());
@@ -292,7 +292,7 @@ fn a_stopped_sweep_keeps_what_is_complete() {
     let stopped_after = |most: u64| {
         done.store(0, Ordering::Relaxed);
         let progress = |poses| stop_if(done.fetch_add(poses, Ordering::Relaxed) + poses >= most);
-        pool.install(|| Sweep::new(&grid).progress(&progress).run())
+        pool.install(|| Sweep::new(&grid).with_progress(&progress).run())
     };
     let result = stopped_after(500_000);
     assert!(!result.complete());

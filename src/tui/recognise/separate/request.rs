@@ -179,7 +179,9 @@ impl SeparationRequest {
     /// Returns the errors of [`Separation::new`], which do not occur with a trained set.
     pub fn separation(&self) -> Result<Separation, TrainingError> {
         let separation = Separation::new(self.trained.model.shapes().to_vec())?;
-        Ok(separation.positions(self.positions).angles(self.angles))
+        Ok(separation
+            .with_positions(self.positions)
+            .with_angles(self.angles))
     }
 
     /// Returns the sizes, the smallest first.

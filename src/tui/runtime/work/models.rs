@@ -79,7 +79,7 @@ impl ModelStore {
                 "take fewer shapes or coarser steps, or train it in shards on the command line (taxel model train --shard)",
             );
             progress
-                .within(&memory, |progress| training.progress(progress).run())?
+                .within(&memory, |progress| training.with_progress(progress).run())?
                 .map_err(|error| match error {
                     TrainingError::Stopped => "training was stopped".to_owned(),
                     error => error.to_string(),

@@ -279,7 +279,7 @@ fn sweep(number: u64, grid: &PoseGrid, progress: &WorkProgress<'_>) -> WorkerEve
         return WorkerEvent::Failed(number, message);
     }
     let swept = progress.within(&memory, |progress| {
-        Sweep::new(grid).progress(progress).run()
+        Sweep::new(grid).with_progress(progress).run()
     });
     match swept {
         Ok(result) => WorkerEvent::Swept(number, Arc::new(Findings::new(result))),
@@ -334,7 +334,7 @@ fn write_poses(
     progress: &dyn Progress,
 ) -> Result<bool, ArchiveFileError> {
     let mut file = PoseFile::new(path, &result.grid, existing)?;
-    let sweep = Sweep::new(&result.grid).progress(progress);
+    let sweep = Sweep::new(&result.grid).with_progress(progress);
     sweep.run_with_rows(&mut |row, ids| file.take(row, ids));
     let Some(whole) = file.finish()? else {
         return Ok(false);

@@ -160,7 +160,7 @@ fn sound() -> Vec<Arrays> {
         (&figures, part),
         (&pictures, part),
     ]
-    .map(|(grid, shard)| unpacked(&bytes_of(&Sweep::new(grid).shard(shard).run()), &READ))
+    .map(|(grid, shard)| unpacked(&bytes_of(&Sweep::new(grid).with_shard(shard).run()), &READ))
     .to_vec()
 }
 

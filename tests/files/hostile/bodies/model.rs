@@ -138,5 +138,8 @@ fn small(shard: Shard) -> Model {
         .with(Axis::Y0, range("4:4.75:0.25"))
         .with(Axis::Angle, range("0:90:45"));
     let training = Training::new(shapes, sensor, Anchor::Centre, ranges).expect("a set");
-    training.shard(shard).run().expect("nothing is cut off")
+    training
+        .with_shard(shard)
+        .run()
+        .expect("nothing is cut off")
 }
