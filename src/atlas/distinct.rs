@@ -41,6 +41,28 @@ pub struct AtlasEntry {
     pub summary: ImprintSummary,
 }
 
+/// An imprint of an atlas that lies at another place than a given one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ShiftedImprint {
+    /// The number of the imprint.
+    pub id: u32,
+    /// The columns by which the given one lies further to the right; negative if it lies further to the left.
+    pub right: i8,
+    /// The rows by which the given one lies further down; negative if it lies further up.
+    pub down: i8,
+}
+
+/// The numbers of distinct imprints if images of the same imprint count as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct DistinctClasses {
+    /// The number up to shifts by whole taxels.
+    pub up_to_shifts: usize,
+    /// The number up to shifts, quarter turns and mirror images.
+    pub up_to_symmetry: usize,
+}
+
 impl Atlas {
     pub(crate) fn new(size: MatrixSize) -> Self {
         let layout = Layout::new(size);
@@ -155,9 +177,8 @@ impl Atlas {
         self.number(&key, hash)
     }
 
-    /// Returns the number of the nearest imprint that differs from the given one only by a shift of whole taxels, and
-    /// by how many columns to the right and rows down the given one is shifted from it. None if there is no such
-    /// imprint.
+    /// Returns the nearest imprint that differs from the given one only by a shift of whole taxels. None if there is no
+    /// such imprint.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -172,22 +193,22 @@ impl Atlas {
     /// let imprint = Plane::new(sensor).touch(&moved);
     /// assert_eq!(atlas.find(&imprint), None);
     /// // Up to 2.4 the bar covers columns 2 to 4, from 2.6 on columns 3 to 5, which are nearer.
-    /// assert_eq!(atlas.find_shifted(&imprint), Some((2, 4, -1)));
+    /// let found = atlas.find_shifted(&imprint).expect("the bar");
+    /// assert_eq!((found.id, found.right, found.down), (2, 4, -1));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn find_shifted(&self, imprint: &Imprint) -> Option<(u32, i8, i8)> {
+    pub fn find_shifted(&self, imprint: &Imprint) -> Option<ShiftedImprint> {
         let size = self.layout.size();
         let bounds = imprint.bounds()?;
         let (wide, high) = (bounds.columns().len(), bounds.rows().len());
-        let mut nearest: Option<(u32, i8, i8)> = None;
+        let mut nearest: Option<ShiftedImprint> = None;
         for top in 0..=size.rows().checked_sub(u8::try_from(high).ok()?)? {
             for left in 0..=size.columns().checked_sub(u8::try_from(wide).ok()?)? {
                 // Both are at most 64.
                 let right = bounds.left.cast_signed() - left.cast_signed();
                 let down = bounds.top.cast_signed() - top.cast_signed();
-                let far =
-                    |(_, right, down): (u32, i8, i8)| right.unsigned_abs() + down.unsigned_abs();
-                if nearest.is_some_and(|known| far(known) <= far((0, right, down))) {
+                let far = |right: i8, down: i8| right.unsigned_abs() + down.unsigned_abs();
+                if nearest.is_some_and(|own| far(own.right, own.down) <= far(right, down)) {
                     continue;
                 }
                 let mut moved = Imprint::empty(size);
@@ -196,7 +217,7 @@ impl Atlas {
                     moved.set_word(row, word << left);
                 }
                 if let Some(id) = self.find(&moved) {
-                    nearest = Some((id, right, down));
+                    nearest = Some(ShiftedImprint { id, right, down });
                 }
             }
         }
@@ -233,14 +254,18 @@ impl Atlas {
         empty.map(|(_, count)| count).sum()
     }
 
-    /// Returns the number of distinct imprints up to shifts by whole taxels, and up to shifts, quarter turns and mirror
-    /// images.
-    pub fn distinct_classes(&self) -> (usize, usize) {
+    /// Counts the imprints that remain distinct if images of the same imprint count as one. This takes a moment for
+    /// millions of imprints.
+    pub fn distinct_classes(&self) -> DistinctClasses {
         let mut classes = Classes::new(self.layout.size());
         for index in 0..self.len() {
             classes.add(&self.layout.imprint(self.counter.key(index)));
         }
-        classes.counts()
+        let (up_to_shifts, up_to_symmetry) = classes.counts();
+        DistinctClasses {
+            up_to_shifts,
+            up_to_symmetry,
+        }
     }
 }
 
@@ -264,7 +289,8 @@ mod tests {
             (4..7).for_each(|column| between.set(column, 4, true));
             atlas.find_shifted(&between)
         };
-        assert_eq!(found("2:6:4", "4"), Some((0, 2, 0)));
-        assert_eq!(found("4", "2:6:4"), Some((0, 0, 2)));
+        let first = |right, down| Some(ShiftedImprint { id: 0, right, down });
+        assert_eq!(found("2:6:4", "4"), first(2, 0));
+        assert_eq!(found("4", "2:6:4"), first(0, 2));
     }
 }

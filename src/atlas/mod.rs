@@ -29,7 +29,7 @@ mod histogram;
 mod filter;
 
 pub(crate) use counter::ImprintCounter;
-pub use distinct::{Atlas, AtlasEntry};
+pub use distinct::{Atlas, AtlasEntry, DistinctClasses, ShiftedImprint};
 pub use feature::{Feature, ImprintSummary, feature_values, features};
 pub use filter::{AtlasFilter, FilterError};
 pub use histogram::Histogram;

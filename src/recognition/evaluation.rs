@@ -58,6 +58,18 @@ pub struct Evaluation {
     weights: u128,
 }
 
+/// Two shapes of which one is taken for the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PairConfusion {
+    /// The number of one shape in the set.
+    pub one: usize,
+    /// The number of the other shape, which comes later in the set.
+    pub other: usize,
+    /// The touches of each that are named as the other, added up.
+    pub touches: u128,
+}
+
 /// The touches and the keys of which the best classifier knows that no other shape can leave them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -180,8 +192,8 @@ impl Evaluation {
         (named > 0).then(|| share(self.confusion.get(shape, shape), named))
     }
 
-    /// Returns the pairs of shapes that are confused, those with the most touches first: (one, other, touches).
-    pub fn worst_pairs(&self) -> Vec<(usize, usize, u128)> {
+    /// Returns the pairs of shapes that are confused, those with the most touches first.
+    pub fn worst_pairs(&self) -> Vec<PairConfusion> {
         let mut sums = BTreeMap::new();
         for (touched, named, touches) in self.confusion.cells() {
             if touched != named {
@@ -191,9 +203,13 @@ impl Evaluation {
         }
         let pairs = sums.into_iter();
         let mut pairs: Vec<_> = pairs
-            .map(|((one, other), touches)| (one, other, touches))
+            .map(|((one, other), touches)| PairConfusion {
+                one,
+                other,
+                touches,
+            })
             .collect();
-        pairs.sort_by_key(|&(one, other, touches)| (std::cmp::Reverse(touches), one, other));
+        pairs.sort_by_key(|pair| (std::cmp::Reverse(pair.touches), pair.one, pair.other));
         pairs
     }
 }
@@ -279,7 +295,8 @@ mod tests {
         let limit = Evaluation::of(&Model::from_parts(head, &keys).expect("a model"));
         assert_eq!((limit.touches, limit.right), (SHAPES.into(), 1));
         assert_eq!(limit.worst_pairs().len(), usize::from(SHAPES) - 1);
-        assert_eq!(limit.worst_pairs()[0], (0, 1, 1));
+        let worst = limit.worst_pairs()[0];
+        assert_eq!((worst.one, worst.other, worst.touches), (0, 1, 1));
         assert_eq!((limit.recall(0), limit.recall(1)), (Some(1.0), Some(0.0)));
         assert_eq!(
             (limit.recall(1_000_000), limit.precision(1_000_000)),

@@ -460,34 +460,59 @@ fn round(steps: f64) -> f64 {
     }
 }
 
-/// Chooses descriptors one by one: each time the one with which the most touches are named right (among equals, the
-/// first in the table), until no descriptor improves the result.
-///
-/// Returns each descriptor with the evaluation of all chosen so far.
-pub fn greedy(model: &Model, roundings: &[Rounding]) -> Vec<(ShapeDescriptor, Evaluation)> {
-    let table = GivenTable::new(model);
-    let mut classes = table.one_class();
-    let mut chosen: Vec<(ShapeDescriptor, Evaluation)> = Vec::new();
-    let mut right = table.evaluate(&classes).right;
-    loop {
-        let open = ShapeDescriptor::all().filter(|one| chosen.iter().all(|(own, _)| own != one));
-        let tried = open.map(|descriptor| {
-            let classes = table.refined(&classes, descriptor, roundings);
-            (descriptor, table.evaluate(&classes), classes)
-        });
-        let best = tried.reduce(|best, next| {
-            if next.1.right > best.1.right {
-                next
-            } else {
-                best
+/// A descriptor that [`Model::choose_descriptors`] has chosen.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ChosenDescriptor {
+    /// The descriptor.
+    pub descriptor: ShapeDescriptor,
+    /// The limit of one touch if this descriptor and all those chosen before it are known.
+    pub evaluation: Evaluation,
+}
+
+impl Model {
+    /// Chooses descriptors one by one: each time the one with which the most touches are named right (among equals, the
+    /// first in the table), until no descriptor improves the result. Returns them in the order in which they were
+    /// chosen.
+    ///
+    /// ```
+    /// use taxel::recognition::{GridSteps, Training, equal_figures};
+    ///
+    /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+    /// let chosen = model.choose_descriptors(&[]);
+    /// assert!(chosen.is_sorted_by(|one, next| one.evaluation.right < next.evaluation.right));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn choose_descriptors(&self, roundings: &[Rounding]) -> Vec<ChosenDescriptor> {
+        let table = GivenTable::new(self);
+        let mut classes = table.one_class();
+        let mut chosen: Vec<ChosenDescriptor> = Vec::new();
+        let mut right = table.evaluate(&classes).right;
+        loop {
+            let is_open = |one: &ShapeDescriptor| chosen.iter().all(|own| own.descriptor != *one);
+            let tried = ShapeDescriptor::all().filter(is_open).map(|descriptor| {
+                let classes = table.refined(&classes, descriptor, roundings);
+                let evaluation = table.evaluate(&classes);
+                let step = ChosenDescriptor {
+                    descriptor,
+                    evaluation,
+                };
+                (step, classes)
+            });
+            let best = tried.reduce(|best, next| {
+                if next.0.evaluation.right > best.0.evaluation.right {
+                    next
+                } else {
+                    best
+                }
+            });
+            match best {
+                Some((step, refined)) if step.evaluation.right > right => {
+                    (right, classes) = (step.evaluation.right, refined);
+                    chosen.push(step);
+                }
+                _ => return chosen,
             }
-        });
-        match best {
-            Some((descriptor, evaluation, refined)) if evaluation.right > right => {
-                (right, classes) = (evaluation.right, refined);
-                chosen.push((descriptor, evaluation));
-            }
-            _ => return chosen,
         }
     }
 }

@@ -7,7 +7,7 @@ use taxel::progress::ToTheEnd;
 use taxel::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
     ImprintKey, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding, SearchMethod,
-    ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError, greedy,
+    ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError,
 };
 use taxel::sweep::{Shard, ShardOrderError};
 
@@ -103,17 +103,17 @@ fn seven_figures_are_told_apart_as_often_as_published() {
     assert_eq!(format!("{:.2}", rounded.evaluate(&model).error()), "0.54");
 
     // No choice of descriptors passes the limit, and each chosen descriptor improves the result.
-    let chosen = greedy(&model, &[]);
-    assert_eq!(chosen[0].0.key(), "cg_cd");
+    let chosen = model.choose_descriptors(&[]);
+    assert_eq!(chosen[0].descriptor.key(), "cg_cd");
     assert!(
         chosen
             .windows(2)
-            .all(|pair| pair[0].1.right < pair[1].1.right)
+            .all(|pair| pair[0].evaluation.right < pair[1].evaluation.right)
     );
     assert!(
         chosen
             .iter()
-            .all(|(_, evaluation)| evaluation.right <= limit.right)
+            .all(|step| step.evaluation.right <= limit.right)
     );
 
     // No classifier on descriptors passes it, either.
@@ -157,7 +157,11 @@ fn four_rectangles_are_confused_as_often_as_published() {
         (limit.recall(3), limit.precision(3)),
         (Some(1.0), Some(1.0))
     );
-    assert_eq!(limit.worst_pairs()[0], (0, 2, 1_307_096 + 572_156));
+    let worst = limit.worst_pairs()[0];
+    assert_eq!(
+        (worst.one, worst.other, worst.touches),
+        (0, 2, 1_307_096 + 572_156)
+    );
     assert_eq!(
         certainty.keys,
         (0..model.keys().len())
@@ -340,9 +344,10 @@ fn of_equally_good_descriptors_the_first_in_the_table_is_chosen() {
     };
     let shapes = vec![shape("short", 3.0), shape("long", 5.0)];
     let model = train(shapes, 16, ranges("5", "5", "0"));
-    let chosen: Vec<&str> = greedy(&model, &[])
+    let chosen: Vec<&str> = model
+        .choose_descriptors(&[])
         .iter()
-        .map(|(own, _)| own.key())
+        .map(|step| step.descriptor.key())
         .collect();
     let tells = |one: &ShapeDescriptor| {
         let given: GivenDescriptors = one.key().parse().expect("a descriptor");

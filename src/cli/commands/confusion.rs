@@ -23,7 +23,7 @@ use crate::cli::signals::Signals;
 use crate::formats::value::percent;
 use crate::formats::{ConfusionMap, DrawingFormat, json};
 use crate::parameter::number::share;
-use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy};
+use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model};
 use crate::storage::check_writable;
 
 /// Evaluates a model. Returns the text to print.
@@ -113,18 +113,19 @@ pub(crate) fn fits_in_table(table: &'static str, shapes: usize) -> Result<(), Cl
     Ok(())
 }
 
-/// Returns the descriptors that [`greedy`] chooses one by one, with the result of each step.
+/// Returns the descriptors that [`Model::choose_descriptors`] chooses, with the result of each step.
 fn chosen(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String {
-    let (chosen, limit) = (greedy(model, &asked.roundings), Evaluation::of(model));
+    let chosen = model.choose_descriptors(&asked.roundings);
+    let limit = Evaluation::of(model);
     if asked.form != EvaluationForm::Json {
         return evaluation::greedy(&chosen, &limit, charset);
     }
-    let steps = chosen.iter().map(|(descriptor, reached)| {
+    let steps = chosen.iter().map(|step| {
         json!({
-            "descriptor": descriptor.key(),
-            "right": evaluation::number(reached.right),
-            "error": reached.error(),
-            "values": reached.keys,
+            "descriptor": step.descriptor.key(),
+            "right": evaluation::number(step.evaluation.right),
+            "error": step.evaluation.error(),
+            "values": step.evaluation.keys,
         })
     });
     let steps: Vec<_> = steps.collect();

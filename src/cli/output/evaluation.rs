@@ -25,7 +25,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::value::{counted, decimal, grouped, percent};
 use crate::parameter::number::share;
 use crate::recognition::{
-    Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation, ShapeDescriptor,
+    ChosenDescriptor, Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation,
 };
 use crate::tui::widget::columns::width;
 
@@ -257,12 +257,12 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
 /// for another. Both directions of a pair are added; the share is that of all touches.
 pub(crate) fn worst_pairs(evaluation: &Evaluation, charset: Charset) -> String {
     let pairs = evaluation.worst_pairs();
-    let said = pairs.iter().take(3).map(|&(one, other, touches)| {
+    let said = pairs.iter().take(3).map(|pair| {
         format!(
             "{} and {} ({})",
-            evaluation.labels[one],
-            evaluation.labels[other],
-            percent(share(touches, evaluation.touches))
+            evaluation.labels[pair.one],
+            evaluation.labels[pair.other],
+            percent(share(pair.touches, evaluation.touches))
         )
     });
     match said.collect::<Vec<_>>().join(", ") {
@@ -301,19 +301,15 @@ pub(crate) fn csv(evaluation: &Evaluation) -> String {
 /// + cg_cd                          2.1 %      118
 /// limit: the whole imprint         1.6 %      845
 /// ```
-pub(crate) fn greedy(
-    chosen: &[(ShapeDescriptor, Evaluation)],
-    limit: &Evaluation,
-    charset: Charset,
-) -> String {
+pub(crate) fn greedy(chosen: &[ChosenDescriptor], limit: &Evaluation, charset: Charset) -> String {
     let mut text = String::from("descriptors chosen one by one    error   values\n");
-    for (descriptor, evaluation) in chosen {
+    for step in chosen {
         let _ = writeln!(
             text,
             "+ {:<24} {:>11}  {:>7}",
-            descriptor.key(),
-            percent(evaluation.error()),
-            grouped(evaluation.keys as u64)
+            step.descriptor.key(),
+            percent(step.evaluation.error()),
+            grouped(step.evaluation.keys as u64)
         );
     }
     let _ = writeln!(

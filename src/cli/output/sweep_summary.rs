@@ -17,7 +17,7 @@ use std::time::Duration;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use crate::atlas::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
+use crate::atlas::{DistinctClasses, STATISTIC_COLUMNS, Statistic, StatisticColumn};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::ranges::ranges_in_words;
 use crate::formats::json;
@@ -29,8 +29,8 @@ use crate::sweep::SweepResult;
 pub(crate) struct SweepSummary<'a> {
     /// The result.
     result: &'a SweepResult,
-    /// The number of distinct imprints up to shifts, and up to quarter turns and mirror images too.
-    classes: (usize, usize),
+    /// The numbers of distinct imprints if their images count as one.
+    classes: DistinctClasses,
     /// The time of the sweep, without that of writing files.
     took: Duration,
 }
@@ -84,8 +84,8 @@ impl<'a> SweepSummary<'a> {
         line(&format!(
             "{}, {} up to shifts, {} up to quarter turns and mirror images too",
             counted(atlas.len() as u64, "distinct imprint"),
-            number(self.classes.0),
-            number(self.classes.1)
+            number(self.classes.up_to_shifts),
+            number(self.classes.up_to_symmetry)
         ));
         line(&format!(
             "{} cut off by the sensor, {} without an imprint; {:.2} s",
@@ -122,8 +122,8 @@ impl Serialize for SweepSummary<'_> {
         map.serialize_entry("ranges", &GridRanges(&result.grid))?;
         map.serialize_entry("shard", &result.shard.to_string())?;
         map.serialize_entry("distinct", &result.atlas.len())?;
-        map.serialize_entry("distinct_shifts", &self.classes.0)?;
-        map.serialize_entry("distinct_symmetry", &self.classes.1)?;
+        map.serialize_entry("distinct_shifts", &self.classes.up_to_shifts)?;
+        map.serialize_entry("distinct_symmetry", &self.classes.up_to_symmetry)?;
         map.serialize_entry("partly_off", &result.partly_off)?;
         map.serialize_entry("empty", &result.atlas.empty_poses())?;
         map.serialize_entry("seconds", &self.took.as_secs_f64())?;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::atlas::{SortDirection, SortKey, sorted};
+use crate::atlas::{DistinctClasses, SortDirection, SortKey, sorted};
 use crate::pose::{Axis, PoseGrid};
 use crate::source::Source;
 use crate::storage::Existing;
@@ -14,9 +14,8 @@ use crate::tui::explore::column::ListColumn;
 pub struct Findings {
     /// The sweep.
     pub sweep: SweepResult,
-    /// The number of imprints that are distinct up to shifts, and of those distinct up to quarter turns and mirror
-    /// images too.
-    pub classes: (usize, usize),
+    /// The numbers of imprints that are distinct if their images count as one.
+    pub classes: DistinctClasses,
     /// The numbers of the imprints, the most frequent first.
     pub by_poses: Vec<u32>,
 }

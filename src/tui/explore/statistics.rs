@@ -172,7 +172,8 @@ fn head(table: &StatisticsTable, results: &Results) -> String {
 /// Returns the lines with the numbers of imprints and poses; a longer text if it fits into the width.
 fn totals(results: &Results, width: usize) -> [String; 2] {
     let findings = results.findings();
-    let (result, (shifts, symmetry)) = (&findings.sweep, findings.classes);
+    let (result, classes) = (&findings.sweep, findings.classes);
+    let (shifts, symmetry) = (classes.up_to_shifts, classes.up_to_symmetry);
     let many = |count: usize| grouped(count as u64);
     let classes = ["quarter turns and mirror images", "turns and mirrors"].map(|symmetries| {
         format!(

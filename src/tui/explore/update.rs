@@ -166,8 +166,8 @@ fn find(app: &mut App, results: &mut Results) {
         return;
     }
     match results.sweep().atlas.find_shifted(&imprint) {
-        Some((id, right, down)) => {
-            if let Err(reason) = results.go_to_imprint(id) {
+        Some(found) => {
+            if let Err(reason) = results.go_to_imprint(found.id) {
                 return refuse(app, reason);
             }
             let way = |by: i8, noun: &str, [less, more]: [&str; 2]| {
@@ -176,8 +176,8 @@ fn find(app: &mut App, results: &mut Results) {
                 (by != 0).then(|| format!("{count} {towards}"))
             };
             let ways = [
-                way(right, "column", ["to the left", "to the right"]),
-                way(down, "row", ["up", "down"]),
+                way(found.right, "column", ["to the left", "to the right"]),
+                way(found.down, "row", ["up", "down"]),
             ];
             let ways: Vec<String> = ways.into_iter().flatten().collect();
             let ways = ways.join(" and ");

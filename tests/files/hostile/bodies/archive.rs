@@ -52,8 +52,9 @@ fn is_sound(result: SweepResult) {
             statistic.feature.key
         );
     }
-    let (shifted, turned) = result.atlas().distinct_classes();
-    assert!(turned <= shifted && shifted <= result.atlas().len());
+    let classes = result.atlas().distinct_classes();
+    assert!(classes.up_to_symmetry <= classes.up_to_shifts);
+    assert!(classes.up_to_shifts <= result.atlas().len());
     let mut lines = Vec::new();
     write_jsonl(&result, &mut lines).expect("it goes into memory");
     for line in lines.split(|&byte| byte == b'\n') {
