@@ -40,11 +40,12 @@ pub(crate) fn report(angles: &str) -> Result<String, String> {
         .map_err(|error| format!("{angles}: {error}"))?;
     let ranges = Ranges::default().with(Axis::Angle, angle);
     let results: Vec<SweepResult> = FigureKind::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .map(|kind| sweep(kind, ranges))
         .collect();
 
-    let names = FigureKind::ALL.map(FigureKind::name).join(" | ");
+    let names = FigureKind::names().join(" | ");
     let mut table = format!("| % of the mean | {names} |\n|---|{}\n", "---:|".repeat(7));
     for key in DESCRIBING {
         let _ = writeln!(

@@ -18,6 +18,7 @@ pub const NO_ROOM: &str = "no room for a hole: solid";
 
 /// The kinds of figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum FigureKind {
     /// An ellipse with its axes along x and y before rotation; a circle if its radii are equal.
     Ellipse,
@@ -37,7 +38,7 @@ pub enum FigureKind {
 
 impl FigureKind {
     /// All seven kinds, in the paper's order.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: &'static [Self] = &[
         Self::Ellipse,
         Self::Rectangle,
         Self::Triangle,
@@ -46,6 +47,11 @@ impl FigureKind {
         Self::Heptagon,
         Self::Octagon,
     ];
+
+    /// Returns the names of all kinds, in the same order.
+    pub fn names() -> Vec<&'static str> {
+        Self::ALL.iter().map(|kind| kind.name()).collect()
+    }
 
     /// Returns the name of the kind, as in files, in flags and on the screen.
     pub fn name(self) -> &'static str {
@@ -100,7 +106,7 @@ impl FigureKind {
     }
 }
 
-named!(FigureKind, "figure", &FigureKind::ALL);
+named!(FigureKind, "figure", FigureKind::ALL);
 
 /// A figure on the sensory plane. Its values are always finite, and its sizes and its thickness are above 0.
 ///
@@ -544,7 +550,7 @@ mod tests {
     fn a_new_figure_lies_on_a_sensor_of_any_size() {
         let sides = (1..=64).flat_map(|side| [(side, side), (side, 16), (16, side)]);
         for (columns, rows) in sides {
-            for kind in FigureKind::ALL {
+            for &kind in FigureKind::ALL {
                 let sensor = Sensor::new(columns, rows).expect("in range");
                 let figure = Figure::default_of(kind, &sensor);
                 let extent = Extent::of(&figure).expect("it has a boundary");

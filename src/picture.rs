@@ -14,7 +14,7 @@ use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
 
 /// The parameters of a picture, in the order in which forms show them.
-pub const PICTURE_PARAMETERS: [Parameter; 5] = [
+pub const PICTURE_PARAMETERS: &[Parameter] = &[
     Parameter::X0,
     Parameter::Y0,
     Parameter::Angle,
@@ -82,7 +82,7 @@ impl PictureBuilder {
     /// # Errors
     /// Returns the error of the first value that is out of range, in the order of [`PICTURE_PARAMETERS`].
     pub fn on(mut self, sensor: &Sensor) -> Result<Picture, ParameterError> {
-        for (parameter, value) in PICTURE_PARAMETERS.into_iter().zip(&mut self.0.values) {
+        for (parameter, value) in PICTURE_PARAMETERS.iter().copied().zip(&mut self.0.values) {
             *value = sensor.check(parameter, *value)?;
         }
         Ok(self.0)
@@ -127,7 +127,7 @@ impl Picture {
         mut value: impl FnMut(Parameter) -> Option<f64>,
     ) -> Result<Self, ParameterError> {
         let mut picture = Self::at_home(imprint);
-        for (parameter, slot) in PICTURE_PARAMETERS.into_iter().zip(&mut picture.values) {
+        for (parameter, slot) in PICTURE_PARAMETERS.iter().copied().zip(&mut picture.values) {
             let missing = ParameterError::Missing {
                 parameter,
                 range: sensor.range(parameter),
@@ -163,7 +163,7 @@ impl Picture {
             return Err(ParameterError::Foreign {
                 parameter,
                 owner: "picture",
-                expected: &PICTURE_PARAMETERS,
+                expected: PICTURE_PARAMETERS,
             });
         };
         self.values[index] = sensor.check(parameter, value)?;

@@ -114,7 +114,7 @@ impl fmt::Display for MatrixSize {
 }
 
 /// The parameters of a sensor, in the order in which forms show them.
-pub const SENSOR_PARAMETERS: [Parameter; 4] = [
+pub const SENSOR_PARAMETERS: &[Parameter] = &[
     Parameter::Columns,
     Parameter::Rows,
     Parameter::Threshold,
@@ -206,7 +206,7 @@ impl Sensor {
                 return Err(ParameterError::Foreign {
                     parameter,
                     owner: "sensor",
-                    expected: &SENSOR_PARAMETERS,
+                    expected: SENSOR_PARAMETERS,
                 });
             }
         }

@@ -35,7 +35,7 @@ impl Source {
     pub fn parameters(&self) -> &'static [Parameter] {
         match self {
             Self::Figure(figure) => figure.kind().parameters(),
-            Self::Picture(_) => &PICTURE_PARAMETERS,
+            Self::Picture(_) => PICTURE_PARAMETERS,
         }
     }
 

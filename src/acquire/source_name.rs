@@ -16,6 +16,7 @@ const TCP: &str = "tcp://";
 /// assert_eq!(SourceName::new("runs/touch.npy").short(), "touch.npy");
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum SourceName {
     /// Standard input, written `-`.
     Standard,

@@ -39,7 +39,7 @@ pub enum RecordError {
     /// A name that is not one of the seven figures.
     #[error(
         "figure: {found:?} is unknown, expected one of {}{}",
-        FigureKind::ALL.map(FigureKind::name).join(", "),
+        FigureKind::names().join(", "),
         figure_meant(found)
     )]
     FigureKind {
@@ -58,7 +58,7 @@ pub enum RecordError {
 fn figure_meant(found: &str) -> String {
     match FigureKind::of_other_name(found) {
         Some(known) => format!("; {known}"),
-        None => did_you_mean(found, FigureKind::ALL.map(FigureKind::name)),
+        None => did_you_mean(found, FigureKind::names()),
     }
 }
 
@@ -129,7 +129,7 @@ impl Values {
     /// # Errors
     /// Returns an error for the first value that is missing, out of range, or not of a picture.
     fn picture(&self, imprint: &Imprint, sensor: &Sensor) -> Result<Picture, RecordError> {
-        self.only("picture", &PICTURE_PARAMETERS)?;
+        self.only("picture", PICTURE_PARAMETERS)?;
         Ok(Picture::new(*imprint, sensor, |parameter| {
             self.get(parameter)
         })?)
@@ -140,9 +140,10 @@ impl Values {
     /// # Errors
     /// Returns an error for the first value that is out of range or not of a sensor.
     pub(crate) fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
-        self.only("sensor", &SENSOR_PARAMETERS)?;
+        self.only("sensor", SENSOR_PARAMETERS)?;
         SENSOR_PARAMETERS
-            .into_iter()
+            .iter()
+            .copied()
             .try_fold(base, |sensor, parameter| match self.get(parameter) {
                 Some(value) => Ok(sensor.with(parameter, value)?),
                 None => Ok(sensor),

@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn names_are_read_as_they_are_written() {
-        are_read_as_written(&FigureKind::ALL);
+        are_read_as_written(FigureKind::ALL);
         are_read_as_written(&[RegionKind::Exterior, RegionKind::Hole]);
         are_read_as_written(ImprintFormat::ALL);
         let parameters = PARAMETERS.iter().map(|row| row.parameter);

@@ -27,7 +27,7 @@ pub enum AnswerState {
 
 impl AnswerState {
     /// All states, the most definite first.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: &'static [Self] = &[
         Self::Certain,
         Self::Likely,
         Self::Tied,
@@ -47,7 +47,7 @@ impl AnswerState {
     }
 }
 
-named!(AnswerState, "state", &AnswerState::ALL);
+named!(AnswerState, "state", AnswerState::ALL);
 
 /// The evidence: imprints of one shape in independent poses, how often taxels fail, and the least probability that is
 /// enough for an answer.

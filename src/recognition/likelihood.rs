@@ -29,7 +29,7 @@ pub enum SearchMethod {
 
 impl SearchMethod {
     /// All methods.
-    pub const ALL: [Self; 3] = [Self::Exact, Self::OneFlip, Self::Scan];
+    pub const ALL: &'static [Self] = &[Self::Exact, Self::OneFlip, Self::Scan];
 
     /// Returns the name used in JSON.
     pub const fn name(self) -> &'static str {
@@ -41,7 +41,7 @@ impl SearchMethod {
     }
 }
 
-named!(SearchMethod, "method", &SearchMethod::ALL);
+named!(SearchMethod, "method", SearchMethod::ALL);
 
 /// The number of touches of each shape at each distance from an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]

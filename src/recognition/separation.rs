@@ -31,7 +31,7 @@ pub enum SizeAxis {
 
 impl SizeAxis {
     /// Both axes.
-    pub const ALL: [Self; 2] = [Self::Scale, Self::Pitch];
+    pub const ALL: &'static [Self] = &[Self::Scale, Self::Pitch];
 
     /// Returns the name used in JSON and in tables.
     pub const fn name(self) -> &'static str {
@@ -60,7 +60,7 @@ impl SizeAxis {
     }
 }
 
-named!(SizeAxis, "axis", &SizeAxis::ALL);
+named!(SizeAxis, "axis", SizeAxis::ALL);
 
 /// A set of shapes whose limit is computed at several sizes and thresholds.
 ///

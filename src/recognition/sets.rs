@@ -12,8 +12,9 @@ use crate::source::Source;
 /// them apart.
 pub fn default_figures() -> Vec<NamedShape> {
     let sensor = Sensor::default();
-    let figure = |kind: FigureKind| NamedShape::new(kind.name(), Figure::default_of(kind, &sensor));
-    FigureKind::ALL.map(figure).to_vec()
+    let figure =
+        |&kind: &FigureKind| NamedShape::new(kind.name(), Figure::default_of(kind, &sensor));
+    FigureKind::ALL.iter().map(figure).collect()
 }
 
 /// Sizes at which each of the seven figures covers about 30 cells.

@@ -36,12 +36,12 @@ const SHIPPED_STEPS: GridSteps = GridSteps::COARSE;
 
 impl ModelChoice {
     /// The choices that need no file.
-    pub const BUILT_IN: [Self; 3] = [Self::Figures, Self::EqualFigures, Self::Shipped];
+    pub const BUILT_IN: &'static [Self] = &[Self::Figures, Self::EqualFigures, Self::Shipped];
 
     /// Returns the choice of that name: a built-in one, otherwise a stored model.
     pub fn from_name(name: Name) -> Self {
-        let own = Self::BUILT_IN.into_iter().find(|own| name.same(own.name()));
-        own.unwrap_or(Self::Stored(name))
+        let own = Self::BUILT_IN.iter().find(|own| name.same(own.name()));
+        own.cloned().unwrap_or(Self::Stored(name))
     }
 
     /// Reads the text after `:recognise`: the name of a set or model, otherwise the path of a file.

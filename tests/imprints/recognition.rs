@@ -118,7 +118,7 @@ fn seven_figures_are_told_apart_as_often_as_published() {
 
     // No classifier on descriptors passes it, either.
     let settings = ClassifierSettings::default();
-    for classifier in Classifier::ALL {
+    for &classifier in Classifier::ALL {
         let reached = classifier.evaluate(&model, &settings, &ToTheEnd);
         let reached = reached.expect("not stopped").evaluation;
         assert_eq!(reached.certainty, None, "{}", classifier.name());
@@ -646,8 +646,8 @@ fn names_of_classifiers_states_and_methods_read_back() {
         all.iter()
             .all(|one| one.to_string().parse().ok() == Some(*one))
     }
-    assert!(is_read(&Classifier::ALL) && is_read(&AnswerState::ALL));
-    assert!(is_read(&SearchMethod::ALL) && is_read(&SizeAxis::ALL));
+    assert!(is_read(Classifier::ALL) && is_read(AnswerState::ALL));
+    assert!(is_read(SearchMethod::ALL) && is_read(SizeAxis::ALL));
     assert!(is_read(&ShapeDescriptor::all().collect::<Vec<_>>()));
     let rounding: Rounding = "cg_cd=0.01".parse().expect("a step");
     assert_eq!(rounding.to_string(), "cg_cd=0.01");

@@ -208,7 +208,7 @@ fn for_missing(error: &Error) -> Vec<String> {
     let lacks = |word: &str| missing.iter().any(|argument| argument.contains(word));
     let mut tips = Vec::new();
     if lacks("KIND") {
-        let kinds = joined(FigureKind::ALL.map(FigureKind::name), "or");
+        let kinds = joined(FigureKind::names(), "or");
         tips.push(format!("KIND is {kinds}"));
     }
     if lacks("--peak") {

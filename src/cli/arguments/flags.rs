@@ -232,12 +232,12 @@ pub(super) fn force() -> Arg {
 
 /// Defines all flags of the sensor.
 pub(super) fn sensor() -> Vec<Arg> {
-    of_sensor(&SENSOR_PARAMETERS)
+    of_sensor(SENSOR_PARAMETERS)
 }
 
 /// Defines the flags of the sensor except `--pitch`, for commands that show no lengths.
 pub(super) fn sensor_of_imprints() -> Vec<Arg> {
-    let own = SENSOR_PARAMETERS.into_iter();
+    let own = SENSOR_PARAMETERS.iter().copied();
     let own = own.filter(|&parameter| parameter != Parameter::Pitch);
     of_sensor(&own.collect::<Vec<_>>())
 }

@@ -39,7 +39,8 @@ pub(crate) fn figure_parameters() -> impl Iterator<Item = Parameter> {
 /// Returns the kinds of figure that have a parameter.
 fn kinds_with(parameter: Parameter) -> impl Iterator<Item = FigureKind> {
     FigureKind::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .filter(move |kind| kind.parameters().contains(&parameter))
 }
 
@@ -99,11 +100,10 @@ fn parse(text: &str) -> Result<Number, String> {
 }
 
 /// Makes a parser that accepts one of some names and returns the value with that name.
-pub(super) fn one_of<T, const N: usize>(
-    names: [&'static str; N],
-) -> impl TypedValueParser<Value = T>
+pub(super) fn one_of<T, N>(names: N) -> impl TypedValueParser<Value = T>
 where
     T: FromStr<Err = UnknownName> + Clone + Send + Sync + 'static,
+    N: IntoIterator<Item = &'static str>,
 {
     PossibleValuesParser::new(names).try_map(|name| name.parse())
 }
@@ -169,7 +169,7 @@ impl Given {
 
     /// Returns a sensor with the given values.
     pub(crate) fn sensor(&self, sensor: Sensor) -> Result<Sensor, CliError> {
-        self.fold(&SENSOR_PARAMETERS, sensor, Sensor::with)
+        self.fold(SENSOR_PARAMETERS, sensor, Sensor::with)
     }
 
     /// Returns the pitch in mm, if it was given.
@@ -196,7 +196,7 @@ impl Given {
 
     /// Returns a picture with the given values.
     pub(crate) fn picture(&self, picture: Picture, sensor: &Sensor) -> Result<Picture, CliError> {
-        self.fold(&PICTURE_PARAMETERS, picture, |picture, parameter, value| {
+        self.fold(PICTURE_PARAMETERS, picture, |picture, parameter, value| {
             picture.with(parameter, value, sensor)
         })
     }

@@ -73,9 +73,7 @@ pub(crate) enum Swept {
 pub(super) fn command() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
-        .value_parser(parameters::one_of::<FigureKind, _>(
-            FigureKind::ALL.map(FigureKind::name),
-        ))
+        .value_parser(parameters::one_of::<FigureKind, _>(FigureKind::names()))
         .hide_possible_values(true)
         .help("Kind of figure, as in 'taxel figure'; or --picture");
     let picture =

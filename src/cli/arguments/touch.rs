@@ -25,11 +25,11 @@ use crate::source::Source;
 /// parameter of any kind; [`Given::foreign`](parameters::Given::foreign) refuses those that the given kind does not
 /// have. Angles are degrees clockwise as seen, lengths are in cell sides.
 pub(super) fn figure() -> Command {
-    let kinds = FigureKind::ALL.map(FigureKind::name);
+    let kinds = FigureKind::names();
     let kind = Arg::new("kind")
         .value_name("KIND")
         .required(true)
-        .value_parser(parameters::one_of::<FigureKind, _>(kinds))
+        .value_parser(parameters::one_of::<FigureKind, _>(kinds.clone()))
         .hide_possible_values(true)
         .help(parameters::wrapped(&joined(kinds, "or"), 64));
     let own = parameters::figure_parameters();
@@ -54,8 +54,16 @@ pub(super) fn picture() -> Command {
         .arg(what(
             "Shape of the library, or file; '-' for standard input",
         ))
-        .args(PICTURE_PARAMETERS.map(|parameter| own(parameter).help_heading("Picture")))
-        .args(SENSOR_PARAMETERS.map(|parameter| own(parameter).help_heading("Sensor")))
+        .args(
+            PICTURE_PARAMETERS
+                .iter()
+                .map(|&parameter| own(parameter).help_heading("Picture")),
+        )
+        .args(
+            SENSOR_PARAMETERS
+                .iter()
+                .map(|&parameter| own(parameter).help_heading("Sensor")),
+        )
         .args(kept::flags())
         .group(kept::group())
         .arg(json())

@@ -53,7 +53,7 @@ pub(crate) fn command() -> Command {
         .required(true)
         .value_parser(flags::name_or_path())
         .help("Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input");
-    let names = StreamFormat::ALL.map(StreamFormat::name);
+    let names: Vec<&str> = StreamFormat::ALL.iter().map(|own| own.name()).collect();
     let what = format!("Format of the stream: auto, {}", names.join(", "));
     let format = option("format", "FORMAT", parameters::wrapped(&what, 52))
         .value_parser(PossibleValuesParser::new(

@@ -353,9 +353,11 @@ fn names_of_fish(all: &Command, sets: &str) -> String {
 
 /// Returns the completions of all commands, as a script for a shell.
 pub(crate) fn script(shell: Shell, mut all: Command) -> String {
-    let sets = ModelChoice::BUILT_IN
-        .map(|set| set.name().to_owned())
-        .join(" ");
+    let sets: Vec<&str> = ModelChoice::BUILT_IN
+        .iter()
+        .map(ModelChoice::name)
+        .collect();
+    let sets = sets.join(" ");
     match shell {
         Shell::Bash => {
             let script = generated(Bash, &mut all);

@@ -172,7 +172,7 @@ fn all_classifiers(
     charset: Charset,
 ) -> Result<String, CliError> {
     let signals = Signals::catch()?;
-    let all = Classifier::ALL.into_iter();
+    let all = Classifier::ALL.iter().copied();
     let all = all.map(|classifier| reached(classifier, model, asked, charset, &signals));
     let all: Vec<ClassifierEvaluation> = all.collect::<Result<_, _>>()?;
     let limit = Evaluation::of(model);

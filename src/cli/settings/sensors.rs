@@ -179,8 +179,9 @@ impl SettingKind {
     pub(crate) fn expected(self) -> String {
         match self {
             Self::Format { .. } => {
-                let names = StreamFormat::ALL.map(|format| format!("{:?}", format.name()));
-                format!("one of \"auto\", {}", names.join(", "))
+                let names = StreamFormat::ALL.iter();
+                let names = names.map(|format| format!("{:?}", format.name()));
+                format!("one of \"auto\", {}", names.collect::<Vec<_>>().join(", "))
             }
             Self::Whole { least, most, .. } => format!("a whole number from {least} to {most}"),
             Self::Number { least, most, .. } => format!("a number from {least:?} to {most:?}"),

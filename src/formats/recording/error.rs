@@ -73,7 +73,8 @@ fn most_of(numbers: u64) -> String {
 /// Returns the formats that this build reads, for the message about any other file.
 fn readable_formats() -> String {
     let readable = RecordingFormat::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .filter(|format| format.is_readable());
     let titles: Vec<&str> = readable.map(RecordingFormat::title).collect();
     titles.join(", ")

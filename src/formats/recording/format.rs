@@ -34,7 +34,7 @@ pub enum RecordingFormat {
 
 impl RecordingFormat {
     /// All formats.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: &'static [Self] = &[
         Self::Tekscan,
         Self::Xsensor,
         Self::Emed,
@@ -114,4 +114,4 @@ impl RecordingFormat {
     }
 }
 
-named!(RecordingFormat, "format", &RecordingFormat::ALL);
+named!(RecordingFormat, "format", RecordingFormat::ALL);

@@ -24,7 +24,7 @@ pub enum StreamFormat {
 
 impl StreamFormat {
     /// All formats.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: &'static [Self] = &[
         Self::Lines,
         Self::JsonLines,
         Self::Ros2,
@@ -44,7 +44,7 @@ impl StreamFormat {
     }
 }
 
-named!(StreamFormat, "format", &StreamFormat::ALL);
+named!(StreamFormat, "format", StreamFormat::ALL);
 
 /// Options for decoding a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -55,7 +55,7 @@ pub enum Classifier {
 
 impl Classifier {
     /// All classifiers.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: &'static [Self] = &[
         Self::Z,
         Self::Diagonal,
         Self::Lda,
@@ -77,7 +77,7 @@ impl Classifier {
     }
 }
 
-named!(Classifier, "classifier", &Classifier::ALL);
+named!(Classifier, "classifier", Classifier::ALL);
 
 /// The settings of classifiers: which descriptors and how many samples they use.
 #[derive(Clone, Debug, PartialEq)]
@@ -326,7 +326,7 @@ mod tests {
         let steps = GridSteps::new(4, 45).expect("divisors");
         let training = Training::fitting(vec![NamedShape::new("bar", bar)], steps);
         let model = training.expect("it fits").run().expect("not stopped");
-        for classifier in Classifier::ALL {
+        for &classifier in Classifier::ALL {
             let keys = AtomicU64::new(0);
             let settings = ClassifierSettings::default();
             let add = |more| {

@@ -34,7 +34,7 @@ fn is_emptied(from: &Document, to: &Document) -> bool {
 /// Returns the changes of the sensor.
 fn of_sensor(from: &Sensor, to: &Sensor) -> String {
     let value = |sensor: &Sensor, parameter| sensor.get(parameter);
-    values(&SENSOR_PARAMETERS, |p| value(from, p), |p| value(to, p))
+    values(SENSOR_PARAMETERS, |p| value(from, p), |p| value(to, p))
 }
 
 /// Returns the changes of the source: its values if it is the same kind of figure or the same picture, otherwise the

@@ -66,5 +66,5 @@ pub(in crate::tui) fn update(
 
 /// Returns the names of all kinds.
 fn kinds() -> String {
-    FigureKind::ALL.map(FigureKind::name).join(", ")
+    FigureKind::names().join(", ")
 }

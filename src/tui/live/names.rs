@@ -78,7 +78,7 @@ impl ShapeNames {
     /// then none. `number` is the number of this work.
     pub fn next(&mut self, own: impl Iterator<Item = ModelChoice>, number: u64) {
         let asked = self.asked.clone();
-        let sets = ModelChoice::BUILT_IN.into_iter().chain(own);
+        let sets = ModelChoice::BUILT_IN.iter().cloned().chain(own);
         let sets = sets.filter(|set| Some(set) != asked.as_ref()).map(Some);
         let mut all: Vec<Option<ModelChoice>> = std::iter::once(None).chain(sets).collect();
         if asked.is_some() {

@@ -238,7 +238,7 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
     };
     match (command.arguments, &said[..]) {
         (Some(Arguments::Figure), []) => {
-            FigureKind::ALL.map(|kind| kind.name().to_owned()).to_vec()
+            FigureKind::names().into_iter().map(str::to_owned).collect()
         }
         (Some(Arguments::Figure), [kind, said @ ..]) => {
             let kind = kind.parse::<FigureKind>().into_iter();

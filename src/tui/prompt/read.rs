@@ -276,7 +276,7 @@ fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
 /// Reads `sensor --columns 32 …`. Parameters that are not given keep their values.
 fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let values = numbers(words, &SENSOR_PARAMETERS, &Sensor::LARGEST)?;
+    let values = numbers(words, SENSOR_PARAMETERS, &Sensor::LARGEST)?;
     let sensor = values
         .into_iter()
         .try_fold(document.sensor, |sensor, (parameter, value)| {

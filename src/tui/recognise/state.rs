@@ -172,7 +172,11 @@ impl Recognition {
     /// comes the first.
     pub fn other(&self, by: i8) -> ModelChoice {
         let stored = self.stored.iter().cloned().map(ModelChoice::Stored);
-        let all = ModelChoice::BUILT_IN.into_iter().chain(stored).collect();
+        let all = ModelChoice::BUILT_IN
+            .iter()
+            .cloned()
+            .chain(stored)
+            .collect();
         other(all, &self.choice, self.unreadable.as_ref(), by)
     }
 

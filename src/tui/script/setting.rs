@@ -166,7 +166,7 @@ pub fn of_options(options: &Options) -> Vec<ScriptSetting> {
         ScriptSetting::Seed(options.seed),
     ];
     let value = |parameter| Some(ScriptSetting::Sensor(parameter, sensor.get(parameter)?));
-    let values = SENSOR_PARAMETERS.into_iter().filter_map(value);
+    let values = SENSOR_PARAMETERS.iter().copied().filter_map(value);
     look.into_iter().chain(values).collect()
 }
 

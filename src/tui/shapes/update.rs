@@ -98,7 +98,8 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
 fn on_models(app: &mut App, names: &[String]) -> Option<Effect> {
     match app.dialogs.last_mut() {
         Some(Dialog::Command(command)) => {
-            let sets = ModelChoice::BUILT_IN.map(|set| set.name().to_owned());
+            let sets = ModelChoice::BUILT_IN.iter();
+            let sets: Vec<String> = sets.map(|set| set.name().to_owned()).collect();
             command.complete_asked(&[&sets[..], names].concat());
             None
         }

@@ -128,10 +128,7 @@ pub(super) fn command() -> Command {
 
 /// Defines `--given`, `--greedy`, `--pairs` and `--classifier`: all questions except those about noise.
 fn questions() -> [Arg; 4] {
-    let classifiers = Classifier::ALL
-        .map(Classifier::name)
-        .into_iter()
-        .chain(["all"]);
+    let classifiers = Classifier::ALL.iter().map(|own| own.name()).chain(["all"]);
     [
         option(
             "given",
