@@ -1,5 +1,6 @@
 //! The answer to one touch, or to several of one shape.
 
+use crate::description::{RegionKind, regions};
 use crate::imprint::Imprint;
 use crate::parameter::named;
 use crate::recognition::likelihood::SearchMethod;
@@ -100,7 +101,8 @@ pub struct Answer {
     pub shape: Option<usize>,
     /// All shapes that are equally likely, if the state is [`AnswerState::Tied`]; otherwise empty.
     pub tied: Vec<usize>,
-    /// Whether an imprint reaches the rim of its matrix, so that it may be cut off. Such an answer is never certain.
+    /// Whether an imprint reaches the rim of its matrix, or may reach it through dead taxels, so that it may be cut off.
+    /// Such an answer is never certain.
     pub at_rim: bool,
     /// Every shape with a positive probability, the likeliest first; equally likely ones in the order of the set. Under
     /// noise, a shape may be missing if its probability is below 1e-9.
@@ -136,9 +138,7 @@ impl Model {
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
         let dead = evidence.noise.and_then(Noise::dead);
-        let living = |touch: &Imprint| dead.map_or(*touch, |dead| touch.without(dead));
-        let reaches_rim = |touch: &Imprint| living(touch).touches_rim();
-        let at_rim = evidence.touches.iter().any(reaches_rim);
+        let at_rim = (evidence.touches.iter()).any(|touch| may_be_cut_off(touch, dead));
         let Some(noise) = evidence.noise else {
             let posterior = self.possible(evidence.touches);
             return decide(posterior, at_rim, evidence.reject_below);
@@ -250,6 +250,21 @@ impl Model {
     }
 }
 
+/// Returns true if the shape may reach beyond the matrix: a living taxel on the rim is active, or dead ones, which may
+/// be covered, lead from an active taxel to the rim.
+fn may_be_cut_off(touch: &Imprint, dead: Option<&Imprint>) -> bool {
+    let Some(dead) = dead else {
+        return touch.touches_rim();
+    };
+    let living = touch.without(dead);
+    let pieces = regions(&touch.union(dead)).into_iter();
+    let mut pieces = pieces.filter(|region| region.kind() == RegionKind::Exterior);
+    pieces.any(|piece| {
+        let taxels = piece.taxels();
+        taxels.touches_rim() && !taxels.intersection(&living).is_empty()
+    })
+}
+
 /// Returns the answer that a posterior gives.
 fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answer {
     let Posterior { ranking, possible } = posterior;
@@ -280,4 +295,35 @@ fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answ
         AnswerState::Likely
     };
     answer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_imprint_may_be_cut_off_at_the_rim_also_behind_dead_taxels() {
+        let imprint = |text: &str| -> Imprint { text.parse().expect("an imprint") };
+        let touch = imprint("......\n......\n..##..\n......\n......");
+        for (dead, expected) in [
+            // One dead taxel does not lead to the rim, two do.
+            ("......\n......\n.#....\n......\n......", false),
+            ("......\n......\n##....\n......\n......", true),
+            ("#.....\n.#....\n......\n......\n......", true),
+            ("#.....\n......\n......\n......\n......", false),
+            // The bar itself may be dead: then nothing is known to be active.
+            ("......\n......\n######\n......\n......", false),
+        ] {
+            assert_eq!(
+                may_be_cut_off(&touch, Some(&imprint(dead))),
+                expected,
+                "{dead}"
+            );
+        }
+        assert!(!may_be_cut_off(&touch, None));
+        let touch = imprint("..#\n...");
+        assert!(may_be_cut_off(&touch, None));
+        // A dead taxel that is active says nothing.
+        assert!(!may_be_cut_off(&touch, Some(&imprint("..#\n..."))));
+    }
 }
