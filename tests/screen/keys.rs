@@ -1014,3 +1014,39 @@ fn a_drawing_says_how_it_can_be_moved() {
     shows("<Space>g", &[how]);
     shows("<Space><S-Left>", &[how]);
 }
+
+#[test]
+fn a_difference_of_directions_is_a_turn_and_every_difference_has_its_sign() {
+    // Three taxels around a corner, which is then another one.
+    let corner = "<Space><Right><Space><Down><Space>";
+    let keys = format!("{corner}<Left><Space><Up><Space>H<Up><Up>=");
+    let screen = session(&keys).screen();
+    let row = |symbol: &str| {
+        let line = screen.lines().find(|line| line.contains(symbol));
+        let line = line.unwrap_or_else(|| panic!("no {symbol} on\n{screen}"));
+        line.split("  ").last().map(str::trim).map(str::to_owned)
+    };
+    assert_eq!(row("  dir ").as_deref(), Some("-90°"), "{screen}");
+    assert_eq!(row("  CG  ").as_deref(), Some("0, +0.3333"), "{screen}");
+    assert_eq!(row("  NumY ").as_deref(), Some("+1"), "{screen}");
+}
+
+#[test]
+fn a_layer_that_is_switched_on_an_empty_matrix_comes_with_the_next_shape() {
+    let mut session = session("o");
+    shows(
+        &session,
+        &["\nwith the outline: the matrix is empty; f places a figure"],
+    );
+    then(
+        &mut session,
+        "b",
+        &["\nwith rectangle, CG (G) and CD (D): no region: the matrix is empty"],
+    );
+    then(
+        &mut session,
+        "C",
+        &["\npictures now zoom about their centre"],
+    );
+    then(&mut session, "C", &["\npictures now zoom about the origin"]);
+}

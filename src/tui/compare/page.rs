@@ -3,7 +3,9 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::description::{DESCRIPTORS, Description, Descriptor, Value, main_region, regions};
+use crate::description::{
+    DESCRIPTORS, Description, Descriptor, Dimension, Value, main_region, regions,
+};
 use crate::formats::value;
 use crate::imprint::Imprint;
 use crate::parameter::number::differing;
@@ -307,13 +309,10 @@ fn table(imprints: &[Imprint; 2]) -> Vec<TableRow> {
             described.map_or(descriptor.of_nothing, descriptor.measure)
         });
         let [first, second] = values.map(|value| text(descriptor, value));
-        let by = difference(values[0], values[1]);
-        let by = match by {
-            _ if first == second => "=".to_owned(),
-            Some(Value::Number(more)) if more > 0.0 => {
-                format!("+{}", text(descriptor, Value::Number(more)))
-            }
-            by => text(descriptor, by.unwrap_or(Value::None)),
+        let by = if first == second {
+            "=".to_owned()
+        } else {
+            signed(descriptor, difference(descriptor, values[0], values[1]))
         };
         [descriptor.symbol.to_owned(), first, second, by]
     });
@@ -346,15 +345,40 @@ fn text(descriptor: &Descriptor, measured: Value) -> String {
     text.unwrap_or_else(|| "–".to_owned())
 }
 
-/// Returns the second value minus the first; None for values that have no difference.
-fn difference(first: Value, second: Value) -> Option<Value> {
+/// Formats a difference, each number with its sign; a missing one is a dash.
+fn signed(descriptor: &Descriptor, by: Value) -> String {
+    let sign = |number: f64| {
+        let text = text(descriptor, Value::Number(number));
+        let is_zero = text.bytes().all(|byte| !matches!(byte, b'1'..=b'9'));
+        if number > 0.0 && !is_zero {
+            format!("+{text}")
+        } else {
+            text
+        }
+    };
+    match by {
+        Value::Number(number) => sign(number),
+        Value::Point(point) => format!("{}, {}", sign(point.x), sign(point.y)),
+        by => text(descriptor, by),
+    }
+}
+
+/// Returns the second value minus the first: for directions, the turn from one to the other, by at most 180°. Values
+/// such as rectangles have no difference.
+fn difference(descriptor: &Descriptor, first: Value, second: Value) -> Value {
     match (first, second) {
         (Value::Count(first), Value::Count(second)) => {
-            Some(Value::Number(f64::from(second) - f64::from(first)))
+            Value::Number(f64::from(second) - f64::from(first))
         }
-        (Value::Number(first), Value::Number(second)) => Some(Value::Number(second - first)),
-        (Value::Point(first), Value::Point(second)) => Some(Value::Point(second - first)),
-        _ => None,
+        (Value::Number(first), Value::Number(second)) => {
+            let by = second - first;
+            Value::Number(match descriptor.dimension {
+                Dimension::Direction => 180.0 - (180.0 - by).rem_euclid(360.0),
+                _ => by,
+            })
+        }
+        (Value::Point(first), Value::Point(second)) => Value::Point(second - first),
+        _ => Value::None,
     }
 }
 
