@@ -338,8 +338,8 @@ fn hold_or_let_go(app: &mut App) {
 /// Zooms pictures about their centre, or about the origin again.
 fn switch_zoom_centre(app: &mut App) {
     app.zoom_centre = !app.zoom_centre;
-    let centre = ["the origin", "the picture's centre"][usize::from(app.zoom_centre)];
-    inform(app, format!("zoom about {centre}"));
+    let centre = ["the origin", "their centre"][usize::from(app.zoom_centre)];
+    inform(app, format!("pictures now zoom about {centre}"));
 }
 
 /// Sends a text to the terminal, which may put it into its clipboard, but never reports whether it does. Descriptors
@@ -391,8 +391,9 @@ fn has_none(app: &App) -> String {
     }
 }
 
-/// Shows a layer or hides it. The notice names it, and says why if there is nothing to see. Whether a layer is shown
-/// by default depends on the size of taxels, so the switch inverts what is visible now.
+/// Shows a layer or hides it. The notice names it, and says why if there is nothing to see yet: what comes later is
+/// shown with it. Whether a layer is shown by default depends on the size of taxels, so the switch inverts what is
+/// visible now.
 fn switch_layer(app: &mut App, layer: Layer) {
     let Some(grid) = app.grid() else { return };
     let (name, now, missing) = match layer {
@@ -412,14 +413,13 @@ fn switch_layer(app: &mut App, layer: Layer) {
         Layer::Outline => app.layers.outline = Some(show),
         Layer::Rectangle => app.layers.rectangle = Some(show),
     }
-    match (show, missing, layer) {
-        (false, ..) => inform(app, format!("without {name}")),
-        (true, false, _) => inform(app, format!("with {name}")),
-        (true, true, Layer::Outline) => {
-            refuse(app, format!("no outline to show: {}", has_none(app)));
-        }
-        (true, true, Layer::Rectangle) => refuse(app, NO_REGION),
-    }
+    let text = match (show, missing, layer) {
+        (false, ..) => format!("without {name}"),
+        (true, false, _) => format!("with {name}"),
+        (true, true, Layer::Outline) => format!("with {name}: {}", has_none(app)),
+        (true, true, Layer::Rectangle) => format!("with {name}: {NO_REGION}"),
+    };
+    inform(app, text);
 }
 
 /// Returns the first or the last index of a number of columns or rows.
