@@ -272,6 +272,18 @@ fn help_is_available_everywhere() {
 
 /// A long list shows the position, and that there is more.
 #[test]
+fn help_over_a_page_says_nothing_about_the_matrix_below() {
+    for keys in [
+        "f<Enter>:explore --x0 5:5.9:0.1 --y0 5 --angle 0<Enter>?",
+        "f<Enter>:watch tests/scripts/touch.csv<Enter>?",
+        "f<Enter>:watch tests/scripts/touch.csv<Enter>:help<Enter>",
+    ] {
+        hides(keys, &["ellipse rx", "column  8"]);
+    }
+    shows("f<Enter>?", &["ellipse rx", "column  8"]);
+}
+
+#[test]
 fn a_long_help_says_that_there_is_more() {
     let mut session = session("?");
     shows(&session, &["lines 1-19 of", "more below: Down, PageDown"]);

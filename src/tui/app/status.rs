@@ -32,7 +32,7 @@ const BEYOND: &str = "; reaches beyond the sensor";
 /// Draws all these lines. Returns the position of the cursor in a prompt, None if there is no prompt.
 pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let (theme, seen) = (app.theme(), app.reading());
-    if app.pane().map(Page::slot) != Some(Slot::Screen) {
+    if !hides_matrix(app) {
         let beyond = if seen.beyond { BEYOND } else { "" };
         let room = usize::from(panes.source.width).saturating_sub(beyond.len());
         let source = source(app, panes);
@@ -66,6 +66,17 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
 
 /// Returns the line about the source of the imprint.
 fn source(app: &App, panes: &Panes) -> String {
+/// Returns true if the matrix is not the subject of the screen: under a page that covers it and these lines, also if
+/// another one, such as the help, lies over that.
+fn hides_matrix(app: &App) -> bool {
+    let pages = app.pages().filter(|page| page.has_pane());
+    let slots: Vec<Slot> = pages.map(Page::slot).collect();
+    match slots.last() {
+        Some(Slot::Body) => slots.contains(&Slot::Screen),
+        top => top == Some(&Slot::Screen),
+    }
+}
+
     let document = app.shown();
     let by_hand = document.edits.count();
     // Where there is no title, the name stands here.
