@@ -200,6 +200,28 @@ fn text_that_does_not_fit_ends_in_an_ellipsis() {
 }
 
 #[test]
+fn a_held_shape_has_its_place_on_a_low_screen() {
+    shows(
+        &sized((60, 20), false, "f<Enter>g<Right>"),
+        &["\nat 4.01, 4.00, 0°  held, step 0.01  NA 52 in all\n"],
+    );
+    shows(
+        &sized((40, 12), true, "f<Enter>g<Right>"),
+        &["\nat 4.01, 4.00, 0 deg  held, step 0.01\n"],
+    );
+    // A picture is also zoomed.
+    shows(
+        &sized((60, 20), false, "pwasher<Enter><Enter>g<Right>"),
+        &["\nat 2.01, 2.00, 0°, zoom 1.00 × 1.00  held, step 0.01\n"],
+    );
+    // Otherwise the number keeps its label as long as possible.
+    shows(
+        &sized((60, 20), false, "f<Enter>"),
+        &["\n 8,  8  covered 1.000000    active  step 0.01  NA 52 in all\n"],
+    );
+}
+
+#[test]
 fn a_long_name_can_be_typed_and_is_shown_completely() {
     let name = format!("{}end", "abcdefgh".repeat(8));
     for (size, seen) in [((80, 24), 67), ((40, 24), 29), ((30, 8), 19)] {

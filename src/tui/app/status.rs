@@ -14,6 +14,8 @@ use ratatui::layout::Position;
 
 use crate::description::Descriptor;
 use crate::formats::value;
+use crate::parameter::Parameter;
+use crate::source::Source;
 use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::menu;
@@ -64,8 +66,6 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     cursor
 }
 
-/// Returns the line about the source of the imprint.
-fn source(app: &App, panes: &Panes) -> String {
 /// Returns true if the matrix is not the subject of the screen: under a page that covers it and these lines, also if
 /// another one, such as the help, lies over that.
 fn hides_matrix(app: &App) -> bool {
@@ -77,6 +77,8 @@ fn hides_matrix(app: &App) -> bool {
     }
 }
 
+/// Returns the line about the source of the imprint.
+fn source(app: &App, panes: &Panes) -> String {
     let document = app.shown();
     let by_hand = document.edits.count();
     // Where there is no title, the name stands here.
@@ -134,44 +136,70 @@ fn described(app: &App, seen: &Reading) -> String {
     main.chain(all).collect::<Vec<_>>().join("  ")
 }
 
-/// Returns the line about the taxel under the cursor and the step of moving. Every part has a fixed place, and parts
-/// that change together stand together: so little is sent over the line when the cursor moves.
+/// Returns where a shape lies: its position and angle, and the zoom of a picture.
+fn placed(source: &Source) -> String {
+    let text = |parameter: Parameter| Some(parameter.format(source.get(parameter)?));
+    let all =
+        |parameters: [Parameter; 2]| parameters.map(text).into_iter().collect::<Option<Vec<_>>>();
+    let place = all([Parameter::X0, Parameter::Y0]).map(|at| format!("at {}", at.join(", ")));
+    let angle = text(Parameter::Angle).map(|angle| format!("{angle}°"));
+    let zoom =
+        all([Parameter::ZoomX, Parameter::ZoomY]).map(|by| format!("zoom {}", by.join(" × ")));
+    [place, angle, zoom]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// Returns the line about the taxel under the cursor and the step of moving; for a held shape that has no line of its
+/// own, the line about its place. Every part has a fixed place, and parts that change together stand together: so
+/// little is sent over the line when the cursor moves.
 fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
-    let (column, row) = app.cursor();
-    let wide = |side: u8| (side - 1).to_string().len();
-    let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
-    let place = format!("{column:>across$}, {row:>down$}");
-    let state = if seen.imprint.get(column, row) {
-        "active"
-    } else {
-        "inactive"
-    };
-    let coverage = seen.coverage(column, row);
-    let all = format!("NA {} in all", seen.imprint.count());
-    // The step of moving and zooming, if there is a shape to move.
-    let step = match (&app.shown().source, app.held.is_some()) {
-        (None, _) => String::new(),
-        (Some(_), false) => format!("step {}", app.step.length()),
-        (Some(_), true) => format!("held, step {}", app.step.length()),
-    };
     let width = usize::from(panes.taxel.width);
-    if width >= if step.is_empty() { 60 } else { 80 } {
-        let place = format!("column {column:>across$}, row {row:>down$}");
-        let covered = coverage.map_or(String::new(), |coverage| format!("  covered {coverage:.6}"));
-        let gap = if step.is_empty() { "" } else { "  " };
-        return format!("{place}{covered}  {state:>8}  {all}{gap}{step}");
-    }
-    // Parts that are shown elsewhere too are left out first; no word is cut.
-    let coverage = coverage.map_or(String::new(), |coverage| format!("{coverage:.6}"));
+    let all = format!("NA {} in all", seen.imprint.count());
     let line = |pieces: &[&str]| {
         let pieces = pieces.iter().filter(|piece| !piece.is_empty());
         pieces.copied().collect::<Vec<_>>().join("  ")
     };
-    let state = format!("{state:>8}");
-    let lines = [
-        line(&[&place, &coverage, &state, &step, &all]),
-        line(&[&place, &coverage, &state, &step]),
+    let fitting = |lines: &[String]| {
+        let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
+        write::first_fitting(&lines, width).to_owned()
+    };
+    // The step of moving and zooming, if there is a shape to move.
+    let step = match (&app.shown().source, app.held.is_some()) {
+        (None, _) => String::new(),
+        (Some(_), false) => format!("step {}", app.step.length()),
+        (Some(source), true) => {
+            let step = format!("held, step {}", app.step.length());
+            if panes.source.height == 0 {
+                let place = app.theme().text(&placed(source)).into_owned();
+                let lines = [line(&[&place, &step, &all]), line(&[&place, &step]), place];
+                return fitting(&lines);
+            }
+            step
+        }
+    };
+    let (column, row) = app.cursor();
+    let wide = |side: u8| (side - 1).to_string().len();
+    let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
+    let active = seen.imprint.get(column, row);
+    let state = format!("{:>8}", if active { "active" } else { "inactive" });
+    let number = seen.coverage(column, row);
+    let number = number.map_or(String::new(), |coverage| format!("{coverage:.6}"));
+    let covered = seen
+        .coverage(column, row)
+        .map_or(String::new(), |_| format!("covered {number}"));
+    if width >= if step.is_empty() { 60 } else { 80 } {
+        let place = format!("column {column:>across$}, row {row:>down$}");
+        return line(&[&place, &covered, &state, &all, &step]);
+    }
+    // Parts that are shown elsewhere too are left out first; no word is cut.
+    let place = format!("{column:>across$}, {row:>down$}");
+    fitting(&[
+        line(&[&place, &covered, &state, &step, &all]),
+        line(&[&place, &covered, &state, &step]),
+        line(&[&place, &number, &state, &step]),
         line(&[&place, &state, &step]),
-    ];
-    write::first_fitting(&lines.each_ref().map(String::as_str), width).to_owned()
+    ])
 }
