@@ -21,7 +21,7 @@ use taxel::tui::runtime::World;
 use taxel::tui::runtime::effect::{Effect, Work};
 use taxel::tui::script::Session;
 
-use crate::session::{hides, models, press, session, sized, started, untrained, world};
+use crate::session::{hides, models, press, session, sized, started, then, untrained, world};
 
 /// The longest time that work may take.
 const DEADLINE: Duration = Duration::from_secs(120);
@@ -359,6 +359,17 @@ fn work_beyond_the_pose_limit_is_stopped() {
     let mut session = Session::of(asked, untrained().with_pose_limit(10), 80, 24);
     press(&mut session, sizes);
     shows(&session, &["stopped; what was found stays"]);
+}
+
+#[test]
+fn another_model_is_named_also_where_the_panel_is_hidden() {
+    let mut page = sized((60, 20), false, ":recognise figures-30<Enter><Tab>");
+    then(
+        &mut page,
+        "O",
+        &["model figures; train your own with 'taxel model train'"],
+    );
+    then(&mut page, "o", &["model figures-30; train your own with"]);
 }
 
 #[test]

@@ -106,15 +106,17 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
     }
 }
 
-/// Opens the model that comes `by` further on. Says how models of the user's own come about, as long as there are none.
+/// Opens the model that comes `by` further on. The notice names it, since the panel may be out of sight, and says how
+/// models of the user's own come about, as long as there are none.
 fn next_model(app: &mut App, by: i8) -> Option<Effect> {
     let page = &app.recognition;
     let (choice, has_own) = (page.other(by), page.has_own_models());
-    let effect = open(app, Some(choice));
+    let mut text = choice.to_string();
     if !has_own {
-        let text = "your own models: train them with 'taxel model train' in a shell";
-        inform(app, text);
+        text += "; train your own with 'taxel model train' in a shell";
     }
+    let effect = open(app, Some(choice));
+    inform(app, text);
     effect
 }
 
