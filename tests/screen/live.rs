@@ -116,7 +116,7 @@ fn standard_input_is_not_offered_to_be_read_twice() {
     then(
         &mut session,
         "w",
-        &["! standard input cannot be read twice", "  ended"],
+        &["! standard input cannot be read twice", "  source ended"],
     );
     then(&mut session, "<Home>", &["frozen, 1 frame behind"]);
     let refused = "! standard input cannot be read twice";
@@ -755,7 +755,13 @@ fn a_script_records_each_frame_once() {
     then(&mut page, "m", &["frame 5: marked"]);
     for _ in 0..2 {
         page.frames(20);
-        shows(&page, &["ended", "recording  touch-1.npy, 6 frames"]);
+        shows(
+            &page,
+            &[
+                "  recording  source ended",
+                "recording  touch-1.npy, 6 frames",
+            ],
+        );
     }
     then(&mut page, "r", &["touch-1.npy: 6 frames recorded"]);
     let recording = std::fs::read(folder.path().join("touch-1.npy")).expect("written");

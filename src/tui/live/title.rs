@@ -71,7 +71,7 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
     }
     match (&live.status().state, live.stopped()) {
         (_, true) => say(3, "stopped".to_owned(), Role::Quiet),
-        (SourceState::Ended, _) => say(3, "ended".to_owned(), Role::Quiet),
+        (SourceState::Ended, _) => say(3, "source ended".to_owned(), Role::Quiet),
         _ => {}
     }
     let layer = match live.layer {
