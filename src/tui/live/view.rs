@@ -226,7 +226,7 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
     let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 5)));
     let rate = rate.unwrap_or_else(|| theme.none().to_owned());
     lines.push(PanelLine::new("rate", rate));
-    lines.push(PanelLine::of_forms("lost", lost(live), "0"));
+    lines.push(PanelLine::of_forms("dropped", dropped(live), "0"));
     let mut say = |label, text: String| lines.push(PanelLine::new(label, text));
     say("not drawn", grouped(live.not_drawn()));
     if let Some(text) = gaps(live) {
@@ -480,8 +480,8 @@ fn tare(live: &Live) -> String {
     age.map_or(frames.clone(), |age| frames + &age)
 }
 
-/// Returns how many frames were lost, a sample of the last one, and why it is not a frame; then shorter forms.
-fn lost(live: &Live) -> Vec<String> {
+/// Returns how many frames were dropped, a sample of the last one, and why it is not a frame; then shorter forms.
+fn dropped(live: &Live) -> Vec<String> {
     let status = live.status();
     let mut forms = vec![grouped(status.lost)];
     if let Some(sample) = status.sample.as_ref().filter(|_| status.lost > 0) {
