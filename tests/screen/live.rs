@@ -746,6 +746,21 @@ fn recording_in(folder: &Path) -> Session {
 }
 
 #[test]
+fn a_source_that_is_watched_again_says_that_it_is_not_recorded_any_more() {
+    let said = "not recording any more; r records in a new file";
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut page = recording_in(folder.path());
+    then(&mut page, "<Esc>w", &[said]);
+    hides(&page, &["  recording"]);
+    // Once, and not of a recording that was ended by its key.
+    then(&mut page, "<Esc>w", &[]);
+    hides(&page, &[said]);
+    then(&mut page, "r", &["recording in touch-2.npy"]);
+    then(&mut page, "r<Esc>w", &[]);
+    hides(&page, &[said]);
+}
+
+#[test]
 fn a_script_records_each_frame_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut page = recording_in(folder.path());

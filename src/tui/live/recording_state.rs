@@ -12,6 +12,8 @@ pub struct RecordingState {
     refusal: Option<String>,
     /// Why the recording that was requested together with the source has failed.
     write_failure: Option<String>,
+    /// Whether a recording ended because its source was left, which the user has not been told yet.
+    was_stopped: bool,
 }
 
 impl RecordingState {
@@ -45,6 +47,7 @@ impl RecordingState {
     pub(super) fn set(&mut self, name: Option<String>) {
         self.name = name;
         self.refusal = None;
+        self.was_stopped = false;
     }
 
     /// Notes why a recording has failed, or why it cannot be begun. `asked` is the file that was requested together
@@ -57,9 +60,14 @@ impl RecordingState {
         self.refusal = Some(reason);
     }
 
-    /// Notes that no more frames are recorded.
+    /// Notes that no more frames are recorded, because the source is left.
     pub(super) fn stop(&mut self) {
-        self.name = None;
+        self.was_stopped |= self.name.take().is_some();
+    }
+
+    /// Returns true once if a recording ended because its source was left.
+    pub(super) fn take_stopped(&mut self) -> bool {
+        std::mem::take(&mut self.was_stopped)
     }
 
     /// Forgets that a recording was refused.

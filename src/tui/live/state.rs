@@ -498,6 +498,12 @@ impl Live {
         self.recording.stop();
     }
 
+    /// Returns true once if a recording ended because its source was left: it does not go on when the source is watched
+    /// again.
+    pub fn take_stopped_recording(&mut self) -> bool {
+        self.recording.take_stopped()
+    }
+
     /// Returns true if the source has come to its end. There is nothing to watch any more then, only the history.
     pub fn has_ended(&self) -> bool {
         self.status.state == SourceState::Ended

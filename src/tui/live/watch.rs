@@ -5,9 +5,11 @@ use std::sync::Arc;
 
 use crate::acquire::SourceName;
 use crate::storage::Existing;
-use crate::tui::app::change::refuse;
+use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::state::App;
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
 use crate::tui::live::named_source::NamedSource;
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
@@ -113,6 +115,7 @@ pub(super) fn open(app: &mut App) -> Option<Effect> {
             name_by(&page)
         } else {
             page.restart(app.works);
+            say_not_recording(app, &mut page);
             watch_source(&page, None)
         });
     }
@@ -128,7 +131,19 @@ pub(super) fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
     }
     app.works += 1;
     page.watch_again(app.works);
+    say_not_recording(app, page);
     Some(watch_source(page, None))
+}
+
+/// Says that a recording does not go on with the source that is watched again, if there was one.
+fn say_not_recording(app: &mut App, page: &mut Live) {
+    if page.take_stopped_recording() {
+        let record = app.keymap().label(Context::Live, &action::RECORD);
+        inform(
+            app,
+            format!("not recording any more; {record} records in a new file"),
+        );
+    }
 }
 
 /// Names the imprints of a page as it says.
