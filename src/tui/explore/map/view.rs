@@ -30,6 +30,7 @@ use crate::tui::explore::map::letters::{LETTERS, letter, signs};
 use crate::tui::explore::map::visible::VisiblePoses;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::tab::NOTHING_TO_DRAW;
+use crate::tui::widget::plot::draw_no_room;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
@@ -43,9 +44,9 @@ const COVERAGES: [f64; 5] = [0.0, 0.1, 0.3, 0.7, 1.0];
 /// The maximum number of cells along a side of a drawing: more would not be distinguishable.
 const DRAWN: u64 = 400;
 
-/// Returns the legend: what letters, colours or shades mean, and which part of the poses is shown; and a shorter one,
-/// the part alone.
-fn meaning(theme: &Theme, pane: &MapPane) -> [String; 2] {
+/// Returns the legend: what letters, colours or shades mean, and which part of the poses is shown; and shorter ones,
+/// the last of which is the part alone: a picture of a part looks like one of the whole.
+fn meaning(theme: &Theme, pane: &MapPane) -> Vec<String> {
     let sign = match (pane.is_picture(), has_colours(theme)) {
         (false, _) => "letter",
         (true, true) => "colour",
@@ -53,10 +54,14 @@ fn meaning(theme: &Theme, pane: &MapPane) -> [String; 2] {
     };
     let full = format!("  each {sign} an imprint");
     if pane.stride == 1 {
-        return [full, String::new()];
+        return vec![full];
     }
-    let part = format!("1 pose in {0} × {0}", pane.stride);
-    [format!("{full}; {part}"), format!("  {part}")]
+    let stride = format!("{0} × {0}", pane.stride);
+    vec![
+        format!("{full}; 1 pose in {stride}"),
+        format!("{full}; 1 in {stride}"),
+        format!("  1 pose in {stride}"),
+    ]
 }
 
 /// Draws the tab. Returns the position of the cursor.
@@ -76,6 +81,11 @@ pub(in crate::tui) fn draw(
     let fits = |text: &&String| write::width(text) <= usize::from(legend.width);
     if let Some(text) = texts.iter().find(fits) {
         write::text(buffer, legend, theme, text, Role::Quiet);
+    }
+    if pane.cells.is_empty() {
+        draw_no_room(theme, buffer, area);
+        draw_pose(theme, results, &pane, buffer);
+        return None;
     }
     let cursor = draw_cells(theme, results, &pane, buffer);
     draw_rulers(theme, grid, &pane, buffer, area);
@@ -196,12 +206,17 @@ fn draw_cells(
             // A reversed block would look like its neighbours.
             if pane.is_picture() {
                 cell.reset();
-                cell.set_char('+');
+                cell.set_char(cursor_sign(theme));
             }
             cell.set_style(theme.style(Role::Cursor));
         }
     }
     Some(cursor)
+}
+
+/// Returns the sign of the cursor in a picture, which is no shade.
+fn cursor_sign(theme: &Theme) -> char {
+    if theme.ascii { 'X' } else { '+' }
 }
 
 /// Returns the number of colours or shades of a picture.
