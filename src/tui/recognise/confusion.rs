@@ -193,13 +193,22 @@ impl Page for Confusion {
         let limit = write::first_fitting(&[&limit, &shorter], room);
         let pieces = [(title.as_str(), Role::Title), (limit, Role::Text)];
         write::line(buffer, area, theme, pieces);
-        let meanings = [
-            "rows: the shape that touches; columns: its name; percent of the row",
-            "rows: what touches; columns: its name; % of the row",
-            "rows: true shape; columns: name given; %",
-        ];
-        let meaning = write::first_fitting(&meanings, area.width.into());
-        write::text(buffer, write::row(area, 1), theme, meaning, Role::Quiet);
+        let hidden = self.hidden(&panes);
+        let (meaning, in_words) = meaning(hidden, area.width.into());
+        write::text(buffer, write::row(area, 1), theme, &meaning, Role::Quiet);
+        let corner = Rect {
+            width: panes.label.saturating_sub(1).min(panes.head.width),
+            ..panes.head
+        };
+        if !in_words {
+            write::text(
+                buffer,
+                corner,
+                theme,
+                &in_arrows(theme, hidden),
+                Role::Quiet,
+            );
+        }
         self.draw_head(theme, &panes, buffer);
         let rows = (panes.first.0..self.count()).take(panes.rows.height.into());
         let mut cursor = None;
@@ -232,27 +241,17 @@ impl Page for Confusion {
 }
 
 impl Confusion {
-    /// Draws the numbers of the columns, and to their left how many rows and columns are hidden on each side.
-    fn draw_head(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
+    /// Returns how many rows are hidden above and below, and how many columns on the left and on the right.
+    fn hidden(&self, panes: &ConfusionPanes) -> [usize; 4] {
         let (row, column) = panes.first;
         let after = |end: usize| self.count().saturating_sub(end);
-        let rows = usize::from(panes.rows.height);
-        let hidden = [
-            row,
-            after(row + rows),
-            column,
-            after(column + panes.columns),
-        ];
-        let hidden = theme.more().into_iter().zip(hidden);
-        let hidden = hidden.filter(|&(_, count)| count > 0);
-        let hidden: Vec<String> = hidden
-            .map(|(sign, count)| format!("{sign}{count}"))
-            .collect();
-        let corner = Rect {
-            width: panes.label.saturating_sub(1).min(panes.head.width),
-            ..panes.head
-        };
-        write::text(buffer, corner, theme, &hidden.join(" "), Role::Quiet);
+        let below = after(row + usize::from(panes.rows.height));
+        [row, below, column, after(column + panes.columns)]
+    }
+
+    /// Draws the numbers of the columns.
+    fn draw_head(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
+        let column = panes.first.1;
         let last = column + panes.columns;
         for (index, column) in (column..last.min(self.count())).enumerate() {
             let number = format!("{:>5} ", column + 1);
@@ -330,6 +329,56 @@ impl Confusion {
     }
 }
 
+/// Returns the line that says what rows and columns are and how many are hidden, in at most `room` columns; and false
+/// if there is no room for the second part.
+fn meaning(hidden: [usize; 4], room: usize) -> (String, bool) {
+    let meanings = [
+        "rows: the shape that touches; columns: its name; percent of the row",
+        "rows: what touches; columns: its name; % of the row",
+        "rows: true shape; columns: name given; %",
+        "rows: true; columns: named; %",
+    ];
+    let hidden = in_words(hidden);
+    let whole = meanings.map(|meaning| match hidden.as_str() {
+        "" => meaning.to_owned(),
+        hidden => format!("{meaning}  {hidden}"),
+    });
+    match whole.into_iter().find(|text| write::width(text) <= room) {
+        Some(whole) => (whole, true),
+        None => (write::first_fitting(&meanings, room).to_owned(), false),
+    }
+}
+
+/// Says how many rows and columns are hidden on each side: `3 rows above, 12 below; 4 columns right`. Empty if none are.
+fn in_words([above, below, left, right]: [usize; 4]) -> String {
+    let along = |noun: &str, sides: [(usize, &str); 2]| {
+        let sides = sides.into_iter().filter(|&(count, _)| count > 0);
+        let sides = sides.enumerate().map(|(index, (count, side))| {
+            let count = match index {
+                0 => counted(count as u64, noun),
+                _ => count.to_string(),
+            };
+            format!("{count} {side}")
+        });
+        let sides: Vec<String> = sides.collect();
+        (!sides.is_empty()).then(|| sides.join(", "))
+    };
+    let rows = along("row", [(above, "above"), (below, "below")]);
+    let columns = along("column", [(left, "left"), (right, "right")]);
+    let both: Vec<String> = [rows, columns].into_iter().flatten().collect();
+    both.join("; ")
+}
+
+/// Says the same with arrows: `↑3 ↓12 →4`.
+fn in_arrows(theme: &Theme, hidden: [usize; 4]) -> String {
+    let hidden = theme.more().into_iter().zip(hidden);
+    let hidden = hidden.filter(|&(_, count)| count > 0);
+    let hidden: Vec<String> = hidden
+        .map(|(sign, count)| format!("{sign}{count}"))
+        .collect();
+    hidden.join(" ")
+}
+
 /// Returns the text of a cell: percent of its row, in brackets on the diagonal; a dot for none.
 fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> String {
     let percent = percent(share(count, touches));
@@ -342,5 +391,29 @@ fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> Strin
         format!("{:>7}", format!("[{number}]"))
     } else {
         format!("{number:>6} ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hidden_rows_and_columns_are_counted_in_words_where_there_is_room() {
+        assert_eq!(in_words([0, 0, 0, 0]), "");
+        assert_eq!(
+            in_words([0, 12, 18, 4]),
+            "12 rows below; 18 columns left, 4 right"
+        );
+        assert_eq!(
+            in_words([3, 12, 0, 1]),
+            "3 rows above, 12 below; 1 column right"
+        );
+        let all =
+            "rows: true; columns: named; %  13 rows above, 12 below; 18 columns left, 4 right";
+        assert_eq!(meaning([13, 12, 18, 4], 80), (all.to_owned(), true));
+        let none = ("rows: true shape; columns: name given; %".to_owned(), false);
+        assert_eq!(meaning([0, 12, 18, 4], 50), none);
+        assert_eq!(in_arrows(&Theme::plain(true), [0, 12, 18, 4]), "v12 <18 >4");
     }
 }
