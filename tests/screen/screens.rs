@@ -592,7 +592,7 @@ fn a_narrow_title_of_the_angles_leaves_out_the_name_of_the_descriptor() {
     let keys = "f<Enter>:explore --x0 5 --y0 5 --angle 0:80:10<Enter>6".replace(' ', "<Space>");
     shows(
         &sized((40, 20), false, &keys),
-        &["na: active taxels against the angle\n"],
+        &["\nna  line: mean, dashes: min, max\n"],
     );
     let narrow = sized((30, 20), false, &keys);
     shows(&narrow, &["\nna against the angle\n"]);

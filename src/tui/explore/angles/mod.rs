@@ -19,7 +19,7 @@ use crate::formats::{DrawingFormat, PointPlot, axis_ends};
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::angles::curve::{AngleSearch, AngleSpread};
+use crate::tui::explore::angles::curve::{AngleCurve, AngleSearch, AngleSpread};
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::tab::{NOTHING_TO_DRAW, ResultsTab, choose_descriptor};
@@ -77,20 +77,48 @@ fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     Some(Message::Explore(ExploreMessage::ToAngle(nearest.index)))
 }
 
-/// Returns the title: the descriptor, and which part of the positions it is computed from. If there is little room,
-/// the name of the descriptor is left out.
-fn title(results: &Results, room: usize) -> String {
+/// Returns the title: the descriptor, and which part of the poses it is computed from; and the legend. If there is
+/// little room, words that the axes show too are left out before the legend is.
+fn title(results: &Results, room: usize) -> (String, &'static str) {
     let feature = results.feature();
-    let mut end = " against the angle".to_owned();
-    if let Some(curve) = results.angle_curve() {
-        for (every, what) in [(curve.every_angle, "angle"), (curve.every_row, "y0")] {
-            if every > 1 {
-                end += &format!(", from 1 in {every} values of {what}");
-            }
-        }
+    let (label, key) = (feature.label(), &feature.key);
+    let sampled = results.angle_curve().map_or_else(String::new, sampled);
+    let titles = [
+        format!("{label} against the angle{sampled}"),
+        format!("{key} against the angle{sampled}"),
+        format!("{key}{sampled}"),
+    ];
+    let with_legend = |title: &&String| write::width(title) + write::width(LEGEND) <= room;
+    if let Some(title) = titles.iter().find(with_legend) {
+        return (title.clone(), LEGEND);
     }
-    let titles = [feature.label(), feature.key.clone()].map(|title| title + &end);
-    write::first_fitting(&titles.each_ref().map(String::as_str), room).to_owned()
+    let titles = titles.each_ref().map(String::as_str);
+    (write::first_fitting(&titles, room).to_owned(), "")
+}
+
+/// Returns which of the angles and positions a curve is computed from; nothing if from all of them.
+fn sampled(curve: &AngleCurve) -> String {
+    let parts = [(curve.every_angle, "angle"), (curve.every_row, "y0")];
+    let parts = parts.into_iter().filter(|&(every, _)| every > 1);
+    let parts = parts.map(|(every, what)| format!("every {} {what}", ordinal(every)));
+    let parts: Vec<String> = parts.collect();
+    if parts.is_empty() {
+        String::new()
+    } else {
+        format!("; sampled: {}", parts.join(", "))
+    }
+}
+
+/// Returns the ordinal of a number: 2nd, 3rd, 11th.
+fn ordinal(number: u64) -> String {
+    let end = match (number % 10, number % 100) {
+        (1..=3, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{number}{end}")
 }
 
 /// Returns why there is no curve, in a few words.
@@ -107,12 +135,15 @@ fn without_curve(results: &Results) -> &'static str {
 
 /// Draws the tab. Returns the position of the mean at the chosen angle.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let text = title(results, area.width.into());
+    let (text, legend) = title(results, area.width.into());
     let end = write::text(buffer, area, theme, &text, Role::Title);
-    let legend = write::right_of(area, end);
-    if write::width(LEGEND) <= usize::from(legend.width) {
-        write::text(buffer, legend, theme, LEGEND, Role::Quiet);
-    }
+    write::text(
+        buffer,
+        write::right_of(area, end),
+        theme,
+        legend,
+        Role::Quiet,
+    );
     let spread = spread(results);
     let Some(here) = nearest(results, &spread) else {
         let text = without_curve(results);
