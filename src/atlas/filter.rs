@@ -3,17 +3,19 @@
 use rayon::prelude::*;
 
 use crate::atlas::distinct::Atlas;
-use crate::atlas::feature::{ImprintSummary, features};
+use crate::atlas::feature::{Feature, ImprintSummary, features};
+use crate::description::Dimension;
 use crate::parameter::number;
-use crate::quote::shortened;
+use crate::quote::{did_you_mean, shortened};
 
 /// A filter of imprints, read from an expression such as `na>=40 holes=0 f<12`: conditions that must all hold.
 ///
 /// ```text
 /// na>=40 holes=0      blanks separate conditions; around the sign they do not matter
-///  |  |  40           a number, in the unit of the feature
+///  |  |  40           a number, in the unit of the feature; for a share also in percent, such as 50%
 ///  |  sign            = != < <= > >=
-///  a feature as in JSON and CSV, or id, count (also: poses), pieces, holes; upper and lower case are the same
+///  a feature as in JSON and CSV, or id, count (also: poses), pieces, holes; or the symbol of a descriptor that has one
+///  number, such as Fill for filling; upper and lower case are the same
 /// ```
 /// `=` and `!=` compare as many decimals as were typed: `f=12.3`, or `f=1.23e1`, holds for 12.26 and for 12.34. If an
 /// imprint has no value for a feature, it fulfils no condition on that feature.
@@ -42,7 +44,7 @@ pub struct AtlasFilter {
 #[non_exhaustive]
 pub enum FilterError {
     /// A word is not the name of a quantity.
-    #[error("{found:?} is unknown here, expected one of {}", names().join(", "))]
+    #[error("{found:?} is unknown here{}", expected(found))]
     Unknown {
         /// The word.
         found: String,
@@ -79,6 +81,17 @@ fn advice(found: &str) -> String {
     }
 }
 
+/// Returns the end of a message about an unknown name: the nearest name, if one is similar, and all names.
+fn expected(found: &str) -> String {
+    let symbols = features().iter().filter_map(Feature::symbol);
+    let near = did_you_mean(found, names().into_iter().chain(symbols));
+    let names = names().join(", ");
+    match near.as_str() {
+        "" => format!(", expected one of {names}"),
+        near => format!("{near} All names: {names}"),
+    }
+}
+
 /// The quantity that a condition compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {
@@ -88,6 +101,16 @@ enum Quantity {
     Holes,
     /// The feature with this index in [`features`].
     Feature(usize),
+}
+
+impl Quantity {
+    /// Returns true for a share, which the screen shows in percent.
+    fn is_share(self) -> bool {
+        match self {
+            Self::Feature(index) => features()[index].descriptor.dimension == Dimension::Share,
+            _ => false,
+        }
+    }
 }
 
 /// A sign between a quantity and a number.
@@ -207,7 +230,7 @@ const JOINING: [&str; 5] = ["and", "or", "&", "&&", ","];
 
 /// Reads the condition at the start of a text. Returns it and the text after it.
 fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
-    let in_name = |c: char| c.is_alphanumeric() || c == '_';
+    let in_name = |c: char| c.is_alphanumeric() || "_-".contains(c);
     let end = text
         .find(|c: char| !in_name(c))
         .map_or(text.len(), |end| end);
@@ -234,34 +257,44 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     };
     let rest = rest.trim_start();
     let end = rest.find(char::is_whitespace).map_or(rest.len(), |end| end);
-    let (number, rest) = rest.split_at(end);
-    if number.ends_with(',') {
+    let (typed, rest) = rest.split_at(end);
+    if typed.ends_with(',') {
         let found = ",".to_owned();
         return Err(FilterError::Joined { found });
     }
+    let (number, unit) = match typed.strip_suffix('%') {
+        Some(number) if quantity.is_share() => (number, 0.01),
+        _ => (typed, 1.0),
+    };
     let value = number.parse().ok().filter(|value: &f64| value.is_finite());
     let Some(value) = value else {
-        let (before, found) = (format!("{name}{sign}"), shortened(number));
+        let (before, found) = (format!("{name}{sign}"), shortened(typed));
         return Err(FilterError::Number { before, found });
     };
     let condition = Condition {
         quantity,
         relation,
-        number: value,
-        half: half_a_unit(number),
+        number: value * unit,
+        half: half_a_unit(number) * unit,
     };
     Ok((condition, rest))
 }
 
-/// Returns the quantity with a name; upper and lower case are the same.
+/// Returns the quantity with a name, or with the symbol that the screen shows; upper and lower case are the same.
 fn quantity(name: &str) -> Option<Quantity> {
+    let feature = |named: fn(&Feature) -> Option<&str>| {
+        let is_named = |own: &str| own.eq_ignore_ascii_case(name);
+        let position = features()
+            .iter()
+            .position(|feature| named(feature).is_some_and(is_named));
+        position.map(Quantity::Feature)
+    };
     let own = OWN_NAMES.iter();
     let mut own = own
         .filter(|(own, _)| own.eq_ignore_ascii_case(name))
         .map(|&(_, quantity)| quantity);
-    let mut features = features().iter();
-    let feature = features.position(|feature| feature.key.eq_ignore_ascii_case(name));
-    feature.map(Quantity::Feature).or(own.next())
+    let by_key = feature(|feature| Some(feature.key.as_str()));
+    by_key.or(own.next()).or_else(|| feature(Feature::symbol))
 }
 
 /// Returns half of the last decimal of a number as it was typed. A number with an exponent has the decimals that it has
@@ -365,6 +398,30 @@ mod tests {
     }
 
     #[test]
+    fn the_symbols_and_the_percent_of_the_screen_can_be_typed() {
+        for (shown, key) in [
+            ("Fill>0.5", "filling>0.5"),
+            ("round>1", "roundness>1"),
+            ("NumX>=3", "num_x>=3"),
+            ("CG-CD<1", "cg_cd<1"),
+            ("dir=90", "cg_cd_direction=90"),
+            ("fill>50%", "filling>0.50"),
+        ] {
+            assert_eq!(filter(shown), filter(key), "{shown}");
+        }
+        // 64.3 % are as many decimals as 0.643.
+        let atlas = atlas();
+        assert_eq!(
+            filter("fill=64.3%").keeps(&atlas),
+            filter("fill=0.643").keeps(&atlas)
+        );
+        // Only shares are shown in percent, and a part of a point has no symbol of its own.
+        for wrong in ["na>50%", "fill>%", "cg>1"] {
+            assert!(wrong.parse::<AtlasFilter>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn an_error_names_the_word_and_what_is_possible() {
         let error = |text: &str| text.parse::<AtlasFilter>().expect_err(text).to_string();
         let unknown = error("na>3 weight<5");
@@ -375,6 +432,13 @@ mod tests {
         assert!(
             unknown.ends_with("id, count, pieces, holes, poses"),
             "{unknown}"
+        );
+        let near = error("filing>0.5");
+        assert!(
+            near.starts_with(
+                "\"filing\" is unknown here; did you mean \"filling\"? All names: na, "
+            ),
+            "{near}"
         );
         assert!(error(">=3").starts_with("\">=3\" is unknown"));
         assert_eq!(error("na"), "na: expected = != < <= > or >= after it");
