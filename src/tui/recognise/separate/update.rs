@@ -92,17 +92,25 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
         let example = worst.example.as_ref()?;
         let name = |shape| page.request().trained.name(shape);
         let (touched, named) = (name(worst.touched), name(worst.named));
-        let size = size_label(page.request().axis, size.point.value);
+        let (axis, value) = (page.request().axis, size.point.value);
+        let size = size_label(axis, value);
         let about = format!("imprint of {touched}, named {named}, at {size}");
-        Some((about, example.imprint?))
+        // The model names it as if it were of its own size, mostly otherwise than the page of sizes does.
+        let own = size_label(axis, 1.0);
+        let note =
+            (size != own).then(|| format!("the model is of {own}; this imprint is of {size}"));
+        Some((about, note, example.imprint?))
     });
-    let Some((about, imprint)) = found else {
+    let Some((about, note, imprint)) = found else {
         refuse(app, "no shapes are confused at this size");
         return false;
     };
     let own = *page.request().trained.model.sensor();
     let (sensor, imprint) = onto(&imprint, app.history.present().sensor, own);
     begin_drawn(app, sensor, &imprint, &about);
+    if let Some(note) = note {
+        inform(app, note);
+    }
     true
 }
 
