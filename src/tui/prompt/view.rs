@@ -64,7 +64,8 @@ impl LinePrompt for CommandDialog {
     fn behind(&self, columns: u16) -> Cow<'_, str> {
         let used = 1 + write::width(self.field.text());
         let room = usize::from(columns).saturating_sub(used);
-        as_many_as_fit(&self.candidates, room).into()
+        let words: Vec<&str> = self.candidates.iter().map(|path| last_part(path)).collect();
+        as_many_as_fit(&words, room).into()
     }
 
     /// Draws the offered lines as a list over the foot of the body.
@@ -100,9 +101,17 @@ impl LinePrompt for CommandDialog {
     }
 }
 
+/// Returns the last part of a path, with the slash after a folder: the parts before are those that were typed. Returns
+/// any other word as it is.
+fn last_part(path: &str) -> &str {
+    let inner = path.strip_suffix('/').unwrap_or(path);
+    let start = inner.rfind('/').map_or(0, |slash| slash + 1);
+    &path[start..]
+}
+
 /// Returns as many words as fit, after a gap, and the number of the others. Two spaces separate words, because a name
 /// may contain one.
-fn as_many_as_fit(words: &[String], room: usize) -> String {
+fn as_many_as_fit(words: &[&str], room: usize) -> String {
     let mut text = String::new();
     for (index, word) in words.iter().enumerate() {
         let gap = if index == 0 { "   " } else { "  " };
@@ -120,4 +129,23 @@ fn as_many_as_fit(words: &[String], room: usize) -> String {
         text += word;
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_shown_by_its_last_part() {
+        for (path, shown) in [
+            ("examples/cluster/", "cluster/"),
+            ("examples/classifiers.py", "classifiers.py"),
+            ("a b/c d", "c d"),
+            ("/dev/", "dev/"),
+            ("/", "/"),
+            ("--side", "--side"),
+        ] {
+            assert_eq!(last_part(path), shown);
+        }
+    }
 }
