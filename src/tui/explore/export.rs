@@ -11,6 +11,7 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::tabs;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
+use crate::tui::widget::write;
 
 /// The maximum number of characters of a name: the longest path of a file on Linux.
 const LONGEST: usize = 4096;
@@ -130,15 +131,25 @@ impl LinePrompt for ExportDialog {
         &self.field
     }
 
-    /// Returns the extensions that a name can have.
-    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+    /// Returns the extensions that a name can have; in shorter forms where there is little room.
+    fn behind(&self, columns: u16) -> Cow<'_, str> {
+        let used = write::width(self.label()) + write::width(self.field.text());
         let endings = self.what.endings();
-        if let (ExportKind::Sweep { table: true, .. }, [table, others @ ..]) =
-            (self.what, &endings[..])
-        {
-            return format!("   ({table} page; {} imprints)", others.join(" ")).into();
-        }
-        format!("   ({})", endings.join(" ")).into()
+        let dotted = endings.join(" ");
+        let plain = dotted.replace('.', "");
+        let with_page = |endings: &str| {
+            let (table, others) = endings.split_once(' ')?;
+            let has_page = matches!(self.what, ExportKind::Sweep { table: true, .. });
+            has_page.then(|| format!("{table} page; {others} imprints"))
+        };
+        let forms = [
+            format!("   ({})", with_page(&dotted).unwrap_or(dotted)),
+            format!("   {}", with_page(&plain).unwrap_or(plain.clone())),
+            format!("   {plain}"),
+        ];
+        let room = usize::from(columns).saturating_sub(used);
+        let forms = forms.each_ref().map(String::as_str);
+        write::first_fitting(&forms, room).to_owned().into()
     }
 }
 

@@ -419,6 +419,41 @@ fn a_map_that_shows_only_some_poses_says_so_where_there_is_little_room() {
 }
 
 #[test]
+fn a_map_in_ascii_has_its_legend_and_a_cursor_that_is_no_shade() {
+    let keys = "f<Enter>:explore --x0 3:7:0.05 --y0 3:7:0.05 --angle 0:45:5<Enter>4>>";
+    let screen = sized((80, 24), true, keys);
+    shows(
+        &screen,
+        &["angle 10 deg 3/10  each shade an imprint; 1 in 3 x 3 "],
+    );
+    shows(&screen, &["\n3.00 X"]);
+    let small = sized((30, 8), false, keys);
+    shows(&small, &["no room for the plot", "imprint 0 at x0 3.00"]);
+}
+
+#[test]
+fn a_curve_of_a_sample_says_so_and_keeps_its_legend() {
+    let keys = "f<Enter>:explore --x0 5 --y0 5:5.99:0.01 --angle 0:359:1<Enter>6";
+    let sampled = "na against the angle; sampled: every 5th y0  line: mean, dashes: min, max";
+    shows(&sized((80, 24), false, keys), &[sampled]);
+    let sampled = "na; sampled: every 5th y0  line: mean, dashes: min, max";
+    shows(&sized((60, 20), false, keys), &[sampled]);
+}
+
+#[test]
+fn every_ending_of_an_export_is_visible_on_sixty_columns() {
+    for (page, endings) in [
+        ("1", "ellipse.csv   csv jsonl npz npy\n"),
+        ("2", "ellipse-statistics.csv   csv jsonl npz npy\n"),
+        ("4", "ellipse-map.svg   csv jsonl npz npy svg png\n"),
+        ("5", "ellipse-scatter.svg   csv jsonl npz npy svg png\n"),
+    ] {
+        let keys = format!("f<Enter>{SHORT}{page}x");
+        shows(&sized((60, 20), false, &keys), &[endings]);
+    }
+}
+
+#[test]
 fn a_click_reaches_every_angle_of_a_fine_sweep() {
     let mut session = session("f<Enter>:explore --x0 5 --y0 5 --angle 0:359.99:0.01<Enter>6");
     shows(&session, &["angle 0°:"]);
