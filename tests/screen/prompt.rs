@@ -280,6 +280,10 @@ fn help_over_a_page_says_nothing_about_the_matrix_below() {
     ] {
         hides(keys, &["ellipse rx", "column  8"]);
     }
+    // The help that a command opens is that of the page, too, and leads back to it.
+    let live = "f<Enter>:watch tests/scripts/touch.csv<Enter>:help<Enter>";
+    shows(live, &["Watching a sensor"]);
+    shows(&format!("{live}q"), &["touch.csv  no frame yet"]);
     shows("f<Enter>?", &["ellipse rx", "column  8"]);
 }
 

@@ -41,7 +41,7 @@ pub(in crate::tui) fn in_command(
                     }
                     if !matches!(
                         message,
-                        Message::Live(_) | Message::Redraw | Message::Suspend
+                        Message::Live(_) | Message::Help | Message::Redraw | Message::Suspend
                     ) {
                         live::watch::set_aside(app);
                     }
