@@ -1,6 +1,7 @@
 //! Recordings of sensors: those of `../shared/reference`, if they are available, and small ones made up here.
 
 mod checksums;
+mod cut;
 
 mod echoes;
 

@@ -22,6 +22,18 @@ fn shaped(kind: &str, fortran: &str, shape: &str) -> String {
     format!("{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {shape}, }}\n")
 }
 
+/// Returns an archive of as many arrays as are read.
+fn terabytes() -> Vec<u8> {
+    let one = array(
+        &shaped("<f8", "False", "(1000000000000, 1, 1)"),
+        &[0; SIZE / 300],
+    );
+    let zip = (0..256).fold(Zip::default(), |zip, number| {
+        zip.with(&format!("{number}.npy"), Packing::Stored, &one, 8 << 40)
+    });
+    zip.finish()
+}
+
 /// Endless texts in the formats of each vendor.
 const TEXTS: [Malice; 35] = [
     ("deep JSON", || filled("{\"frame\":", "[", "")),
@@ -140,7 +152,7 @@ const TEXTS: [Malice; 35] = [
 ];
 
 /// Bytes in the formats of recordings only.
-const FILES: [Malice; 16] = [
+const FILES: [Malice; 17] = [
     ("an array of more than all memory", || {
         long_array(&shaped("<f8", "False", "(18446744073709551615, 64, 64)"))
     }),
@@ -173,15 +185,11 @@ const FILES: [Malice; 16] = [
         array[..12].copy_from_slice(b"\x93NUMPY\x02\x00\xf4\xff\x0f\x00");
         array
     }),
-    ("arrays that claim terabytes", || {
-        let one = array(
-            &shaped("<f8", "False", "(1000000000000, 1, 1)"),
-            &[0; SIZE / 300],
-        );
-        let zip = (0..256).fold(Zip::default(), |zip, number| {
-            zip.with(&format!("{number}.npy"), Packing::Stored, &one, 8 << 40)
-        });
-        zip.finish()
+    ("arrays that claim terabytes", terabytes),
+    ("arrays that claim terabytes, without a directory", || {
+        let mut zip = terabytes();
+        zip.truncate(zip.len() - 22);
+        zip
     }),
     ("an array that unpacks to much", || {
         let frames = array(&shaped("<f8", "False", "(1000000000000, 64, 64)"), &[]);
