@@ -641,7 +641,7 @@ fn a_low_screen_says_how_many_lines_it_leaves_out() {
 }
 
 #[test]
-fn the_sum_is_that_of_the_shown_values() {
+fn sum_and_maximum_are_those_before_the_tare_as_taxel_frames_prints_them() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.csv");
     std::fs::write(&path, "time,r0c0,r0c1\n0.0,5,6\n0.1,7,9\n").expect("written");
@@ -649,7 +649,7 @@ fn the_sum_is_that_of_the_shown_values() {
     page.frames(1);
     then(&mut page, "t", &["tare of 1 frame"]);
     page.frames(1);
-    shows(&page, &["tared", "sum        5", "max        3 at 1, 0"]);
+    shows(&page, &["tared", "sum        16", "max        9 at 1, 0"]);
     then(
         &mut page,
         "vv",

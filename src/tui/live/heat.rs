@@ -301,7 +301,7 @@ fn near(reading: &LiveReading) -> (u8, u8) {
         let of = |side: std::ops::Range<u8>| side.start.midpoint(side.end);
         (of(bounds.columns()), of(bounds.rows()))
     });
-    let largest = || reading.max.map(|(_, at)| at);
+    let largest = || reading.shown_max.map(|(_, at)| at);
     middle.or_else(largest).map_or((0, 0), |at| at)
 }
 

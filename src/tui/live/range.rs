@@ -63,7 +63,7 @@ impl ShadeRange {
     /// Returns the ends of the range for a layer.
     pub(super) fn ends(&self, layer: HeatLayer, reading: Option<&LiveReading>) -> (f64, f64) {
         let largest = reading
-            .and_then(|reading| reading.max)
+            .and_then(|reading| reading.shown_max)
             .map(|(largest, _)| largest);
         let least = reading.map_or(0.0, |reading| reading.least);
         let span = match layer {

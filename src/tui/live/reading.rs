@@ -47,10 +47,12 @@ pub struct LiveReading {
     pub frame: Arc<Frame>,
     /// The shown values; NaN if there is no cell.
     pub values: Matrix<f64>,
-    /// The sum of the shown values.
+    /// The sum of the values before tare and gain, in every layer, as `taxel frames` prints it.
     pub sum: f64,
-    /// The largest shown value, and its column and row; None without cells.
+    /// The largest value before tare and gain, and its column and row; None without cells.
     pub max: Option<(f64, (u8, u8))>,
+    /// The largest shown value, and its column and row; None without cells.
+    pub shown_max: Option<(f64, (u8, u8))>,
     /// The largest value after tare and gain, which the threshold applies to; None without cells.
     pub tared_max: Option<f64>,
     /// The least shown value, at most 0.
@@ -85,11 +87,12 @@ impl LiveReading {
         let main = main_region(&found).and_then(|main| found.get(main));
         let empty = || Imprint::empty(values.size());
         Ok(Self {
-            max: largest(values),
+            sum: processed.sum,
+            max: largest(processed.raw),
+            shown_max: largest(values),
             tared_max: largest(processed.tared).map(|(largest, _)| largest),
             least: values.values().iter().copied().fold(0.0, f64::min),
             values: values.clone(),
-            sum: values.values().iter().filter(|value| !value.is_nan()).sum(),
             imprint,
             main: main.map_or_else(empty, |region| *region.taxels()),
             description: main.map(Description::of),
