@@ -22,7 +22,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::json;
 
 use crate::cli::output::charset::Charset;
-use crate::formats::value::{counted, decimal, grouped, percent};
+use crate::formats::value::{counted, decimal, grouped, percent, percentage};
 use crate::parameter::number::share;
 use crate::recognition::{
     ChosenDescriptor, Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation,
@@ -92,9 +92,12 @@ pub(crate) fn number(count: u128) -> serde_json::Value {
     }
 }
 
-/// Formats a share in percent, to three decimals.
+/// Formats a share in percent, to three decimals. A share that is not exactly 0 or 1 is not shown as 0 or 100 %.
 pub(crate) fn percent_fine(share: f64) -> String {
-    format!("{} %", decimal(100.0 * share, 3))
+    match percentage(share, 3) {
+        bound if bound.starts_with(['<', '>']) => format!("{bound} %"),
+        _ => format!("{} %", decimal(100.0 * share, 3)),
+    }
 }
 
 /// Draws a bar for a share, of at most `width` characters. The length is rounded, so a small share may have no bar.
@@ -152,6 +155,9 @@ impl NamedBy {
     }
 }
 
+/// The line about touches of shapes with weights.
+pub(crate) const WEIGHTED: &str = "each touch counts with the weight of its shape\n";
+
 /// Returns the summary of an evaluation in lines: touches, error, certain, top two, information.
 pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     let of_touches = |part: u128| percent(share(part, evaluation.touches));
@@ -170,7 +176,7 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
         named.distinct(evaluation.keys as u64)
     );
     if evaluation.is_weighted() {
-        text += "each touch counts with the weight of its shape\n";
+        text += WEIGHTED;
     }
     let mut line = |name: &str, value: u128, note: &str| {
         // Cannot fail: the text is kept in memory.
@@ -242,7 +248,7 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
     let mut first = name.max(9) - name;
     for (column, width) in widths.iter().enumerate() {
         let precision = match evaluation.precision(column) {
-            Some(share) => format!("{:.0}%", 100.0 * share),
+            Some(share) => format!("{}%", percentage(share, 0)),
             None => "–".to_owned(),
         };
         let width = (width - 1).saturating_sub(std::mem::take(&mut first));
@@ -413,7 +419,7 @@ pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) ->
             let cell = if row == column {
                 String::from("–")
             } else {
-                format!("{:.2}", 100.0 * error)
+                percentage(*error, 2)
             };
             let _ = write!(text, " {cell:>6}");
         }
@@ -462,5 +468,52 @@ mod tests {
             assert!(text.contains(&count), "{count}: {text}");
         }
         assert!(text.contains("\"tied\":0,"), "{text}");
+    }
+
+    #[test]
+    fn a_share_that_is_not_exactly_0_or_1_does_not_look_like_it_in_any_table() {
+        let bar = |length| {
+            let bar = Figure::rectangle(length, 2.0).on(&Sensor::default());
+            bar.expect("in range")
+        };
+        let shapes = [("long", 4.0), ("short", 3.0)];
+        let shapes = shapes.map(|(name, length)| NamedShape::new(name, bar(length)));
+        let mut ranges = Ranges::default();
+        for (axis, range) in [
+            (Axis::X0, "5:5.999:0.001"),
+            (Axis::Y0, "5"),
+            (Axis::Angle, "0"),
+        ] {
+            ranges = ranges.with(axis, range.parse().expect("a range"));
+        }
+        let head = ModelHead::new(
+            shapes.to_vec(),
+            Sensor::default(),
+            Anchor::Centre,
+            ranges,
+            1000,
+        );
+        let keys = [
+            (
+                "####\n####".parse().ok(),
+                vec![ShapeCount::new(0, 1000), ShapeCount::new(1, 1)],
+            ),
+            ("###\n###".parse().ok(), vec![ShapeCount::new(1, 999)]),
+        ];
+        let model = Model::from_parts(head, &keys).expect("a model");
+        let table = matrix(&Evaluation::of(&model), Charset::Unicode);
+        assert!(table.contains("[1000]"), "{table}");
+        let precision = table.lines().last().expect("a line");
+        let found: Vec<&str> = precision.split_whitespace().collect();
+        assert_eq!(found, ["precision", ">99%", "100%"]);
+        let labels = ["long", "short"].map(str::to_owned);
+        let table = pairs(
+            &labels,
+            &[vec![0.0, 1e-5], vec![1e-5, 0.0]],
+            Charset::Unicode,
+        );
+        assert_eq!(table.matches("<0.01").count(), 2, "{table}");
+        let fine = [0.0, 1e-6, 0.2488, 0.999_999, 1.0].map(percent_fine);
+        assert_eq!(fine, ["0 %", "<0.001 %", "24.88 %", ">99.999 %", "100 %"]);
     }
 }
