@@ -30,6 +30,8 @@ pub struct RecognitionRate {
     pub right: u64,
     /// Touches whose imprint some shape also leaves without noise.
     pub held: u64,
+    weighted_touches: u128,
+    weighted_right: u128,
     accuracy: f64,
     standard_error: f64,
     mean_confidence: f64,
@@ -37,6 +39,16 @@ pub struct RecognitionRate {
 }
 
 impl RecognitionRate {
+    /// Returns the number of touches, each counted with the weight of its shape.
+    pub fn weighted_touches(&self) -> u128 {
+        self.weighted_touches
+    }
+
+    /// Returns the number of touches that were named right, each counted with the weight of its shape.
+    pub fn weighted_right(&self) -> u128 {
+        self.weighted_right
+    }
+
     /// Returns the share of touches that were named right.
     pub fn accuracy(&self) -> f64 {
         self.accuracy
@@ -67,7 +79,7 @@ impl RecognitionRate {
                 .map(|(weight, own)| u128::from(*weight) * u128::from(of(own)));
             products.sum()
         };
-        let all = weighted(|own| own.touches);
+        let (all, right) = (weighted(|own| own.touches), weighted(|own| own.right));
         let squared = |weight: u32| f64::from(weight) * f64::from(weight);
         let variances = (shapes.iter()).map(|(weight, own)| squared(*weight) * own.variance());
         let confidences = shapes
@@ -78,7 +90,9 @@ impl RecognitionRate {
             touches: sum(|own| own.touches),
             right: sum(|own| own.right),
             held: sum(|own| own.held),
-            accuracy: share(weighted(|own| own.right), all),
+            weighted_touches: all,
+            weighted_right: right,
+            accuracy: share(right, all),
             standard_error: variances.sum::<f64>().sqrt() * part,
             mean_confidence: confidences.sum::<f64>() * part,
             held_share: share(weighted(|own| own.held), all),
@@ -354,6 +368,8 @@ mod tests {
         let rate = rate.expect("not stopped");
         // The long one is always named, so only the confidence is left to chance.
         assert_eq!((rate.touches, rate.right), (4000, 2000));
+        let weighted = (rate.weighted_touches(), rate.weighted_right());
+        assert_eq!(weighted, (20_000, 18_000));
         assert_eq!((rate.accuracy(), rate.standard_error()), (0.9, 0.0));
         assert!((rate.mean_confidence() - 0.9).abs() < 0.002, "{rate:?}");
     }

@@ -479,6 +479,20 @@ fn an_evaluation_says_if_touches_count_with_weights() {
         for output in [run.stdout, place.done("model confusion m.npz")] {
             assert_eq!(output.contains(said), counted, "{weights:?}: {output}");
         }
+        let noise = "model confusion m.npz --noise 0:0.2:0.1 --touches 20";
+        for of in [noise, "model confusion m.npz --test half-step"] {
+            let output = place.done(of);
+            assert_eq!(output.contains(said), counted, "{weights:?}: {output}");
+        }
+        for row in place.json(&format!("{noise} --json"))["degradation"]
+            .as_array()
+            .expect("rows")
+        {
+            let [touches, right, accuracy] =
+                ["touches", "right", "accuracy"].map(|key| row[key].as_f64().expect("a number"));
+            assert_eq!(touches, f64::from(20 * (a + b)), "{row}");
+            assert!((right / touches - accuracy).abs() < 1e-12, "{row}");
+        }
     }
 }
 

@@ -103,9 +103,20 @@ pub(crate) fn degradation(
         EvaluationForm::Csv => noise_csv(&table),
         EvaluationForm::Text => {
             let text = noise_text(&table, asked.seed, given.is_some(), charset);
-            charset.lines(&(text + &noise_curves(&table, charset)))
+            let weighted = weighted(model);
+            charset.lines(&(text + weighted + &noise_curves(&table, charset)))
         }
     })
+}
+
+/// Returns the line that touches count with weights; empty if they do not.
+fn weighted(model: &Model) -> &'static str {
+    let has_weights = model.shapes().iter().any(|shape| shape.weight > 1);
+    if has_weights {
+        evaluation::WEIGHTED
+    } else {
+        ""
+    }
 }
 
 /// Refuses more dead taxels than the matrix has.
@@ -234,8 +245,8 @@ fn noise_json(table: &[NoiseRow], sensor: &Sensor, seed: u64) -> String {
             json!({
                 "noise": row.noise,
                 "dead": row.dead,
-                "touches": row.rate.touches,
-                "right": row.rate.right,
+                "touches": evaluation::number(row.rate.weighted_touches()),
+                "right": evaluation::number(row.rate.weighted_right()),
                 "accuracy": row.rate.accuracy(),
                 "standard_error": row.rate.standard_error(),
                 "claimed": row.rate.mean_confidence(),
@@ -263,8 +274,8 @@ fn noise_csv(table: &[NoiseRow]) -> String {
             "{},{},{},{},{},{},{},{}",
             row.noise,
             row.dead,
-            rate.touches,
-            rate.right,
+            rate.weighted_touches(),
+            rate.weighted_right(),
             rate.accuracy(),
             rate.standard_error(),
             rate.mean_confidence(),
@@ -358,10 +369,11 @@ pub(crate) fn half_step(
         "touches half a step off the grid, in x0, y0 and angle\n\
          not in the model                            {:>8}\n\
          error, counting these as wrong              {:>8}\n\
-         error, naming these by the nearest imprint  {:>8}\n",
+         error, naming these by the nearest imprint  {:>8}\n{}",
         percent_fine(result.missing()),
         percent_fine(result.error()),
-        percent_fine(result.error_with_nearest())
+        percent_fine(result.error_with_nearest()),
+        weighted(model)
     );
     Ok(charset.lines(&text))
 }
