@@ -23,7 +23,8 @@ pub struct TrainedModel {
     /// An imprint for each cell of its confusion matrix.
     pub examples: Examples,
     /// The number of random poses in hundredths of a cell and whole degrees that leave an imprint which the model does
-    /// not know, and the number that were tried; None if its grid is as fine.
+    /// not know, and the number that were tried, each counted with the weight of its shape; None if its grid is as
+    /// fine.
     pub unknown_between: Option<(u64, u64)>,
 }
 
@@ -97,7 +98,7 @@ fn grid_of(model: &Model, shape: usize, ranges: Ranges) -> Option<PoseGrid> {
 const TRIED: u32 = 100;
 
 /// Returns the number of random poses in hundredths of a cell and whole degrees whose imprint the model does not know,
-/// and the number of all that were tried; None if its own steps are as fine.
+/// and the number of all that were tried, each counted with the weight of its shape; None if its own steps are as fine.
 fn unknown_between(model: &Model) -> Option<(u64, u64)> {
     let ranges = model.ranges();
     let axes = [(Axis::X0, 0.01), (Axis::Y0, 0.01), (Axis::Angle, 1.0)];
@@ -111,15 +112,18 @@ fn unknown_between(model: &Model) -> Option<(u64, u64)> {
     let mut random = Pcg64::seed_from_u64(0);
     let (mut tried, mut unknown) = (0, 0);
     let mut plane = Plane::new(*model.sensor());
-    for shape in 0..model.shapes().len() {
+    for (shape, named) in model.shapes().iter().enumerate() {
+        let weight = u64::from(named.weight);
         let Some(grid) = grid_of(model, shape, fine) else {
             continue;
         };
         for _ in 0..TRIED {
             let pose = below(&mut random, grid.poses());
             let imprint = plane.touch(&grid.placed(pose));
-            tried += 1;
-            unknown += u64::from(model.counts_of(&imprint).is_empty());
+            tried += weight;
+            if model.counts_of(&imprint).is_empty() {
+                unknown += weight;
+            }
         }
     }
     (tried > 0).then_some((unknown, tried))
@@ -135,4 +139,41 @@ fn finer(range: &DecimalRange, step: f64) -> Option<DecimalRange> {
     format!("{:.2}:{last:.2}:{step}", range.value(0))
         .parse()
         .ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::Anchor;
+    use crate::recognition::{NamedShape, Training};
+    use crate::sensor::Sensor;
+
+    /// Returns the result for a bar and a disc with these weights.
+    fn between(weights: [u32; 2]) -> (u64, u64) {
+        let sensor = Sensor::default();
+        let [bar, disc] = [Figure::rectangle(6.0, 2.0), Figure::ellipse(0.6, 0.6)];
+        let shapes = [("bar", bar), ("disc", disc)].into_iter().zip(weights);
+        let shapes = shapes.map(|((name, figure), weight)| {
+            NamedShape::new(name, figure.on(&sensor).expect("in range")).weighted(weight)
+        });
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("5:5.75:0.25"))
+            .with(Axis::Y0, range("5:5.75:0.25"))
+            .with(Axis::Angle, range("0:150:30"));
+        let training = Training::new(shapes, sensor, Anchor::Centre, ranges);
+        let model = training.expect("a set").run().expect("not stopped");
+        unknown_between(&model).expect("a coarse grid")
+    }
+
+    #[test]
+    fn poses_between_count_with_the_weight_of_their_shape() {
+        let (bar, both) = (between([2, 1]), between([1, 1]));
+        let of_bar = bar.0 - both.0;
+        let of_disc = both.0 - of_bar;
+        assert!(of_bar > of_disc, "{of_bar} {of_disc}");
+        assert_eq!((both.1, bar.1), (200, 300));
+        assert_eq!(between([100, 1]), (100 * of_bar + of_disc, 10_100));
+    }
 }
