@@ -292,8 +292,9 @@ Examples:
 /// `taxel model confusion`: what the numbers mean.
 pub(crate) const MODEL_CONFUSION_EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
-numbers count touches, one for each pose. 'certain' counts the touches whose
-imprint only one shape can leave.
+numbers count touches, one for each pose, multiplied by the weight of its shape
+if the shapes have weights. 'certain' counts the touches whose imprint only one
+shape can leave.
 
 --given, --greedy and --round use descriptors that do not depend on the
 position of the imprint: na, nae, ce, p, f, roundness, area, diagonals,
