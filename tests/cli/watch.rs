@@ -66,13 +66,13 @@ fn a_stream_is_a_filter_in_a_pipeline() {
     assert!(found[4]["time"].as_f64().is_some_and(|time| time >= 0.0));
     assert_eq!(
         run.stderr,
-        "standard input: 1 frame dropped so far (torn, short, long or garbled), the last: 1 x\n"
+        "warning: standard input: 1 frame dropped so far (torn, short, long or garbled), the last: 1 x\n"
     );
     let lines = "1 2 3 4\n1 2 3 4\n1 2 3\n1 2 3 4\n";
     let run = taxel("watch - --rows 1 --columns 4", lines);
     assert_eq!(
         run.stderr,
-        "standard input: 1 frame dropped so far (torn, short, long or garbled), the last: 1 2 3 (3 numbers, expected 4)\n"
+        "warning: standard input: 1 frame dropped so far (torn, short, long or garbled), the last: 1 2 3 (3 numbers, expected 4)\n"
     );
     let run = taxel("watch - --once", [0xff; 100]);
     assert_eq!(run.status, Some(1));

@@ -12,9 +12,9 @@
 //! {"frame":0,"label":null,"time":null,"channel":null,"sum":42,"max":9,"rule":{"at_least":3,"from":"flag"},"imprint":[…
 //! ```
 //! Without a threshold, frames are answered with `"imprint":null`. With a tare, the first frames wait until it is
-//! complete and are then answered together. Oddities go to standard error, a line each, after the name of the source:
-//! `/dev/ttyUSB0: 12 frames dropped so far (torn, short, long or garbled), the last: \x00\x07\xff`. On a terminal,
-//! the screen's live page opens instead ([`request`]).
+//! complete and are then answered together. Oddities go to standard error, a line each, with the name of the source:
+//! `warning: /dev/ttyUSB0: 12 frames dropped so far (torn, short, long or garbled), the last: \x00\x07\xff`. On a
+//! terminal, the screen's live page opens instead ([`request`]).
 //!
 //! ```text
 //! acquire -> ChannelGate -> WatchRecording: each frame of the channel
@@ -196,9 +196,7 @@ impl Watcher<'_> {
             AcquireEvent::Tick(counts) => self.tick(counts),
             AcquireEvent::Ended(counts) => self.reports.end(counts),
             event => {
-                if let Some(text) = self.reports.remark(event) {
-                    self.reports.say(&text);
-                }
+                self.reports.remark(event);
                 Ok(())
             }
         };
@@ -223,7 +221,7 @@ impl Watcher<'_> {
             let view = &self.processing.view;
             self.processing.tare = info.tare_for(view).cloned();
             if let Some(unused) = processing::unused_tare(&self.asked.processing, info, view) {
-                self.reports.say(&format!("warning: {unused}"));
+                self.reports.warn(&unused);
             }
         }
         let (tare, rule) = (self.processing.tare.clone(), self.rule);
@@ -321,7 +319,7 @@ impl Watcher<'_> {
         })?;
         self.processing.tare = Some(tare);
         if let Some(unknown) = processing::unknown_step(&self.processing) {
-            self.reports.say(&format!("warning: {unknown}"));
+            self.reports.warn(unknown);
         }
         waiting.iter().try_for_each(|frame| self.answer(frame))
     }

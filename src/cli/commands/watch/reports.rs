@@ -11,7 +11,7 @@ use crate::formats::value::counted;
 /// The shortest time between two reports of dropped frames.
 const REPORT: Duration = Duration::from_secs(1);
 
-/// The reports about a source, which begin with its name.
+/// The reports about a source: lines that begin with its name, warnings with the word before it.
 pub(super) struct SourceReports<'a> {
     source: &'a FrameSource,
     /// The format of streams that the settings name; None if a flag names one.
@@ -46,16 +46,25 @@ impl<'a> SourceReports<'a> {
         (self.note)(&line);
     }
 
-    /// Returns the note about an oddity of the source; None for any other event.
-    pub(super) fn remark(&self, event: AcquireEvent<'_>) -> Option<String> {
-        Some(match event {
+    /// Notes a warning about the source, in the same form as `taxel frames`.
+    pub(super) fn warn(&mut self, text: &str) {
+        let line = format!("warning: {}: {text}", self.source.name());
+        (self.note)(&line);
+    }
+
+    /// Notes an oddity of the source; any other event is ignored.
+    pub(super) fn remark(&mut self, event: AcquireEvent<'_>) {
+        let text = match event {
             AcquireEvent::Silent(silence) => silence.reason(self.source.unused_baud().is_none()),
             AcquireEvent::Lost(error) => AcquireEvent::lost(error),
             AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
-            AcquireEvent::Note(note) => format!("warning: {note}{}", note_advice(note)),
+            AcquireEvent::Note(note) => {
+                return self.warn(&format!("{note}{}", note_advice(note)));
+            }
             AcquireEvent::Anew(how) => how.to_string(),
-            _ => return None,
-        })
+            _ => return,
+        };
+        self.say(&text);
     }
 
     /// Returns an error of the source with this reason.
@@ -115,7 +124,7 @@ impl<'a> SourceReports<'a> {
         if let Some(reason) = &counts.reason {
             text += &format!(" ({reason})");
         }
-        self.say(&text);
+        self.warn(&text);
     }
 
     /// Returns an error if the stream cannot be decoded without more flags.
