@@ -142,8 +142,25 @@ fn frames_are_chosen_by_number_label_or_sum() {
     unanswered(
         "tekscan.asf",
         "--label 0 --at-least 9",
-        "no frame is labelled 0",
+        "no frame is labelled 0; the labels go from 1 to 3",
     );
+    for (labels, message) in [
+        (
+            "",
+            "no frame is labelled 3: the frames have no labels, only numbers; choose one with --frame",
+        ),
+        (
+            "\"label\":7,",
+            "no frame is labelled 3; the only label is 7",
+        ),
+    ] {
+        let run = taxel(
+            "frames - --label 3 --at-least 9",
+            format!("{{{labels}\"frame\":[[1,2],[3,4]]}}\n"),
+        );
+        let expected = format!("error: standard input: {message}\n");
+        assert_eq!((run.status, run.stderr), (Some(1), expected));
+    }
 }
 
 #[test]
@@ -701,7 +718,7 @@ fn deviations_without_noise_or_a_step_are_warned_about() {
     let equal = "all values of the tare are equal, so their step is unknown; a cell counts as active if it exceeds its tare \
                  by 1 in the sensor's unit\n";
     let warning = format!("warning: {path}: {equal}");
-    let watch_warning = format!("standard input: warning: {equal}");
+    let watch_warning = format!("warning: standard input: {equal}");
     for (second, last, na, stderr) in [
         ("0", "0.9", 0, &*warning),
         ("0", "1", 1, &warning),
@@ -775,6 +792,20 @@ fn a_plain_table_of_factors_is_read_as_a_gain() {
         &flags,
         "expected a table: a line for each row",
     );
+    for (table, message) in [
+        ("1,x\n", "line 1, column 2: found \"x\", expected a number"),
+        (
+            "1,2\n3,x\n",
+            "line 2, column 2: found \"x\", expected a number",
+        ),
+        (
+            "1,x\n2,3\n",
+            "line 1, column 2: found \"x\", expected a number",
+        ),
+    ] {
+        std::fs::write(&path, table).expect("written");
+        unanswered("tekscan.asf", &flags, message);
+    }
     std::fs::write(&path, "a word\n").expect("written");
     unanswered("tekscan.asf", &flags, "not a recording of a known format");
     std::fs::copy(sample("tekscan.asf"), &path).expect("copied");

@@ -211,7 +211,18 @@ fn write_noise(
 /// Returns the reason why an undamaged recording has no such frame.
 fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
     match choice {
-        FrameChoice::Label(label) => format!("no frame is labelled {label}"),
+        FrameChoice::Label(label) if listed.frames > 0 => {
+            let found = match listed.labels {
+                None => {
+                    ": the frames have no labels, only numbers; choose one with --frame".to_owned()
+                }
+                Some((least, greatest)) if least == greatest => {
+                    format!("; the only label is {least}")
+                }
+                Some((least, greatest)) => format!("; the labels go from {least} to {greatest}"),
+            };
+            format!("no frame is labelled {label}{found}")
+        }
         FrameChoice::Number(number) if listed.frames > 0 => match listed.frames - 1 {
             0 => format!("no frame {number}; the recording has only frame 0"),
             last => format!("no frame {number}, expected 0 to {last}"),

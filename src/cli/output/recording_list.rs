@@ -39,6 +39,8 @@ pub(crate) struct ListedChannel {
     pub(crate) values: u64,
     /// The largest number of cells with a value in a frame.
     cells: usize,
+    /// The least and the greatest label of its frames; None if they have no labels.
+    pub(crate) labels: Option<(i64, i64)>,
     /// The cell of the whole sensor at which frames begin, if the recording states it.
     first: Option<FirstCell>,
     /// The times of its frames; None if they have no times.
@@ -105,6 +107,10 @@ impl ListedChannel {
                 backwards: None,
             });
             self.times = Some(begun.with(frame.number, time));
+        }
+        if let Some(label) = frame.label {
+            let (least, greatest) = self.labels.unwrap_or((label, label));
+            self.labels = Some((least.min(label), greatest.max(label)));
         }
         let label = frame.label.and_then(|label| u64::try_from(label).ok());
         if self

@@ -148,7 +148,7 @@ fn first_fitting(
 /// a single row would be a frame of unknown shape, and a single column not even a table.
 ///
 /// # Errors
-/// Returns [`RecordingError::Unknown`] if the text does not begin with a line of numbers or is larger than a frame,
+/// Returns [`RecordingError::Unknown`] if the text does not begin with a number or is larger than a frame,
 /// and an error if a row has another number of values than the first, or anything other than numbers.
 #[cfg(feature = "cli")]
 pub(crate) fn read_rows(
@@ -159,10 +159,12 @@ pub(crate) fn read_rows(
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let first = lines.line();
     let separator = Separator::of(first);
+    // A row that has a word among its numbers is an error with its column, but words alone are no table.
     let is_row = !is_blank(first)
         && separator
             .fields(first)
-            .all(|field| separator.is_numeric(field));
+            .next()
+            .is_some_and(|field| separator.is_numeric(field));
     let columns = side(separator.fields(first).count()).filter(|_| is_row);
     let mut rows = 1_usize;
     while lines.advance()? && !is_blank(lines.line()) {
