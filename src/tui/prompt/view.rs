@@ -119,7 +119,7 @@ fn as_many_as_fit(words: &[&str], room: usize) -> String {
         // The last word needs no room behind it for the number of the others.
         let behind = match left {
             1 => String::new(),
-            _ => format!(" … {} more", left - 1),
+            _ => format!("  … {} more", left - 1),
         };
         let used = text.chars().count() + gap.len() + word.chars().count();
         if used + behind.chars().count() > room {
@@ -147,5 +147,16 @@ mod tests {
         ] {
             assert_eq!(last_part(path), shown);
         }
+    }
+
+    #[test]
+    fn the_number_of_other_candidates_is_never_cut() {
+        let words = ["one", "three", "eleven", "two", "seventeen"];
+        let least = as_many_as_fit(&words, 0).chars().count();
+        for room in least..60 {
+            let text = as_many_as_fit(&words, room);
+            assert!(text.chars().count() <= room, "{room}: {text}");
+        }
+        assert_eq!(as_many_as_fit(&words, 24), "   one  three  … 3 more");
     }
 }
