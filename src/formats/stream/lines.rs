@@ -308,11 +308,13 @@ impl LinesDecoder {
         let has_rows = self.current.rows > 0 || is_torn;
         // Only lines and no empty one: they are frames, or the rows of a single frame.
         if self.size.present().is_none() && !self.parted && has_rows {
-            let rows = usize::from(self.current.rows);
-            let values = self.current.values.len().checked_div(rows);
-            // Rows of different lengths do not show it.
-            let values = values.filter(|_| !self.current.broken);
-            output.counts.unshaped = Some(values.unwrap_or(0) as u64);
+            let values = match usize::from(self.current.rows) {
+                // Neither no rows nor rows of different lengths show it.
+                0 => 0,
+                _ if self.current.broken => 0,
+                rows => self.current.values.len() / rows,
+            };
+            output.counts.unshaped = Some(values as u64);
             self.current.clear();
             return;
         }

@@ -97,9 +97,9 @@ impl RowBlock {
         self.wrong = wrong;
     }
 
-    /// Returns why the block is not a frame: the stream ended within a row, a single value stands above it, or a row has
-    /// another number of numbers than the rows above it or than was given, or too many. None if something else is wrong. `named` are the given
-    /// rows and columns; `parted` tells whether the stream has empty lines.
+    /// Returns why the block is not a frame: the stream ended within a row, a single value stands above it, or a row
+    /// has another number of numbers than the rows above it or than was given, or too many. None if something else is
+    /// wrong. `named` are the given rows and columns; `parted` tells whether the stream has empty lines.
     pub(super) fn reason(&self, named: Option<FrameSize>, parted: bool) -> Option<String> {
         // Even the right number of numbers may lack the last digits.
         if self.is_torn {
