@@ -67,7 +67,7 @@ impl StreamReader<'_, '_> {
                 }
                 Ok(ReadOutcome::End) => {
                     self.reporter.check_start()?;
-                    if self.reporter.finish().is_continue() {
+                    if self.end().is_continue() {
                         let _ = self.reporter.report_end();
                     }
                     return Ok(());
@@ -91,6 +91,16 @@ impl StreamReader<'_, '_> {
         // No more is wanted.
         let _ = self.reporter.cut_off();
         Ok(())
+    }
+
+    /// Reports what is left at the end of the source. If the source was to be read to its end, as a file is, that end
+    /// is no accident. A live pipe may end since its writer died within a number.
+    fn end(&mut self) -> ControlFlow<()> {
+        if self.options.playback == Playback::Once && !self.source.comes_back() {
+            self.reporter.finish()
+        } else {
+            self.reporter.cut_off()
+        }
     }
 
     /// Opens the source. Returns None if no more is wanted meanwhile.

@@ -352,6 +352,32 @@ fn only_a_serial_line_has_a_baud_rate() {
 }
 
 #[test]
+fn a_last_line_without_a_line_break_counts_only_if_the_source_is_read_to_its_end() {
+    let input = "1,2,3,40\n5,6,7,8";
+    let (live, once) = (
+        "watch - --rows 2 --columns 2",
+        "watch - --rows 2 --columns 2 --once",
+    );
+    let run = taxel(live, input);
+    assert_eq!(
+        (run.status, lines(&run.stdout).len()),
+        (Some(0), 1),
+        "{}",
+        run.stderr
+    );
+    let said = "the last: 5,6,7,8 (no line break after it)";
+    assert!(run.stderr.contains(said), "{}", run.stderr);
+    let run = taxel(once, input);
+    assert_eq!(
+        (run.status, lines(&run.stdout).len()),
+        (Some(0), 2),
+        "{}",
+        run.stderr
+    );
+    assert_eq!(run.stderr, "");
+}
+
+#[test]
 fn frames_of_another_size_do_not_end_the_stream() {
     let wide = "1 2 3\n\n".repeat(5);
     let input = stream(0..3) + &wide + &stream(3..7);
