@@ -1,5 +1,7 @@
 //! Filters the imprints of an atlas by an expression that the user types: `na>=40 holes=0 f<12`.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use crate::atlas::distinct::Atlas;
@@ -262,9 +264,11 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
         let found = ",".to_owned();
         return Err(FilterError::Joined { found });
     }
-    let (number, unit) = match typed.strip_suffix('%') {
-        Some(number) if quantity.is_share() => (number, 0.01),
-        _ => (typed, 1.0),
+    // The hundredth of a decimal, not of its rounded value: 70% is 0.7, but 70 * 0.01 is not.
+    let in_hundredths = typed.strip_suffix('%').filter(|_| quantity.is_share());
+    let number = match in_hundredths {
+        Some(number) => Cow::from(format!("{number}e-2")),
+        None => Cow::from(typed),
     };
     let value = number.parse().ok().filter(|value: &f64| value.is_finite());
     let Some(value) = value else {
@@ -274,8 +278,8 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     let condition = Condition {
         quantity,
         relation,
-        number: value * unit,
-        half: half_a_unit(number) * unit,
+        number: value,
+        half: half_a_unit(&number),
     };
     Ok((condition, rest))
 }
@@ -415,6 +419,11 @@ mod tests {
             filter("fill=64.3%").keeps(&atlas),
             filter("fill=0.643").keeps(&atlas)
         );
+        // Each percent is the decimal that it stands for.
+        for percent in 0..=100 {
+            let decimal = format!("fill>={}.{:02}", percent / 100, percent % 100);
+            assert_eq!(filter(&format!("fill>={percent}%")), filter(&decimal));
+        }
         // Only shares are shown in percent, and a part of a point has no symbol of its own.
         for wrong in ["na>50%", "fill>%", "cg>1"] {
             assert!(wrong.parse::<AtlasFilter>().is_err(), "{wrong}");
