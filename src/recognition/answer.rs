@@ -267,7 +267,11 @@ fn may_be_cut_off(touch: &Imprint, dead: Option<&Imprint>) -> bool {
 
 /// Returns the answer that a posterior gives.
 fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answer {
-    let Posterior { ranking, possible } = posterior;
+    let Posterior {
+        ranking,
+        likeliest,
+        possible,
+    } = posterior;
     let mut answer = Answer {
         state: AnswerState::Unknown,
         shape: None,
@@ -279,15 +283,13 @@ fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answ
     let Some(&(first, most)) = answer.ranking.first() else {
         return answer;
     };
-    let others = answer.ranking[1..].iter();
-    let equal = others.take_while(|&&(_, other)| other == most);
-    let equal: Vec<usize> = equal.map(|&(shape, _)| shape).collect();
     answer.shape = Some(first);
     answer.state = if reject_below.is_some_and(|least| most < least) {
         answer.shape = None;
         AnswerState::Rejected
-    } else if !equal.is_empty() {
-        answer.tied = std::iter::once(first).chain(equal).collect();
+    } else if likeliest > 1 {
+        let tied = answer.ranking.iter().take(likeliest);
+        answer.tied = tied.map(|&(shape, _)| shape).collect();
         AnswerState::Tied
     } else if possible == 1 && !at_rim {
         AnswerState::Certain

@@ -17,6 +17,8 @@ const SAME: f64 = 1e-12;
 pub(super) struct Posterior {
     /// The shapes of positive probability, the likeliest first; equally likely ones in the order of the set.
     pub(super) ranking: Vec<(usize, f64)>,
+    /// The number of shapes at the beginning of the ranking that are equally likely.
+    pub(super) likeliest: usize,
     /// The number of possible shapes. The ranking may have fewer: some probabilities may be too small for an `f64`.
     pub(super) possible: usize,
 }
@@ -25,25 +27,30 @@ impl Posterior {
     /// Creates a posterior from the odds of the possible shapes, in the order of the set.
     pub(super) fn of_odds(mut odds: Vec<(usize, Odds)>) -> Self {
         odds.sort_by(|(_, one), (_, other)| other.cmp(one));
+        let equal = |(_, one): &(usize, Odds), (_, other): &(usize, Odds)| one.cmp(other).is_eq();
         let products: Option<Vec<u128>> = odds.iter().map(|(_, odds)| odds.product()).collect();
         let total = products.as_ref().and_then(|all| {
             all.iter()
                 .try_fold(0_u128, |sum, own| sum.checked_add(*own))
         });
-        let possible = odds.len();
         let ranking = if let (Some(products), Some(total)) = (products, total) {
             let shares = products.into_iter().map(|own| share(own, total));
             odds.iter().map(|&(shape, _)| shape).zip(shares).collect()
         } else {
-            let groups = odds.chunk_by(|(_, one), (_, other)| one.cmp(other).is_eq());
-            // Equal products of different factors have different rounding errors.
-            let logarithms = groups.flat_map(|group| {
-                let logarithm = group[0].1.logarithm;
+            let mut least = f64::INFINITY;
+            let logarithms = odds.chunk_by(equal).flat_map(|group| {
+                // Rounding errors must neither part equal products nor change the order of others.
+                least = group[0].1.logarithm.min(least);
+                let logarithm = least;
                 group.iter().map(move |&(shape, _)| (shape, logarithm))
             });
             normalised(logarithms.collect())
         };
-        Self { ranking, possible }
+        Self {
+            likeliest: odds.chunk_by(equal).next().map_or(0, <[_]>::len),
+            possible: odds.len(),
+            ranking,
+        }
     }
 
     /// Creates a posterior from the logarithms of the odds after some touches; −∞ for odds of 0.
@@ -53,7 +60,11 @@ impl Posterior {
         possible.sort_by(|(_, one), (_, other)| other.total_cmp(one));
         let tolerance = SAME * float(touches.max(1) as u64);
         let equal = |(_, one): &(usize, f64), (_, other): &(usize, f64)| one - other <= tolerance;
+        let mut likeliest = 0;
         for tied in possible.chunk_by_mut(equal) {
+            if likeliest == 0 {
+                likeliest = tied.len();
+            }
             let greatest = tied[0].1;
             for (_, logarithm) in tied.iter_mut() {
                 *logarithm = greatest;
@@ -61,6 +72,7 @@ impl Posterior {
             tied.sort_by_key(|&(shape, _)| shape);
         }
         Self {
+            likeliest,
             possible: possible.len(),
             ranking: normalised(possible),
         }
@@ -75,7 +87,10 @@ fn normalised(logarithms: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
     for (_, own) in &mut odds {
         *own = libm::exp(*own - most);
     }
-    let sum: f64 = odds.iter().map(|(_, own)| own).sum();
+    // Added up in the order of the set, whatever the ranking.
+    let mut in_order = odds.clone();
+    in_order.sort_by_key(|&(shape, _)| shape);
+    let sum: f64 = in_order.iter().map(|(_, own)| own).sum();
     let shares = odds.into_iter().map(|(shape, own)| (shape, own / sum));
     shares.filter(|&(_, share)| share > 0.0).collect()
 }
@@ -209,10 +224,26 @@ mod tests {
         let posterior =
             Posterior::of_odds(vec![(0, odds(&one)), (2, odds(&[1])), (4, odds(&other))]);
         assert_eq!(posterior.ranking[..2], [(0, 0.5), (4, 0.5)]);
-        assert_eq!(posterior.possible, 3);
+        assert_eq!((posterior.possible, posterior.likeliest), (3, 2));
         // These have the correctly rounded probabilities.
         let posterior = Posterior::of_odds(vec![(0, odds(&[1, 1])), (1, odds(&[2, 3]))]);
         assert_eq!(posterior.ranking, [(1, 6.0 / 7.0), (0, 1.0 / 7.0)]);
+    }
+
+    #[test]
+    fn odds_that_differ_are_ranked_by_their_products_also_if_their_probabilities_are_equal() {
+        // (n − 1)(n + 1) is less than n².
+        let large = 1_799_999;
+        for more in [0, 40] {
+            let [less, most] = [[large - 1, large + 1], [large, large]];
+            let with = |own: [u64; 2]| odds(&[&own[..], &vec![3; more]].concat());
+            let posterior = Posterior::of_odds(vec![(0, with(less)), (1, with(most))]);
+            assert_eq!(posterior.likeliest, 1, "{more}");
+            let [(1, first), (0, second)] = posterior.ranking[..] else {
+                panic!("{more}: {:?}", posterior.ranking);
+            };
+            assert!(first >= second, "{more}: {first} {second}");
+        }
     }
 
     #[test]
