@@ -214,6 +214,15 @@ fn a_held_shape_has_its_place_on_a_low_screen() {
         &sized((60, 20), false, "pwasher<Enter><Enter>g<Right>"),
         &["\nat 2.01, 2.00, 0°, zoom 1.00 × 1.00  held, step 0.01\n"],
     );
+    // The step is shown on any screen, since + and - change it.
+    shows(
+        &sized((50, 15), false, "pwasher<Enter><Enter>g<Right>"),
+        &["\nat 2.01, 2.00  held, step 0.01\n"],
+    );
+    shows(
+        &sized((30, 10), false, "pwasher<Enter><Enter>g<Right>+"),
+        &["\nat 2.01, 2.00  held, step 0.1\n"],
+    );
     // Otherwise the number keeps its label as long as possible.
     shows(
         &sized((60, 20), false, "f<Enter>"),

@@ -136,8 +136,8 @@ fn described(app: &App, seen: &Reading) -> String {
     main.chain(all).collect::<Vec<_>>().join("  ")
 }
 
-/// Returns where a shape lies: its position and angle, and the zoom of a picture.
-fn placed(source: &Source) -> String {
+/// Returns where a shape lies: its position alone, and with its angle and the zoom of a picture.
+fn placed(source: &Source) -> [String; 2] {
     let text = |parameter: Parameter| Some(parameter.format(source.get(parameter)?));
     let all =
         |parameters: [Parameter; 2]| parameters.map(text).into_iter().collect::<Option<Vec<_>>>();
@@ -145,11 +145,11 @@ fn placed(source: &Source) -> String {
     let angle = text(Parameter::Angle).map(|angle| format!("{angle}°"));
     let zoom =
         all([Parameter::ZoomX, Parameter::ZoomY]).map(|by| format!("zoom {}", by.join(" × ")));
-    [place, angle, zoom]
-        .into_iter()
-        .flatten()
-        .collect::<Vec<_>>()
-        .join(", ")
+    let joined = |parts: &[&Option<String>]| {
+        let parts = parts.iter().filter_map(|part| part.as_deref());
+        parts.collect::<Vec<_>>().join(", ")
+    };
+    [joined(&[&place]), joined(&[&place, &angle, &zoom])]
 }
 
 /// Returns the line about the taxel under the cursor and the step of moving; for a held shape that has no line of its
@@ -173,8 +173,14 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
         (Some(source), true) => {
             let step = format!("held, step {}", app.step.length());
             if panes.source.height == 0 {
-                let place = app.theme().text(&placed(source)).into_owned();
-                let lines = [line(&[&place, &step, &all]), line(&[&place, &step]), place];
+                let [position, place] =
+                    placed(source).map(|text| app.theme().text(&text).into_owned());
+                let lines = [
+                    line(&[&place, &step, &all]),
+                    line(&[&place, &step]),
+                    line(&[&position, &step]),
+                    step,
+                ];
                 return fitting(&lines);
             }
             step
