@@ -117,3 +117,25 @@ fn arrays_before_a_damaged_one_are_reported() {
     let expected = "right: not a numpy array: expected a header of version 1 to 3";
     assert_eq!(error(&found).as_deref(), Some(expected));
 }
+
+#[test]
+fn an_archive_that_is_cut_before_its_frames_is_not_called_one_without_frames() {
+    let times = array("<f8", "3,", &[0; 24]);
+    let pad = array("|u1", "3, 1, 2", &[1; 6]);
+    let bytes = archive(&[("time.npy", &times), ("pad.npy", &pad)]);
+    let whole = archive(&[("time.npy", &times)]);
+    let second = bytes
+        .windows(4)
+        .skip(1)
+        .position(|window| window == b"PK\x03\x04");
+    let second = second.expect("a second header") + 1;
+    for length in [second - 1, second, second + 10] {
+        let cut = recorded(&bytes[..length], None);
+        assert_eq!(error(&cut).as_deref(), Some(CUT), "{length} bytes");
+    }
+    let message = error(&recorded(&whole, None)).expect("no frames");
+    assert!(
+        message.starts_with("no array of two or three axes"),
+        "{message}"
+    );
+}

@@ -265,8 +265,8 @@ fn is_atlas_or_model(arrays: &[ArchiveArray]) -> bool {
         && matches!(&*second.name, "rows" | "height")
 }
 
-/// Returns all arrays with their headers, up to the first damaged one and with its error. An atlas or a model is
-/// refused.
+/// Returns all arrays with their headers, up to the first damaged one and with its error, or that of a cut archive. An
+/// atlas or a model is refused.
 fn arrays<R: Read + Seek>(
     archive: &mut Archive<'_, R>,
 ) -> Result<(Vec<ArchiveArray>, Option<RecordingError>), RecordingError> {
@@ -274,7 +274,9 @@ fn arrays<R: Read + Seek>(
         let message = format!("more than {MOST_ARRAYS} files in the archive");
         return Err(RecordingError::damaged(message));
     }
-    let (mut arrays, mut damage) = (Vec::new(), None);
+    let mut arrays = Vec::new();
+    // Behind the cut there may be more.
+    let mut damage = archive.is_cut().then(|| RecordingError::damaged(CUT));
     for index in 0..archive.len() {
         match array(archive, index) {
             Ok(array) => arrays.extend(array),
