@@ -1041,7 +1041,7 @@ fn a_layer_that_is_switched_on_an_empty_matrix_comes_with_the_next_shape() {
     then(
         &mut session,
         "b",
-        &["\nwith rectangle, CG (G) and CD (D): no region: the matrix is empty"],
+        &["\nwith rectangle, CG (G) and CD (D), once there is a region"],
     );
     then(
         &mut session,

@@ -417,7 +417,7 @@ fn switch_layer(app: &mut App, layer: Layer) {
         (false, ..) => format!("without {name}"),
         (true, false, _) => format!("with {name}"),
         (true, true, Layer::Outline) => format!("with {name}: {}", has_none(app)),
-        (true, true, Layer::Rectangle) => format!("with {name}: {NO_REGION}"),
+        (true, true, Layer::Rectangle) => format!("with {name}, once there is a region"),
     };
     inform(app, text);
 }
