@@ -15,18 +15,22 @@ mod grid;
 
 mod reach;
 
+mod default_ranges;
+
 mod symmetry;
 
 pub use axis::{Anchor, Axis, PerAxis, Pose, PoseIndex, Ranges};
 pub(crate) use boundary::Boundary;
+#[cfg(feature = "cli")]
+pub(crate) use default_ranges::check_given;
+pub use default_ranges::{
+    GivenRanges, common_ranges, default_ranges, figure_ranges, smallest_sensor,
+};
+#[cfg(feature = "recognition")]
+pub(crate) use default_ranges::{Reach, SensorSides};
 pub use grid::{GridError, MAX_POSES, PoseGrid};
 pub use placed::Placed;
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
-#[cfg(feature = "cli")]
-pub(crate) use reach::check_given;
-pub use reach::{GivenRanges, common_ranges, default_ranges, figure_ranges, smallest_sensor};
-#[cfg(feature = "recognition")]
-pub(crate) use reach::{Reach, SensorSides};
 #[cfg(feature = "recognition")]
 pub(crate) use symmetry::exact_period;
 pub(crate) use symmetry::{AngleClasses, period};
