@@ -309,10 +309,9 @@ impl LinesDecoder {
         // Only lines and no empty one: they are frames, or the rows of a single frame.
         if self.size.present().is_none() && !self.parted && has_rows {
             let values = match usize::from(self.current.rows) {
+                rows if rows > 0 && !self.current.broken => self.current.values.len() / rows,
                 // Neither no rows nor rows of different lengths show it.
-                0 => 0,
-                _ if self.current.broken => 0,
-                rows => self.current.values.len() / rows,
+                _ => 0,
             };
             output.counts.unshaped = Some(values as u64);
             self.current.clear();
