@@ -92,8 +92,9 @@
 //!                     adds                                             requires
 //! (none)              everything except the items below; the only dependencies are glam, libm and serde
 //! json                formats::StoredShape, Job
-//! sweep               pose, atlas, progress, sweep; formats::atlas, archive;     json
-//!                     storage::AtlasFile, PoseFile, UnfinishedFile
+//! sweep               pose, atlas, progress, sweep; formats::atlas,    json
+//!                     archive; storage::AtlasFile, PoseFile,
+//!                     UnfinishedFile
 //! recognition         recognition; formats::read_model, write_model    sweep
 //! frames              formats::recording, stream                       json
 //! mcap (by default)   MCAP files in formats::recording                 frames

@@ -93,8 +93,8 @@ impl StreamReader<'_, '_> {
         Ok(())
     }
 
-    /// Reports what is left at the end of the source. If the source was to be read to its end, as a file is, that end
-    /// is no accident. A live pipe may end since its writer died within a number.
+    /// Reports what is left at the end of the source. A file, or anything that is read to its end, ends as intended. A
+    /// live pipe may end because its writer died in the middle of a number.
     fn end(&mut self) -> ControlFlow<()> {
         if self.options.playback == Playback::Once && !self.source.comes_back() {
             self.reporter.finish()

@@ -430,8 +430,7 @@ fn at_end(end: Endpoint, count: u8) -> u8 {
     }
 }
 
-/// Takes the next larger or smaller step; at the end, the step stays, and a notice says so. Refused if there is no shape
-/// to move.
+/// Takes the next larger or smaller step. A notice says if there is none. Refused if there is no shape to move.
 fn change_step(app: &mut App, direction: i8) {
     if movable(app).is_none() {
         return;
