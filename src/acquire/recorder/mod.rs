@@ -319,7 +319,7 @@ mod tests {
     use crate::acquire::recorder::record_array::header;
     use crate::formats::recording::FrameMark;
 
-    fn begun(path: &Path) -> FrameRecorder {
+    pub(super) fn begun(path: &Path) -> FrameRecorder {
         let metadata = RecordingMetadata::default();
         FrameRecorder::create(path, Existing::Kept, &metadata).expect("begun")
     }

@@ -112,17 +112,11 @@ impl MetadataNotes {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
+    use crate::acquire::recorder::tests::begun;
     use crate::acquire::recorder::{FrameRecorder, metadata_beside};
     use crate::formats::recording::FrameMark;
     use crate::storage::Existing;
-
-    fn begun(path: &Path) -> FrameRecorder {
-        let metadata = RecordingMetadata::default();
-        FrameRecorder::create(path, Existing::Kept, &metadata).expect("begun")
-    }
 
     #[test]
     fn marks_of_frames_that_are_not_recorded_are_left_out() {
