@@ -199,7 +199,9 @@ compile_error!("the features `tui` and `cli` need a Unix-like system; on Windows
 mod memory;
 
 #[cfg(feature = "tui")]
+#[allow(missing_docs, reason = "the program, not a library")]
 pub mod tui;
 
 #[cfg(feature = "cli")]
+#[allow(missing_docs, reason = "the program, not a library")]
 pub mod cli;

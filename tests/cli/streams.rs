@@ -87,7 +87,7 @@ fn the_help_is_the_same_by_flag_and_by_command_and_shorter_by_its_short_flag() {
 
 #[test]
 fn the_version_is_that_of_the_package() {
-    // An optimised build also reports its commit: tests/house/version.rs.
+    // An optimised build also reports its commit.
     let version = concat!("taxel ", env!("CARGO_PKG_VERSION"));
     let shown = taxel("--version", "").stdout;
     let commit = shown.strip_prefix(version).map(str::trim_end);

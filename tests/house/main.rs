@@ -1,15 +1,8 @@
-//! Tests of the project itself: its source keeps the rules of its modules, and its documents say what the program
-//! does.
+//! The documents say what the program does, and the examples run.
 
 #[cfg(feature = "sweep")]
 #[path = "../common/paper.rs"]
 mod paper;
-
-mod laws;
-
-mod source;
-
-mod measure;
 
 #[cfg(feature = "sweep")]
 mod examples;
@@ -23,11 +16,4 @@ mod common;
 mod commands;
 
 #[cfg(feature = "cli")]
-#[path = "../common/skip.rs"]
-mod skip;
-
-#[cfg(feature = "cli")]
 mod docs;
-
-#[cfg(feature = "cli")]
-mod version;

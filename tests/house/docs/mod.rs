@@ -11,7 +11,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use taxel::tui::prompt::commands::commands;
 
 mod commands;
-mod dependencies;
 mod glossary;
 mod links;
 mod recognition;
@@ -45,7 +44,6 @@ const BLOCKS: &[Block] = &[
     ("recognition-want", recognition::want),
     ("recognition-mm", recognition::mm),
     ("recognition-pitch", recognition::pitch),
-    ("dependencies", dependencies::block),
 ];
 
 /// The paper's experiment with positions.
