@@ -7,8 +7,7 @@
 //! Coverages are first computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]) for every shape of
 //! the program ([`Plane::coverages`] says how errors grow). If one lies within 1e-10 of the threshold, it is computed
 //! again with 32 digits ([`Double`]). The taxel is then active unless the coverage falls short of the threshold by more
-//! than 1e-20 ([`Real::TIE`]). For ellipses at a threshold of one half, hardly any coverage needs to be computed at
-//! all: the positions of the cells' centres decide.
+//! than 1e-20 ([`Real::TIE`]).
 //!
 //! No number of digits can decide whether two algebraic expressions of the input are *equal*, so a coverage that
 //! falls short by less than 1e-20 counts as a tie. This is exact for an upright rectangle whose numbers have at most
@@ -16,14 +15,10 @@
 //! 1e-20 without a tie (0.9999999999 × 0.50000000005). Coverages of turned figures given in hundredths come within
 //! 3e-11 of the threshold.
 
-use std::ops::Range;
-
 use crate::geometry::{
-    CentreSampling, Double, Drawn, Ellipse, Extent, Overlap, Pen, Point, Real, Side, Solid,
-    cell_area, row_areas,
+    Double, Drawn, Ellipse, Extent, Overlap, Pen, Point, Real, Side, Solid, cell_area, row_areas,
 };
 use crate::imprint::Imprint;
-use crate::index::from_first;
 use crate::matrix::Matrix;
 use crate::sensor::Sensor;
 
@@ -52,13 +47,10 @@ pub struct Plane {
     sensor: Sensor,
     /// Adds up the areas of a touch. Empty between touches.
     overlap: Overlap<f64>,
-    /// The areas of the last touch, without those of `ellipses`, in pairs of rows, starting with the first pair of
-    /// `drawn`.
+    /// The areas of the last touch in pairs of rows, starting with the first pair of `drawn`.
     areas: Vec<[f64; 2]>,
     /// The cells of the last touch that may have an area.
     drawn: Drawn,
-    /// The ellipses of the last touch whose areas were not computed, because their centres decided.
-    ellipses: CentreSampling,
     /// The imprint of the last touch.
     imprint: Imprint,
 }
@@ -74,7 +66,6 @@ impl Plane {
                 usize::from(sensor.columns()) * usize::from(sensor.rows().div_ceil(2))
             ],
             drawn: Drawn::default(),
-            ellipses: CentreSampling::new(sensor.rows()),
             imprint: Imprint::empty(sensor.size()),
         }
     }
@@ -114,48 +105,16 @@ impl Plane {
     /// Activates the taxels of the empty imprint that a shape covers enough.
     fn activate(&mut self, solid: &impl Solid) {
         self.drawn = Drawn::default();
-        self.ellipses.clear();
         let mut pen = TouchPen {
             overlap: &mut self.overlap,
-            ellipses: &mut self.ellipses,
-            edges: false,
             finite: true,
         };
         solid.draw(&mut pen);
-        let (round, finite) = (!pen.edges, pen.finite);
-        if !finite {
+        if pen.finite {
+            self.activate_by_areas(solid);
+        } else {
             // Clears everything, since the extent of such a shape is not known.
             self.overlap.wipe();
-            self.ellipses.clear();
-        } else if round
-            && self.sensor.threshold() == CentreSampling::THRESHOLD
-            && let Some(rows) = self.ellipses.sample()
-        {
-            self.activate_by_centres(solid, rows);
-        } else {
-            self.ellipses.draw(&mut self.overlap);
-            self.ellipses.clear();
-            self.activate_by_areas(solid);
-        }
-    }
-
-    /// Activates the taxels that are covered enough. For most of them, the position of the cell's centre decides.
-    fn activate_by_centres(&mut self, solid: &impl Solid, rows: Range<i32>) {
-        let columns = self.imprint.mask();
-        for row in rows {
-            let (mut active, open) = self.ellipses.row(row);
-            let (mut open, mut doubtful) = (open & columns, 0);
-            while open != 0 {
-                let column = open.trailing_zeros();
-                open &= open - 1;
-                let excess = self.ellipses.area(column, row) - CentreSampling::THRESHOLD;
-                active = active & !(1 << column) | u64::from(excess > 0.0) << column;
-                doubtful |= u64::from(excess.abs() < DOUBTFUL) << column;
-            }
-            if doubtful != 0 {
-                active = self.decide(solid, from_first(row), active, doubtful);
-            }
-            self.imprint.words_mut()[from_first(row)] = active & columns;
         }
     }
 
@@ -243,27 +202,9 @@ impl Plane {
     pub fn coverages(&self) -> Matrix<f64> {
         let mut all = Matrix::filled(self.sensor.size(), 0.0);
         let width = usize::from(self.sensor.columns());
-        let mut cover = |row: usize, column: usize, area: f64| {
-            all.values_mut()[row * width + column] = rounded_coverage(area);
-        };
         for row in self.drawn.rows.clone() {
             for (column, area) in self.computed(row) {
-                cover(row, column, area);
-            }
-        }
-        if self.ellipses.is_empty() {
-            return all;
-        }
-        // Centres decided, so the areas were not needed.
-        let mut overlap = Overlap::new(self.sensor.columns(), self.sensor.rows());
-        self.ellipses.draw(&mut overlap);
-        let grid = overlap.grid();
-        let drawn = grid.drawn();
-        if !drawn.is_empty() {
-            for row in drawn.rows {
-                for (column, area) in drawn.columns.clone().zip(grid.row(row, &drawn.columns)) {
-                    cover(row, column, area);
-                }
+                all.values_mut()[row * width + column] = rounded_coverage(area);
             }
         }
         all
@@ -290,13 +231,9 @@ fn compare(
     (short, Real::min(nearest[0], nearest[1]))
 }
 
-/// A pen that draws edges at once but only collects ellipses: if there is nothing else, their areas may not be
-/// needed.
+/// A pen that also notes whether areas can be computed.
 struct TouchPen<'a> {
     overlap: &'a mut Overlap<f64>,
-    ellipses: &'a mut CentreSampling,
-    /// Whether the shape has edges.
-    edges: bool,
     /// Whether areas can be computed with all coordinates of the shape: they are finite, and small enough for
     /// ellipses.
     finite: bool,
@@ -317,24 +254,24 @@ fn are_finite(points: &[Point<f64>]) -> bool {
 
 impl Pen<f64> for TouchPen<'_> {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
-        self.edges = true;
         self.finite &= are_finite(&[from, to]);
         self.overlap.edge(from, to);
     }
 
-    #[inline]
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
         let Ellipse {
             centre,
             across,
             along,
         } = *ellipse;
-        self.finite &= is_within_limit(centre) & is_within_limit(across) & is_within_limit(along);
-        self.ellipses.add(ellipse, material);
+        if is_within_limit(centre) && is_within_limit(across) && is_within_limit(along) {
+            self.overlap.ellipse(ellipse, material);
+        } else {
+            self.finite = false;
+        }
     }
 
     fn ring(&mut self, points: &[Point<f64>], material: Side) {
-        self.edges = true;
         self.finite &= are_finite(points);
         self.overlap.ring(points, material);
     }

@@ -47,59 +47,29 @@ pub(super) struct OutlineCounts {
 
 impl OutlineCounts {
     /// Counts a region without holes; `bounds` are its bounds.
-    ///
-    /// Most regions are narrow, and counting a word's bits takes a dozen steps unless the processor is known to have an
-    /// instruction for it. So four rows share a word if at least one column stays free between them.
     pub(super) fn of(filled: &Imprint, bounds: Bounds) -> Self {
-        if bounds.right - bounds.left < 16 {
-            Self::count::<4, 16>(filled, bounds)
-        } else {
-            Self::count::<1, 64>(filled, bounds)
-        }
-    }
-
-    /// Counts the region with `ROWS` rows in each word, `BITS` bits per row.
-    fn count<const ROWS: usize, const BITS: u32>(filled: &Imprint, bounds: Bounds) -> Self {
-        let (full, rest) = bounds.words(filled).as_chunks::<ROWS>();
-        // The first row goes into the lowest bits.
-        let join = |rows: &[u64]| {
-            let add = |word: u64, &row: &u64| word.unbounded_shl(BITS) | row >> bounds.left;
-            rows.iter().rev().fold(0, add)
-        };
-        // The windows below the last row add nothing: they contain at most two taxels, and those are neighbours.
-        let rest = (!rest.is_empty()).then(|| join(rest));
-        let mut words = full.iter().map(|rows| join(rows)).chain(rest);
-        let (mut counts, mut diagonals) = ([0; 4], 0);
-        // Counts the taxels, those with four neighbours, the windows with many, and those with three: side by side, so
-        // that a processor can count two at once.
-        let mut add = |inside: [u64; 2], [many, three, across]: [u64; 3]| {
-            for (count, word) in counts.iter_mut().zip([inside[0], inside[1], many, three]) {
-                *count += u64::from(word.count_ones());
-            }
-            // Diagonals are rare.
-            if across != 0 {
-                diagonals += across.count_ones();
-            }
-        };
-        let (mut before, mut following) = (0, words.next());
-        while let Some(here) = following {
-            following = words.next();
-            let above = here.unbounded_shl(BITS) | before >> (u64::BITS - BITS);
-            let below = here.unbounded_shr(BITS) | following.unwrap_or(0) << (u64::BITS - BITS);
-            let inner = here & here << 1 & here >> 1 & above & below;
+        let words = bounds.words(filled);
+        let (mut taxels, mut inner, mut many, mut three, mut diagonals) = (0, 0, 0, 0, 0);
+        let mut above = 0;
+        for (row, &here) in words.iter().enumerate() {
+            // The windows below the last row add nothing: they contain at most two taxels, and those are neighbours.
+            let below = words.get(row + 1).copied().unwrap_or(0);
+            taxels += here.count_ones();
+            inner += (here & here << 1 & here >> 1 & above & below).count_ones();
             // Bit i of the four words holds the corners of a window. One window lies left of column 0, so the words are
             // shifted up, not down. The window to the right of column 63 is lost by this, and is added separately.
-            add([here, inner], windows(above << 1, above, here << 1, here));
-            if ROWS == 1 {
-                add([0; 2], windows(above >> 63, 0, here >> 63, 0));
+            let beside = [above >> 63, 0, here >> 63, 0];
+            for [upper_left, upper_right, lower_left, lower_right] in
+                [[above << 1, above, here << 1, here], beside]
+            {
+                let own = windows(upper_left, upper_right, lower_left, lower_right);
+                let [own_many, own_three, own_diagonals] = own.map(u64::count_ones);
+                many += own_many;
+                three += own_three;
+                diagonals += own_diagonals;
             }
-            before = here;
+            above = here;
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "an imprint has 4096 taxels"
-        )]
-        let [taxels, inner, many, three] = counts.map(|count: u64| count as u32);
         Self {
             taxels,
             rim: taxels - inner,

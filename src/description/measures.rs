@@ -3,7 +3,6 @@
 //! Coordinates, units and directions are those of [`descriptor`](super::descriptor).
 
 use std::f64::consts::PI;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec2;
 
@@ -11,7 +10,6 @@ use crate::description::chain::{ChainSteps, OutlineCounts};
 use crate::description::exact::ratios;
 use crate::description::region::{Region, RegionKind};
 use crate::imprint::{Bounds, Imprint};
-use crate::sensor::MAX_SIDE;
 
 /// The counts and sums of one region, from which all descriptors are computed. Coordinates and lengths are in cell
 /// sides, directions in degrees counter-clockwise from +x as seen on the screen. If the fields are changed to numbers
@@ -114,7 +112,8 @@ impl Description {
 
     /// Returns the directions of the two diagonals of the upright rectangle, from 0 to below 180 degrees.
     pub fn diagonals(&self) -> [f64; 2] {
-        let rising = rising_diagonal(self.whole_sides());
+        let [width, height] = self.whole_sides().map(f64::from);
+        let rising = libm::atan2(height, width).to_degrees();
         [rising, 180.0 - rising]
     }
 
@@ -174,31 +173,6 @@ impl Description {
     }
 }
 
-/// Returns the direction of the rising diagonal of a rectangle of this width and height, in degrees. An arc
-/// tangent takes as long as several other descriptors and there are few rectangles of whole taxels, so it is computed
-/// once for each of them.
-fn rising_diagonal([width, height]: [i32; 2]) -> f64 {
-    const LARGEST: usize = MAX_SIDE as usize;
-    /// The bits of each direction; 0 before it is computed, since no direction is 0.
-    static COMPUTED: [[AtomicU64; LARGEST]; LARGEST] =
-        [const { [const { AtomicU64::new(0) }; LARGEST] }; LARGEST];
-    // Both sides are positive, so there is no quadrant to find: `atan2` would return the same number.
-    let compute = || libm::atan(f64::from(height) / f64::from(width)).to_degrees();
-    let slot = |side: i32| usize::try_from(side - 1).unwrap_or(usize::MAX);
-    let row = COMPUTED.get(slot(width));
-    let Some(computed) = row.and_then(|row| row.get(slot(height))) else {
-        return compute();
-    };
-    match computed.load(Ordering::Relaxed) {
-        0 => {
-            let rising = compute();
-            computed.store(rising.to_bits(), Ordering::Relaxed);
-            rising
-        }
-        bits => f64::from_bits(bits),
-    }
-}
-
 /// Returns the number of taxels, the sum of their columns and the sum of their rows.
 fn sums(taxels: &Imprint, bounds: Bounds) -> (u32, u32, u32) {
     let (mut count, mut doubled, mut rows) = (0, 0, 0);
@@ -217,28 +191,4 @@ fn sums(taxels: &Imprint, bounds: Bounds) -> (u32, u32, u32) {
         rows += row * in_row;
     }
     (count, doubled / 2, rows)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::description::regions;
-
-    #[test]
-    fn the_rising_diagonal_is_the_direction_of_the_corner() {
-        let imprint: Imprint = "#".parse().expect("an imprint");
-        let own = Description::of(&regions(&imprint)[0]);
-        for (right, bottom) in
-            (1..=64).flat_map(|right| (1..=64).map(move |bottom| (right, bottom)))
-        {
-            let rect = Bounds {
-                right,
-                bottom,
-                ..own.rect
-            };
-            let [rising, _] = Description { rect, ..own }.diagonals();
-            let corner = libm::atan2(bottom.into(), right.into()).to_degrees();
-            assert_eq!(rising, corner, "{right} × {bottom}");
-        }
-    }
 }

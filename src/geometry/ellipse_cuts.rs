@@ -120,50 +120,6 @@ impl<T: Real> EllipseCuts<T> {
         [at(middle - half, sector), at(middle + half, -sector)]
     }
 
-    /// Returns where the horizontal line at `y` meets the ellipse: the x on the left and on the right. If it passes by,
-    /// returns the middle twice.
-    pub(crate) fn chord(&self, y: T) -> [T; 2] {
-        self.chords(y, T::ONE)[0]
-    }
-
-    /// Returns the same as [`Self::chord`], and where the line meets the ellipse scaled about its centre by the root of
-    /// `size`.
-    pub(crate) fn chords(&self, y: T, size: T) -> [[T; 2]; 2] {
-        let height = y - self.centre.y;
-        let sin = height * self.inverse.y;
-        let middle = self.centre.x + self.shear.x * height;
-        [T::ONE, size].map(|size| {
-            let half = self.extent.x * (size - sin * sin).sqrt();
-            [middle - half, middle + half]
-        })
-    }
-
-    /// Returns the area of the parallelogram that the axes span.
-    pub(crate) fn span(&self) -> T {
-        self.half_area / T::HALF
-    }
-
-    /// Returns the square of the smaller radius.
-    pub(crate) fn smaller_radius_squared(&self) -> T {
-        // It follows from the sum and the product of the squared radii.
-        let span = self.span();
-        let sum = self.reach.x * self.reach.x + self.reach.y * self.reach.y;
-        let larger = (sum + (sum * sum - T::whole(4) * span * span).sqrt()) * T::HALF;
-        span * span / larger
-    }
-
-    /// Returns the ellipse moved by a vector.
-    pub(crate) fn moved(&self, by: Point<T>) -> Self {
-        Self {
-            centre: self.centre.moved(by),
-            left: self.left.moved(by),
-            top: self.top.moved(by),
-            right: self.right.moved(by),
-            bottom: self.bottom.moved(by),
-            ..*self
-        }
-    }
-
     /// Returns a quarter turn's share of a moment. It is subtracted from the result of [`Self::along`] on a descent to
     /// the right, and added on a descent to the left.
     pub(crate) fn quarter(&self) -> T {

@@ -6,8 +6,6 @@
 //! A shape is any type that implements [`Solid`]: it draws its boundary with a [`Pen`], in numbers of any precision
 //! ([`Real`]). For vertices of your own, use [`Polygon`].
 
-pub(crate) mod circle;
-
 mod real;
 
 mod outline;
@@ -22,10 +20,7 @@ mod overlap;
 
 mod regular;
 
-mod centre_sampling;
-
 pub(crate) use cell_grid::Drawn;
-pub(crate) use centre_sampling::CentreSampling;
 #[cfg(feature = "sweep")]
 pub(crate) use outline::Moving;
 pub use outline::{Ellipse, Extent, Pen, Point, Polygon, Side, Solid, Turn};

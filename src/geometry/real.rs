@@ -15,7 +15,6 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::geometry::circle;
 use crate::index::from_first;
 
 mod sealed {
@@ -104,6 +103,24 @@ pub(crate) fn nearest(number: f64) -> i32 {
     (number + WHOLE).to_bits() as i32
 }
 
+/// Returns the nearest number of right angles, and the degrees left over, exactly.
+fn from_right_angle(degrees: f64) -> (i32, f64) {
+    // A full turn more or less makes no difference.
+    let degrees = degrees % 360.0;
+    let quarter = nearest(degrees / 90.0);
+    (quarter, degrees - 90.0 * f64::from(quarter))
+}
+
+/// Returns sine and cosine of an angle that is larger by some right angles. No zero becomes negative.
+fn turned<T: Real>(quarter: i32, (sin, cos): (T, T)) -> (T, T) {
+    match quarter & 3 {
+        0 => (sin, cos),
+        1 => (cos, T::ZERO - sin),
+        2 => (T::ZERO - sin, T::ZERO - cos),
+        _ => (T::ZERO - cos, sin),
+    }
+}
+
 impl Real for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
@@ -143,18 +160,11 @@ impl Real for f64 {
         f64::abs(self)
     }
     fn sin_cos_degrees(self) -> (Self, Self) {
-        // A full turn more or less makes no difference, and the remainder is exact. But it is a function call.
-        let size = if self.abs() < 360.0 {
-            self.abs()
-        } else {
-            self.abs() % 360.0
-        };
-        let whole = nearest(size);
-        let (sin, cos) = circle::sin_cos(whole, (size - Self::from(whole)).to_radians());
-        (sin * 1_f64.copysign(self), cos)
+        let (quarter, rest) = from_right_angle(self);
+        turned(quarter, libm::sincos(rest.to_radians()))
     }
     fn angle(sin: Self, cos: Self) -> Self {
-        circle::angle(sin, cos)
+        libm::atan2(sin, cos)
     }
 }
 
@@ -342,18 +352,9 @@ impl Real for Double {
         step(step(Self::from(self.high.sqrt())))
     }
     fn sin_cos_degrees(self) -> (Self, Self) {
-        // A full turn more or less makes no difference. The remainder is exact, and so are the degrees left over after
-        // the nearest number of right angles.
-        let degrees = self.high % 360.0;
-        let quarter = nearest(degrees / 90.0);
-        let rest = Self::from(degrees - 90.0 * f64::from(quarter)) + Self::from(self.low);
-        let (sin, cos) = (rest * PI / Self::whole(180)).sin_cos();
-        match quarter & 3 {
-            0 => (sin, cos),
-            1 => (cos, -sin),
-            2 => (-sin, -cos),
-            _ => (-cos, sin),
-        }
+        let (quarter, rest) = from_right_angle(self.high);
+        let rest = Self::from(rest) + Self::from(self.low);
+        turned(quarter, (rest * PI / Self::whole(180)).sin_cos())
     }
     fn angle(sin: Self, cos: Self) -> Self {
         // The error of the f64 angle is so small that it equals its own sine.

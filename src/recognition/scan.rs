@@ -7,14 +7,12 @@
 //! Keys are grouped by their box and their number of taxels, n. If the imprint has C taxels and i of them lie inside
 //! the box, then C − i differ outside and at least |i − n| inside. So a sum over the box bounds the distance of a whole
 //! group in one place, and the largest number of taxels inside any place bounds it in all places: most groups and
-//! places are never compared. What remains are dense loops over keys, compiled for several kinds of processors; `pulp`
-//! picks the code for the registers that this one has.
+//! places are never compared. What remains are dense loops over keys.
 
 use std::cmp::Reverse;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
@@ -434,7 +432,7 @@ impl KeyIndex {
         take: impl FnMut(usize, BoxPosition, u32) -> u32,
     ) {
         let skipped = group.bits + (keys.start - group.keys.start) * windows.length;
-        pulp::Arch::new().dispatch(Comparison {
+        let comparison = Comparison {
             bits: &self.bits[skipped..][..keys.len() * windows.length],
             keys,
             count: group.count,
@@ -442,7 +440,14 @@ impl KeyIndex {
             observed,
             most,
             take,
-        });
+        };
+        match windows.length {
+            1 => comparison.words::<1>(),
+            2 => comparison.words::<2>(),
+            3 => comparison.words::<3>(),
+            4 => comparison.words::<4>(),
+            _ => comparison.words::<0>(),
+        }
     }
 }
 
@@ -460,32 +465,8 @@ struct Comparison<'a, F> {
     take: F,
 }
 
-impl<F: FnMut(usize, BoxPosition, u32) -> u32> WithSimd for Comparison<'_, F> {
-    type Output = ();
-
-    #[expect(
-        clippy::inline_always,
-        reason = "so that it is compiled for the registers that are there"
-    )]
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        match self.windows.length {
-            1 => self.words::<1>(),
-            2 => self.words::<2>(),
-            3 => self.words::<3>(),
-            4 => self.words::<4>(),
-            _ => self.words::<0>(),
-        }
-    }
-}
-
-#[expect(
-    clippy::inline_always,
-    reason = "so that it is compiled for the registers that are there"
-)]
 impl<F: FnMut(usize, BoxPosition, u32) -> u32> Comparison<'_, F> {
     /// Compares keys of `N` words; 0 for any number.
-    #[inline(always)]
     fn words<const N: usize>(mut self) {
         let length = self.windows.length;
         let mut distances = [0_u32; BLOCK];
@@ -521,11 +502,6 @@ impl<F: FnMut(usize, BoxPosition, u32) -> u32> Comparison<'_, F> {
 
 /// Computes the distance of each key of `N` words (0 for any number) from a window: the taxels that differ inside,
 /// and those outside.
-#[expect(
-    clippy::inline_always,
-    reason = "so that it is compiled for the registers that are there"
-)]
-#[inline(always)]
 fn differing<const N: usize>(
     keys: &[u64],
     window: &[u64],

@@ -6,7 +6,6 @@
 use std::f64::consts::FRAC_PI_4;
 
 use crate::geometry::Ellipse;
-use crate::geometry::circle::angle;
 
 /// The amount by which bounds of sections are widened.
 const SLACK: f64 = 1e-12;
@@ -100,7 +99,7 @@ impl EllipseBand {
     /// Returns the integral of [`Self::half`] from the centre on; `half` is its value at `d`.
     fn round(&self, d: f64, half: f64) -> f64 {
         let reach = self.reach_x;
-        0.5 * (d * half + reach * reach * angle(d / reach, half / reach))
+        0.5 * (d * half + reach * reach * libm::atan2(d, half))
     }
 
     /// Prepares the band from `top` to `top + 1`. Returns false if the ellipse does not reach it.

@@ -5,8 +5,7 @@
 //! pieces left of `x` have climbed: piecewise linear, with a corner at each piece's ends. Its integral `W` is piecewise
 //! quadratic, and the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with slope `w(u + 1) − w(u)`. Two pointers
 //! walk the corners of `w`, one cell apart. Between two stops `C` is one quadratic, which is solved for its crossings
-//! of the threshold. The slope is at most 1, so stops that are nearer than the distance of `C` from the threshold can
-//! be skipped.
+//! of the threshold.
 //!
 //! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1], and `W` is a sum of trapezoids. Nothing is
 //! extrapolated, so steep pieces do no harm. The error is below 1e-11.
@@ -249,21 +248,6 @@ impl Polygonal {
             let (stop_behind, stop_ahead) = (behind.right, ahead.right - 1.0);
             let next = Real::min(stop_behind, stop_ahead);
             let excess = right - left - threshold;
-            let safe = u + excess.abs() - 2.0 * DOUBT;
-            if safe > next {
-                spans.set_level(u, Level::of(excess));
-                while near < end && self.stretches[near].right <= safe {
-                    near += 1;
-                }
-                while far < end && self.stretches[far].right - 1.0 <= safe {
-                    far += 1;
-                }
-                (behind, ahead) = (&self.stretches[near], &self.stretches[far]);
-                (low, left) = behind.at(safe);
-                (high, right) = ahead.at(safe + 1.0);
-                u = safe;
-                continue;
-            }
             if next > u {
                 let from = CurvePoint::new(u, excess, high - low);
                 (low, left) = behind.at(next);
