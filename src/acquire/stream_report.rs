@@ -208,7 +208,7 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::recording::{LOOKED_AT, recognised};
+    use crate::formats::recording::recognised;
 
     /// Returns the frames of a pipe that brings these pieces, the number of dropped ones, and the error.
     fn watched(pieces: &[&[u8]]) -> (Vec<String>, u64, Option<String>) {
@@ -273,11 +273,6 @@ mod tests {
         for (stream, frames) in [
             // A line of JSON is judged when it is whole.
             ("{\"n_columns\":2,\"n_rows\":1,\"frame\":[[1,2]]}\n", 1),
-            ("{\"snapshots\":{},\"n_columns\":2,\"frame\":[[1,2]]}\n", 1),
-            (
-                "{\"snapshots\":{},\"n_columns\":2}\n{\"frame\":[[1,2]]}\n",
-                1,
-            ),
             ("boot v1\nDATA_TYPE ready\n\n1 2\n3 4\n\n5 6\n7 8\n\n", 2),
             ("PK ready\n\n1 2\n3 4\n\n5 6\n7 8\n\n", 2),
             ("FRAME,1\n\n1 2\n3 4\n\nFRAME,2\n\n1 2\n3 4\n\n", 2),
@@ -287,23 +282,6 @@ mod tests {
         ] {
             let (found, _, error) = watched_in_any_pieces(stream.as_bytes());
             assert_eq!((found.len(), error), (frames, None), "{stream}");
-        }
-    }
-
-    #[test]
-    fn a_start_without_a_line_is_judged_after_64_kib() {
-        let popu =
-            "{\"a_columns\":1,\"a_rows\":1,\"snapshots\":{\"0\":{\"a_readings\":[".to_owned();
-        let long = popu.clone() + &" ".repeat(LOOKED_AT - popu.len());
-        let refused = Some("a recording (popu), not a stream".to_owned());
-        for (text, error) in [
-            (long.clone() + "\"frame\"", &refused),
-            (long[..LOOKED_AT - 7].to_owned() + "\"frame\"", &None),
-        ] {
-            for size in [1, 100, LOOKED_AT - 1, LOOKED_AT, text.len()] {
-                let pieces: Vec<_> = text.as_bytes().chunks(size).collect();
-                assert_eq!(&watched(&pieces).2, error, "{size}");
-            }
         }
     }
 }

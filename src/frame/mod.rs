@@ -51,7 +51,7 @@ pub(crate) use first_frames::FirstFrames;
 pub use flips::{FlipCounter, FlipReport};
 pub use peak::Peak;
 pub use processing::{Processed, Processing};
-pub use recorded::{FirstCell, Frame, LARGEST_VALUE};
+pub use recorded::{Frame, LARGEST_VALUE};
 pub use rule::Rule;
 pub use set_rule::{RuleOrigin, SetRule};
 #[cfg(feature = "frames")]

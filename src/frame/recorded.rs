@@ -6,15 +6,6 @@ use crate::frame::size::FrameSize;
 /// The largest value that a cell may have; the smallest is its negative. So the sum of a frame is always finite.
 pub const LARGEST_VALUE: f64 = 1e300;
 
-/// The cell of the whole sensor that is the first one of a frame, as the recording counts columns and rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct FirstCell {
-    /// The column.
-    pub column: u32,
-    /// The row.
-    pub row: u32,
-}
-
 /// The values of a sensor's cells at one moment, in the sensor's unit.
 ///
 /// Readers and decoders reuse one frame, so nothing is allocated per frame.
@@ -28,8 +19,6 @@ pub struct Frame {
     pub label: Option<i64>,
     /// The time in seconds since the start of the recording, if known. Times may repeat and go back.
     pub time: Option<f64>,
-    /// The cell of the whole sensor at which the frame begins, if the recording states it.
-    pub first: Option<FirstCell>,
     size: FrameSize,
     values: Vec<f64>,
 }
@@ -49,7 +38,6 @@ impl Frame {
             channel: 0,
             label: None,
             time: None,
-            first: None,
             size,
             values: vec![f64::NAN; size.cells()],
         }
@@ -109,7 +97,6 @@ impl Frame {
             channel: other.channel,
             label: other.label,
             time: other.time,
-            first: other.first,
             size: other.size,
         };
         self.values.clear();
@@ -157,7 +144,7 @@ mod tests {
         let mut frame = Frame::new(FrameSize::of(2, 1));
         frame.values_mut().copy_from_slice(&[1.0, 2.0]);
         (frame.number, frame.channel, frame.label) = (3, 4, Some(5));
-        (frame.time, frame.first) = (Some(0.5), Some(FirstCell { column: 7, row: 6 }));
+        frame.time = Some(0.5);
         let mut copy = Frame::new(FrameSize::of(5, 5));
         copy.copy_from(&frame);
         assert_eq!(format!("{copy:?}"), format!("{frame:?}"));

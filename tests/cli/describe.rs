@@ -128,7 +128,6 @@ fn the_error_for_a_recording_names_the_command_that_reads_it() {
         "u2.npy",
         "xsensor.csv",
         "tekscan.asf",
-        "popu.json",
         "topics.mcap",
         "frames.jsonl",
         "plain.csv",

@@ -25,10 +25,10 @@ fn failure(line: &str, input: impl AsRef<[u8]>) -> String {
 fn a_source_is_never_its_own_target() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    let (own, other, json) = (path("s.npy"), path("other.npy"), path("p.json"));
+    let (own, other, json) = (path("s.npy"), path("other.npy"), path("p.asf"));
     fs::copy(sample("records.npy"), &own).expect("copied");
     fs::hard_link(&own, &other).expect("linked");
-    fs::copy(sample("popu.json"), &json).expect("copied");
+    fs::copy(sample("tekscan.asf"), &json).expect("copied");
     let before = fs::read(&own).expect("read");
     for line in [
         format!("watch {own} --once --write {own} --force"),
@@ -47,7 +47,7 @@ fn a_source_is_never_its_own_target() {
     assert_eq!(fs::read(&own).expect("read"), before);
     assert_eq!(
         fs::read(&json).expect("read"),
-        fs::read(sample("popu.json")).expect("read")
+        fs::read(sample("tekscan.asf")).expect("read")
     );
     assert!(!folder.path().join("s.json").exists());
 }

@@ -692,9 +692,9 @@ fn the_imprint_is_put_on_the_matrix_and_the_source_stays_open() {
 #[test]
 fn an_imprint_of_cells_that_are_not_square_has_no_lengths_in_mm() {
     let samples = "tests/files/frames/samples";
-    let mut page = session(&format!(":watch {samples}/zebris.apd<Enter>"));
+    let mut page = session(&format!(":watch {samples}/xsensor.csv<Enter>"));
     page.frames(1);
-    then(&mut page, "+<Enter>", &["cells of 8 × 8.5 mm are not"]);
+    then(&mut page, "+<Enter>", &["cells of 2.5 × 3 mm are not"]);
     hides(&page, &["pitch"]);
     let mut page = session(&format!(":watch {samples}/tekscan.asf<Enter>"));
     page.frames(1);

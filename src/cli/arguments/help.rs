@@ -460,8 +460,8 @@ Examples:
 
 /// `taxel frames`: the formats of recordings, the order of processing, and what happens to a damaged one.
 pub(crate) const FRAMES_EXAMPLES: &str = "\
-A recording is a file from Tekscan, XSENSOR, emed, zebris or PoPu, or is MCAP,
-NPY, NPZ, JSON lines, the output of 'ros2 topic echo' or a table of numbers.
+A recording is a file from Tekscan or XSENSOR, or is MCAP, NPY, NPZ, JSON lines,
+the output of 'ros2 topic echo' or a table of numbers.
 taxel recognises the format from the content. Without a flag under Frames, it
 lists the channels. Frames are cropped, flipped, turned, masked, tared and
 multiplied by the gain, in this order; then the threshold makes the imprint.

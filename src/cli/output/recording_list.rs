@@ -21,7 +21,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::json;
 use crate::formats::recording::{ChannelInfo, RecordingFormat};
 use crate::formats::value::{counted, decimal};
-use crate::frame::{FirstCell, Frame, FrameSize, Peak, View};
+use crate::frame::{Frame, FrameSize, Peak, View};
 use crate::parameter::number::short;
 
 /// A channel of a recording.
@@ -41,8 +41,6 @@ pub(crate) struct ListedChannel {
     cells: usize,
     /// The least and the greatest label of its frames; None if they have no labels.
     pub(crate) labels: Option<(i64, i64)>,
-    /// The cell of the whole sensor at which frames begin, if the recording states it.
-    first: Option<FirstCell>,
     /// The times of its frames; None if they have no times.
     times: Option<FrameTimes>,
     /// The numbers of the marked frames. The recording knows them by their labels, the numbers of the source.
@@ -123,7 +121,6 @@ impl ListedChannel {
         }
         self.frames += 1;
         self.values = self.info.values.unwrap_or(frame.values().len() as u64);
-        self.first = self.first.or(frame.first);
     }
 }
 
@@ -144,10 +141,6 @@ impl Serialize for ListedChannel {
         map.serialize_entry("peak", &self.peak.number())?;
         if !self.marked.is_empty() {
             map.serialize_entry("marks", &self.marked)?;
-        }
-        if let Some(FirstCell { column, row }) = self.first {
-            map.serialize_entry("first_row", &row)?;
-            map.serialize_entry("first_column", &column)?;
         }
         map.end()
     }
@@ -226,12 +219,6 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
         row("channel", info.name.clone()),
         row("frames", Some(channel.frames.to_string())),
         row("size", Some(size(channel))),
-        row(
-            "from",
-            channel.first.map(|FirstCell { column, row }| {
-                format!("row {row}, column {column} of the whole sensor")
-            }),
-        ),
         row("unit", info.unit.clone()),
         row("start", info.start.clone()),
         row("time", channel.times.map(|times| times.to_string())),

@@ -11,7 +11,7 @@ use crate::formats::foreign;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingSink, until_enough};
 use crate::formats::recording::format::RecordingFormat;
-use crate::formats::recording::json::{lines as json_lines, popu};
+use crate::formats::recording::json::lines as json_lines;
 use crate::formats::recording::numpy::{archive, array};
 use crate::formats::recording::ros::echo;
 #[cfg(feature = "mcap")]
@@ -24,10 +24,10 @@ use crate::formats::recording::text::lines::is_blank;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::recording::text::separator::{Separator, is_comment};
 use crate::formats::recording::time::moment;
-use crate::formats::recording::vendor::{emed, flexitac, tekscan, xsensor, zebris};
+use crate::formats::recording::vendor::{flexitac, tekscan, xsensor};
 
 /// The number of bytes at the start of a file that decide its format.
-pub(crate) const LOOKED_AT: usize = 1 << 16;
+pub(super) const LOOKED_AT: usize = 1 << 16;
 
 /// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -57,11 +57,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         return None;
     }
     if trimmed.starts_with(b"{") {
-        return Some(if signs::is_popu(trimmed) {
-            RecordingFormat::Popu
-        } else {
-            RecordingFormat::JsonLines
-        });
+        return Some(RecordingFormat::JsonLines);
     }
     if is_parted_by_cr(text) || trimmed.starts_with(b"<") || is_bitmap(text) {
         return None;
@@ -315,12 +311,9 @@ pub(crate) fn read_as(
     until_enough(consumer, |sink| match format {
         RecordingFormat::Tekscan => tekscan::read(input, sink),
         RecordingFormat::Xsensor => xsensor::read(input, sink),
-        RecordingFormat::Emed => emed::read(input, sink),
-        RecordingFormat::Zebris => zebris::read(input, sink),
         RecordingFormat::Npy => array::read(&mut input, options, sink),
         RecordingFormat::Npz => archive::read(input, options, sink),
         RecordingFormat::JsonLines => json_lines::read(input, options, sink),
-        RecordingFormat::Popu => popu::read(input, sink),
         RecordingFormat::Ros2 => echo::read(input, options, sink),
         RecordingFormat::Csv => delimited::read(input, options, earlier, sink),
         RecordingFormat::Flexitac => flexitac::read(&mut input, options, sink),

@@ -221,13 +221,6 @@ pub enum RecordingNote {
         /// The seconds that are played instead, at normal speed.
         played: f64,
     },
-    /// A picture that is left out because it is the maximum of the others (zebris).
-    Maximum,
-    /// A printed window that reaches beyond the sensor (emed).
-    Window {
-        /// The frame, the end of its window, and the size of the sensor.
-        complaint: String,
-    },
     /// Metadata beside the recording that is ignored, because it is broken or cannot be read.
     Metadata {
         /// The path of the metadata, and the error in it.
@@ -289,10 +282,7 @@ impl fmt::Display for RecordingNote {
                 "frame {frame} comes {} after the one before; this pause is played as {played} s at normal speed",
                 time_in_words(*seconds)
             ),
-            Self::Maximum => f.write_str(
-                "the picture [Data] is the maximum of the numbered ones and is left out",
-            ),
-            Self::Metadata { complaint } | Self::Window { complaint } => f.write_str(complaint),
+            Self::Metadata { complaint } => f.write_str(complaint),
         }
     }
 }

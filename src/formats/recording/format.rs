@@ -10,10 +10,6 @@ pub enum RecordingFormat {
     Tekscan,
     /// XSENSOR's CSV export.
     Xsensor,
-    /// novel's emed `.lst` export.
-    Emed,
-    /// zebris `.apd` pictures.
-    Zebris,
     /// Numbers separated by commas, semicolons, tabs or spaces: one frame per line, or one row per line.
     Csv,
     /// A numpy array.
@@ -22,8 +18,6 @@ pub enum RecordingFormat {
     Npz,
     /// JSON lines: one object per line.
     JsonLines,
-    /// JSON of the `PoPu` data set.
-    Popu,
     /// The output of `ros2 topic echo`.
     Ros2,
     /// An MCAP file.
@@ -37,13 +31,10 @@ impl RecordingFormat {
     pub const ALL: &'static [Self] = &[
         Self::Tekscan,
         Self::Xsensor,
-        Self::Emed,
-        Self::Zebris,
         Self::Csv,
         Self::Npy,
         Self::Npz,
         Self::JsonLines,
-        Self::Popu,
         Self::Ros2,
         Self::Mcap,
         Self::Flexitac,
@@ -54,13 +45,10 @@ impl RecordingFormat {
         match self {
             Self::Tekscan => "tekscan",
             Self::Xsensor => "xsensor",
-            Self::Emed => "emed",
-            Self::Zebris => "zebris",
             Self::Csv => "csv",
             Self::Npy => "npy",
             Self::Npz => "npz",
             Self::JsonLines => "jsonl",
-            Self::Popu => "popu",
             Self::Ros2 => "ros2",
             Self::Mcap => "mcap",
             Self::Flexitac => "flexitac",
@@ -72,13 +60,10 @@ impl RecordingFormat {
         match self {
             Self::Tekscan => "Tekscan ASCII",
             Self::Xsensor => "XSENSOR CSV",
-            Self::Emed => "emed .lst",
-            Self::Zebris => "zebris .apd",
             Self::Csv => "CSV",
             Self::Npy => "NPY",
             Self::Npz => "NPZ",
             Self::JsonLines => "JSON lines",
-            Self::Popu => "PoPu JSON",
             Self::Ros2 => "ros2 topic echo",
             Self::Mcap => "MCAP",
             Self::Flexitac => "FlexiTac",
@@ -96,14 +81,7 @@ impl RecordingFormat {
     pub(crate) fn can_be_streamed(self) -> bool {
         match self {
             Self::Csv | Self::JsonLines | Self::Ros2 | Self::Flexitac => true,
-            Self::Tekscan
-            | Self::Xsensor
-            | Self::Emed
-            | Self::Zebris
-            | Self::Npy
-            | Self::Npz
-            | Self::Popu
-            | Self::Mcap => false,
+            Self::Tekscan | Self::Xsensor | Self::Npy | Self::Npz | Self::Mcap => false,
         }
     }
 

@@ -36,10 +36,10 @@
 //! text             lines, fields and numbers
 //! time             the times of frames
 //! table            numbers in rows and columns, with or without a header
-//! json             JSON lines, and the PoPu data set
+//! json             JSON lines
 //! numpy            NPY and NPZ
 //! ros              MCAP, and ros2 topic echo
-//! vendor           Tekscan, XSENSOR, emed, zebris and FlexiTac
+//! vendor           Tekscan, XSENSOR and FlexiTac
 //! signs            magic bytes and words of vendors, by which formats are recognised
 //! detect           which of these a file is
 //! start_search     whether a stream begins like a recording
@@ -91,8 +91,6 @@ pub use answer::FrameAnswer;
 pub use channel_choice::ChannelChoice;
 #[cfg(feature = "cli")]
 pub(crate) use channel_choice::no_channel;
-#[cfg(all(test, feature = "acquire", unix))]
-pub(crate) use detect::LOOKED_AT;
 #[cfg(feature = "tui")]
 pub(crate) use detect::may_be_recording;
 #[cfg(all(feature = "acquire", unix))]

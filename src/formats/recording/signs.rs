@@ -26,12 +26,6 @@ pub(super) fn by_magic(start: &[u8]) -> Option<RecordingFormat> {
     formats.find_map(|(magic, format)| start.starts_with(magic).then_some(format))
 }
 
-/// Returns true if a text that begins an object of JSON is `PoPu`'s, not a frame with other keys of the same names:
-/// `PoPu` has no `"frame"`, and gives its columns before its snapshots.
-pub(super) fn is_popu(text: &[u8]) -> bool {
-    has(text, b"_columns\"") && has(text, b"\"snapshots\"") && !names_frame(text)
-}
-
 /// Returns true if a text of JSON has the key without which there is no frame in JSON lines.
 pub(super) fn names_frame(text: &[u8]) -> bool {
     has(text, b"\"frame\"")
@@ -49,10 +43,6 @@ pub(super) struct VendorSigns {
     lines: usize,
     /// Whether XSENSOR's line that begins a frame was found.
     has_frame: bool,
-    /// Whether emed's number of a picture was found.
-    has_picture: bool,
-    /// Whether emed's size of a matrix was found.
-    has_matrix: bool,
 }
 
 impl VendorSigns {
@@ -69,8 +59,6 @@ impl VendorSigns {
         let is_blank = line.trim_ascii().is_empty();
         let is_first = self.lines == 0 && !is_blank;
         self.lines += usize::from(!is_blank);
-        self.has_picture |= has(line, b"Pict-No.:");
-        self.has_matrix |= has(line, b"Matrix:");
         if line.starts_with(b"ASCII_DATA") || is_first && line.starts_with(b"DATA_TYPE ") {
             return Some(RecordingFormat::Tekscan);
         }
@@ -78,10 +66,7 @@ impl VendorSigns {
             return Some(RecordingFormat::Xsensor);
         }
         self.has_frame |= xsensor::begins_frame(line);
-        if has(line, b"SensCountX=") {
-            return Some(RecordingFormat::Zebris);
-        }
-        (self.has_picture && self.has_matrix).then_some(RecordingFormat::Emed)
+        None
     }
 }
 
@@ -99,18 +84,6 @@ mod tests {
             ("boot v1\nASCII_DATA @@\n", tekscan),
         ] {
             assert_eq!(VendorSigns::of(text.as_bytes()), expected, "{text:?}");
-        }
-    }
-
-    #[test]
-    fn a_line_of_json_that_is_not_whole_yet_is_not_taken_for_popu() {
-        for (text, expected) in [
-            ("{\"time\":0.1,\"n_columns\":4,\"n_rows\":1,", false),
-            ("{\"time\":0.1,\"snapshots\":4,", false),
-            ("{\"a_columns\":4,\"a_rows\":1,\"snapshots\":{", true),
-            ("{\"a_columns\":4,\"snapshots\":4,\"frame\":[[", false),
-        ] {
-            assert_eq!(is_popu(text.as_bytes()), expected, "{text}");
         }
     }
 }

@@ -3,13 +3,12 @@
 //!
 //! - Magic bytes decide once all of them have come.
 //! - The words of vendors decide at the end of the line that completes them.
-//! - Anything else is decided at the end of the bytes that are looked at, or of the stream, as for a file. An object of
-//!   JSON may still turn out to have a frame until then.
+//! - Anything else is decided at the end of the bytes that are looked at, or of the stream, as for a file.
 
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::recording::detect::{LOOKED_AT, is_bitmap, recognised};
 use crate::formats::recording::format::RecordingFormat;
-use crate::formats::recording::signs::{LONGEST_MAGIC, VendorSigns, by_magic, names_frame};
+use crate::formats::recording::signs::{LONGEST_MAGIC, VendorSigns, by_magic};
 
 /// The search in the first bytes of a stream. When more bytes arrive, it continues where it was.
 #[derive(Debug, Default)]
@@ -20,19 +19,8 @@ pub(crate) struct StartSearch {
     seen: usize,
     /// The start of the unfinished line.
     line: usize,
-    content: Content,
-}
-
-/// The kind of the text so far.
-#[derive(Debug, Default)]
-enum Content {
-    /// Nothing but blanks.
-    #[default]
-    Blank,
-    /// Objects of JSON.
-    Objects,
-    /// Any other text.
-    Text(VendorSigns),
+    /// The words of vendors so far; None as long as there are only blanks.
+    signs: Option<VendorSigns>,
 }
 
 /// The answer of a search.
@@ -99,20 +87,16 @@ impl StartSearch {
         if line.contains(&0) {
             return Some(StartKind::Stream);
         }
-        if let Content::Blank = self.content {
-            self.content = match line.trim_ascii().first()? {
-                b'{' => Content::Objects,
-                b'<' => return Some(StartKind::Stream),
+        let signs = match &mut self.signs {
+            Some(signs) => signs,
+            None => match line.trim_ascii().first()? {
+                b'{' | b'<' => return Some(StartKind::Stream),
                 _ if is_bitmap(line) => return Some(StartKind::Stream),
-                _ => Content::Text(VendorSigns::default()),
-            };
-        }
-        match &mut self.content {
-            Content::Blank => None,
-            Content::Objects => names_frame(line).then_some(StartKind::Stream),
-            Content::Text(signs) => signs
-                .add(line.strip_suffix(b"\n").unwrap_or(line))
-                .map(|format| StartKind::of(Some(format))),
-        }
+                _ => self.signs.insert(VendorSigns::default()),
+            },
+        };
+        signs
+            .add(line.strip_suffix(b"\n").unwrap_or(line))
+            .map(|format| StartKind::of(Some(format)))
     }
 }

@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use serde_json::Value;
 use taxel::formats::DescribedImprint;
 use taxel::formats::recording::RecordingNote;
-use taxel::frame::{Crop, FirstCell, FrameError, Peak, Processing, Rule, TareFrames};
+use taxel::frame::{Crop, FrameError, Peak, Processing, Rule, TareFrames};
 use taxel::matrix::Matrix;
 
-use super::{Recorded, channel_shape, recorded};
+use super::{Recorded, recorded};
 use crate::skip::skipped;
 
 /// Returns the folder of these files; reports the test as skipped if it is missing.
@@ -55,6 +55,10 @@ fn every_reference_frame_has_the_same_answer() {
     for line in text.lines() {
         let case: Value = serde_json::from_str(line).expect("JSON");
         let name = case["file"].as_str().expect("a name").to_owned();
+        // The cases of zebris and PoPu remain in the file, but these forms are not read any more.
+        if name.contains("/zebris/") || name.contains("/popu/") {
+            continue;
+        }
         let found = files
             .entry(name.clone())
             .or_insert_with(|| whole(&name, None).expect("it is there"));
@@ -205,39 +209,6 @@ fn the_peaks_and_means_that_xsensor_states_are_right() {
     let times: Vec<_> = found.frames.iter().map(|frame| frame.time).collect();
     assert_eq!(times[..2], [Some(0.0); 2]);
     assert!(times[2] > Some(0.0), "{times:?}");
-}
-
-#[test]
-fn the_forces_that_emed_states_are_right() {
-    let Some(found) = whole("data/emed/emed_3pictures.lst", None) else {
-        return;
-    };
-    assert_eq!((found.frames.len(), &found.notes[..]), (3, &[][..]));
-    let frame = &found.frames[2];
-    assert_eq!((frame.rows(), frame.columns()), (54, 22));
-    assert_eq!(
-        (frame.first, frame.label),
-        (
-            Some(FirstCell {
-                row: 30,
-                column: 26
-            }),
-            Some(3)
-        )
-    );
-    assert_eq!(frame.time, Some(0.02));
-    assert_eq!(found.channels[0].pitch_mm, Some([5.0, 5.0]));
-}
-
-#[test]
-fn the_lines_of_zebris_are_read_as_x() {
-    let Some(found) = whole("data/zebris/MDwalk2.apd", None) else {
-        return;
-    };
-    let info = &found.channels[0];
-    assert_eq!(channel_shape(info), Some((32, 15)));
-    assert_eq!(info.unit.as_deref(), Some("N/cm2"));
-    assert_eq!(info.pitch_mm, Some([8.46591, 8.46591]));
 }
 
 /// Checks the topics of the MCAP file that contain the whole matrix.

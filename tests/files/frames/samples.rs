@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use taxel::frame::{FirstCell, Frame, Processing, Rule};
+use taxel::frame::{Frame, Processing, Rule};
 
 use crate::array::array;
 
@@ -33,11 +33,9 @@ fn imprints(found: &Recorded, channel: usize, threshold: f64) -> Vec<String> {
 }
 
 /// The name, the format, whether rows and columns must be given, and the time of the second frame.
-const SAMPLES: [(&str, &str, bool, Option<f64>); 17] = [
+const SAMPLES: [(&str, &str, bool, Option<f64>); 15] = [
     ("tekscan.asf", "tekscan", false, Some(0.05)),
     ("tekscan_spreadsheet.csv", "tekscan", false, Some(0.05)),
-    ("emed.lst", "emed", false, Some(0.02)),
-    ("popu.json", "popu", false, None),
     ("frames.jsonl", "jsonl", false, Some(0.25)),
     ("named.csv", "csv", false, Some(0.25)),
     ("semicolons.csv", "csv", false, Some(0.25)),
@@ -97,28 +95,6 @@ fn the_first_rows_are_used_and_comments_are_not_frames() {
     assert_eq!(found.channels[0].pitch_mm, Some([2.5, 2.5]));
     assert_eq!(found.frames.len(), 3);
     assert_eq!(found.frames[0].cells(), 18);
-}
-
-#[test]
-fn a_window_of_emed_has_its_position() {
-    let found = recorded(&sample("emed.lst"), None);
-    assert_eq!(
-        found.frames[2].first,
-        Some(FirstCell { row: 12, column: 7 })
-    );
-    // The summary page is not a frame.
-    assert_eq!(found.frames.len(), 3);
-}
-
-#[test]
-fn a_zebris_picture_counts_lines_as_x() {
-    let found = recorded(&sample("zebris.apd"), None);
-    assert_eq!(imprints(&found, 0, 9.0), IMPRINTS[..1]);
-    assert_eq!(found.channels[0].pitch_mm, Some([8.0, 8.5]));
-    assert_eq!(
-        (found.frames[0].cells(), found.frames[0].label),
-        (5, Some(1))
-    );
 }
 
 #[test]
@@ -274,7 +250,7 @@ fn the_whole_frames_of_a_truncated_recording_are_read() {
         let cut = recorded(&whole[..whole.len() - 9], named.then_some((4, 5)));
         assert!(cut.frames.len() >= 2, "{name}: {:?}", cut.error);
         // In these files only lines after the last frame were cut off.
-        let harmless = ["xsensor.csv", "emed.lst", "tekscan_spreadsheet.csv"].contains(&name);
+        let harmless = ["xsensor.csv", "tekscan_spreadsheet.csv"].contains(&name);
         assert_eq!(cut.error.is_none(), harmless, "{name}");
     }
 }

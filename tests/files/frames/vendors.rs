@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use taxel::frame::{FirstCell, Frame};
+use taxel::frame::Frame;
 
-use super::samples::sample;
 use super::{Recorded, channel_shape, recorded};
 
 fn error(found: &Recorded) -> Option<String> {
@@ -20,59 +19,6 @@ fn frames(found: &Recorded, channel: usize) -> Vec<(Option<i64>, Option<f64>, f6
     let own = found.frames.iter().filter(|frame| frame.channel == channel);
     let parts = |frame: &Frame| (frame.label, frame.time, frame.values()[0]);
     own.map(parts).collect()
-}
-
-/// Returns a zebris file with a section for each name; the first value of a section is its number.
-fn zebris(sections: &[&str]) -> String {
-    let mut text = "[General]\nDate=1/2/2021\nTime=10.11.12\nUnitDistance=mm\nUnitPressure=N/cm2\nUnitTime=ms\n\
-                    [Technical]\nSensCountX=2\nSensCountY=3\nLDistX=8\nLDistY=8\nTimeDiff=20\nMinIdx=4\nMaxIdx=6\n"
-        .to_owned();
-    for (section, value) in sections.iter().zip(1..) {
-        write!(text, "\n[{section}]\n{value}\t-1\t3\n4\t5\t6\n").expect("a text");
-    }
-    text
-}
-
-#[test]
-fn the_numbered_pictures_of_zebris_are_frames_but_their_maximum_is_not() {
-    let text = zebris(&["Data", "Data4", "Data5", "Data6"]);
-    let found = recorded(text.as_bytes(), None);
-    assert_eq!(error(&found), None);
-    let expected = [(4, 0.0, 2.0), (5, 0.02, 3.0), (6, 0.04, 4.0)];
-    assert_eq!(
-        frames(&found, 0),
-        expected.map(|(label, time, first)| (Some(label), Some(time), first))
-    );
-    assert_eq!(found.channels[0].seconds_per_frame, Some(0.02));
-    let maximum = "the picture [Data] is the maximum of the numbered ones and is left out";
-    assert_eq!(notes(&found), [maximum]);
-    // Alone, this section is the picture.
-    let found = recorded(zebris(&["Data"]).as_bytes(), None);
-    assert_eq!(frames(&found, 0), [(Some(1), None, 1.0)]);
-    assert_eq!((error(&found), notes(&found).len()), (None, 0));
-    // The file is cut off between two pictures, and inside of one.
-    let found = recorded(zebris(&["Data4", "Data5"]).as_bytes(), None);
-    let cut = "the file was cut off: it has 2 of the 3 frames that its header counts";
-    assert_eq!(
-        (found.frames.len(), notes(&found)),
-        (2, vec![cut.to_owned()])
-    );
-    let found = recorded(&text.as_bytes()[..text.len() - 6], None);
-    assert_eq!(found.frames.len(), 2);
-    assert!(error(&found).is_some_and(|error| error.ends_with("expected 2 lines of values")));
-    // Which of two sections [Data] is a frame, nobody knows; the numbered ones above are frames.
-    let second = "a second section [Data], expected a numbered one such as [Data12]";
-    for (sections, whole, notes_before) in [
-        (&["Data", "Data", "Data4"][..], 1, 0),
-        (&["Data", "Data4", "Data", "Data5"], 1, 1),
-    ] {
-        let found = recorded(zebris(sections).as_bytes(), None);
-        assert_eq!(
-            (found.frames.len(), notes(&found).len()),
-            (whole, notes_before)
-        );
-        assert!(error(&found).is_some_and(|error| error.ends_with(second)));
-    }
 }
 
 #[test]
@@ -133,14 +79,6 @@ fn a_pitch_is_rounded_and_one_that_no_sensor_has_is_unknown() {
              ASCII_DATA @@\nFrame 1\n1,2\n\n@@\n"
         )
     };
-    let zebris = |pitch: &str, unit: &str| {
-        let text = zebris(&["Data"]).replace("=8\n", &format!("={pitch}\n"));
-        text.replace("Distance=mm", &format!("Distance={unit}"))
-    };
-    let emed = |pitch: &str, unit: &str| {
-        let size = format!("{pitch}x{pitch} {unit}");
-        emed_header(1).replace("1.000x1.000 cm", &size) + LEFT
-    };
     let xsensor = |pitch: &str, unit: &str| {
         let text = xsensor(["08:21:17.9", "08:21:18.4"]).replace("(cm)", &format!("({unit})"));
         text.replace(",0.25\n", &format!(",{pitch}\n"))
@@ -152,12 +90,7 @@ fn a_pitch_is_rounded_and_one_that_no_sensor_has_is_unknown() {
         ("0.00", "cm", None),
         ("0.0000000000001", "cm", None),
     ] {
-        for text in [
-            tekscan(pitch, unit),
-            zebris(pitch, unit),
-            emed(pitch, unit),
-            xsensor(pitch, unit),
-        ] {
+        for text in [tekscan(pitch, unit), xsensor(pitch, unit)] {
             let found = recorded(text.as_bytes(), None);
             assert_eq!(error(&found), None, "{text}");
             assert_eq!(found.channels[0].pitch_mm, expected, "{text}");
@@ -173,21 +106,13 @@ fn a_time_step_that_no_recording_has_is_unknown() {
              Frame 1\n1,2\n\nFrame 2\n1,2\n\n@@\n"
         )
     };
-    let zebris = |step: &str| {
-        let text = zebris(&["Data4", "Data5"]).replace("UnitTime=ms", "UnitTime=s");
-        text.replace("TimeDiff=20", &format!("TimeDiff={step}"))
-    };
-    let emed = |step: &str| {
-        let page = |label| emed_header(label).replace("20.0 ms", &format!("{step} s")) + LEFT;
-        page(1) + &page(2)
-    };
     for (step, expected) in [
         ("0.02", Some(0.02)),
         ("0.0200000000004", Some(0.02)),
         ("0.0000000001", None),
         ("10000000000", None),
     ] {
-        for text in [tekscan(step), zebris(step), emed(step)] {
+        for text in [tekscan(step)] {
             let found = recorded(text.as_bytes(), None);
             assert_eq!(error(&found), None, "{text}");
             assert_eq!(found.channels[0].seconds_per_frame, expected, "{text}");
@@ -200,197 +125,12 @@ fn a_time_step_that_no_recording_has_is_unknown() {
 fn frames_that_are_left_out_are_gaps_in_time() {
     let tekscan = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nSECONDS_PER_FRAME 0.02\nASCII_DATA @@\n\
                    Frame 1\n1,2\n\nFrame 3\n1,2\n\nFrame 5\n1,2\n\n@@\n";
-    let emed: String = [1, 3, 5].map(|label| emed_header(label) + LEFT).concat();
-    let zebris = zebris(&["Data1", "Data3", "Data5"]);
-    for text in [tekscan, &emed, &zebris] {
+    for text in [tekscan] {
         let found = recorded(text.as_bytes(), None);
         let times = found.frames.iter().map(|frame| (frame.label, frame.time));
         let expected = [(1, 0.0), (3, 0.04), (5, 0.08)];
         let expected = expected.map(|(label, time)| (Some(label), Some(time)));
         assert_eq!(times.collect::<Vec<_>>(), expected, "{text}");
-    }
-}
-
-/// Returns the header of a page of emed.
-fn emed_header(label: i64) -> String {
-    format!(
-        "\t\t\t\tPage 1\n\n\tFile: made up \tMatrix: 20x30\n\tSensor area: 1.00 cm2\tTime/picture:20.0 ms\n\
-         \tSensor size: 1.000x1.000 cm\n\tPict-No.: {label}  Force[N]=sum*sensor_area in row/column\n\n"
-    )
-}
-
-/// Returns two pages of a picture with three columns, and two pages of the next picture.
-fn emed_pages(left: &str, right: &str) -> String {
-    let pages = [(1, left), (1, right), (2, left), (2, right)];
-    let page = |(label, window): (i64, &str)| format!("{}{window}\u{c}\n", emed_header(label));
-    pages.map(page).concat()
-}
-
-const LEFT: &str = "\t7\t8\n4\t0.00\t20.00\n5\t30.00\t0.00\nForce\t3.00\t2.00\n";
-const RIGHT: &str = "\t9\tForce\n4\t10.00\t3.00\n5\t0.00\t3.00\nForce\t1.00\t6.00\n";
-
-#[test]
-fn the_pages_of_a_picture_of_emed_are_one_frame() {
-    let fixed = |text: &str| {
-        let field = |field: &str| {
-            if field == "0.00" {
-                String::new()
-            } else {
-                field.to_owned()
-            }
-        };
-        let line = |line: &str| -> String {
-            line.split('\t')
-                .map(|text| format!("{:>8}", field(text)))
-                .collect()
-        };
-        text.lines()
-            .map(|text| line(text) + "\n")
-            .collect::<String>()
-    };
-    for text in [
-        emed_pages(LEFT, RIGHT),
-        emed_pages(&fixed(LEFT), &fixed(RIGHT)),
-    ] {
-        let found = recorded(text.as_bytes(), None);
-        assert_eq!((error(&found), notes(&found).len()), (None, 0), "{text}");
-        assert_eq!(channel_shape(&found.channels[0]), Some((2, 3)));
-        let [first, second] = &found.frames[..] else {
-            panic!("{} frames: {text}", found.frames.len());
-        };
-        assert_eq!(first.values(), [0.0, 20.0, 10.0, 30.0, 0.0, 0.0]);
-        assert_eq!(
-            (first.first, first.label),
-            (Some(FirstCell { row: 4, column: 7 }), Some(1))
-        );
-        assert_eq!((second.label, second.time), (Some(2), Some(0.02)));
-        // A picture is incomplete if its second page is damaged.
-        let torn = text.rfind("Page").expect("a page") + 150;
-        let cut = recorded(&text.as_bytes()[..torn], None);
-        assert_eq!(cut.frames.len(), 1);
-        assert!(cut.error.is_some());
-        // A picture is also incomplete if its second page is missing.
-        let between = text.rfind("\t\t\t\tPage").expect("a page");
-        let cut = recorded(&text.as_bytes()[..between], None);
-        assert_eq!(cut.frames.len(), 1);
-        let message = error(&cut).expect("an error");
-        assert!(
-            message.ends_with("ends before the last page of a picture"),
-            "{message}"
-        );
-    }
-}
-
-#[test]
-fn the_header_of_emed_gives_the_pitch_and_the_time_of_a_picture() {
-    let of = |from: &str, to: &str| {
-        let first = emed_header(1).replace(from, to);
-        let second = emed_header(2).replace(from, to);
-        let found = recorded(
-            format!("{first}{LEFT}\u{c}\n{second}{LEFT}").as_bytes(),
-            None,
-        );
-        assert_eq!((error(&found), found.frames.len()), (None, 2), "{to}");
-        (found.channels[0].pitch_mm, found.frames[1].time)
-    };
-    assert_eq!(of("", ""), (Some([10.0, 10.0]), Some(0.02)));
-    let millimetres = of("1.000x1.000 cm", "5.0x7.5 mm");
-    assert_eq!(millimetres, (Some([5.0, 7.5]), Some(0.02)));
-    let seconds = of("20.0 ms", "0.5 s");
-    assert_eq!(seconds, (Some([10.0, 10.0]), Some(0.5)));
-    // 0 means that there is no time.
-    assert_eq!(of("20.0 ms", "0.0 ms"), (Some([10.0, 10.0]), None));
-    // Only the word after a number is its unit.
-    let comments = of("20.0 ms", "2 s\tProgrammer: Simms");
-    assert_eq!(comments, (Some([10.0, 10.0]), Some(2.0)));
-    let comments = of("1.000 cm\n", "1.000 cm\tHammer, 3 mm\n");
-    assert_eq!(comments, (Some([10.0, 10.0]), Some(0.02)));
-}
-
-#[test]
-fn a_window_of_emed_beyond_the_sensor_is_noted() {
-    for (matrix, expected) in [
-        ("8x5", None),
-        (
-            "8x4",
-            Some("ends in row 5 and column 8, but the sensor has 4 rows and 8 columns"),
-        ),
-        (
-            "7x5",
-            Some("ends in row 5 and column 8, but the sensor has 5 rows and 7 columns"),
-        ),
-    ] {
-        let text = emed_header(1).replace("20x30", matrix) + LEFT;
-        let found = recorded(text.as_bytes(), None);
-        assert_eq!((error(&found), found.frames.len()), (None, 1), "{matrix}");
-        let expected = expected.map(|text| format!("frame 0 (label 1): its window {text}"));
-        assert_eq!(notes(&found), Vec::from_iter(expected), "{matrix}");
-    }
-}
-
-#[test]
-fn a_picture_of_emed_without_rows_is_damaged() {
-    let header = emed_header(1).replace("  Force[N]=sum*sensor_area in row/column", "");
-    let found = recorded(format!("{header}\t7\t8\n\n").as_bytes(), None);
-    assert_eq!(found.frames.len(), 0);
-    let expected = "line 9: the picture ends here, expected more rows, then their Force";
-    assert_eq!(error(&found).as_deref(), Some(expected));
-}
-
-#[test]
-fn every_force_of_emed_is_checked() {
-    let window =
-        "\t7\t8\tForce\n4\t0.00\t20.00\t2.00\n5\t30.00\t0.00\t3.00\nForce\t3.00\t2.00\t5.00\n";
-    let read = |window: &str| recorded((emed_header(1) + window).as_bytes(), None);
-    assert_eq!(notes(&read(window)), [""; 0]);
-    for (from, to, what) in [
-        (
-            "20.00\t2.00",
-            "20.00\t2.50",
-            "the force of a row should be 2.5, but the values give 2",
-        ),
-        (
-            "3.00\t2.00\t5",
-            "4.00\t2.00\t5",
-            "the force of a column should be 4, but the values give 3",
-        ),
-        (
-            "2.00\t5.00",
-            "2.00\t7.00",
-            "the force of all cells should be 7, but the values give 5",
-        ),
-        // Each sum is rounded, and the sum of the sums as well, so a small difference is allowed.
-        (
-            "2.00\t5.00",
-            "2.00\t5.02",
-            "the force of all cells should be 5.02, but the values give 5",
-        ),
-    ] {
-        let found = read(&window.replace(from, to));
-        assert_eq!(error(&found), None);
-        assert_eq!(notes(&found), [format!("frame 0 (label 1): {what}")]);
-    }
-    // The force of this row is not exact in binary.
-    let note = &notes(&read(&window.replace("20.00\t2.00", "2.80\t9.00")))[0];
-    let expected = "the force of a row should be 9, but the values give 0.28";
-    assert!(note.ends_with(expected), "{note}");
-    let rounded = read(&window.replace("2.00\t5.00", "2.00\t5.01"));
-    assert_eq!(notes(&rounded), [""; 0]);
-    // All values are there, but not all forces.
-    let found = read(window.trim_end().trim_end_matches("\t5.00"));
-    assert_eq!(found.frames.len(), 1);
-    let expected = "line 11: found 3 values, expected 4";
-    assert_eq!(error(&found).as_deref(), Some(expected));
-    // The next page has no number, or no values.
-    for end in [emed_header(2).find("File"), emed_header(2).find("Force")] {
-        let header = &emed_header(2)[..end.expect("it is there")];
-        let found = read(&format!("{window}\u{c}\n{header}"));
-        assert_eq!(found.frames.len(), 1);
-        let message = error(&found).expect("an error");
-        assert!(
-            message.ends_with("ends before the values of a picture"),
-            "{message}"
-        );
     }
 }
 
@@ -599,52 +339,4 @@ fn an_xsensor_export_that_ends_inside_a_group_is_reported_as_damaged() {
         .replace("SENSELS\n4\n", "");
     let found = recorded(shorter.as_bytes(), None);
     assert_eq!((error(&found), found.frames.len()), (None, 2));
-}
-
-#[test]
-fn both_sheets_of_popu_are_channels() {
-    let text = "{\"id\":\"4\",\"tactilus_columns\":2,\"tactilus_rows\":1,\"sensomatt_columns\":1,\"sensomatt_rows\":3,\
-                \"snapshots\":{\"0\":{\"tactilus_readings\":[1,2],\"sensomatt_readings\":[3,4,5]},\
-                \"7\":{\"sensomatt_readings\":[6,7,8],\"tactilus_readings\":[9,0]},\"8\":{\"tactilus_readings\":[8,8]}}}";
-    let found = recorded(text.as_bytes(), None);
-    assert_eq!(error(&found), None);
-    let channels = found.channels.iter();
-    let channels: Vec<_> = channels
-        .map(|info| (info.name.as_deref(), channel_shape(info)))
-        .collect();
-    assert_eq!(
-        channels,
-        [
-            (Some("tactilus"), Some((1, 2))),
-            (Some("sensomatt"), Some((3, 1)))
-        ]
-    );
-    assert_eq!(
-        frames(&found, 0),
-        [
-            (Some(0), None, 1.0),
-            (Some(7), None, 9.0),
-            (Some(8), None, 8.0)
-        ]
-    );
-    assert_eq!(
-        frames(&found, 1),
-        [(Some(0), None, 3.0), (Some(7), None, 6.0)]
-    );
-    let found = recorded(
-        text.replace("\"8\":{\"tactilus", "\"8\":{\"other")
-            .as_bytes(),
-        None,
-    );
-    assert_eq!(found.frames.len(), 4);
-    let message = error(&found).expect("an error");
-    assert!(
-        message.contains("a snapshot without tactilus_readings or sensomatt_readings"),
-        "{message}"
-    );
-}
-
-#[test]
-fn the_sums_in_the_sample_are_right() {
-    assert_eq!(notes(&recorded(&sample("emed.lst"), None)), [""; 0]);
 }

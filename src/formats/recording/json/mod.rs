@@ -4,7 +4,6 @@
 //! cells   the cells of a frame, as a list
 //! clock   the time of a frame, under keys of many names
 //! lines   an object per frame and line
-//! popu    one object for all frames: the `PoPu` data set
 //! ```
 
 mod cells;
@@ -12,5 +11,3 @@ mod cells;
 pub(in crate::formats) mod clock;
 
 pub(in crate::formats) mod lines;
-
-pub(super) mod popu;

@@ -4,8 +4,4 @@ pub(super) mod tekscan;
 
 pub(super) mod xsensor;
 
-pub(super) mod emed;
-
-pub(super) mod zebris;
-
 pub(super) mod flexitac;

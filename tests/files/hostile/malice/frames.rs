@@ -35,10 +35,9 @@ fn terabytes() -> Vec<u8> {
 }
 
 /// Endless texts in the formats of each vendor.
-const TEXTS: [Malice; 35] = [
+const TEXTS: [Malice; 28] = [
     ("deep JSON", || filled("{\"frame\":", "[", "")),
     ("deep objects", || filled("", "{\"frame\":", "")),
-    ("deep snapshots", || filled("", "{\"snapshots\":", "")),
     ("a long row of JSON", || {
         filled("{\"frame\":[[", "1,", "1]]}\n")
     }),
@@ -58,20 +57,6 @@ const TEXTS: [Malice; 35] = [
     ("a long key of JSON", || filled("{\"", "a", "\":1}\n")),
     ("keys of JSON", || {
         filled("{", "\"t\":1,", "\"frame\":[[1]]}\n")
-    }),
-    ("snapshots of one name", || {
-        filled(
-            "{\"a_columns\":1,\"a_rows\":1,\"snapshots\":{",
-            "\"0\":{\"a_readings\":[1]},",
-            "\"1\":{}}}",
-        )
-    }),
-    ("a long snapshot", || {
-        filled(
-            "{\"a_columns\":512,\"a_rows\":512,\"snapshots\":{\"0\":{\"a_readings\":[",
-            "1,",
-            "1]}}}",
-        )
     }),
     ("a header of Tekscan without an end", || {
         filled("DATA_TYPE MOVIE\n", "COMMENTS a\n", "")
@@ -103,26 +88,6 @@ const TEXTS: [Malice; 35] = [
             "FRAME,1\nSENSOR,a\nRows,99999\nColumns,99999\nSENSELS\n",
             "1,",
             "",
-        )
-    }),
-    ("a large picture of zebris", || {
-        filled(
-            "[Technical]\nSensCountX=65535\nSensCountY=65535\n[Data]\n",
-            "1\t",
-            "",
-        )
-    }),
-    ("keys of zebris", || {
-        filled("SensCountX=4\n", "SensCountX=4\n", "")
-    }),
-    ("pages of emed", || {
-        filled("Pict-No.: 1 Matrix: 20x30\n", "\t\t\tPage 1\n", "")
-    }),
-    ("a wide page of emed", || {
-        filled(
-            "File: a Matrix: 512x512\nPict-No.: 1\n\n\t",
-            "1\t",
-            "Force\n",
         )
     }),
     ("dimensions of ROS", || {
