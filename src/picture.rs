@@ -183,32 +183,6 @@ impl Picture {
         self.name.as_deref()
     }
 
-    /// Returns the corner (`x0`, `y0`, in cells) that keeps the picture's centre in its place under other zooms, both
-    /// above 0. The corner may be out of range. An empty imprint counts as a point.
-    ///
-    /// ```
-    /// use taxel::prelude::*;
-    /// let bar: Imprint = "####".parse().expect("a row of taxels");
-    /// // From 4 to 8: the centre is at 6. Twice as long it lies from 2 to 10, which is 1 before the zoom.
-    /// let picture = Picture::of(bar).at(4.0, 0.0).on(&Sensor::default())?;
-    /// assert_eq!(picture.corner_about_centre(2.0, 1.0), (1.0, 0.0));
-    /// # Ok::<(), ParameterError>(())
-    /// ```
-    pub fn corner_about_centre(&self, zoom_x: f64, zoom_y: f64) -> (f64, f64) {
-        let [x0, y0, _, old_x, old_y] = self.values;
-        let half = self.imprint.bounds().map_or((0.0, 0.0), |bounds| {
-            let half = |from: u8, to: u8| f64::from(to - from) / 2.0;
-            (
-                half(bounds.left, bounds.right),
-                half(bounds.top, bounds.bottom),
-            )
-        });
-        (
-            (x0 + half.0) * old_x / zoom_x - half.0,
-            (y0 + half.1) * old_y / zoom_y - half.1,
-        )
-    }
-
     /// Returns the stored imprint, without placement.
     pub fn imprint(&self) -> &Imprint {
         &self.imprint

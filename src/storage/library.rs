@@ -76,9 +76,6 @@ pub(super) const COMMANDS: &str = ".commands";
 /// The name of the file with the set of shapes that was recognised last.
 pub(super) const RECOGNISED_SET: &str = ".recognise";
 
-/// The name of the file with the values that forms were accepted with.
-pub(super) const FORMS: &str = ".forms";
-
 /// A library in a folder. The folder is made when the first shape is saved.
 ///
 /// ```
@@ -451,7 +448,7 @@ impl Library {
         let mut found = Vec::new();
         for name in folder::names(&self.folder)? {
             let what = match name.to_str() {
-                Some(LOCK | COMMANDS | RECOGNISED_SET | FORMS | TEMPORARY) => continue,
+                Some(LOCK | COMMANDS | RECOGNISED_SET | TEMPORARY) => continue,
                 Some(inner @ (TRASH | JOURNAL)) => match InnerFolder::of(&self.folder, inner) {
                     Ok(_) => continue,
                     Err(_) => "a symbolic link, which is not followed",

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::storage::folder;
-use crate::storage::library::{COMMANDS, FORMS, RECOGNISED_SET};
+use crate::storage::library::{COMMANDS, RECOGNISED_SET};
 use crate::storage::{Existing, FinishedFile, Library};
 
 /// The size, in bytes, beyond which a file is not read: a hundred commands of the longest kind are shorter.
@@ -30,11 +30,6 @@ impl RememberedFile {
     /// Returns the file with the name of the set of shapes that was recognised last.
     pub(crate) fn recognised_set(library: &Library) -> Self {
         Self::of(library, RECOGNISED_SET, 1)
-    }
-
-    /// Returns the file with the values that forms were accepted with.
-    pub(crate) fn forms(library: &Library) -> Self {
-        Self::of(library, FORMS, 20)
     }
 
     /// Returns the file of that name in the folder of a library.

@@ -279,7 +279,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     std::fs::write(&bad, "{\"format\":\"taxel-shape/9\"}").expect("written");
     std::fs::create_dir(shelf.folder.join("dir.json")).expect("made");
     // The screen's own files belong to the library; the others are foreign.
-    for file in [".commands", ".recognise", ".forms", "notes.txt", "a:b.json"] {
+    for file in [".commands", ".recognise", "notes.txt", "a:b.json"] {
         std::fs::write(shelf.folder.join(file), "").expect("written");
     }
     let list = shelf

@@ -45,7 +45,6 @@ fn draw_in_every_size(columns: u8, rows: u8) {
                 depth: ColorDepth::TwoFiftySix,
                 palette: Palette::Dark,
             },
-            mouse: true,
             seed: 0,
         };
         let mut session = on(world(), &options, (80, 24), keys);

@@ -117,7 +117,7 @@ Examples:
 /// `taxel script`: all commands of a script.
 pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command per line; positions are column,row of the screen, from 0:
   Size 80x24          Set ascii on        Set theme light   Set columns 8
-  Set library "DIR"   Set shape {...}     Set leftover {}   Set mouse off
+  Set library "DIR"   Set shape {...}     Set leftover {}
   Resize 100x30       Seed 7 (of random touches)
   Keys f<Right><Tab>4.00<Enter>           <lt> for '<'; <3x:Down> three times
   Type "text"         Paste "1.5"         Click 12,5   Click "Figure"

@@ -53,7 +53,6 @@ pub(crate) fn screen(
     let options = Options {
         sensor: settings.sensor(),
         theme: terminal.theme(),
-        mouse: terminal.mouse,
         // A different seed each time.
         seed: RandomState::new().hash_one(0),
     };

@@ -109,7 +109,6 @@ fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOpti
         options: Options {
             sensor: settings.sensor(),
             theme,
-            mouse: true,
             seed: 0,
         },
         size: asked.size,

@@ -308,15 +308,7 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
         return refuse(app, text);
     };
     let (x, y) = (rounded(x + by), rounded(y + by));
-    let mut values = vec![(Parameter::ZoomX, x), (Parameter::ZoomY, y)];
-    if let Source::Picture(picture) = &source
-        && app.zoom_centre
-        && x > 0.0
-        && y > 0.0
-    {
-        let (x0, y0) = picture.corner_about_centre(x, y);
-        values.extend([(Parameter::X0, rounded(x0)), (Parameter::Y0, rounded(y0))]);
-    }
+    let values = [(Parameter::ZoomX, x), (Parameter::ZoomY, y)];
     set(app, source, MoveKind::Zoom, &values);
 }
 

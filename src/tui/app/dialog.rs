@@ -11,7 +11,6 @@ use crate::tui::app::page::{Page, Slot};
 use crate::tui::compare::page::Comparison;
 use crate::tui::explore::export::ExportDialog;
 use crate::tui::explore::filter::FilterDialog;
-use crate::tui::explore::mark::MarkDialog;
 use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::Running;
@@ -46,7 +45,7 @@ pub enum Dialog {
     Question(Question),
     /// The list of keys.
     Help(Help),
-    /// The prompt that searches in help or in the history.
+    /// The prompt that searches in help.
     Search(SearchDialog),
     /// The comparison of two imprints.
     Compare(Comparison),
@@ -62,8 +61,6 @@ pub enum Dialog {
     Export(ExportDialog),
     /// The prompt for the filter of the list of imprints.
     Filter(FilterDialog),
-    /// The prompt for the letter of a mark.
-    Mark(MarkDialog),
     /// Recognition of the shape on the matrix. Its state outlasts the page, so the program keeps it.
     Recognition,
     /// The quiz: a random touch that the user names.
@@ -94,7 +91,6 @@ impl Dialog {
             Self::Results(page) => &**page,
             Self::Export(page) => page,
             Self::Filter(page) => page,
-            Self::Mark(page) => page,
             Self::Recognition => recognition,
             Self::Quiz(page) => &**page,
             Self::Confusion(page) => &**page,

@@ -51,8 +51,6 @@ pub enum Message {
     Toggle,
     /// Give all fields of a form their defaults.
     Defaults,
-    /// A digit of the count for the next message.
-    Count(u16),
     /// Undo the last change.
     Undo,
     /// Redo the change that was undone last.
@@ -119,8 +117,6 @@ pub enum Message {
     Sensor,
     /// Scale the shape up or down.
     Zoom(i8),
-    /// Zoom pictures about their centre, or about the origin again.
-    ZoomCentre,
     /// An event of the mouse.
     Mouse(Mouse),
     /// The size of the screen has changed: columns, rows.
@@ -139,8 +135,6 @@ pub enum Message {
     Command,
     /// Put something into the clipboard of the user's terminal.
     Copy(Copied),
-    /// Switch the mouse: it sets taxels, or the terminal selects text with it.
-    MouseOnOff,
     /// A message about the imprints of all poses.
     Explore(ExploreMessage),
     /// A message about recognition.
@@ -166,15 +160,6 @@ pub enum Message {
 }
 
 impl Message {
-    /// Returns true if a count before the message repeats it.
-    pub(in crate::tui) fn repeats(&self) -> bool {
-        use Message::{Cursor, Nudge, Redo, Region, Turn, Undo, Zoom};
-        matches!(
-            self,
-            Cursor(_) | Nudge(_) | Turn(_) | Zoom(_) | Undo | Redo | Region(_)
-        )
-    }
-
     /// Returns true if the message moves the shape, or sets how far it moves.
     pub(in crate::tui) fn moves_shape(&self) -> bool {
         use Message::{Move, Nudge, NudgeStep, PutBack, Turn, Zoom};

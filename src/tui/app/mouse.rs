@@ -37,7 +37,6 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
         (MouseKind::Release, _) => app.paint = None,
         (MouseKind::Press, Some(Target::Taxel(column, row, whole))) => {
             app.begin_action();
-            app.count = None;
             app.paint = Some((!app.reading().imprint.get(column, row), (column, row)));
             let mut document = app.history.present().clone();
             document.edits.toggle(column, row);

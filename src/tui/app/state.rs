@@ -39,19 +39,16 @@ pub struct Options {
     pub sensor: Sensor,
     /// The colours and characters.
     pub theme: Theme,
-    /// Whether the mouse sets taxels at the start.
-    pub mouse: bool,
     /// The seed of the random touches.
     pub seed: u64,
 }
 
 impl Options {
-    /// Returns the options of scripts and tests: the paper's sensor, no colours, a mouse.
+    /// Returns the options of scripts and tests: the paper's sensor, no colours.
     pub fn plain(ascii: bool) -> Self {
         Self {
             sensor: Sensor::default(),
             theme: Theme::plain(ascii),
-            mouse: true,
             seed: 0,
         }
     }
@@ -199,10 +196,6 @@ pub struct App {
     pub(in crate::tui) narrow_pane: NarrowPane,
     /// The step by which a key moves or zooms the shape.
     pub(in crate::tui) step: NudgeStep,
-    /// Whether a picture is zoomed about its centre, not about the origin.
-    pub(in crate::tui) zoom_centre: bool,
-    /// The number of times that the next message is repeated; None if no count was typed.
-    pub(in crate::tui) count: Option<u16>,
     /// The pages over the matrix; the last one is on top.
     pub(in crate::tui) dialogs: Vec<Dialog>,
     /// The prompt that the last message came from, until the next action: it opens again if its request is refused.
@@ -234,8 +227,6 @@ pub struct App {
     pub(in crate::tui) commands: Vec<String>,
     /// The values that forms were accepted with.
     pub(in crate::tui) forms: FormMemory,
-    /// Whether the mouse sets taxels; otherwise the terminal selects text with it.
-    pub(in crate::tui) mouse: bool,
     /// While the shape is held, so that the arrow keys move it and not the cursor: the document when it was taken.
     pub(in crate::tui) held: Option<Box<Document>>,
     /// The kind of move that the last message made, if any: the next move of that kind is part of the same step of
@@ -271,8 +262,6 @@ impl App {
             layers: Layers::default(),
             narrow_pane: NarrowPane::Matrix,
             step: NudgeStep::Hundredth,
-            zoom_centre: false,
-            count: None,
             dialogs: Vec::new(),
             prompt: None,
             notice: None,
@@ -287,7 +276,6 @@ impl App {
             works: 0,
             commands: Vec::new(),
             forms: FormMemory::default(),
-            mouse: options.mouse,
             held: None,
             moves: None,
             paint: None,

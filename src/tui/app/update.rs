@@ -3,7 +3,6 @@
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.
 
-use crate::formats::value::counted;
 use crate::tui::app::change::{from_prompt, give_prompt, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::{FileEvent, Message};
@@ -20,9 +19,6 @@ use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::{
     compare, explore, form, help, history, live, matrix, prompt, recognise, search, shapes,
 };
-
-/// The largest count.
-const MOST_TIMES: u16 = 999;
 
 /// The length, in bytes, from which nothing is added to a failure that nobody has read.
 const MOST_SAID: usize = 300;
@@ -44,8 +40,7 @@ pub fn next_work(app: &mut App) -> Option<Effect> {
     work.or_else(|| live::update::next_work(app))
 }
 
-/// Handles a message without reading the document again. A count repeats what can be repeated, such as a step of the
-/// cursor. A repetition ends at the first effect that the runtime has to take care of.
+/// Handles a message without reading the document again.
 fn handle(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),
@@ -59,80 +54,20 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             return None;
         }
         Message::Unknown(key) => {
-            let counted = app.count.take().is_some();
-            if counted {
-                app.notice = None;
-            }
-            // After a count, Esc has a meaning: it cancels the count.
-            if !counted || key != Key::Esc {
-                unknown(app, key);
-            }
+            unknown(app, key);
             return None;
         }
         Message::Library(_) | Message::File(_) | Message::Worker(_) => {
             return on_event(app, message);
         }
         Message::Mouse(mouse) => {
-            // A count belongs to the next key, and so does the notice that shows it.
-            if app.count.take().is_some() {
-                app.notice = None;
-            }
             let meant = mouse::act(app, mouse)?;
             return handle(app, meant);
         }
         _ => {}
     }
-    if let Message::Count(digit) = message {
-        take_digit(app, digit);
-        return None;
-    }
-    with_count(app, &message)
-}
-
-/// Handles a message of the user as often as the count before it says. What is done only once is refused after a
-/// count, Esc only cancels the count, and what quits or closes a page ignores it.
-fn with_count(app: &mut App, message: &Message) -> Option<Effect> {
-    let count = app.count.take().unwrap_or(1);
-    if count > 1 && !message.repeats() && *message != Message::Quit {
-        app.notice = None;
-        if !matches!(message, Message::Cancel | Message::PutBack) {
-            refuse(
-                app,
-                "a count repeats only steps: moves, turns, zooms, regions, undo, redo",
-            );
-        }
-        return None;
-    }
-    let times = if message.repeats() { count } else { 1 };
-    repeat(app, message, times)
-}
-
-/// Takes a digit of a count and shows the count, or that it was cut to the largest one.
-fn take_digit(app: &mut App, digit: u16) {
-    let count = app.count.unwrap_or_default() * 10 + digit;
-    app.count = Some(count.min(MOST_TIMES)).filter(|&count| count > 0);
-    match count {
-        0 => refuse(app, "a count begins with 1 to 9"),
-        1..=MOST_TIMES => inform(app, counted(count, "time")),
-        _ => refuse(app, format!("a key repeats at most {MOST_TIMES} times")),
-    }
-}
-
-/// Repeats a message of the user, stopping at the first effect.
-fn repeat(app: &mut App, message: &Message, times: u16) -> Option<Effect> {
-    for time in 1..=times {
-        let (said, step) = (app.notice.take(), app.history.step_number());
-        if let Some(effect) = perform(app, message.clone()) {
-            return Some(effect);
-        }
-        let stays = app.history.step_number() == step;
-        // If the count is larger than the number of steps, the notice about the last step stays.
-        if time > 1 && stays && matches!(message, Message::Undo | Message::Redo) {
-            app.notice = said;
-            break;
-        }
-    }
-    None
+    app.notice = None;
+    perform(app, message)
 }
 
 /// Handles what is not a message of the user. A failure stays until the next key: what is said after it stands beside
@@ -204,9 +139,9 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
     }
 }
 
-/// Returns true if there is a field that takes text. A quiz and a mark take single letters.
+/// Returns true if there is a field that takes text. A quiz takes single letters.
 fn has_field(here: Context) -> bool {
-    here.takes_text() && !matches!(here, Context::Quiz | Context::Mark)
+    here.takes_text() && here != Context::Quiz
 }
 
 /// Explains that a key does nothing here, once per key. Names the key that lists all keys or, in that list, the keys
@@ -266,7 +201,6 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Results(results) => explore::update::in_results(app, results, message),
         Dialog::Export(dialog) => explore::update::in_export(app, dialog, &message),
         Dialog::Filter(dialog) => explore::prompts::in_filter(app, dialog, &message),
-        Dialog::Mark(dialog) => explore::prompts::in_mark(app, dialog, &message),
         Dialog::Recognition => recognise::update::in_recognition(app, message),
         Dialog::Quiz(page) => recognise::update::in_quiz(app, page, message),
         Dialog::Confusion(page) => recognise::update::in_confusion(app, page, &message),

@@ -10,8 +10,6 @@
 //! and the value of the chosen descriptor. If there is little room, the thumbnails are omitted first, then the first
 //! pose. Left and right choose a heading, and `s` sorts by it; a click on a heading does both.
 
-use std::collections::BTreeMap;
-
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
@@ -192,18 +190,16 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         let text = no_row(results);
         write::text(buffer, list.rows.area, theme, &text, Role::Quiet);
     }
-    let marks = marked(results);
     let rows = results.rows_from(list.rows.first);
     for ((index, entry), row) in rows.zip(list.rows.area.rows()) {
         let selected = index == results.list.selected();
         let (sign, role) = if selected {
-            ('>', Role::Focus)
+            ("> ", Role::Focus)
         } else {
-            (' ', Role::Text)
+            ("  ", Role::Text)
         };
-        let sign = format!("{sign}{}", marks.get(&entry.id).unwrap_or(&' '));
         let text = row_text(theme, results, &list, &entry);
-        let pieces = [(sign.as_str(), Role::Key), (text.as_str(), role)];
+        let pieces = [(sign, Role::Key), (text.as_str(), role)];
         write::line(buffer, row, theme, pieces);
         if selected {
             let texts = detail(theme, results, &entry);
@@ -255,17 +251,6 @@ fn draw_headings(theme: &Theme, results: &Results, list: &ImprintTable, buffer: 
     }
     let pieces = pieces.iter().map(|(text, role)| (text.as_str(), *role));
     write::line(buffer, list.head, theme, pieces);
-}
-
-/// Returns the letters of the marked imprints, by number; the first letter if an imprint has several.
-fn marked(results: &Results) -> BTreeMap<u32, char> {
-    let mut marked = BTreeMap::new();
-    for (&letter, &pose) in results.marks() {
-        if let Some(id) = results.id_at(pose) {
-            marked.entry(id).or_insert(letter);
-        }
-    }
-    marked
 }
 
 /// Returns the text of a row, without the sign of the selected one.

@@ -102,10 +102,6 @@ pub enum ExploreMessage {
     SortHere,
     /// Ask for an expression that filters the list of imprints.
     Filter,
-    /// Ask for a letter to mark the selection with.
-    Mark,
-    /// Ask for the letter of a mark to go to.
-    Jump,
     /// Select the imprint that is on the matrix.
     Find,
     /// Go from an imprint of the list to the map, or back.

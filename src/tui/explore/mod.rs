@@ -30,8 +30,6 @@ pub mod export;
 
 pub mod filter;
 
-pub mod mark;
-
 pub mod tab;
 
 pub mod imprints;

@@ -3,7 +3,6 @@
 //! The findings never change, and are shared with workers that write them to files. The tabs that show a descriptor
 //! show the same one, which the points have as their vertical axis; the list and the map lead to each other.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::atlas::{AtlasEntry, AtlasFilter, Feature, features};
@@ -48,8 +47,6 @@ pub struct Results {
     column: usize,
     /// The place of the map's cursor, by indices.
     pose_index: PoseIndex,
-    /// The marked poses, by letter.
-    marks: BTreeMap<char, u64>,
 }
 
 impl Results {
@@ -67,7 +64,6 @@ impl Results {
             findings,
             column: 0,
             pose_index: PoseIndex::new([0; 5]),
-            marks: BTreeMap::new(),
         }
     }
 
@@ -230,18 +226,6 @@ impl Results {
     /// imprint stays selected if it is kept.
     pub fn keep(&mut self, typed: &str, filter: &AtlasFilter) {
         self.list.keep(typed, filter, &self.findings.sweep.atlas);
-    }
-
-    /// Marks the present pose with a letter. Returns false if there is none.
-    pub fn mark(&mut self, letter: char) -> bool {
-        let pose = self.pose();
-        self.marks.extend(pose.map(|pose| (letter, pose)));
-        pose.is_some()
-    }
-
-    /// Returns the marked poses with their letters, in the order of the letters.
-    pub fn marks(&self) -> &BTreeMap<char, u64> {
-        &self.marks
     }
 
     /// Returns the imprints from a row on, with the indices of their rows.
@@ -478,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn a_filter_and_marks_apply_to_the_right_imprints() {
+    fn a_filter_keeps_the_right_imprints() {
         let mut results = results();
         let all = results.list.row_count();
         results.list.select(7);
@@ -487,7 +471,6 @@ mod tests {
             rows.map(|(_, entry)| entry.id).collect::<Vec<_>>()
         };
         let before = ids(&results);
-        assert!(results.mark('a'));
         let kept = before[7];
         let typed = format!("id<={kept}");
         results.keep(&typed, &typed.parse().expect("an expression"));
@@ -497,12 +480,9 @@ mod tests {
         assert!(!results.list.find(kept + 1));
         results.keep("id<0", &"id<0".parse().expect("an expression"));
         assert_eq!((results.list.row_count(), results.list.selected()), (0, 0));
-        assert!(results.pose().is_none() && !results.mark('b'));
+        assert!(results.pose().is_none());
         results.keep("", &AtlasFilter::default());
         assert_eq!(ids(&results), before);
-        let entry = results.sweep().atlas.entry(kept).expect("it is there");
-        assert_eq!(results.marks().get(&'a'), Some(&entry.first_pose));
-        assert_eq!(results.marks().len(), 1);
     }
 
     #[test]

@@ -17,9 +17,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::filter::FilterDialog;
-use crate::tui::explore::mark::MarkPurpose;
 use crate::tui::explore::message::{ExploreMessage, ExploreTab, name_of};
-use crate::tui::explore::prompts::mark_dialog;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::tabs;
 use crate::tui::explore::work::{act, tab_area};
@@ -55,16 +53,6 @@ pub(in crate::tui) fn in_results(
             let dialog = FilterDialog::new(&results);
             app.dialogs.push(Dialog::Results(results));
             app.dialogs.push(Dialog::Filter(dialog));
-            return None;
-        }
-        Message::Explore(asked @ (ExploreMessage::Mark | ExploreMessage::Jump)) => {
-            let purpose = match asked {
-                ExploreMessage::Jump => MarkPurpose::Jump,
-                _ => MarkPurpose::Set,
-            };
-            let dialog = mark_dialog(app, &results, purpose);
-            app.dialogs.push(Dialog::Results(results));
-            app.dialogs.extend(dialog.map(Dialog::Mark));
             return None;
         }
         Message::Explore(ExploreMessage::Ranges) => {

@@ -103,7 +103,7 @@ fn open_ranges(app: &mut App) -> Option<Effect> {
         refuse(app, app.nothing_to_explore());
         return None;
     };
-    let last = app.forms.ranges();
+    let last = app.forms.ranges.as_ref();
     let mut form = RangesForm::new(present, source, below.as_ref(), last);
     let effect = measure(&mut form);
     app.dialogs.push(Dialog::Ranges(Box::new(form)));
@@ -139,7 +139,7 @@ pub(in crate::tui) fn in_ranges(
     match message {
         Message::Accept => match form.accepted() {
             Ok(grid) => {
-                app.forms.note_ranges(form.remembered());
+                app.forms.ranges = Some(form.remembered());
                 return Some(start(app, grid));
             }
             Err(error) => refuse(app, error.full),

@@ -7,7 +7,7 @@ use crate::tui::app::state::App;
 use crate::tui::help::page::Help;
 use crate::tui::keys::binding::Context;
 use crate::tui::runtime::effect::Effect;
-use crate::tui::search::page::{SearchDialog, Searched};
+use crate::tui::search::page::SearchDialog;
 use crate::tui::search::update::no_search;
 
 /// Handles a message in help, which closes on Quit. Cancel leaves the search; without a search, help closes before
@@ -28,7 +28,7 @@ pub(in crate::tui) fn in_help(app: &mut App, mut help: Help, message: &Message) 
             refused = Some(no_search(keymap, Context::Help));
         }
         Message::Search => {
-            let dialog = SearchDialog::new(Searched::Help(help.clone()));
+            let dialog = SearchDialog::new(help.clone());
             app.dialogs
                 .extend([Dialog::Help(help), Dialog::Search(dialog)]);
             return None;

@@ -8,7 +8,6 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::found::{Search, contains, marked, number};
 use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -24,8 +23,6 @@ pub struct HistoryDialog {
     present: usize,
     /// The selected row; row 0 is the state before all steps.
     selected: usize,
-    /// The search.
-    pub search: Search,
 }
 
 /// The description of the state that the program begins with.
@@ -40,7 +37,6 @@ impl HistoryDialog {
             steps,
             present,
             selected: present,
-            search: Search::default(),
         }
     }
 
@@ -54,37 +50,11 @@ impl HistoryDialog {
         self.selected = row.min(self.steps.len());
     }
 
-    /// Searches for a text from the selected row, then from the start, and selects the first match. Returns the
-    /// number of that match, from 1, and the number of all matches; None if there is none.
-    pub fn search_for(&mut self, wanted: &str) -> Option<(usize, usize)> {
-        let rows = self.matches(wanted);
-        self.selected = self.search.begin(wanted, &rows, self.selected)?;
-        number(self.selected, &rows)
-    }
-
-    /// Selects the match `by` places further on; after the last match comes the first. Returns false if there is no
-    /// search or no match.
-    pub fn go_to_match(&mut self, by: i8) -> bool {
-        let rows = self.matches(self.search.wanted());
-        let Some(row) = self.search.go(self.selected, by, &rows) else {
-            return false;
-        };
-        self.selected = row;
-        true
-    }
-
     /// Returns the text of each row, the start first.
     fn rows(&self) -> impl Iterator<Item = &str> {
         std::iter::once(&self.start)
             .chain(&self.steps)
             .map(String::as_str)
-    }
-
-    /// Returns the rows that contain a text.
-    fn matches(&self, wanted: &str) -> Vec<usize> {
-        let rows = self.rows().enumerate();
-        let having = rows.filter(|(_, text)| contains(text, wanted));
-        having.map(|(row, _)| row).collect()
     }
 
     /// Returns the visible rows in an area, below the heading.
@@ -114,7 +84,6 @@ impl Page for HistoryDialog {
         write::line(buffer, area, theme, head);
         let visible = self.visible(area);
         let width = self.steps.len().to_string().len();
-        let wanted = self.search.wanted();
         for (index, row, text) in visible.visible(self.rows()) {
             let selected = index == self.selected;
             // Signs mark the rows, too, for terminals that cannot reverse.
@@ -122,9 +91,7 @@ impl Page for HistoryDialog {
             let present = if index == self.present { '*' } else { ' ' };
             let role = if selected { Role::Focus } else { Role::Text };
             let number = format!("{sign}{present}{index:>width$}  ");
-            let text = marked(text, wanted, role);
-            let pieces = std::iter::once((number.as_str(), role)).chain(text);
-            write::line(buffer, row, theme, pieces);
+            write::line(buffer, row, theme, [(number.as_str(), role), (text, role)]);
         }
         visible.position(self.selected)
     }
@@ -136,21 +103,5 @@ impl Page for HistoryDialog {
 
     fn wheel(&self) -> Wheel {
         Wheel::Rows
-    }
-
-    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
-        self.search.entry().is_some() || !matches!(message, Message::Match(_))
-    }
-
-    /// The update leaves the search first.
-    fn cancels_itself(&self) -> bool {
-        self.search.entry().is_some()
-    }
-
-    /// Returns the number of the selected match.
-    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
-        let rows = self.matches(self.search.wanted());
-        let (number, all) = number(self.selected, &rows)?;
-        Some((format!("match {number} of {all}"), Role::Key))
     }
 }

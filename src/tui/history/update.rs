@@ -1,18 +1,15 @@
 //! The effects of messages over the list of steps.
 
-use crate::tui::app::change::{compare_with, go_to, refuse};
+use crate::tui::app::change::{compare_with, go_to};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::history::page::HistoryDialog;
-use crate::tui::keys::binding::Context;
 use crate::tui::runtime::effect::Effect;
-use crate::tui::search::page::{SearchDialog, Searched};
-use crate::tui::search::update::no_search;
 use crate::tui::widget::rows::moved;
 
-/// Moves in the list of steps, searches in it, or goes to the state after the selected one. Comparing leaves the list
+/// Moves in the list of steps, or goes to the state after the selected one. Comparing leaves the list
 /// open below.
 pub(in crate::tui) fn in_history(
     app: &mut App,
@@ -32,18 +29,6 @@ pub(in crate::tui) fn in_history(
             }
             return None;
         }
-        Message::Match(by) if !list.go_to_match(by) => {
-            app.dialogs.push(Dialog::History(list));
-            refuse(app, no_search(app.keymap(), Context::History));
-            return None;
-        }
-        Message::Search => {
-            let dialog = SearchDialog::new(Searched::History(list.clone()));
-            app.dialogs
-                .extend([Dialog::History(list), Dialog::Search(dialog)]);
-            return None;
-        }
-        Message::Cancel => list.search.end(),
         Message::Quit => return None,
         Message::Accept => {
             go_to(app, list.selected());

@@ -205,16 +205,6 @@ actions! {
         COVERAGE "coverage" [] Message::Display;
         OUTLINE "outline" [] Message::Layer(Layer::Outline), "show or hide the true outline";
         RECTANGLE "rectangle" [] Message::Layer(Layer::Rectangle), "show or hide the rectangle with CG (G), CD (D)";
-        COUNT_ZERO "count-0" [] Message::Count(0);
-        COUNT_ONE "count-1" [] Message::Count(1);
-        COUNT_TWO "count-2" [] Message::Count(2);
-        COUNT_THREE "count-3" [] Message::Count(3);
-        COUNT_FOUR "count-4" [] Message::Count(4);
-        COUNT_FIVE "count-5" [] Message::Count(5);
-        COUNT_SIX "count-6" [] Message::Count(6);
-        COUNT_SEVEN "count-7" [] Message::Count(7);
-        COUNT_EIGHT "count-8" [] Message::Count(8);
-        COUNT_NINE "count-9" [] Message::Count(9);
         HOLD "hold" [] Message::Hold;
         PUT_BACK "put-back" [] Message::PutBack;
         COMPARE "compare" [] Message::Compare;
@@ -229,12 +219,10 @@ actions! {
         TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10.0), "turn the shape clockwise by 10 degrees";
         ZOOM_IN "zoom-in" ["zoom in"] Message::Zoom(1);
         ZOOM_OUT "zoom-out" ["zoom out"] Message::Zoom(-1);
-        ZOOM_CENTRE "zoom-centre" [] Message::ZoomCentre;
         SENSOR "sensor" [] Message::Sensor;
         PANEL "panel" [] Message::SwitchPane;
         COPY_DESCRIPTORS "copy-descriptors" ["copy", "copy descriptors"] Message::Copy(Copied::Descriptors);
         COPY_IMPRINT "copy-imprint" ["copy imprint"] Message::Copy(Copied::Imprint);
-        MOUSE "mouse" [] Message::MouseOnOff;
         COMMAND "command" [] Message::Command;
         HELP "help" [] Message::Help;
         LARGER_STEP "larger-step" ["step larger"] Message::NudgeStep(1);
@@ -289,8 +277,6 @@ actions! {
         SORT_BY_PIECES "sort-by-pieces" [] Explore(Sort(ListColumn::Pieces));
         SORT_BY_HOLES "sort-by-holes" [] Explore(Sort(ListColumn::Holes));
         FILTER "filter" [] Explore(ExploreMessage::Filter);
-        MARK "mark" [] Explore(ExploreMessage::Mark);
-        JUMP "jump" [] Explore(ExploreMessage::Jump);
         FIND "find" [] Explore(ExploreMessage::Find);
         FOLLOW "follow" [] Explore(ExploreMessage::Follow);
         EXPORT "export" [] Explore(ExploreMessage::Export);

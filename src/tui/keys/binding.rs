@@ -106,8 +106,6 @@ contexts! {
     Angles "angles" "At the plot of angles" Ignored, EXPLORE;
     /// In the field for a filter of the list of imprints.
     Filter "filter" "Filtering the list of imprints" Typed, LINE;
-    /// At the question for a letter, to mark something or to go to a mark.
-    Mark "mark" "Choosing the letter of a mark" Typed, EVERYWHERE;
     /// In the field for the name of an exported file.
     Export "export" "Exporting" Typed, LINE;
     /// On the matrix, with recognition beside it.

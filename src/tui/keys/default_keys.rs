@@ -55,8 +55,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "move the cursor";
         [Home => FIRST_COLUMN, End => LAST_COLUMN] "" "cursor to the first, the last column";
         [PageUp => FIRST_ROW, PageDown => LAST_ROW] "" "cursor to the first, the last row";
-        [Char('1') => COUNT_ONE, Char('2') => COUNT_TWO, Char('3') => COUNT_THREE, Char('4') => COUNT_FOUR, Char('5') => COUNT_FIVE, Char('6') => COUNT_SIX, Char('7') => COUNT_SEVEN, Char('8') => COUNT_EIGHT, Char('9') => COUNT_NINE, Char('0') => COUNT_ZERO]
-            "" "a count: repeats the next step, as in 12 Right";
         [Char(' ') => TOGGLE] "toggle" "turn the taxel under the cursor on or off";
         [Char('u') => UNDO] "undo" "undo the last change, then earlier ones";
         [Char('U') => REDO, Ctrl('r') => REDO] "" "redo what was undone";
@@ -81,12 +79,10 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "zoom a picture in, out, by the current step";
         [Char('+') => LARGER_STEP, Char('-') => SMALLER_STEP]
             "step" "a larger, a smaller step: 0.01, 0.1, 1";
-        [Char('C') => ZOOM_CENTRE] "" "zoom about the picture's centre, or about the origin";
         [Char('S') => SENSOR] "" "Sensor: columns, rows, threshold, pitch";
         [Char('i') => PANEL] "descriptors" "on a small screen: descriptors or matrix";
         [Char('y') => COPY_DESCRIPTORS, Char('Y') => COPY_IMPRINT]
             "" "copy descriptors, imprint to your terminal's clipboard";
-        [Char('m') => MOUSE] "" "the mouse sets taxels, or selects text";
         [Char(':') => COMMAND] "" "type a command";
         [Char('?') => HELP] "help" "Help: all keys";
     }
@@ -144,10 +140,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "the start, the latest step";
         [Enter => ACCEPT] "go there" "go to the state after this step";
         [Char('=') => COMPARE] "compare" "compare that state with the present one";
-        [Char('/') => SEARCH] "search" "search the steps for a word";
-        [Char('n') => NEXT_MATCH, Char('N') => PREVIOUS_MATCH] "match" "next, previous match";
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "close" "leave the search; without one: close";
-        [Char('q') => QUIT, Char('H') => QUIT] "" "leave everything as it is";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('H') => CANCEL]
+            "close" "leave everything as it is";
         [Char('?') => HELP] "help" "these keys";
     }
 
@@ -208,8 +202,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "page" "next, previous page";
         [Char('d') => NEXT_DESCRIPTOR, Char('D') => PREVIOUS_DESCRIPTOR]
             "descriptor" "next, previous descriptor, except on the map";
-        [Char('m') => MARK, Char('\'') => JUMP]
-            "" "mark the selection with a letter; go to a mark";
         [Char('x') => EXPORT]
             "export" "write all imprints, or this page's numbers or drawing";
         [Char('e') => RANGES] "ranges" "explore other ranges";
@@ -301,12 +293,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     Filter {
         [Enter => ACCEPT] "keep" "keep the filter; an empty one shows all imprints";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave the list as it was";
-        [F1 => HELP] "help" "these keys";
-    }
-
-    /// Any letter is an answer, so no letter can be bound here.
-    Mark {
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "cancel; any letter sets the mark, or goes to it";
         [F1 => HELP] "help" "these keys";
     }
 

@@ -43,9 +43,9 @@ const NO_REGION: &str = "no region: the matrix is empty";
 /// to those that mean nothing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     use Message::{
-        Accept, Cancel, Choose, Count, Decline, Defaults, Erase, Field, File, Library, Match,
-        Mouse, Paste, Redraw, Resized, Scroll, ScrollScreen, ScrollTo, Search, Select, Step,
-        Suspend, Terminate, ToEdge, ToField, Type, Unknown, Worker,
+        Accept, Cancel, Choose, Decline, Defaults, Erase, Field, File, Library, Match, Mouse,
+        Paste, Redraw, Resized, Scroll, ScrollScreen, ScrollTo, Search, Select, Step, Suspend,
+        Terminate, ToEdge, ToField, Type, Unknown, Worker,
     };
     match message {
         Message::New => empty(app),
@@ -56,7 +56,6 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Quit => quit(app),
         Message::QuitNow => app.run_state = RunState::Quit,
         Message::Copy(what) => return copy(app, what),
-        Message::MouseOnOff => return Some(switch_mouse(app)),
         Message::Explore(asked) => return explore::work::act(app, asked),
         Message::Live(asked) => return live::update::act(app, &asked),
         Message::Recognise(asked) => return recognise::update::act(app, asked),
@@ -90,13 +89,12 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Move(dx, dy) => shift(app, dx, dy),
         Message::Turn(degrees) => turn(app, degrees),
         Message::Zoom(direction) => zoom(app, direction),
-        Message::ZoomCentre => switch_zoom_centre(app),
         Message::NudgeStep(direction) => change_step(app, direction),
         // These mean something only on a page, or never reach the matrix: `app::update` handles them.
-        Accept | Cancel | Choose(_) | Count(_) | Decline | Defaults | Erase(_) | Field(_)
-        | File(_) | Library(_) | Match(_) | Mouse(_) | Paste(_) | Redraw | Resized(..)
-        | Scroll(_) | ScrollScreen(_) | ScrollTo(_) | Search | Select(_) | Step(_) | Suspend
-        | Terminate | ToEdge(_) | ToField(_) | Type(_) | Unknown(_) | Worker(_) => {}
+        Accept | Cancel | Choose(_) | Decline | Defaults | Erase(_) | Field(_) | File(_)
+        | Library(_) | Match(_) | Mouse(_) | Paste(_) | Redraw | Resized(..) | Scroll(_)
+        | ScrollScreen(_) | ScrollTo(_) | Search | Select(_) | Step(_) | Suspend | Terminate
+        | ToEdge(_) | ToField(_) | Type(_) | Unknown(_) | Worker(_) => {}
     }
     None
 }
@@ -268,20 +266,6 @@ fn name_of_figure(figure: &Figure) -> String {
     format!("{} {}{wall}", figure.kind().name(), sizes.join(" x "))
 }
 
-/// Switches the mouse: either it sets taxels, or the terminal selects text with it. A terminal gives the mouse either
-/// to a program or to its own selection, never to both.
-fn switch_mouse(app: &mut App) -> Effect {
-    app.mouse = !app.mouse;
-    let key = app.key_of(&action::MOUSE);
-    let text = if app.mouse {
-        format!("the mouse draws; {key} gives it back to the terminal")
-    } else {
-        format!("the mouse selects text; {key} lets it draw")
-    };
-    inform(app, text);
-    Effect::Terminal(TerminalEffect::Mouse(app.mouse))
-}
-
 /// Shows the coverage in shades, then in percent, then the imprint again. Coverage is the share of a taxel that a shape
 /// covers, so it is refused if there is no source.
 fn next_display(app: &mut App) {
@@ -333,13 +317,6 @@ fn hold_or_let_go(app: &mut App) {
     } else {
         hold(app);
     }
-}
-
-/// Zooms pictures about their centre, or about the origin again.
-fn switch_zoom_centre(app: &mut App) {
-    app.zoom_centre = !app.zoom_centre;
-    let centre = ["the origin", "their centre"][usize::from(app.zoom_centre)];
-    inform(app, format!("pictures now zoom about {centre}"));
 }
 
 /// Sends a text to the terminal, which may put it into its clipboard, but never reports whether it does. Descriptors

@@ -66,12 +66,10 @@ fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
             .filter(|row| places.contains(&row.context));
         rows.any(|row| row.keys.iter().any(|(_, own)| *own == action))
     };
-    // A count is typed before a key, never as a command.
-    let counts = |action: &Action| matches!(action.message(), Some(Message::Count(_)));
     ACTIONS.iter().copied().filter(move |action| {
         let works = recognises(action) || bound(action, &places) || !bound(action, &Context::ALL);
         // To type a command is no command.
-        works && !counts(action) && action.message() != Some(&Message::Command)
+        works && action.message() != Some(&Message::Command)
     })
 }
 

@@ -56,8 +56,6 @@ pub enum TerminalEffect {
     Redraw,
     /// Stop, as Ctrl-Z does, until the shell continues the program.
     Suspend,
-    /// Switch the reports of the mouse on or off. When they are off, the terminal can select text with the mouse.
-    Mouse(bool),
     /// Copy a text to the clipboard of the user's terminal.
     Copy(String),
 }

@@ -205,7 +205,7 @@ impl World {
         self
     }
 
-    /// Gives the program what earlier runs remembered: commands, the set of shapes, the values of forms.
+    /// Gives the program what earlier runs remembered: commands, and the set of shapes.
     pub fn remind(&mut self, app: &mut App) {
         if let Some(reminders) = &mut self.reminders {
             reminders.remind(app);

@@ -3,7 +3,7 @@
 //! ```text
 //! Size 80x24          Set ascii on        Set theme light    Set color 256
 //! Set columns 8       Set rows 8          Set threshold 0.6  Set pitch 0.5
-//! Set mouse off      Seed 7
+//! Seed 7
 //! Set library "DIR"   Set shape {...}     Set leftover {...}
 //! ```
 //! `shape` puts a shape into the user's library; it is given as the content of its file, in one line. It may also
@@ -31,8 +31,6 @@ pub enum ScriptSetting {
     Color(ColorDepth),
     /// The colours for a dark or a light background.
     Theme(Palette),
-    /// Whether the mouse sets taxels.
-    Mouse(bool),
     /// A parameter of the sensor and its value.
     Sensor(Parameter, f64),
     /// The library's folder.
@@ -46,11 +44,10 @@ pub enum ScriptSetting {
 }
 
 /// The names of what can be set.
-const NAMES: [&str; 11] = [
+const NAMES: [&str; 10] = [
     "ascii",
     "color",
     "theme",
-    "mouse",
     "columns",
     "rows",
     "threshold",
@@ -74,7 +71,6 @@ pub fn read(text: &str) -> Result<ScriptSetting, String> {
         "ascii" => chosen(name, value, &SWITCH).map(ScriptSetting::Ascii),
         "color" => chosen(name, value, &ColorDepth::NAMES).map(ScriptSetting::Color),
         "theme" => chosen(name, value, &Palette::NAMES).map(ScriptSetting::Theme),
-        "mouse" => chosen(name, value, &SWITCH).map(ScriptSetting::Mouse),
         "library" => serde_json::from_str::<PathBuf>(value)
             .map(ScriptSetting::Library)
             .map_err(|_| {
@@ -132,7 +128,6 @@ impl fmt::Display for ScriptSetting {
             Self::Ascii(ascii) => write!(f, "Set ascii {}", name_of(*ascii, &SWITCH)),
             Self::Color(depth) => write!(f, "Set color {}", name_of(*depth, &ColorDepth::NAMES)),
             Self::Theme(palette) => write!(f, "Set theme {}", name_of(*palette, &Palette::NAMES)),
-            Self::Mouse(on) => write!(f, "Set mouse {}", name_of(*on, &SWITCH)),
             Self::Sensor(parameter, value) => write!(f, "Set {} {value}", parameter.flag()),
             Self::Library(folder) => {
                 let folder = serde_json::Value::from(folder.to_string_lossy());
@@ -162,7 +157,6 @@ pub fn of_options(options: &Options) -> Vec<ScriptSetting> {
         ScriptSetting::Ascii(theme.ascii),
         ScriptSetting::Color(theme.depth),
         ScriptSetting::Theme(theme.palette),
-        ScriptSetting::Mouse(options.mouse),
         ScriptSetting::Seed(options.seed),
     ];
     let value = |parameter| Some(ScriptSetting::Sensor(parameter, sensor.get(parameter)?));
@@ -189,7 +183,6 @@ mod tests {
                 depth: ColorDepth::TwoFiftySix,
                 palette: Palette::Light,
             },
-            mouse: false,
             seed: 7,
         };
         let mut settings = of_options(&options);

@@ -113,7 +113,6 @@ impl<'a> ScriptStart<'a> {
             ScriptSetting::Ascii(ascii) => options.theme.ascii = *ascii,
             ScriptSetting::Color(depth) => options.theme.depth = *depth,
             ScriptSetting::Theme(palette) => options.theme.palette = *palette,
-            ScriptSetting::Mouse(on) => options.mouse = *on,
             ScriptSetting::Sensor(parameter, value) => {
                 let sensor = options.sensor.with(*parameter, *value);
                 options.sensor = sensor.map_err(|error| error.to_string())?;

@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::app::message::Message;
 use crate::tui::help::page::Help;
-use crate::tui::history::page::HistoryDialog;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::text_field::TextField;
@@ -13,29 +12,20 @@ use crate::tui::widget::text_field::TextField;
 /// The greatest number of characters of a search.
 const LONGEST: usize = 60;
 
-/// A list that can be searched.
-#[derive(Clone, Debug)]
-pub enum Searched {
-    /// The keys of a place.
-    Help(Help),
-    /// The steps of the history.
-    History(HistoryDialog),
-}
-
 /// The prompt, with the list as it was before the search.
 #[derive(Clone, Debug)]
 pub struct SearchDialog {
     /// The field for the wanted text.
     field: TextField,
     /// The list before the search.
-    before: Searched,
+    before: Help,
     /// The number of the present match, from 1, and the number of all matches; None if there is none.
     found: Option<(usize, usize)>,
 }
 
 impl SearchDialog {
     /// Creates an empty prompt over a list.
-    pub fn new(before: Searched) -> Self {
+    pub fn new(before: Help) -> Self {
         Self {
             field: TextField::new("", LONGEST),
             before,
@@ -49,7 +39,7 @@ impl SearchDialog {
     }
 
     /// Returns the list before the search.
-    pub fn before(&self) -> &Searched {
+    pub fn before(&self) -> &Help {
         &self.before
     }
 
@@ -61,12 +51,9 @@ impl SearchDialog {
 
     /// Returns the list after a search for the typed text, which starts where the list was; if nothing is found, the
     /// list as it was. `room` is the size of the list in columns and lines.
-    pub fn searched(&mut self, keymap: &Keymap, room: (u16, u16)) -> Searched {
+    pub fn searched(&mut self, keymap: &Keymap, room: (u16, u16)) -> Help {
         let (wanted, mut list) = (self.field.text(), self.before.clone());
-        self.found = match &mut list {
-            Searched::Help(help) => help.search_for(wanted, keymap, room),
-            Searched::History(history) => history.search_for(wanted),
-        };
+        self.found = list.search_for(wanted, keymap, room);
         list
     }
 }
@@ -85,15 +72,10 @@ impl LinePrompt for SearchDialog {
 
     /// Returns the number of the match; while the field is empty, what can be searched for.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
-        match (self.found, &self.before) {
-            (_, Searched::Help(_)) if self.field.text().is_empty() => {
-                "   a key, or a word of what it does".into()
-            }
-            (_, Searched::History(_)) if self.field.text().is_empty() => {
-                "   a word in a step".into()
-            }
-            (None, _) => "   no match".into(),
-            (Some((number, all)), _) => format!("   {number} of {all}").into(),
+        match self.found {
+            _ if self.field.text().is_empty() => "   a key, or a word of what it does".into(),
+            None => "   no match".into(),
+            Some((number, all)) => format!("   {number} of {all}").into(),
         }
     }
 }

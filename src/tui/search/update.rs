@@ -8,7 +8,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::runtime::effect::Effect;
-use crate::tui::search::page::{SearchDialog, Searched};
+use crate::tui::search::page::SearchDialog;
 
 /// Handles a message at the prompt: the list below follows what is typed, Enter keeps the matches, and Esc restores
 /// the list as it was before.
@@ -25,10 +25,7 @@ pub(in crate::tui) fn in_search(
         }
     };
     if let Some(below) = app.dialogs.last_mut() {
-        *below = match list {
-            Searched::Help(help) => Dialog::Help(help),
-            Searched::History(list) => Dialog::History(list),
-        };
+        *below = Dialog::Help(list);
     }
     match message {
         Message::Cancel | Message::Quit => {}

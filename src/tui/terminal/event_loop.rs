@@ -430,10 +430,6 @@ impl<'a> EventLoop<'a> {
             None => {}
             Some(TerminalEffect::Redraw) => self.redraw(),
             Some(TerminalEffect::Suspend) => self.suspend()?,
-            Some(TerminalEffect::Mouse(on)) => {
-                self.mouse = on;
-                self.send(session::set_mouse(on).as_bytes())?;
-            }
             Some(TerminalEffect::Copy(text)) if self.settings.kind.has_clipboard() => {
                 self.send(session::copied(&text).as_bytes())?;
             }

@@ -158,14 +158,6 @@ fn eprint(text: &str) {
     let _ = io::stderr().write_all(text.as_bytes());
 }
 
-/// Returns the sequence that starts or ends mouse events, and records which.
-pub(in crate::tui) fn set_mouse(on: bool) -> &'static str {
-    if let Some(found) = locked(&SAVED).as_mut() {
-        found.mouse = on;
-    }
-    if on { MOUSE_ON } else { MOUSE_OFF }
-}
-
 /// Returns the sequence that puts a text into the clipboard of the user's terminal (OSC 52); a terminal may ignore
 /// it.
 pub(in crate::tui) fn copied(text: &str) -> String {

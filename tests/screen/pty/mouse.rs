@@ -79,22 +79,12 @@ fn the_mouse_clicks_drags_and_scrolls() {
 }
 
 #[test]
-fn m_gives_the_mouse_to_the_terminal_and_takes_it_back() {
+fn the_mouse_can_be_left_to_the_terminal() {
     let mut program = Program::started(&Start::default());
     assert_eq!(
         program.screen().mouse_protocol_mode(),
         vt100::MouseProtocolMode::ButtonMotion
     );
-    program.types(b"m");
-    program.shows("the mouse selects text");
-    program.until("no mouse", |program| {
-        program.screen().mouse_protocol_mode() == vt100::MouseProtocolMode::None
-    });
-    program.types(b"m");
-    program.shows("the mouse draws");
-    program.until("the mouse", |program| {
-        program.screen().mouse_protocol_mode() == vt100::MouseProtocolMode::ButtonMotion
-    });
     program.types(b"q");
     program.ends_well(0);
     let mut program = Program::started(&Start {

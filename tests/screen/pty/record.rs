@@ -106,7 +106,6 @@ fn a_record_shows_the_same_screens() {
     for line in [
         "Set ascii on",
         "Set theme light",
-        "Set mouse on",
         "Set threshold 0.6",
         "Keys <U+3000>",
         "Resize 90x26",

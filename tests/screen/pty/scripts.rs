@@ -171,7 +171,6 @@ fn is_shown_alike(path: &Path) -> bool {
         match command {
             ScriptCommand::Set(ScriptSetting::Size(columns, rows)) => size = (*columns, *rows),
             ScriptCommand::Set(ScriptSetting::Ascii(on)) => options.theme.ascii = *on,
-            ScriptCommand::Set(ScriptSetting::Mouse(on)) => options.mouse = *on,
             ScriptCommand::Set(other) => panic!("{}: {other}", path.display()),
             _ => {}
         }
@@ -181,9 +180,8 @@ fn is_shown_alike(path: &Path) -> bool {
         ("NO_COLOR", "1"),
         ("LANG", if options.theme.ascii { "C" } else { "C.UTF-8" }),
     ];
-    let command = [TAXEL, "--no-mouse"];
     let program = Program::start(&Start {
-        command: &command[..if options.mouse { 1 } else { 2 }],
+        command: &[TAXEL],
         size,
         variables: &variables,
         ..Start::default()

@@ -1,5 +1,4 @@
-//! The values that a run remembers for the next one: commands, the set of shapes that was recognised last, the values
-//! of forms.
+//! The values that a run remembers for the next one: commands, and the set of shapes that was recognised last.
 //!
 //! Scripts and recorded runs remember nothing, so that they do the same every time.
 
@@ -7,7 +6,6 @@ use crate::formats::Name;
 use crate::storage::ModelChoice;
 use crate::storage::{Library, RememberedFile};
 use crate::tui::app::state::App;
-use crate::tui::form::memory::FormMemory;
 use crate::tui::runtime::disk::queue::DiskQueue;
 use crate::tui::runtime::disk::request::DiskRequest;
 
@@ -22,10 +20,6 @@ pub(in crate::tui::runtime) struct Reminders {
     set: RememberedFile,
     /// The set in that file.
     chosen: Option<ModelChoice>,
-    /// The file of the forms' values.
-    forms: RememberedFile,
-    /// The values in that file.
-    values: FormMemory,
 }
 
 impl Reminders {
@@ -36,8 +30,6 @@ impl Reminders {
             remembered: 0,
             set: RememberedFile::recognised_set(library),
             chosen: None,
-            forms: RememberedFile::forms(library),
-            values: FormMemory::default(),
         }
     }
 
@@ -52,8 +44,6 @@ impl Reminders {
         if let Some(own) = &self.chosen {
             app.recognition.begin_with(own.clone());
         }
-        self.values = FormMemory::read(&self.forms.read());
-        app.forms = self.values.clone();
     }
 
     /// Remembers everything new. A set is remembered once its model is ready, so that it surely exists. A model from
@@ -65,21 +55,15 @@ impl Reminders {
             let _ = queue.begin(DiskRequest::RememberMore(file, new));
             self.remembered = app.commands.len();
         }
-        let mut write = |file: &RememberedFile, lines| {
-            let _ = queue.begin(DiskRequest::Remember(file.clone(), lines));
-        };
         let is_new = |now: &&ModelChoice| {
             !matches!(now, ModelChoice::File(_)) && self.chosen.as_ref() != Some(*now)
         };
         let trained = app.recognition.trained();
         let now = trained.map(|trained| &trained.choice).filter(is_new);
         if let Some(now) = now {
-            write(&self.set, vec![now.name().to_owned()]);
+            let name = vec![now.name().to_owned()];
+            let _ = queue.begin(DiskRequest::Remember(self.set.clone(), name));
             self.chosen = Some(now.clone());
-        }
-        if app.forms != self.values {
-            write(&self.forms, app.forms.lines());
-            self.values = app.forms.clone();
         }
     }
 }
