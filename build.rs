@@ -8,7 +8,14 @@ use std::process::Command;
 use std::{env, fs};
 
 /// The paths whose changes can change the program.
-const SOURCES: [&str; 5] = ["src", "library", "build.rs", "Cargo.toml", "Cargo.lock"];
+const SOURCES: [&str; 6] = [
+    "src",
+    "crates",
+    "library",
+    "build.rs",
+    "Cargo.toml",
+    "Cargo.lock",
+];
 
 /// The number of characters shown of a commit's name; this is enough for a repository of this size.
 const LENGTH: usize = 9;

@@ -152,7 +152,6 @@ fn touch_peer(
             FigureKind::Hexagon => polygon!(peer::regular::<6>(sizes.0, corner, degrees, wall)),
             FigureKind::Heptagon => polygon!(peer::regular::<7>(sizes.0, corner, degrees, wall)),
             FigureKind::Octagon => polygon!(peer::regular::<8>(sizes.0, corner, degrees, wall)),
-            kind => unreachable!("the peer has no {kind}"),
         }
     }
 }

@@ -101,7 +101,6 @@ fn every_size_and_title_has_a_page_of_bounded_size() {
     }
 }
 
-#[cfg(feature = "png")]
 mod pixels {
     use super::*;
 
@@ -356,7 +355,6 @@ fn a_map_of_poses_has_areas_with_borders() {
     assert!(PoseMap::new((0.0, f64::NAN), (0.0, 1.0), 1, &[None]).is_none());
 }
 
-#[cfg(feature = "png")]
 #[test]
 fn different_contents_give_different_pixels() {
     let labels = ["a", "b"].map(str::to_owned);
@@ -412,7 +410,6 @@ fn content_in_a_format_equals_the_method_for_it() {
             content == plot.svg().into_bytes(),
             *format == DrawingFormat::Svg
         );
-        #[cfg(feature = "png")]
         assert_eq!(
             content == plot.png().expect("in memory"),
             *format == DrawingFormat::Png

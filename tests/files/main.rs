@@ -9,7 +9,6 @@ mod property;
 #[path = "../common/skip.rs"]
 mod skip;
 
-#[cfg(feature = "frames")]
 #[path = "../common/array.rs"]
 mod array;
 
@@ -17,11 +16,8 @@ mod drawing;
 
 mod exchange;
 
-#[cfg(feature = "frames")]
 mod frames;
 
-#[cfg(feature = "cli")]
 mod hostile;
 
-#[cfg(feature = "cli")]
 mod library;

@@ -29,17 +29,12 @@ mod second_method;
 
 mod ties;
 
-#[cfg(feature = "json")]
 mod properties;
 
-#[cfg(feature = "recognition")]
 mod recognition;
 
-#[cfg(feature = "recognition")]
 mod noise;
 
-#[cfg(feature = "json")]
 mod reference;
 
-#[cfg(feature = "sweep")]
 mod sweep;

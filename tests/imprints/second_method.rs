@@ -186,7 +186,6 @@ fn outlines(figure: &Figure) -> (Outline, Option<Outline>) {
         FigureKind::Hexagon => 6,
         FigureKind::Heptagon => 7,
         FigureKind::Octagon => 8,
-        kind => panic!("{kind} has no second method yet"),
     };
     let step = PI / f64::from(corners);
     let circumradius = get(Parameter::Side) / 2.0 / step.sin();

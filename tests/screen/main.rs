@@ -31,8 +31,6 @@ mod screens;
 
 mod scripts;
 
-#[cfg(feature = "cli")]
 mod explore;
 
-#[cfg(feature = "cli")]
 mod pty;

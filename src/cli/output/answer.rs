@@ -9,7 +9,6 @@ use serde_json::value::RawValue;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::bar;
 use crate::cli::output::pose::PoseReport;
-use crate::formats::described::Rows;
 use crate::formats::value::percent;
 use crate::imprint::Imprint;
 use crate::parameter::number::{differing, short};
@@ -29,7 +28,7 @@ struct NearestJson<'a> {
     /// The number of taxels that differ in the best position.
     distance: u32,
     /// The rows of the imprint, in the matrix of the touch.
-    imprint: Rows<'a>,
+    imprint: &'a Imprint,
 }
 
 /// An answer as a JSON object, with its keys in the order of the documentation.
@@ -78,7 +77,7 @@ impl Serialize for AnswerJson<'_> {
         let nearest = self.nearest.as_ref().map(|nearest| NearestJson {
             name: name(nearest.shape),
             distance: nearest.distance,
-            imprint: Rows(&nearest.imprint),
+            imprint: &nearest.imprint,
         });
         map.serialize_entry("nearest", &nearest)?;
         if self.asks_pose {

@@ -47,7 +47,7 @@ mod tests {
 
     #[test]
     fn shades_divide_the_range_evenly() {
-        let mut values = Matrix::filled(MatrixSize::of(6, 1), 0.0);
+        let mut values = Matrix::filled(MatrixSize::new(6, 1).expect("an allowed size"), 0.0);
         values
             .values_mut()
             .copy_from_slice(&[0.0, f64::NAN, 1.0, 25.0, 26.0, 100.0]);

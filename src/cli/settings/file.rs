@@ -80,7 +80,6 @@ pub struct ConfigError {
 
 /// An error in the settings file, without its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
 pub enum Wrong {
     /// The file is longer than [`MAX_BYTES`].
     #[error("larger than 64 KiB, the limit for a file of settings")]

@@ -144,7 +144,6 @@ impl Key {
 
 /// The reason why a text is not a sequence of keys, with the position and text of the wrong key.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
 pub enum KeyError {
     /// No key has this name.
     #[error("key {found:?} at character {at} is unknown; write a single '<' as <lt>")]

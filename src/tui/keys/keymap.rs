@@ -40,7 +40,6 @@ pub struct Change {
 
 /// The reason why a change is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
 pub enum KeymapError {
     /// The key is Ctrl-C.
     #[error("{WAY_OUT} always closes what is open and cannot be changed")]

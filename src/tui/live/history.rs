@@ -114,10 +114,12 @@ mod tests {
     fn the_oldest_frames_are_dropped_when_memory_is_full() {
         let mut history = FrameHistory::new(HISTORY_BYTES);
         assert_eq!((history.oldest(), history.newest()), (None, None));
-        let each = bytes_of(&Frame::new(FrameSize::of(512, 512)));
+        let each = bytes_of(&Frame::new(
+            FrameSize::new(512, 512).expect("an allowed size"),
+        ));
         let most = HISTORY_BYTES / each;
         for number in 0..2 * most as u64 {
-            let mut frame = Frame::new(FrameSize::of(512, 512));
+            let mut frame = Frame::new(FrameSize::new(512, 512).expect("an allowed size"));
             frame.number = number;
             history.push(Arc::new(frame));
             assert!(history.bytes <= HISTORY_BYTES);
@@ -135,7 +137,7 @@ mod tests {
     fn the_rate_follows_the_last_times() {
         let mut history = FrameHistory::new(HISTORY_BYTES);
         let mut push = |time| {
-            let mut frame = Frame::new(FrameSize::of(2, 2));
+            let mut frame = Frame::new(FrameSize::new(2, 2).expect("an allowed size"));
             frame.time = time;
             history.push(Arc::new(frame));
             history.rate()

@@ -206,7 +206,7 @@ mod tests {
         let options = &whole.options;
         assert_eq!(
             (options.size, options.baud),
-            (Some(FrameSize::of(5, 4)), 9600)
+            (Some(FrameSize::new(5, 4).expect("an allowed size")), 9600)
         );
         assert_eq!(
             (options.channel.as_deref(), options.playback),

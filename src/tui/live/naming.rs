@@ -121,7 +121,9 @@ mod tests {
             noise: None,
         });
         let [one, other]: [Imprint; 2] = ["##", "#."].map(|text| text.parse().expect("rows"));
-        assert!(!naming.ask(&Imprint::empty(MatrixSize::of(2, 1))));
+        assert!(!naming.ask(&Imprint::empty(
+            MatrixSize::new(2, 1).expect("an allowed size")
+        )));
         assert!(naming.ask(&one));
         assert!(!naming.ask(&other));
         naming.take(NamedImprint {

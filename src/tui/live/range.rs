@@ -90,8 +90,9 @@ mod tests {
     fn the_top_follows_the_values_even_if_they_are_small() {
         let mut range = ShadeRange::default();
         let mut top = |value: f64| {
-            let [raw, tared] =
-                [10.0 * value, value].map(|value| Matrix::filled(MatrixSize::of(2, 1), value));
+            let [raw, tared] = [10.0 * value, value].map(|value| {
+                Matrix::filled(MatrixSize::new(2, 1).expect("an allowed size"), value)
+            });
             range.add([&raw, &tared]);
             range.tared_top()
         };

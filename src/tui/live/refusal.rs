@@ -4,7 +4,6 @@ use crate::frame::FrameError;
 
 /// The reason why a frame is not marked, no tare made, no imprint taken, or nothing recorded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
 pub enum LiveRefusal {
     /// No frame has come.
     #[error("no frame yet")]

@@ -12,7 +12,6 @@ use crate::tui::live::history::HISTORY_BYTES;
 
 /// A source of frames and the settings that the page begins with.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct WatchRequest {
     /// The name of the source.
     pub source: SourceName,

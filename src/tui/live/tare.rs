@@ -177,7 +177,7 @@ mod tests {
         request.tare = 3;
         let (mut tare, mut processing) = (LiveTare::new(&request), Processing::default());
         let mut add = |side| {
-            let frame = Frame::new(FrameSize::of(side, side));
+            let frame = Frame::new(FrameSize::new(side, side).expect("an allowed size"));
             tare.add(&frame, &mut processing);
             (tare.progress(), tare.error().is_some())
         };
@@ -193,7 +193,7 @@ mod tests {
         let mut request = WatchRequest::new("none");
         request.tare = 2;
         let (mut tare, mut processing) = (LiveTare::new(&request), Processing::default());
-        let frame = Frame::new(FrameSize::of(2, 2));
+        let frame = Frame::new(FrameSize::new(2, 2).expect("an allowed size"));
         tare.add(&frame, &mut processing);
         assert!(tare.end_of_source() && tare.error().is_some());
         tare.restart();

@@ -317,7 +317,7 @@ mod tests {
     fn marks_from_before_a_recording_do_not_get_into_it() {
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
         let take = |page: &mut Live, number| {
-            let mut frame = Frame::new(FrameSize::of(2, 2));
+            let mut frame = Frame::new(FrameSize::new(2, 2).expect("an allowed size"));
             frame.number = number;
             page.take(&FrameBatch {
                 frames: vec![Arc::new(frame)],
@@ -348,7 +348,7 @@ mod tests {
         let mut request = WatchRequest::new("none");
         request.processing.least = 4;
         let mut page = Live::new(Arc::new(request), 7);
-        let mut frame = Frame::new(FrameSize::of(8, 8));
+        let mut frame = Frame::new(FrameSize::new(8, 8).expect("an allowed size"));
         frame.values_mut()[9] = 30.0;
         page.take(&FrameBatch {
             frames: vec![Arc::new(frame)],

@@ -33,7 +33,6 @@ use crate::tui::widget::write;
 
 /// The reason why a script ended before its last line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
 pub enum ScriptFailure {
     /// An expectation does not hold. The message contains the screen.
     #[error("line {line}: {message}\n{screen}")]
@@ -84,7 +83,6 @@ pub fn run(
 
 /// An output of a script.
 #[derive(Debug)]
-#[non_exhaustive]
 pub enum ScriptOutput<'a> {
     /// Text to print.
     Text(&'a str),

@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn the_last_of_an_odd_number_of_rows_is_drawn() {
-        let mut imprint = Imprint::empty(MatrixSize::of(3, 63));
+        let mut imprint = Imprint::empty(MatrixSize::new(3, 63).expect("an allowed size"));
         imprint.set(1, 62, true);
         for (ascii, height) in [(false, 22), (true, 22)] {
             let area = Rect::new(0, 0, 3, height);

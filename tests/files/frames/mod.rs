@@ -5,7 +5,6 @@ mod cut;
 
 mod echoes;
 
-#[cfg(feature = "acquire")]
 mod playback;
 
 mod reference;

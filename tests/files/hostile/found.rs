@@ -118,7 +118,6 @@ fn the_format_of_a_stream_does_not_depend_on_its_pieces() {
 }
 
 /// A compressed name of sixteen megabytes takes a few kilobytes: 65,536 topics used up all memory.
-#[cfg(feature = "mcap")]
 #[test]
 fn a_long_topic_name_is_refused() {
     let record = |kind: u8, fields: &[&[u8]]| {

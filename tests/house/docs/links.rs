@@ -122,6 +122,7 @@ fn every_page_is_linked_from_the_readme() {
 fn every_path_named_exists() {
     let rooms = [
         "src/",
+        "crates/",
         "tests/",
         "examples/",
         "benches/",

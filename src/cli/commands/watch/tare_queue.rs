@@ -90,7 +90,7 @@ mod tests {
         let mut queue = TareQueue::new(wanted).expect("at least one");
         let mut left_out = Vec::new();
         for (number, &side) in (0..).zip(sides) {
-            let mut frame = Frame::new(FrameSize::of(side, side));
+            let mut frame = Frame::new(FrameSize::new(side, side).expect("an allowed size"));
             frame.number = number;
             left_out.extend(queue.add(frame, &View::default())?);
         }

@@ -289,7 +289,7 @@ mod tests {
     fn a_provisional_frame_is_shown_until_it_is_withdrawn() {
         let feed = FrameFeed::default();
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let mut frame = Frame::new(FrameSize::of(2, 2));
+        let mut frame = Frame::new(FrameSize::new(2, 2).expect("an allowed size"));
         let mut counts = StreamCounts::default();
         let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
         assert_eq!(shown, Some(0));
@@ -329,8 +329,8 @@ mod tests {
         let request = WatchRequest::new("none");
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
         let [first, mut second] = [
-            Frame::new(FrameSize::of(2, 2)),
-            Frame::new(FrameSize::of(2, 2)),
+            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
+            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
         ];
         second.values_mut()[0] = 9.0;
         let whole = AcquireEvent::Frame {
@@ -357,8 +357,8 @@ mod tests {
         let feed = FrameFeed::default();
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
         let [mut first, mut garbled] = [
-            Frame::new(FrameSize::of(2, 2)),
-            Frame::new(FrameSize::of(2, 2)),
+            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
+            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
         ];
         first.values_mut().fill(1.0);
         garbled.values_mut()[0] = 9.0;
@@ -380,7 +380,10 @@ mod tests {
     fn the_gap_of_a_lost_connection_is_reported_with_the_first_frame_after_it() {
         let feed = FrameFeed::default();
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let (frame, gap) = (Frame::new(FrameSize::of(2, 2)), Duration::from_secs(2));
+        let (frame, gap) = (
+            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
+            Duration::from_secs(2),
+        );
         let at = |time| AcquireEvent::Frame {
             frame: &frame,
             time: Some(time),
@@ -437,7 +440,7 @@ mod tests {
                 ..ChannelInfo::default()
             };
             feed.take_in(AcquireEvent::Channel(&info), &request);
-            let mut frame = Frame::new(FrameSize::of(2, 2));
+            let mut frame = Frame::new(FrameSize::new(2, 2).expect("an allowed size"));
             frame.channel = index;
             let (frame, time) = (&frame, None);
             feed.take_in(AcquireEvent::Frame { frame, time }, &request);

@@ -351,11 +351,7 @@ const STREAMS: [Malice; 6] = [
 
 /// Returns the inputs for recordings.
 pub(super) fn of_recordings() -> Vec<Malice> {
-    let mut all = [&TEXTS[..], &FILES].concat();
-    if cfg!(feature = "mcap") {
-        all.extend(TOPICS);
-    }
-    all
+    [&TEXTS[..], &FILES, &TOPICS].concat()
 }
 
 /// Returns the inputs for streams. Their first byte says what is known: here only that they are read from their start.

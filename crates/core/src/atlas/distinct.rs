@@ -1,0 +1,293 @@
+//! The atlas: every distinct imprint of a sweep, once.
+
+use rayon::prelude::*;
+
+use crate::atlas::canonical::Classes;
+use crate::atlas::counter::ImprintCounter;
+use crate::atlas::feature::{ImprintSummary, features};
+use crate::atlas::packing::Layout;
+use crate::imprint::Imprint;
+use crate::index::{narrow, wide};
+use crate::sensor::MatrixSize;
+
+/// The distinct imprints of a sweep, counted and described.
+#[derive(Clone, Debug)]
+pub struct Atlas {
+    layout: Layout,
+    counter: ImprintCounter,
+    summaries: Vec<ImprintSummary>,
+}
+
+impl PartialEq for Atlas {
+    /// Returns true if both have the same imprints in the same order, with the same counts and first poses.
+    fn eq(&self, other: &Self) -> bool {
+        self.entries().eq(other.entries())
+    }
+}
+
+/// An imprint of an atlas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtlasEntry {
+    /// The number of the imprint, from 0, in the order of first occurrence.
+    pub id: u32,
+    /// The imprint.
+    pub imprint: Imprint,
+    /// The number of poses that leave the imprint.
+    pub count: u64,
+    /// The number of the first of these poses in the grid.
+    pub first_pose: u64,
+    /// The number of pieces and holes, and the description of the main region.
+    pub summary: ImprintSummary,
+}
+
+/// An imprint of an atlas that lies at another place than a given one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShiftedImprint {
+    /// The number of the imprint.
+    pub id: u32,
+    /// The columns by which the given one lies further to the right; negative if it lies further to the left.
+    pub right: i8,
+    /// The rows by which the given one lies further down; negative if it lies further up.
+    pub down: i8,
+}
+
+/// The numbers of distinct imprints if images of the same imprint count as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DistinctClasses {
+    /// The number up to shifts by whole taxels.
+    pub up_to_shifts: usize,
+    /// The number up to shifts, quarter turns and mirror images.
+    pub up_to_symmetry: usize,
+}
+
+impl Atlas {
+    pub(crate) fn new(size: MatrixSize) -> Self {
+        let layout = Layout::new(size);
+        Self {
+            counter: ImprintCounter::new(layout.words()),
+            layout,
+            summaries: Vec::new(),
+        }
+    }
+
+    pub(crate) fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Adds the imprints of a counter, with their counts times `multiplicity`. Returns the number that each imprint has
+    /// in this atlas.
+    pub(crate) fn add(&mut self, other: &ImprintCounter, multiplicity: u64) -> Vec<u32> {
+        let tallies = other.tallies().iter().enumerate();
+        tallies
+            .map(|(index, tally)| {
+                let (key, hash) = (other.key(index), other.hash(index));
+                let id = self
+                    .counter
+                    .add(key, hash, tally.count * multiplicity, tally.first);
+                narrow(id)
+            })
+            .collect()
+    }
+
+    /// Adds all imprints of another atlas of the same sensor.
+    pub(crate) fn add_all(&mut self, other: &Self) {
+        let ids = self.add(&other.counter, 1);
+        for (id, summary) in ids.into_iter().zip(&other.summaries) {
+            if wide(id) == self.summaries.len() {
+                self.summaries.push(*summary);
+            }
+        }
+    }
+
+    /// Describes the imprints that were added since the last call.
+    pub(crate) fn describe(&mut self) {
+        let (layout, counter) = (&self.layout, &self.counter);
+        self.summaries.par_extend(
+            (self.summaries.len()..counter.len())
+                .into_par_iter()
+                .with_min_len(256)
+                .map(|index| ImprintSummary::of(&layout.imprint(counter.key(index)))),
+        );
+    }
+
+    /// Numbers the imprints in the order of their first poses. All imprints must be described.
+    pub(crate) fn sort_by_first_pose(&mut self) {
+        let order = self.counter.sort_by_first_pose();
+        self.summaries = order.iter().map(|&old| self.summaries[old]).collect();
+    }
+
+    /// Returns the summaries of the imprints, in their order.
+    pub(crate) fn summaries(&self) -> &[ImprintSummary] {
+        &self.summaries
+    }
+
+    /// Iterates over the numbers of poses that leave the imprints, in their order.
+    pub fn counts(&self) -> impl DoubleEndedIterator<Item = u64> + ExactSizeIterator {
+        self.counter.tallies().iter().map(|tally| tally.count)
+    }
+
+    /// Iterates over the numbers of the first poses that leave the imprints, in their order.
+    pub fn first_poses(&self) -> impl DoubleEndedIterator<Item = u64> + ExactSizeIterator {
+        self.counter.tallies().iter().map(|tally| tally.first)
+    }
+
+    /// Returns the number of distinct imprints.
+    pub fn len(&self) -> usize {
+        self.summaries.len()
+    }
+
+    /// Returns true if there are no imprints, because no pose was swept.
+    pub fn is_empty(&self) -> bool {
+        self.summaries.is_empty()
+    }
+
+    /// Returns the imprint with a number; None if there is none.
+    pub fn entry(&self, id: u32) -> Option<AtlasEntry> {
+        let index = wide(id);
+        let summary = self.summaries.get(index)?;
+        Some(self.described(index, summary))
+    }
+
+    fn described(&self, index: usize, summary: &ImprintSummary) -> AtlasEntry {
+        let tally = self.counter.tallies()[index];
+        AtlasEntry {
+            id: narrow(index),
+            imprint: self.layout.imprint(self.counter.key(index)),
+            count: tally.count,
+            first_pose: tally.first,
+            summary: *summary,
+        }
+    }
+
+    /// Iterates over all imprints in order.
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = AtlasEntry> + ExactSizeIterator {
+        let summaries = self.summaries.iter().enumerate();
+        summaries.map(|(index, summary)| self.described(index, summary))
+    }
+
+    /// Returns the number of an imprint; None if no pose leaves it.
+    pub fn find(&self, imprint: &Imprint) -> Option<u32> {
+        if imprint.size() != self.layout.size() {
+            return None;
+        }
+        let (key, hash) = self.layout.key(imprint);
+        self.number(&key, hash)
+    }
+
+    /// Returns the nearest imprint that differs from the given one only by a shift of whole taxels. None if there is no
+    /// such imprint.
+    ///
+    /// ```
+    /// use taxel_core::prelude::*;
+    ///
+    /// let sensor = Sensor::default();
+    /// let bar = Source::from(Figure::rectangle(3.0, 1.0).on(&sensor)?);
+    /// let ranges = Ranges::new(["2:2.9:0.1", "2", "0", "1", "1"].map(|range| range.parse().expect("a range")));
+    /// let grid = PoseGrid::new(bar, sensor, Anchor::Corner, ranges)?;
+    /// let result = Sweep::new(&grid).run();
+    /// let atlas = result.atlas();
+    /// let moved = Figure::rectangle(3.0, 1.0).at(7.0, 1.0).on(&sensor)?;
+    /// let imprint = Plane::new(sensor).touch(&moved);
+    /// assert_eq!(atlas.find(&imprint), None);
+    /// // Up to 2.4 the bar covers columns 2 to 4, from 2.6 on columns 3 to 5, which are nearer.
+    /// let found = atlas.find_shifted(&imprint).expect("the bar");
+    /// assert_eq!((found.id, found.right, found.down), (2, 4, -1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn find_shifted(&self, imprint: &Imprint) -> Option<ShiftedImprint> {
+        let size = self.layout.size();
+        let bounds = imprint.bounds()?;
+        let (wide, high) = (bounds.columns().len(), bounds.rows().len());
+        let mut nearest: Option<ShiftedImprint> = None;
+        for top in 0..=size.rows().checked_sub(u8::try_from(high).ok()?)? {
+            for left in 0..=size.columns().checked_sub(u8::try_from(wide).ok()?)? {
+                // Both are at most 64.
+                let right = bounds.left.cast_signed() - left.cast_signed();
+                let down = bounds.top.cast_signed() - top.cast_signed();
+                let far = |right: i8, down: i8| right.unsigned_abs() + down.unsigned_abs();
+                if nearest.is_some_and(|own| far(own.right, own.down) <= far(right, down)) {
+                    continue;
+                }
+                let mut moved = Imprint::empty(size);
+                for (row, from) in (usize::from(top)..).zip(bounds.rows()) {
+                    let word = imprint.words()[usize::from(from)] >> bounds.left;
+                    moved.set_word(row, word << left);
+                }
+                if let Some(id) = self.find(&moved) {
+                    nearest = Some(ShiftedImprint { id, right, down });
+                }
+            }
+        }
+        nearest
+    }
+
+    /// Returns the number of the imprint that has a key.
+    pub(crate) fn number(&self, key: &[u64], hash: u64) -> Option<u32> {
+        let index = self.counter.find(key, hash)?;
+        u32::try_from(index).ok()
+    }
+
+    /// Returns the value of a feature for every imprint, in their order; None if it does not exist. `feature` is its
+    /// index in [`features`]; with any other index, all are None.
+    pub fn values(&self, feature: usize) -> Vec<Option<f64>> {
+        let feature = features().get(feature);
+        let value = |summary: &ImprintSummary| feature?.value(summary.description.as_ref()?);
+        self.summaries
+            .par_iter()
+            .with_min_len(1024)
+            .map(value)
+            .collect()
+    }
+
+    /// Returns the number of poses in which no taxel is active.
+    pub fn empty_poses(&self) -> u64 {
+        let described = self
+            .summaries
+            .iter()
+            .map(|summary| summary.description.is_some());
+        let empty = described
+            .zip(self.counts())
+            .filter(|(described, _)| !described);
+        empty.map(|(_, count)| count).sum()
+    }
+
+    /// Counts the imprints that remain distinct if images of the same imprint count as one. This takes a moment for
+    /// millions of imprints.
+    pub fn distinct_classes(&self) -> DistinctClasses {
+        let mut classes = Classes::new(self.layout.size());
+        for index in 0..self.len() {
+            classes.add(&self.layout.imprint(self.counter.key(index)));
+        }
+        let (up_to_shifts, up_to_symmetry) = classes.counts();
+        DistinctClasses {
+            up_to_shifts,
+            up_to_symmetry,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, PoseGrid, Ranges};
+    use crate::sensor::{MatrixSize, Sensor};
+    use crate::sweep::Sweep;
+
+    #[test]
+    fn the_first_of_equally_near_imprints_is_found() {
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(3.0, 1.0).on(&sensor).expect("in range");
+        let found = |x0: &str, y0: &str| {
+            let ranges = [x0, y0, "0", "1", "1"].map(|range| range.parse().expect("a range"));
+            let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, Ranges::new(ranges));
+            let atlas = Sweep::new(&grid.expect("in range")).run().atlas;
+            let mut between = Imprint::empty(MatrixSize::of(16, 16));
+            (4..7).for_each(|column| between.set(column, 4, true));
+            atlas.find_shifted(&between)
+        };
+        let first = |right, down| Some(ShiftedImprint { id: 0, right, down });
+        assert_eq!(found("2:6:4", "4"), first(2, 0));
+        assert_eq!(found("4", "2:6:4"), first(0, 2));
+    }
+}

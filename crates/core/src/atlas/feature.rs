@@ -1,0 +1,190 @@
+//! The features: the numbers for which statistics are computed. Each descriptor of [`DESCRIPTORS`] is one feature, or
+//! several if it has parts.
+//!
+//! A point `cg` gives `cg_x` and `cg_y`; a rectangle `rect` gives `rect_left`, `rect_top`, `rect_right` and
+//! `rect_bottom`; the two diagonals give `diagonals_1`, in (0, 90), and `diagonals_2`, in (90, 180). Neither comes near
+//! the end of its range, so both count as plain numbers. Only the direction `cg_cd_direction` goes all around: it is
+//! [`Feature::circular`].
+
+use std::sync::LazyLock;
+
+use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, Value};
+use crate::description::{RegionKind, each_region, is_main};
+use crate::imprint::Imprint;
+
+/// A number that describes an imprint's main region.
+#[derive(Clone, Debug)]
+pub struct Feature {
+    /// The name in JSON and CSV.
+    pub key: String,
+    /// The descriptor of which it is a part.
+    pub descriptor: &'static Descriptor,
+    /// Whether it is a direction that goes all around, in degrees: then its mean and its deviation are circular.
+    pub circular: bool,
+    /// The index of the descriptor's part.
+    part: usize,
+}
+
+impl Feature {
+    /// Returns key and name for display, such as "na: active taxels".
+    pub fn label(&self) -> String {
+        format!("{}: {}", self.key, self.descriptor.name)
+    }
+
+    /// Returns the symbol of its descriptor on the screen; None if the descriptor has other parts, too.
+    pub(in crate::atlas) fn symbol(&self) -> Option<&'static str> {
+        (self.key == self.descriptor.key).then_some(self.descriptor.symbol)
+    }
+
+    /// Returns the value of the feature; None if it does not exist. Only the feature's own descriptor is computed.
+    pub fn value(&self, description: &Description) -> Option<f64> {
+        let (mut index, mut found) = (0, None);
+        each_part((self.descriptor.measure)(description), |value| {
+            if index == self.part {
+                found = Some(value);
+            }
+            index += 1;
+        });
+        found
+    }
+}
+
+/// Returns all features, in the order of [`DESCRIPTORS`].
+///
+/// ```
+/// use taxel_core::atlas::features;
+/// let keys: Vec<&str> = features().iter().map(|feature| feature.key.as_str()).collect();
+/// assert_eq!(keys[..8], ["na", "nae", "ce", "num_x", "num_y", "cg_x", "cg_y", "p"]);
+/// assert_eq!(keys.len(), 23);
+/// ```
+pub fn features() -> &'static [Feature] {
+    static ALL: LazyLock<Vec<Feature>> = LazyLock::new(all);
+    &ALL
+}
+
+fn all() -> Vec<Feature> {
+    let features = DESCRIPTORS.iter().flat_map(|descriptor| {
+        let parts = descriptor.parts.iter().enumerate();
+        parts.map(move |(part, suffix)| Feature {
+            key: format!("{}{suffix}", descriptor.key),
+            descriptor,
+            circular: descriptor.dimension == Dimension::Direction && descriptor.parts.len() == 1,
+            part,
+        })
+    });
+    features.collect()
+}
+
+/// The number of [`features`].
+pub(crate) const FEATURE_COUNT: usize = {
+    let (mut count, mut index) = (0, 0);
+    while index < DESCRIPTORS.len() {
+        count += DESCRIPTORS[index].parts.len();
+        index += 1;
+    }
+    count
+};
+
+/// Calls `take` with the index in [`features`] and the value of each feature that has a value.
+pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64)) {
+    let mut first = 0;
+    for descriptor in DESCRIPTORS {
+        let mut indices = first..first + descriptor.parts.len();
+        first = indices.end;
+        each_part((descriptor.measure)(description), |value| {
+            if let Some(index) = indices.next() {
+                take(index, value);
+            }
+        });
+    }
+}
+
+/// Calls `take` with each number of a value.
+fn each_part(value: Value, mut take: impl FnMut(f64)) {
+    match value {
+        Value::None => {}
+        Value::Count(count) => take(f64::from(count)),
+        Value::Number(number) => take(number),
+        Value::Point(point) => [point.x, point.y].into_iter().for_each(take),
+        Value::Pair(pair) => pair.into_iter().for_each(take),
+        Value::Rect(rect) => {
+            let sides = [rect.left, rect.top, rect.right, rect.bottom];
+            sides.into_iter().map(f64::from).for_each(take);
+        }
+    }
+}
+
+/// The number of regions of an imprint, and the description of its main region.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImprintSummary {
+    /// The number of 8-connected pieces.
+    pub pieces: u16,
+    /// The number of holes.
+    pub holes: u16,
+    /// The description of the main region; None for an empty imprint.
+    pub description: Option<Description>,
+}
+
+impl ImprintSummary {
+    /// Counts the regions of an imprint and describes its main region.
+    pub fn of(imprint: &Imprint) -> Self {
+        let mut summary = Self {
+            pieces: 0,
+            holes: 0,
+            description: None,
+        };
+        each_region(imprint, |region| {
+            if region.kind() == RegionKind::Hole {
+                summary.holes = summary.holes.saturating_add(1);
+                return;
+            }
+            summary.pieces = summary.pieces.saturating_add(1);
+            let best = summary.description.as_ref().map(|best| best.nae);
+            // For most pieces, the bounds alone show that they are too small.
+            if is_main(region.bounds().area(), best) && is_main(region.area(), best) {
+                summary.description = Some(Description::of(region));
+            }
+        });
+        summary
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Otherwise the numbers of a value would not belong to the features of its descriptor.
+    #[test]
+    fn every_value_has_the_parts_that_its_descriptor_states() {
+        let mut measured = vec![0; DESCRIPTORS.len()];
+        for rows in ["#", "##\n#.", "###\n#.#\n###"] {
+            let imprint: Imprint = rows.parse().expect("rows");
+            each_region(&imprint, |region| {
+                let description = Description::of(region);
+                for (descriptor, measured) in DESCRIPTORS.iter().zip(&mut measured) {
+                    let mut numbers = 0;
+                    each_part((descriptor.measure)(&description), |_| numbers += 1);
+                    let is_none = (descriptor.measure)(&description) == Value::None;
+                    let stated = if is_none { 0 } else { descriptor.parts.len() };
+                    assert_eq!(numbers, stated, "{} of {rows}", descriptor.key);
+                    *measured += numbers;
+                }
+            });
+        }
+        assert!(measured.iter().all(|&numbers| numbers > 0), "{measured:?}");
+    }
+
+    #[test]
+    fn a_feature_has_the_same_value_by_itself_and_among_all() {
+        // A square: the direction from its centre of gravity to that of its rectangle does not exist.
+        for rows in ["##\n##", "##\n#."] {
+            let imprint = rows.parse().expect("rows");
+            let description = ImprintSummary::of(&imprint).description;
+            let description = description.expect("not empty");
+            let mut all = vec![None; FEATURE_COUNT];
+            feature_values(&description, |index, value| all[index] = Some(value));
+            let single = features().iter().map(|own| own.value(&description));
+            assert_eq!(all, single.collect::<Vec<_>>(), "{rows}");
+        }
+    }
+}

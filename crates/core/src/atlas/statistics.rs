@@ -1,0 +1,309 @@
+//! Statistics of every feature over all poses that have it, and how much of its variance comes from the position.
+//!
+//! All sums are whole multiples of 2⁻⁴⁰. So the result does not depend on threads, shards or symmetries.
+
+use rayon::prelude::*;
+
+use crate::atlas::feature::{Feature, features};
+use crate::atlas::sums::{ONE, Wide, mean, signed_mean};
+use crate::atlas::values::{FeatureRow, RowSums, Sum, Table, columns, row_width};
+use crate::atlas::variance::VarianceParts;
+use crate::index::lower_word;
+
+/// The statistics of a feature over all poses that have it, in the feature's own unit. If no pose has it, all values
+/// that depend on poses are None.
+///
+/// The mean, the standard deviation and the coefficient of variation are weighted by how often each imprint occurs. The
+/// variance of a feature is the mean of its variances at a fixed orientation (one angle, one pair of zooms), plus the
+/// variance of its means at these orientations. [`Self::sd_position`] is the square root of the first part,
+/// [`Self::sd_angle`] that of the second, so `sd² = sd_position² + sd_angle²`. Each orientation is weighted by its
+/// number of poses with a value, which is usually the same for all.
+///
+/// **Directions** that go all around have a circular mean, that of the unit vectors. With `R` the length of the mean
+/// vector, the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. Logarithms
+/// of `R` take the place of the variances: `sd_position` comes from the mean of the orientations' own `R`, `sd_angle`
+/// from the difference between that mean and the overall `R`, and the squares add up as above. A direction has no
+/// smallest or largest value, and no coefficient of variation.
+#[derive(Clone, Copy, Debug)]
+pub struct Statistic {
+    /// The feature.
+    pub feature: &'static Feature,
+    /// The number of poses that have the feature.
+    pub poses: u64,
+    /// The smallest value; None for a direction.
+    pub min: Option<f64>,
+    /// The mean. For a direction, it is the circular mean, which is None if the directions cancel.
+    pub mean: Option<f64>,
+    /// The largest value; None for a direction.
+    pub max: Option<f64>,
+    /// The standard deviation of the population.
+    pub sd: Option<f64>,
+    /// The standard deviation divided by the mean; None for a direction, or if the mean is 0.
+    pub cv: Option<f64>,
+    /// The value of the continuous figure, if there is one.
+    pub ideal: Option<f64>,
+    /// The part of the deviation that comes from the position at a fixed angle.
+    pub sd_position: Option<f64>,
+    /// The part of the deviation that comes from the angle (and from the zooms).
+    pub sd_angle: Option<f64>,
+}
+
+impl Statistic {
+    /// Returns true if no part of the deviation is larger than the whole one, apart from rounding. In sums from a file
+    /// it may be. The parts of a direction are limited when they are computed.
+    pub(crate) fn has_possible_parts(&self) -> bool {
+        let Some(sd) = self.sd.filter(|_| !self.feature.circular) else {
+            return true;
+        };
+        let most = sd * (1.0 + 1e-9) + 2.0 * ROUNDING;
+        let parts = [self.sd_position, self.sd_angle];
+        parts.into_iter().flatten().all(|part| part <= most)
+    }
+}
+
+/// A column of the statistics.
+#[derive(Clone, Copy, Debug)]
+pub struct StatisticColumn {
+    /// The name in JSON.
+    pub key: &'static str,
+    /// The heading.
+    pub title: &'static str,
+    /// Returns the value for a feature.
+    pub value: fn(&Statistic) -> Option<f64>,
+}
+
+/// All columns, in their order.
+pub const STATISTIC_COLUMNS: &[StatisticColumn] = &[
+    column("min", "min", |row| row.min),
+    column("mean", "mean", |row| row.mean),
+    column("max", "max", |row| row.max),
+    column("sd", "sd", |row| row.sd),
+    column("cv", "cv", |row| row.cv),
+    column("ideal", "ideal", |row| row.ideal),
+    column("sd_position", "sd pos", |row| row.sd_position),
+    column("sd_angle", "sd angle", |row| row.sd_angle),
+];
+
+const fn column(
+    key: &'static str,
+    title: &'static str,
+    value: fn(&Statistic) -> Option<f64>,
+) -> StatisticColumn {
+    StatisticColumn { key, title, value }
+}
+
+/// The sums over all imprints.
+#[derive(Clone, Debug)]
+struct Totals {
+    rows: RowSums,
+    /// The squares of the values of each column.
+    squares: Vec<Squares>,
+}
+
+/// A sum of squares, as the sum of the squares' lower words and the sum of their upper words. All poses together are
+/// below 2⁴⁰, so neither overflows.
+type Squares = [u128; 2];
+
+impl Totals {
+    fn new() -> Self {
+        Self {
+            rows: RowSums::new(),
+            squares: vec![[0; 2]; row_width()],
+        }
+    }
+
+    fn add(&mut self, row: FeatureRow, poses: u64) {
+        self.rows.add(row, poses);
+        for (sums, value) in self.squares.iter_mut().zip(row.values) {
+            let value = u128::from(value.unsigned_abs());
+            let square = value * value;
+            for (sum, word) in sums.iter_mut().zip([square, square >> 64]) {
+                *sum += u128::from(lower_word(word)) * u128::from(poses);
+            }
+        }
+    }
+
+    fn merged(mut self, other: &Self) -> Self {
+        self.rows.merge(&other.rows);
+        let sums = self.squares.iter_mut().flatten();
+        for (sum, other) in sums.zip(other.squares.iter().flatten()) {
+            *sum += other;
+        }
+        self
+    }
+}
+
+/// The sums of one feature.
+#[derive(Clone, Copy, Debug)]
+struct Total {
+    sum: Sum,
+    squares: Squares,
+}
+
+impl Total {
+    /// Returns the statistics of a feature whose smallest and largest values are `extremes`.
+    fn statistic(
+        &self,
+        feature: &'static Feature,
+        extremes: Option<(f64, f64)>,
+        between: Wide,
+        ideal: Option<f64>,
+    ) -> Statistic {
+        let mut statistic = Statistic {
+            feature,
+            poses: self.sum.poses,
+            min: None,
+            mean: None,
+            max: None,
+            sd: None,
+            cv: None,
+            ideal,
+            sd_position: None,
+            sd_angle: None,
+        };
+        let poses = self.sum.poses;
+        if poses == 0 {
+            return statistic;
+        }
+        if feature.circular {
+            self.directions(&mut statistic, between);
+            return statistic;
+        }
+        let sum = self.sum.total();
+        let squares = Wide::joined(self.squares);
+        let of_mean = Wide::square_over(sum, poses);
+        let mean = mean(sum, poses);
+        let sd = (squares - of_mean).root_mean(poses);
+        (statistic.min, statistic.max) = extremes.unzip();
+        statistic.mean = Some(mean);
+        statistic.sd = Some(sd);
+        statistic.cv = (mean != 0.0).then(|| sd / mean.abs());
+        statistic.sd_position = Some((squares - between).root_mean(poses));
+        statistic.sd_angle = Some((between - of_mean).root_mean(poses));
+        statistic
+    }
+
+    fn directions(&self, statistic: &mut Statistic, between: Wide) {
+        let poses = self.sum.poses;
+        let (x, y) = (
+            signed_mean(self.sum.x, poses),
+            signed_mean(self.sum.y, poses),
+        );
+        // No vector is longer than its parts together. A damaged file may say otherwise, and so may rounding.
+        let own = libm::hypot(x, y).min(1.0);
+        let within = between.mean(poses).clamp(own, 1.0);
+        // Lengths that differ by no more than their rounding count as equal, because the root of the rounding would
+        // look like a deviation.
+        let within = if 1.0 - within < ROUNDING { 1.0 } else { within };
+        let own = if within - own < ROUNDING { within } else { own };
+        let Some(mean) = mean_direction(x, y) else {
+            return;
+        };
+        let deviation = |length: f64| (-2.0 * libm::log(length)).max(0.0).sqrt().to_degrees();
+        statistic.mean = Some(mean);
+        statistic.sd = Some(deviation(own));
+        statistic.sd_position = Some(deviation(within));
+        statistic.sd_angle = Some(deviation(own / within));
+    }
+}
+
+/// Returns the circular mean of directions in degrees, given the mean of their unit vectors. None if the vectors
+/// cancel, up to the rounding of their parts.
+pub fn mean_direction(x: f64, y: f64) -> Option<f64> {
+    (libm::hypot(x, y) >= 1e-11).then(|| libm::atan2(y, x).to_degrees() + 0.0)
+}
+
+/// The mean length of vectors is exact to less than this. The parts of the vectors are rounded to multiples of 2⁻⁴⁰,
+/// and so is the length of the sum of an orientation.
+const ROUNDING: f64 = 1.0 / ONE;
+
+/// Returns the statistics of all features. `counts` says how often each imprint of the table occurs.
+pub(crate) fn statistics(
+    table: &Table,
+    counts: &[u64],
+    variance_parts: &VarianceParts,
+    ideal: impl Fn(&str) -> Option<f64>,
+) -> Vec<Statistic> {
+    let columns = columns();
+    let totals = (0..counts.len())
+        .into_par_iter()
+        .with_min_len(1024)
+        .fold(Totals::new, |mut totals, index| {
+            totals.add(table.row(index), counts[index]);
+            totals
+        })
+        .reduce(Totals::new, |one, other| one.merged(&other));
+    let sums = totals.rows.sums().into_iter().zip(&columns);
+    let of_features = sums.map(|(sum, &(column, _))| Total {
+        sum,
+        squares: totals.squares[column],
+    });
+    let parts = of_features.zip(features()).zip(variance_parts.closed());
+    parts
+        .enumerate()
+        .map(|(index, ((total, feature), between))| {
+            total.statistic(feature, table.extremes(index), between, ideal(&feature.key))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atlas::sums::signed;
+
+    /// Returns the statistic of directions. Each group contains those of an orientation.
+    fn of_directions(groups: &[&[f64]]) -> Statistic {
+        let feature = features().iter().find(|feature| feature.circular);
+        let (mut sum, mut between) = (Sum::default(), Wide::default());
+        for group in groups {
+            let mut own = Sum::default();
+            for direction in *group {
+                let (sin, cos) = libm::sincos(direction.to_radians());
+                own.poses += 1;
+                own.x += i128::from(signed(cos));
+                own.y += i128::from(signed(sin));
+            }
+            sum.merge(&own);
+            between += Wide::rounded(own.length());
+        }
+        let squares = [0; 2];
+        let total = Total { sum, squares };
+        total.statistic(feature.expect("there is one"), None, between, None)
+    }
+
+    /// Returns the deviations of directions: in all, from the position and from the angle.
+    fn deviations(groups: &[&[f64]]) -> [f64; 3] {
+        let found = of_directions(groups);
+        let found = [found.sd, found.sd_position, found.sd_angle];
+        found.map(|sd| sd.expect("they do not cancel"))
+    }
+
+    #[test]
+    fn equal_directions_have_no_deviation() {
+        for first in 0..360 {
+            let (one, other) = (f64::from(first) + 0.3, f64::from(first) + 40.7);
+            assert_eq!(deviations(&[&[one; 7], &[one; 7]]), [0.0; 3]);
+            // If two orientations have the same directions, all of the deviation comes from the position.
+            let [sd, position, angle] = deviations(&[&[one, other], &[one, other]]);
+            assert_eq!((sd, angle), (position, 0.0));
+            let [sd, position, angle] = deviations(&[&[one; 3], &[other; 3]]);
+            assert_eq!((sd, position), (angle, 0.0));
+            assert!((sd - 20.41).abs() < 0.1, "{sd}");
+        }
+        // Directions that differ by a thousandth of a degree do differ.
+        let [.., angle] = deviations(&[&[10.0], &[10.001]]);
+        assert!((angle / 0.0005 - 1.0).abs() < 0.01, "{angle}");
+    }
+
+    #[test]
+    fn directions_that_cancel_up_to_rounding_have_no_mean() {
+        for first in 0..120 {
+            let first = f64::from(first) + 0.3;
+            let found = of_directions(&[&[first, first + 120.0, first + 240.0]]);
+            assert_eq!((found.mean, found.sd), (None, None), "{first}");
+        }
+        let found = of_directions(&[&[0.3, 120.3, 240.4]]);
+        assert!(found.mean.is_some() && found.sd.is_some());
+    }
+}

@@ -1,0 +1,461 @@
+//! The paper's descriptors of a region, in one table.
+//!
+//! The panel, tables, JSON and statistics iterate over [`DESCRIPTORS`]; no other part of the program lists the
+//! descriptors. Coordinates and units are those of the sensory plane: a taxel has the coordinates of its centre,
+//! lengths are in cell sides, areas in cells, and directions in degrees counter-clockwise from +x as seen on the
+//! screen. A value that does not exist is [`Value::None`], never a number that is not finite. Points are those of
+//! [`glam`].
+
+use glam::DVec2;
+
+use crate::description::chain::ChainSteps;
+use crate::description::exact::{ExactValue, direction, ratios, whole};
+use crate::description::measures::Description;
+use crate::description::region::RegionKind;
+use crate::imprint::Bounds;
+
+/// The value of a descriptor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// The descriptor does not exist for this region.
+    None,
+    /// A whole number.
+    Count(u32),
+    /// A number.
+    Number(f64),
+    /// A point of the plane.
+    Point(DVec2),
+    /// Two directions.
+    Pair([f64; 2]),
+    /// A rectangle of whole taxels.
+    Rect(Bounds),
+}
+
+impl Value {
+    /// Returns the number, if the value is a count or a single number.
+    ///
+    /// ```
+    /// use taxel_core::description::Value;
+    /// assert_eq!((Value::Count(3).number(), Value::None.number()), (Some(3.0), None));
+    /// ```
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Self::Count(count) => Some(count.into()),
+            Self::Number(number) => Some(number),
+            _ => None,
+        }
+    }
+}
+
+/// The quantity that a descriptor measures. It decides how a value is converted to millimetres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Dimension {
+    /// A number of taxels, or another pure count.
+    Count,
+    /// A length in cell sides; times the pitch, in mm.
+    Length,
+    /// An area in cells; times the square of the pitch, in mm².
+    Area,
+    /// A direction in degrees, counter-clockwise from +x as seen on the screen.
+    Direction,
+    /// A pure number.
+    Ratio,
+    /// A share, shown in %.
+    Share,
+}
+
+/// The changes of a whole imprint on its matrix under which a descriptor changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ChangesUnder {
+    /// Whether a shift by whole taxels changes it.
+    pub shift: bool,
+    /// Whether a rotation by 90° changes it.
+    pub quarter_turn: bool,
+    /// Whether mirroring left to right changes it.
+    pub mirror: bool,
+}
+
+impl ChangesUnder {
+    /// For a descriptor that is the same for every position and orientation of the imprint.
+    const NOTHING: Self = Self {
+        shift: false,
+        quarter_turn: false,
+        mirror: false,
+    };
+    /// For a descriptor that depends on the orientation of the imprint, but is the same for its mirror image.
+    const QUARTER_TURNS: Self = Self {
+        shift: false,
+        quarter_turn: true,
+        mirror: false,
+    };
+    /// For a descriptor that depends on the orientation of the imprint, and differs for its mirror image.
+    const QUARTER_TURNS_AND_MIRRORING: Self = Self {
+        shift: false,
+        quarter_turn: true,
+        mirror: true,
+    };
+    /// For a descriptor that depends on the position of the imprint.
+    const SHIFTS: Self = Self {
+        shift: true,
+        quarter_turn: true,
+        mirror: true,
+    };
+}
+
+/// A row of [`DESCRIPTORS`].
+#[derive(Clone, Copy, Debug)]
+pub struct Descriptor {
+    /// The name in JSON and CSV.
+    pub key: &'static str,
+    /// The symbol on the screen: that of the paper, if there is one.
+    pub symbol: &'static str,
+    /// A description in a few words.
+    pub name: &'static str,
+    /// The description for a hole, whose taxels are inactive.
+    pub name_in_hole: &'static str,
+    /// The quantity that it measures.
+    pub dimension: Dimension,
+    /// The numbers of a value, in its order, as suffixes of the key; a single empty one for a count or a number. A
+    /// value that exists has exactly these numbers.
+    ///
+    /// ```
+    /// use taxel_core::description::Descriptor;
+    /// let parts = |key| Descriptor::from_key(key).expect("in the table").parts;
+    /// assert_eq!(parts("cg"), ["_x", "_y"]);
+    /// assert_eq!(parts("cg_cd_direction"), [""]);
+    /// ```
+    pub parts: &'static [&'static str],
+    /// Whether it is part of the JSON answers. Their form is fixed; the other descriptors can be computed from those in
+    /// them.
+    pub in_answer: bool,
+    /// The changes of the imprint that change its value. A descriptor that changes under shifts says where an imprint
+    /// lies, not which shape it has.
+    pub changes_under: ChangesUnder,
+    /// The value if there is no region: 0 for counts and sums of taxels, and [`Value::None`] for the others.
+    ///
+    /// ```
+    /// use taxel_core::description::{DESCRIPTORS, Value};
+    /// let zeros = DESCRIPTORS.iter().filter(|descriptor| descriptor.of_nothing != Value::None);
+    /// let zeros: Vec<&str> = zeros.map(|descriptor| descriptor.key).collect();
+    /// assert_eq!(zeros, ["na", "nae", "ce", "num_x", "num_y", "area"]);
+    /// ```
+    pub of_nothing: Value,
+    /// Computes the value from the counts and sums.
+    pub measure: fn(&Description) -> Value,
+    /// Computes the exact value. Two imprints have the same value if and only if this is the same; unlike
+    /// [`Self::measure`], it does not round.
+    pub exact: fn(&Description) -> ExactValue,
+}
+
+impl Descriptor {
+    const fn new(
+        key: &'static str,
+        symbol: &'static str,
+        name: &'static str,
+        dimension: Dimension,
+        measure: fn(&Description) -> Value,
+        exact: fn(&Description) -> ExactValue,
+    ) -> Self {
+        Self {
+            key,
+            symbol,
+            name,
+            name_in_hole: name,
+            dimension,
+            parts: &[""],
+            in_answer: true,
+            changes_under: ChangesUnder::NOTHING,
+            of_nothing: Value::None,
+            measure,
+            exact,
+        }
+    }
+
+    /// Gives a descriptor another description for holes.
+    const fn named_in_hole(self, name_in_hole: &'static str) -> Self {
+        Self {
+            name_in_hole,
+            ..self
+        }
+    }
+
+    /// Gives a descriptor the parts of its values: points, pairs and rectangles have several numbers.
+    const fn with_parts(self, parts: &'static [&'static str]) -> Self {
+        Self { parts, ..self }
+    }
+
+    /// Marks a descriptor of the imprint's position.
+    const fn of_place(self) -> Self {
+        Self {
+            changes_under: ChangesUnder::SHIFTS,
+            ..self
+        }
+    }
+
+    /// Marks a count or sum of taxels, whose value is `zero` without a region.
+    const fn zero_of_nothing(self, zero: Value) -> Self {
+        Self {
+            of_nothing: zero,
+            ..self
+        }
+    }
+
+    /// Marks a descriptor that depends on the orientation of the imprint, and so changes under these changes.
+    const fn of_orientation(self, changes_under: ChangesUnder) -> Self {
+        Self {
+            changes_under,
+            ..self
+        }
+    }
+
+    /// Marks a descriptor that JSON answers leave out.
+    const fn not_in_answers(self) -> Self {
+        Self {
+            in_answer: false,
+            ..self
+        }
+    }
+
+    /// Returns the description for a region of a kind, in a few words.
+    ///
+    /// ```
+    /// use taxel_core::description::{Descriptor, RegionKind};
+    /// let na = Descriptor::from_key("na").expect("in the table");
+    /// assert_eq!(na.name_of(RegionKind::Exterior), "active taxels");
+    /// assert_eq!(na.name_of(RegionKind::Hole), "inactive taxels");
+    /// ```
+    pub fn name_of(&self, kind: RegionKind) -> &'static str {
+        match kind {
+            RegionKind::Exterior => self.name,
+            RegionKind::Hole => self.name_in_hole,
+        }
+    }
+
+    /// Returns the descriptor with a key, such as `"na"`; None if there is none.
+    ///
+    /// ```
+    /// use taxel_core::description::Descriptor;
+    /// let direction = Descriptor::from_key("cg_cd_direction").expect("in the table");
+    /// assert!(direction.changes_under.mirror && !direction.changes_under.shift);
+    /// assert!(Descriptor::from_key("colour").is_none());
+    /// ```
+    pub fn from_key(key: &str) -> Option<&'static Self> {
+        DESCRIPTORS.iter().find(|descriptor| descriptor.key == key)
+    }
+}
+
+/// The table of descriptors, in the paper's order; `roundness` is the measure that image analysis uses instead of F.
+pub const DESCRIPTORS: &[Descriptor] = &[
+    Descriptor::new(
+        "na",
+        "NA",
+        "active taxels",
+        Dimension::Count,
+        |d| Value::Count(d.na),
+        |d| Some(whole([d.na])),
+    )
+    .named_in_hole("inactive taxels")
+    .zero_of_nothing(Value::Count(0)),
+    Descriptor::new(
+        "nae",
+        "NAE",
+        "filled taxels",
+        Dimension::Count,
+        |d| Value::Count(d.nae),
+        |d| Some(whole([d.nae])),
+    )
+    .zero_of_nothing(Value::Count(0)),
+    Descriptor::new(
+        "ce",
+        "CE",
+        "outline taxels",
+        Dimension::Count,
+        |d| Value::Count(d.ce),
+        |d| Some(whole([d.ce])),
+    )
+    .zero_of_nothing(Value::Count(0)),
+    Descriptor::new(
+        "num_x",
+        "NumX",
+        "sum of x",
+        Dimension::Length,
+        |d| Value::Number(d.num_x),
+        |d| Some(ratios([d.doubled_sums()[0], 0], 2)),
+    )
+    .of_place()
+    .zero_of_nothing(Value::Number(0.0)),
+    Descriptor::new(
+        "num_y",
+        "NumY",
+        "sum of y",
+        Dimension::Length,
+        |d| Value::Number(d.num_y),
+        |d| Some(ratios([d.doubled_sums()[1], 0], 2)),
+    )
+    .of_place()
+    .zero_of_nothing(Value::Number(0.0)),
+    Descriptor::new(
+        "cg",
+        "CG",
+        "centre of gravity",
+        Dimension::Length,
+        |d| Value::Point(d.cg()),
+        |d| Some(ratios(d.doubled_sums(), 2 * i64::from(d.na))),
+    )
+    .with_parts(&["_x", "_y"])
+    .of_place(),
+    Descriptor::new(
+        "p",
+        "P",
+        "outline length",
+        Dimension::Length,
+        |d| Value::Number(d.p()),
+        |d| Some(whole([d.steps.straight, d.steps.diagonal])),
+    ),
+    Descriptor::new(
+        "f",
+        "F",
+        "P²/NAE",
+        Dimension::Ratio,
+        |d| Value::Number(d.f()),
+        |d| Some(d.exact_compactness()),
+    ),
+    Descriptor::new(
+        "roundness",
+        "Round",
+        "4π·NAE/P²",
+        Dimension::Ratio,
+        |d| d.roundness().map_or(Value::None, Value::Number),
+        |d| (d.steps != ChainSteps::default()).then(|| d.exact_compactness()),
+    )
+    .not_in_answers(),
+    Descriptor::new(
+        "rect",
+        "Rect",
+        "upright rectangle",
+        Dimension::Length,
+        |d| Value::Rect(d.rect),
+        |d| {
+            let sides = [d.rect.left, d.rect.top, d.rect.right, d.rect.bottom];
+            Some(whole(sides.map(u32::from)))
+        },
+    )
+    .with_parts(&["_left", "_top", "_right", "_bottom"])
+    .of_place(),
+    Descriptor::new(
+        "cd",
+        "CD",
+        "rectangle's centre",
+        Dimension::Length,
+        |d| Value::Point(d.cd()),
+        |d| Some(ratios(d.doubled_centre().map(i64::from), 2)),
+    )
+    .with_parts(&["_x", "_y"])
+    .of_place(),
+    Descriptor::new(
+        "area",
+        "Area",
+        "rectangle's taxels",
+        Dimension::Area,
+        |d| Value::Count(d.area()),
+        |d| Some(whole([d.area()])),
+    )
+    .zero_of_nothing(Value::Count(0)),
+    Descriptor::new(
+        "diagonals",
+        "Diag",
+        "its diagonals",
+        Dimension::Direction,
+        |d| Value::Pair(d.diagonals()),
+        |d| direction(d.whole_sides().map(i64::from)),
+    )
+    .with_parts(&["_1", "_2"])
+    .of_orientation(ChangesUnder::QUARTER_TURNS),
+    Descriptor::new(
+        "side_ratio",
+        "Ratio",
+        "long / short side",
+        Dimension::Ratio,
+        |d| Value::Number(d.side_ratio()),
+        |d| {
+            let [width, height] = d.whole_sides().map(i64::from);
+            direction([width.max(height), width.min(height)])
+        },
+    ),
+    Descriptor::new(
+        "filling",
+        "Fill",
+        "NA/Area",
+        Dimension::Share,
+        |d| Value::Number(d.filling()),
+        |d| Some(ratios([i64::from(d.na), 0], i64::from(d.area()))),
+    ),
+    Descriptor::new(
+        "cg_cd",
+        "CG-CD",
+        "distance CG to CD",
+        Dimension::Length,
+        |d| Value::Number(d.cg_cd()),
+        |d| {
+            let [x, y] = d.exact_cg_to_cd();
+            let unit = 2 * i64::from(d.na);
+            let [x, y, unit] = [x, y, unit].map(|own| own.saturating_mul(own));
+            Some(ratios([x.saturating_add(y), 0], unit))
+        },
+    ),
+    Descriptor::new(
+        "cg_cd_direction",
+        "dir",
+        "direction CG to CD",
+        Dimension::Direction,
+        |d| d.cg_cd_direction().map_or(Value::None, Value::Number),
+        |d| direction(d.exact_cg_to_cd()),
+    )
+    .of_orientation(ChangesUnder::QUARTER_TURNS_AND_MIRRORING),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::regions;
+    use crate::imprint::Imprint;
+
+    #[test]
+    fn fields_that_no_region_has_do_not_panic() {
+        let imprint: Imprint = ".##.\n####".parse().expect("an imprint");
+        let own = Description::of(&regions(&imprint)[0]);
+        let (bounds, steps) = (own.rect, own.steps);
+        let swapped = Bounds {
+            left: bounds.right,
+            right: bounds.left,
+            ..bounds
+        };
+        let many = ChainSteps {
+            straight: u32::MAX,
+            diagonal: u32::MAX,
+        };
+        for rect in [bounds, swapped] {
+            for steps in [steps, many] {
+                for count in [0, 1, u32::MAX] {
+                    for sum in [0.0, f64::NAN, 1e300, f64::NEG_INFINITY] {
+                        let (na, nae, ce) = (count, count, count);
+                        let (num_x, num_y, kind) = (sum, -sum, own.kind);
+                        let odd = Description {
+                            kind,
+                            na,
+                            nae,
+                            ce,
+                            num_x,
+                            num_y,
+                            steps,
+                            rect,
+                        };
+                        for row in DESCRIPTORS {
+                            let _ = ((row.measure)(&odd), (row.exact)(&odd));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

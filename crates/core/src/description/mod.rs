@@ -1,0 +1,22 @@
+//! The description of an imprint: its regions, and the paper's descriptors of each region.
+//!
+//! The object is 8-connected and the background 4-connected. So a diagonal line of taxels is one piece, and it
+//! separates the background on its two sides. All counting is integer arithmetic on the rows' words; only the last step
+//! divides.
+
+mod region;
+
+mod chain;
+
+mod exact;
+
+mod measures;
+
+mod descriptor;
+
+pub use chain::ChainSteps;
+pub use descriptor::{ChangesUnder, DESCRIPTORS, Descriptor, Dimension, Value};
+pub use exact::ExactValue;
+pub use measures::Description;
+pub(crate) use region::is_main;
+pub use region::{Region, RegionKind, each_region, main_region, regions};

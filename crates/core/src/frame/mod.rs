@@ -1,0 +1,58 @@
+//! Frames of real sensors: the values that cells measure, and how they become an imprint.
+//!
+//! A [`Frame`] holds up to 512 × 512 values as the sensor or a recording gives them. [`Processing`] then does the
+//! following, in this order, without allocating anything per frame:
+//!
+//! 1. [`View`]: crop, flip, turn by quarters, and mask dead cells. At most 64 × 64 cells may be left.
+//! 2. [`Tare`]: subtract the median of each cell over the first frames.
+//! 3. Gain: multiply each cell by its own factor, if there are factors.
+//! 4. [`Rule`]: decide which values make a taxel active, then drop pieces that are too small.
+//!
+//! Nothing is interpolated, smoothed or normalised. A cell without a value is NaN in memory and never active.
+//!
+//! ```
+//! use taxel_core::frame::{Frame, FrameSize, Processing, Rule};
+//! let size = FrameSize::new(3, 2)?;
+//! let frame = Frame::from_values(size, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
+//! let mut processing = Processing::default();
+//! processing.rule = Some(Rule::at_least(10.0)?);
+//! let processed = processing.run(&frame)?;
+//! assert_eq!((processed.sum, processed.max, processed.cells), (25.0, Some(12.0), 5));
+//! assert_eq!(processed.imprint.map(|imprint| imprint.to_string()).as_deref(), Some(".#.\n.#."));
+//! # Ok::<(), taxel_core::frame::FrameError>(())
+//! ```
+
+mod error;
+
+mod size;
+
+mod recorded;
+
+mod view;
+
+mod tare;
+
+mod first_frames;
+
+mod rule;
+
+mod set_rule;
+
+mod processing;
+
+mod peak;
+
+mod flips;
+
+pub use error::FrameError;
+pub use first_frames::FirstFrames;
+pub use flips::{FlipCounter, FlipReport};
+pub use peak::Peak;
+pub use processing::{Processed, Processing};
+pub use recorded::{Frame, LARGEST_VALUE};
+pub use rule::Rule;
+pub use set_rule::{RuleOrigin, SetRule};
+pub use size::MAX_FRAME_CELLS;
+pub use size::{FrameSize, FrameSizeError, MAX_FRAME_SIDE};
+pub use tare::{Tare, TareFrames};
+pub use view::{Crop, View};

@@ -1,0 +1,380 @@
+//! The rules that decide which values make a taxel active.
+
+use crate::description::{RegionKind, each_region};
+use crate::frame::error::{FrameError, check_size};
+use crate::frame::recorded::LARGEST_VALUE;
+use crate::frame::tare::Tare;
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+
+/// The rule that decides which values make a taxel active. A value equal to a threshold is active; a cell without a
+/// value never is.
+///
+/// Rules are created only by the functions below, which check the numbers. To read a rule, match with `..`, as in
+/// `Rule::AtLeast(value, ..)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rule {
+    /// A taxel is active at this value or more, in the sensor's unit.
+    AtLeast(f64),
+    /// A taxel is active at this percentage of the frame's largest value or more. No taxel is active if that value is 0
+    /// or less. The threshold is `percent / 100 * largest` in f64: 7 % of 100 is rounded to slightly more than 7.
+    Percent(f64),
+    /// A taxel is active at `high` or more. A cell of at least `low` is active too if an 8-connected path of such cells
+    /// joins it to a cell of at least `high`.
+    Hysteresis {
+        /// The lower threshold.
+        low: f64,
+        /// The upper threshold.
+        high: f64,
+    },
+    /// A taxel is active if its value exceeds the tare by at least this number of standard deviations of the cell's own
+    /// noise, and by at least one step of the values ([`Tare::step`], which is 1 if the tare shows none). The standard
+    /// deviation is estimated as 1.4826 times the median absolute deviation of the frames of the tare, as for a normal
+    /// distribution.
+    Noise(f64),
+}
+
+/// Returns a threshold in the sensor's unit.
+///
+/// # Errors
+/// Returns an error if the threshold is not finite, or beyond ±[`LARGEST_VALUE`].
+fn pressure(what: &'static str, value: f64) -> Result<f64, FrameError> {
+    checked(what, value, value.abs() <= LARGEST_VALUE, "-1e300 to 1e300")
+}
+
+fn checked(
+    what: &'static str,
+    value: f64,
+    fits: bool,
+    allowed: &'static str,
+) -> Result<f64, FrameError> {
+    fits.then_some(value).ok_or(FrameError::Rule {
+        what,
+        found: value,
+        allowed,
+    })
+}
+
+impl Rule {
+    /// Returns a percentage of a value, rounded like `percent / 100 * value` in other programs.
+    pub fn percent_of(percent: f64, value: f64) -> f64 {
+        percent / 100.0 * value
+    }
+
+    /// Creates a rule with a fixed threshold, in the sensor's unit.
+    ///
+    /// # Errors
+    /// Returns an error if the threshold is not finite, or beyond ±1e300.
+    pub fn at_least(threshold: f64) -> Result<Self, FrameError> {
+        Ok(Self::AtLeast(pressure("at_least", threshold)?))
+    }
+
+    /// Creates a rule with a threshold in percent of the largest value.
+    ///
+    /// # Errors
+    /// Returns an error if the percentage is not above 0 and at most 100.
+    pub fn percent(percent: f64) -> Result<Self, FrameError> {
+        let fits = percent > 0.0 && percent <= 100.0;
+        let allowed = "above 0, up to 100";
+        Ok(Self::Percent(checked("percent", percent, fits, allowed)?))
+    }
+
+    /// Creates a rule with two thresholds, in the sensor's unit.
+    ///
+    /// # Errors
+    /// Returns an error if a threshold is not finite or beyond ±1e300, or `low` is above `high`.
+    pub fn hysteresis(low: f64, high: f64) -> Result<Self, FrameError> {
+        let (low, high) = (pressure("low", low)?, pressure("high", high)?);
+        if low > high {
+            return Err(FrameError::Order { low, high });
+        }
+        Ok(Self::Hysteresis { low, high })
+    }
+
+    /// Creates a rule with a threshold in standard deviations of the noise ([`Self::Noise`]). The rule needs a tare of
+    /// two or more frames.
+    ///
+    /// # Errors
+    /// Returns an error if the number is not above 0 and at most 1000.
+    pub fn noise(deviations: f64) -> Result<Self, FrameError> {
+        let fits = deviations > 0.0 && deviations <= 1000.0;
+        let allowed = "above 0, up to 1000";
+        Ok(Self::Noise(checked("noise", deviations, fits, allowed)?))
+    }
+
+    /// Returns the imprint of values after tare and gain. The noise of a cell is measured before the gain, so its
+    /// margin is multiplied by the gain too.
+    ///
+    /// # Errors
+    /// For the noise rule, returns an error if there is no tare of two or more frames, or if the tare or the gain
+    /// differs in size from the values.
+    pub fn imprint(
+        &self,
+        values: &Matrix<f64>,
+        tare: Option<&Tare>,
+        gain: Option<&Matrix<f64>>,
+    ) -> Result<Imprint, FrameError> {
+        Ok(match *self {
+            Self::AtLeast(threshold) => at_or_above(values, threshold),
+            Self::Percent(percent) => {
+                let max = values.values().iter().copied().fold(f64::NAN, f64::max);
+                if max > 0.0 {
+                    at_or_above(values, Self::percent_of(percent, max))
+                } else {
+                    Imprint::empty(values.size())
+                }
+            }
+            Self::Hysteresis { low, high } => {
+                let mut imprint = Imprint::empty(values.size());
+                let (weak, strong) = (at_or_above(values, low), at_or_above(values, high));
+                each_region(&weak, |region| {
+                    let piece = region.taxels();
+                    let has_strong = piece
+                        .words()
+                        .iter()
+                        .zip(strong.words())
+                        .any(|(piece, strong)| piece & strong != 0);
+                    if region.kind() == RegionKind::Exterior && has_strong {
+                        imprint = imprint.union(piece);
+                    }
+                });
+                imprint
+            }
+            Self::Noise(deviations) => {
+                let tare = tare.filter(|tare| tare.frames() > 1);
+                let tare = tare.ok_or(FrameError::NoTare)?;
+                check_size("tare", tare.baseline(), values)?;
+                if let Some(gain) = gain {
+                    check_size("gain", gain, values)?;
+                }
+                let factor = |index: usize| gain.map_or(1.0, |gain| gain.values()[index].abs());
+                // A margin is above 0, so a value of 0 is never active, not even in a cell whose gain is 0.
+                active(values, |index, value| {
+                    value > 0.0 && value >= factor(index) * tare.margin(index, deviations)
+                })
+            }
+        })
+    }
+}
+
+/// Returns the cells at a threshold or above.
+fn at_or_above(values: &Matrix<f64>, threshold: f64) -> Imprint {
+    active(values, |_, value| value >= threshold)
+}
+
+fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Imprint {
+    let columns = usize::from(values.columns());
+    let mut imprint = Imprint::empty(values.size());
+    for (row, line) in values.values().chunks(columns).enumerate() {
+        let mut word = 0;
+        for (column, &value) in line.iter().enumerate() {
+            word |= u64::from(is_active(row * columns + column, value)) << column;
+        }
+        imprint.set_word(row, word);
+    }
+    imprint
+}
+
+/// Returns the imprint without its 8-connected pieces of fewer than `least` taxels.
+pub(crate) fn without_small(imprint: &Imprint, least: u32) -> Imprint {
+    let mut rest = Imprint::empty(imprint.size());
+    each_region(imprint, |region| {
+        let piece = region.taxels();
+        if region.kind() == RegionKind::Exterior && piece.count() >= least {
+            rest = rest.union(piece);
+        }
+    });
+    rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::tare::TareFrames;
+    use crate::sensor::MatrixSize;
+
+    fn matrix(rows: &[&[f64]]) -> Matrix<f64> {
+        let side = |length: usize| u8::try_from(length).expect("few");
+        let size = MatrixSize::of(side(rows[0].len()), side(rows.len()));
+        Matrix::from_values(size, rows.concat()).expect("rows of one length")
+    }
+
+    fn imprint(rule: Result<Rule, FrameError>, values: &Matrix<f64>) -> String {
+        let imprint = rule.and_then(|rule| rule.imprint(values, None, None));
+        imprint.expect("a rule that fits").to_string()
+    }
+
+    #[test]
+    fn values_at_a_threshold_are_active_and_missing_cells_never_are() {
+        let values = matrix(&[&[9.999, 10.0, f64::NAN, 40.0]]);
+        assert_eq!(imprint(Rule::at_least(10.0), &values), ".#.#");
+        assert_eq!(imprint(Rule::percent(25.0), &values), ".#.#");
+        assert_eq!(imprint(Rule::at_least(-1.0), &values), "##.#");
+    }
+
+    #[test]
+    fn a_percentage_is_rounded_as_in_other_programs() {
+        for percent in 1_u32..=100 {
+            let threshold = f64::from(percent) / 100.0 * 300.0;
+            let values = matrix(&[&[threshold.next_down(), threshold, 300.0]]);
+            assert_eq!(imprint(Rule::percent(f64::from(percent)), &values), ".##");
+        }
+        assert_eq!(imprint(Rule::percent(7.0), &matrix(&[&[7.0, 100.0]])), ".#");
+        assert_eq!(imprint(Rule::percent(50.0), &matrix(&[&[7.0, 14.0]])), "##");
+    }
+
+    #[test]
+    fn the_largest_value_is_active_at_every_percentage() {
+        let (largest, all) = (14.847_618_057_259_202, Rule::percent(100.0));
+        assert!(largest * 100.0 / 100.0 > largest);
+        assert_eq!(imprint(all, &matrix(&[&[largest, 6.0]])), "#.");
+    }
+
+    #[test]
+    fn no_taxel_is_active_at_a_percentage_of_no_pressure() {
+        for nothing in [0.0, -3.0, f64::NAN] {
+            assert_eq!(
+                imprint(Rule::percent(50.0), &matrix(&[&[nothing; 2]])),
+                ".."
+            );
+        }
+    }
+
+    #[test]
+    fn hysteresis_follows_corners_but_not_gaps() {
+        let values = matrix(&[
+            &[5.0, 0.0, 0.0, 5.0],
+            &[0.0, 5.0, 0.0, 5.0],
+            &[0.0, 0.0, 9.0, 0.0],
+            &[5.0, 0.0, 0.0, 0.0],
+        ]);
+        assert_eq!(
+            imprint(Rule::hysteresis(5.0, 9.0), &values),
+            "#..#\n.#.#\n..#.\n...."
+        );
+        // A weak ring around a strong one is another piece.
+        let mut ring = Matrix::filled(MatrixSize::of(5, 5), 5.0);
+        for (column, row) in [
+            (1, 1),
+            (2, 1),
+            (3, 1),
+            (1, 2),
+            (3, 2),
+            (1, 3),
+            (2, 3),
+            (3, 3),
+        ] {
+            ring.set(column, row, 0.0);
+        }
+        ring.set(2, 2, 9.0);
+        assert_eq!(
+            imprint(Rule::hysteresis(5.0, 9.0), &ring),
+            ".....\n.....\n..#..\n.....\n....."
+        );
+    }
+
+    #[test]
+    fn each_cell_has_its_own_noise() {
+        let mut tare = TareFrames::new(3);
+        for frame in [[0.0, 0.0], [1.0, 10.0], [2.0, 20.0]] {
+            tare.add(&matrix(&[&frame])).expect("of one size");
+        }
+        let tare = tare.finish().expect("three frames");
+        let rule = Rule::noise(3.0).expect("in range");
+        let mut values = matrix(&[&[6.0, 6.0]]);
+        tare.subtract_from(&mut values).expect("of one size");
+        let imprint = rule.imprint(&values, Some(&tare), None).expect("a tare");
+        assert_eq!(imprint.to_string(), "#.");
+        assert_eq!(rule.imprint(&values, None, None), Err(FrameError::NoTare));
+    }
+
+    #[test]
+    fn a_gain_changes_no_decision_about_noise() {
+        let mut tare = TareFrames::new(3);
+        for frame in [10.0, 11.0, 12.0] {
+            let cells = [frame; 5];
+            tare.add(&matrix(&[&cells])).expect("of one size");
+        }
+        let tare = tare.finish().expect("three frames");
+        // The deviation is 1.4826 above the median of 11. The gain of the last cell is negative, so its sign is turned.
+        let (quiet, loud) = (11.0 + 4.4, 11.0 + 4.5);
+        let gain = matrix(&[&[1.0, 10.0, 0.01, 0.0, -10.0]]);
+        let rule = Rule::noise(3.0).expect("in range");
+        let imprint = |frame: [f64; 5]| {
+            let mut values = matrix(&[&frame]);
+            tare.subtract_from(&mut values).expect("of one size");
+            for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {
+                *value *= gain;
+            }
+            let imprint = rule.imprint(&values, Some(&tare), Some(&gain));
+            imprint.expect("all of one size").to_string()
+        };
+        let below = |value: f64| 22.0 - value;
+        assert_eq!(imprint([quiet, quiet, quiet, quiet, below(quiet)]), ".....");
+        assert_eq!(imprint([loud, loud, loud, loud, below(loud)]), "###.#");
+        // If deviations are smaller than one step, the margin is one step.
+        let rule = Rule::noise(0.1).expect("in range");
+        let values = matrix(&[&[0.9, 9.0, 0.009, 0.0, 9.0]]);
+        let imprint = rule.imprint(&values, Some(&tare), Some(&gain));
+        assert_eq!(imprint.map(|imprint| imprint.count()), Ok(0));
+        let other = Matrix::filled(MatrixSize::of(2, 2), 1.0);
+        assert!(rule.imprint(&values, Some(&tare), Some(&other)).is_err());
+    }
+
+    #[test]
+    fn small_pieces_are_dropped() {
+        let imprint: Imprint = "##.#\n#...\n..##".parse().expect("rows");
+        assert_eq!(without_small(&imprint, 2).to_string(), "##..\n#...\n..##");
+        assert_eq!(without_small(&imprint, 3).to_string(), "##..\n#...\n....");
+    }
+
+    #[test]
+    fn rules_out_of_range_are_refused() {
+        for rule in [
+            Rule::at_least(f64::NAN),
+            Rule::percent(0.0),
+            Rule::percent(100.1),
+            Rule::hysteresis(1.0, f64::INFINITY),
+            Rule::noise(-1.0),
+        ] {
+            assert!(matches!(rule, Err(FrameError::Rule { .. })), "{rule:?}");
+        }
+    }
+
+    #[test]
+    fn the_message_about_two_thresholds_names_the_one_out_of_range() {
+        for (low, high, expected) in [
+            (
+                -1e301,
+                5.0,
+                "low: -1e301 is out of range (allowed: -1e300 to 1e300)",
+            ),
+            (
+                5.0,
+                1e301,
+                "high: 1e301 is out of range (allowed: -1e300 to 1e300)",
+            ),
+            (5.0, 3.0, "low 5 is above high 3"),
+        ] {
+            let refused = Rule::hysteresis(low, high).map_err(|error| error.to_string());
+            assert_eq!(refused, Err(expected.to_owned()));
+        }
+    }
+
+    #[test]
+    fn a_tare_of_one_frame_does_not_measure_noise() {
+        let rule = Rule::noise(3.0).expect("in range");
+        let of_frames = |count: u64| {
+            let mut tare = TareFrames::new(count);
+            for _ in 0..count {
+                tare.add(&matrix(&[&[1.0, 1.0]])).expect("of one size");
+            }
+            let tare = tare.finish().expect("all frames");
+            let imprint = rule.imprint(&matrix(&[&[0.9, 1.0]]), Some(&tare), None);
+            imprint.map(|imprint| imprint.to_string())
+        };
+        assert_eq!(of_frames(1), Err(FrameError::NoTare));
+        // All values are equal, so one step is 1.
+        assert_eq!(of_frames(2).as_deref(), Ok(".#"));
+    }
+}

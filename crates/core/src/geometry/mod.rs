@@ -1,0 +1,31 @@
+//! Plane geometry: outlines that bound a shape, and the exact area that they enclose in each cell of a grid.
+//!
+//! Coordinates are those of the sensory plane: x to the right, y **down**, in sides of a cell. Angles are in degrees.
+//! This room knows nothing about sensors, figures or imprints.
+//!
+//! A shape is any type that implements [`Solid`]: it draws its boundary with a [`Pen`], in numbers of any precision
+//! ([`Real`]). For vertices of your own, use [`Polygon`].
+
+mod real;
+
+mod outline;
+
+mod ellipse_cuts;
+
+mod cell_grid;
+
+mod arcs;
+
+mod overlap;
+
+mod regular;
+
+pub(crate) use cell_grid::Drawn;
+pub(crate) use outline::Moving;
+pub use outline::{Ellipse, Extent, Pen, Point, Polygon, Side, Solid, Turn};
+pub(crate) use overlap::Overlap;
+pub use overlap::cell_area;
+pub(crate) use overlap::row_areas;
+pub(crate) use real::nearest;
+pub use real::{Double, Real};
+pub(crate) use regular::{MOST_CORNERS, RegularPolygon};

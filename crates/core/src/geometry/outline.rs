@@ -1,0 +1,346 @@
+//! The boundary of a shape: straight edges and ellipses, drawn with a [`Pen`].
+//!
+//! A shape is *drawn* rather than returned: it calls the pen for each edge and each ellipse of its boundary. So a shape
+//! needs only one definition, which serves every purpose (areas, extents, pictures) and every type of number
+//! ([`Real`]), and allocates nothing with `f64`.
+//!
+//! **Orientation.** Edges run clockwise as seen (x right, y down) around the material, with the material on their
+//! right; around a hole they run the other way. Only closed sets of edges bound an area; the order of the edges does
+//! not matter.
+//!
+//! **Size.** Coordinates must be finite, and those of ellipses below 1e70; a shape with other coordinates leaves an
+//! empty imprint. Coordinates may lie far beyond the sensor, but rounding errors grow with them: of the 32 digits that
+//! decide a tie, as many are lost as a coordinate has before the decimal point, and twice as many for an ellipse.
+
+use crate::geometry::real::Real;
+
+/// A point of the plane, or a vector in it; in cell sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<T> {
+    /// The coordinate to the right.
+    pub x: T,
+    /// The coordinate downwards.
+    pub y: T,
+}
+
+impl<T: Real> Point<T> {
+    /// Creates the point at (`x`, `y`).
+    pub const fn new(x: T, y: T) -> Self {
+        Self { x, y }
+    }
+
+    /// Returns the point moved by a vector.
+    #[must_use]
+    pub fn moved(self, by: Self) -> Self {
+        Self::new(self.x + by.x, self.y + by.y)
+    }
+}
+
+/// A rotation about the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn<T> {
+    sin: T,
+    cos: T,
+}
+
+impl<T: Real> Turn<T> {
+    /// Creates a clockwise rotation as seen (y runs down), by an angle in degrees.
+    pub fn clockwise(degrees: T) -> Self {
+        let (sin, cos) = degrees.sin_cos_degrees();
+        Self { sin, cos }
+    }
+
+    /// Returns the rotated vector.
+    pub fn of(&self, vector: Point<T>) -> Point<T> {
+        Point::new(
+            vector.x * self.cos - vector.y * self.sin,
+            vector.x * self.sin + vector.y * self.cos,
+        )
+    }
+
+    /// Returns two rotated vectors: (`x`, 0) and (0, `y`).
+    pub(crate) fn of_axes(&self, Point { x, y }: Point<T>) -> [Point<T>; 2] {
+        [
+            Point::new(x * self.cos, x * self.sin),
+            Point::new(-(y * self.sin), y * self.cos),
+        ]
+    }
+}
+
+/// An ellipse as the affine image of the unit disc: `centre + across·u + along·v` for `u² + v² ≤ 1`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipse<T> {
+    /// The centre.
+    pub centre: Point<T>,
+    /// The image of the disc's first axis.
+    pub across: Point<T>,
+    /// The image of the disc's second axis; not parallel to the first.
+    pub along: Point<T>,
+}
+
+impl<T: Real> Ellipse<T> {
+    /// Returns half of the ellipse's width and half of its height.
+    pub fn reach(&self) -> Point<T> {
+        let length = |a: T, b: T| (a * a + b * b).sqrt();
+        Point::new(
+            length(self.across.x, self.along.x),
+            length(self.across.y, self.along.y),
+        )
+    }
+
+    /// Returns the area of the parallelogram that the two axes span: the area of the ellipse divided by π.
+    pub(crate) fn span(&self) -> T {
+        (self.across.x * self.along.y - self.across.y * self.along.x).abs()
+    }
+
+    /// Returns how far an extreme point lies to the side of the centre, times the reach in the direction of that point;
+    /// 0 for a circle or an upright ellipse.
+    pub(crate) fn skew(&self) -> T {
+        self.across.x * self.across.y + self.along.x * self.along.y
+    }
+}
+
+/// The side of a boundary on which the material lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// The boundary encloses material.
+    Inside,
+    /// The boundary encloses a hole.
+    Outside,
+}
+
+/// The pen with which a shape draws its boundary. All coordinates are finite.
+pub trait Pen<T: Real> {
+    /// Draws a straight piece of boundary, with the material on the right when going from `from` to `to`.
+    fn edge(&mut self, from: Point<T>, to: Point<T>);
+    /// Draws a whole ellipse.
+    fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side);
+
+    /// Draws the closed ring through the points, which are given clockwise as seen.
+    fn ring(&mut self, points: &[Point<T>], material: Side) {
+        let Some(&last) = points.last() else { return };
+        let mut from = last;
+        for &to in points {
+            match material {
+                Side::Inside => self.edge(from, to),
+                Side::Outside => self.edge(to, from),
+            }
+            from = to;
+        }
+    }
+}
+
+/// A pen that passes everything on to another pen, shifted.
+pub(crate) struct Moving<'a, T, P> {
+    pub(crate) by: Point<T>,
+    pub(crate) pen: &'a mut P,
+}
+
+impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
+    fn edge(&mut self, from: Point<T>, to: Point<T>) {
+        self.pen.edge(from.moved(self.by), to.moved(self.by));
+    }
+    fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
+        let centre = ellipse.centre.moved(self.by);
+        self.pen.ellipse(&Ellipse { centre, ..*ellipse }, material);
+    }
+}
+
+/// A shape with a boundary: a figure, a picture, or an outline of your own.
+///
+/// A type of your own defines once, for every type of number, how it is drawn:
+///
+/// ```
+/// use taxel_core::prelude::*;
+/// use taxel_core::geometry::{Ellipse, Pen, Point, Real, Side};
+///
+/// /// A square plate with a round hole in its middle.
+/// struct Flange { left: f64, top: f64, side: f64, bore: f64 }
+///
+/// impl Solid for Flange {
+///     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+///         let [left, top, side, bore] = [self.left, self.top, self.side, self.bore].map(T::decimal);
+///         let corner = |x: T, y: T| Point::new(left + x, top + y);
+///         let (none, half) = (T::ZERO, side * T::HALF);
+///         // Clockwise as seen.
+///         let plate = [corner(none, none), corner(side, none), corner(side, side), corner(none, side)];
+///         pen.ring(&plate, Side::Inside);
+///         let (across, along) = (Point::new(bore, none), Point::new(none, bore));
+///         pen.ellipse(&Ellipse { centre: corner(half, half), across, along }, Side::Outside);
+///     }
+/// }
+///
+/// let mut plane = Plane::new(Sensor::default());
+/// let imprint = plane.touch(&Flange { left: 2.0, top: 2.0, side: 6.0, bore: 1.5 });
+/// assert_eq!(imprint.count(), 6 * 6 - 4);
+/// let covered: f64 = plane.coverages().values().iter().sum();
+/// assert!((covered - (36.0 - std::f64::consts::PI * 1.5 * 1.5)).abs() < 1e-9);
+/// ```
+///
+/// For an outline of vertices, use [`Polygon`].
+pub trait Solid {
+    /// Draws the whole boundary. Implementations convert the numbers of the shape with [`Real::decimal`].
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>);
+}
+
+/// A reference to a shape is a shape, so that a shape made of others may borrow them.
+///
+/// ```
+/// use taxel_core::prelude::*;
+/// use taxel_core::geometry::{Pen, Real};
+///
+/// /// Shapes that do not overlap, such as the two jaws of a gripper.
+/// struct Both<A, B>(A, B);
+///
+/// impl<A: Solid, B: Solid> Solid for Both<A, B> {
+///     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+///         self.0.draw(pen);
+///         self.1.draw(pen);
+///     }
+/// }
+///
+/// let sensor = Sensor::default();
+/// let left = Figure::rectangle(2.0, 5.0).on(&sensor)?;
+/// let right = Figure::rectangle(2.0, 5.0).at(6.0, 0.0).on(&sensor)?;
+/// assert_eq!(Plane::new(sensor).touch(&Both(&left, &right)).count(), 2 * 10);
+/// # Ok::<(), ParameterError>(())
+/// ```
+impl<S: Solid> Solid for &S {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        (**self).draw(pen);
+    }
+}
+
+/// A simple polygon with at least three vertices, in either sense of rotation.
+///
+/// With fewer vertices, or with all of them on a line, it bounds nothing. Its edges should not cross each other: a part
+/// that the edges run around twice counts twice.
+///
+/// ```
+/// use taxel_core::prelude::*;
+/// use taxel_core::geometry::Extent;
+///
+/// let kite = Polygon::new([(3.0, 1.0), (1.0, 4.0), (3.0, 9.0), (5.0, 4.0)]);
+/// assert_eq!(Extent::of(&kite), Some(Extent { left: 1.0, top: 1.0, right: 5.0, bottom: 9.0 }));
+/// let mut plane = Plane::new(Sensor::default());
+/// let imprint = plane.touch(&kite);
+/// assert!(imprint.get(2, 4) && !imprint.get(1, 1));
+/// let covered: f64 = plane.coverages().values().iter().sum();
+/// assert!((covered - 16.0).abs() < 1e-9);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polygon {
+    vertices: Vec<(f64, f64)>,
+}
+
+impl Polygon {
+    /// Creates the polygon through the vertices, in order. If a coordinate is not finite, the polygon bounds nothing:
+    /// any other number in its place would make a wrong imprint that looks right.
+    ///
+    /// ```
+    /// use taxel_core::geometry::{Extent, Polygon};
+    /// assert_eq!(Extent::of(&Polygon::new([(1.0, 1.0), (f64::NAN, 4.0), (5.0, 4.0)])), None);
+    /// ```
+    pub fn new(vertices: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let mut vertices: Vec<_> = vertices.into_iter().collect();
+        if !vertices.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
+            vertices.clear();
+        }
+        if turns_left(&vertices) {
+            vertices.reverse();
+        }
+        Self { vertices }
+    }
+}
+
+/// Returns true if a ring of vertices runs counter-clockwise as seen, so that its area is negative.
+fn turns_left(vertices: &[(f64, f64)]) -> bool {
+    let Some(&first) = vertices.first() else {
+        return false;
+    };
+    // Vertices are taken relative to the first one, since rounding errors would be too large for a polygon far away,
+    // and in units of the polygon's size, since products could overflow. Differences of halves cannot overflow.
+    let way = |&(x, y): &(f64, f64)| (x / 2.0 - first.0 / 2.0, y / 2.0 - first.1 / 2.0);
+    let ways = || vertices.iter().map(way);
+    let size = ways().fold(f64::MIN_POSITIVE, |size, (x, y)| {
+        size.max(x.abs()).max(y.abs())
+    });
+    let corners = ways().map(|(x, y)| (x / size, y / size));
+    let next = corners.clone().cycle().skip(1);
+    let products = corners.zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1);
+    products.sum::<f64>() < 0.0
+}
+
+impl Solid for Polygon {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        let point = |&(x, y): &(f64, f64)| Point::new(T::decimal(x), T::decimal(y));
+        let Some(mut from) = self.vertices.last().map(point) else {
+            return;
+        };
+        for to in self.vertices.iter().map(point) {
+            pen.edge(from, to);
+            from = to;
+        }
+    }
+}
+
+/// The smallest upright rectangle around a shape; in cell sides, in the frame of the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// The smallest x.
+    pub left: f64,
+    /// The smallest y.
+    pub top: f64,
+    /// The largest x.
+    pub right: f64,
+    /// The largest y.
+    pub bottom: f64,
+}
+
+impl Extent {
+    /// Returns the extent of a shape; None if the shape has no boundary.
+    pub fn of(solid: &impl Solid) -> Option<Self> {
+        Self::drawn(|pen| solid.draw(pen))
+    }
+
+    /// Returns the extent of everything that is drawn with the pen.
+    pub(crate) fn drawn(draw: impl FnOnce(&mut ExtentPen)) -> Option<Self> {
+        let mut pen = ExtentPen(None);
+        draw(&mut pen);
+        pen.0
+    }
+}
+
+/// A pen that draws nothing, but notes how far the boundary reaches.
+pub(crate) struct ExtentPen(Option<Extent>);
+
+impl ExtentPen {
+    fn cover(&mut self, low: Point<f64>, high: Point<f64>) {
+        let old = self.0.unwrap_or(Extent {
+            left: low.x,
+            top: low.y,
+            right: high.x,
+            bottom: high.y,
+        });
+        self.0 = Some(Extent {
+            left: old.left.min(low.x),
+            top: old.top.min(low.y),
+            right: old.right.max(high.x),
+            bottom: old.bottom.max(high.y),
+        });
+    }
+}
+
+impl Pen<f64> for ExtentPen {
+    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
+        self.cover(from, from);
+        self.cover(to, to);
+    }
+    fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
+        let (centre, reach) = (ellipse.centre, ellipse.reach());
+        self.cover(
+            Point::new(centre.x - reach.x, centre.y - reach.y),
+            Point::new(centre.x + reach.x, centre.y + reach.y),
+        );
+    }
+}

@@ -1,0 +1,305 @@
+//! The exact area of a shape inside each cell of a grid.
+//!
+//! **Method.** The boundary is cut at the grid lines, and each piece adds to its own cell the sums from which areas are
+//! computed (`cell_grid`). Straight edges are cut here, ellipses in `arcs`.
+//!
+//! **Error.** There are a few rounding errors per piece, of sums below 10^4 for every shape of the program: together
+//! less than 1e-11 in `f64`, a tenth of what a touch considers doubtful. Edges that are horizontal or vertical up to a
+//! rounding error are harmless: their contribution is as small as their height. To decide a threshold exactly,
+//! [`crate::touch`] uses [`cell_area`].
+
+use crate::geometry::arcs::Arcs;
+use crate::geometry::cell_grid::{CellGrid, Drawn};
+use crate::geometry::ellipse_cuts::EllipseCuts;
+use crate::geometry::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
+use crate::geometry::real::Real;
+use crate::index::from_first;
+
+/// A grid of `columns × rows` unit cells with its top left corner at the origin, and a pen that draws on it.
+#[derive(Clone, Debug)]
+pub(crate) struct Overlap<T> {
+    grid: CellGrid<T>,
+    arcs: Arcs<T>,
+}
+
+impl<T: Real> Overlap<T> {
+    /// Creates an empty grid.
+    pub(crate) fn new(columns: u8, rows: u8) -> Self {
+        Self {
+            grid: CellGrid::new(columns, rows),
+            arcs: Arcs::new(columns, rows),
+        }
+    }
+
+    /// Clears the grid.
+    pub(crate) fn clear(&mut self) {
+        self.grid.clear();
+    }
+
+    /// Clears a grid on which coordinates that are not finite may have been drawn.
+    pub(crate) fn wipe(&mut self) {
+        self.grid.wipe();
+    }
+
+    /// Returns the grid with everything drawn since it was cleared.
+    pub(crate) fn grid(&self) -> &CellGrid<T> {
+        &self.grid
+    }
+
+    /// Returns the grid for taking areas from it.
+    pub(crate) fn grid_mut(&mut self) -> &mut CellGrid<T> {
+        &mut self.grid
+    }
+
+    /// Draws an edge with the material on the right for a `sign` of +1, on the left for −1. `whole` says that the edge
+    /// does not reach beyond the grid.
+    #[expect(
+        clippy::inline_always,
+        reason = "called for every edge: in a large program, a call was made, which takes a twelfth of a touch"
+    )]
+    #[inline(always)]
+    fn side(&mut self, from: Point<T>, to: Point<T>, sign: T, whole: bool) {
+        let Some(edge) = SlopedEdge::between(from, to, sign) else {
+            return;
+        };
+        if whole {
+            self.inside(&edge, edge.left, edge.right);
+        } else {
+            self.partly(edge);
+        }
+    }
+
+    /// Draws the part of an edge that lies on the grid or left of it.
+    #[cold]
+    fn partly(&mut self, edge: SlopedEdge<T>) {
+        if let Some([from, to]) = self.clipped(&edge) {
+            self.inside(&edge, from, to);
+        }
+    }
+
+    /// Draws a part of an edge that lies on the grid or at its rim.
+    #[expect(
+        clippy::inline_always,
+        reason = "called for every edge: a call passes the edge through memory, an eighth more instructions"
+    )]
+    #[inline(always)]
+    fn inside(&mut self, edge: &SlopedEdge<T>, from: Point<T>, to: Point<T>) {
+        let ((first, top), (last, _)) = (from.y.cell(), to.y.cell());
+        let stride = self.grid.start(1);
+        let (mut line, step, next_row) = if first < last {
+            (top + T::ONE, T::ONE, stride)
+        } else {
+            (top, -T::ONE, stride.wrapping_neg())
+        };
+        let mut start = self.grid.start(first) + 1;
+        let mut entered = from.y;
+        let (mut here, mut cell) = (from.x, from.x.cell());
+        for _ in 0..first.abs_diff(last) {
+            // Clamped between the ends, because the slope of an edge that is horizontal up to a rounding error is
+            // meaningless.
+            let next = edge.x_at(line).max(from.x).min(to.x);
+            let height = edge.sign * (line - entered);
+            cell = self.slice(start, edge, (here, cell), next, height);
+            (here, entered, line) = (next, line, line + step);
+            start = start.wrapping_add(next_row);
+        }
+        let height = edge.sign * (to.y - entered);
+        self.slice(start, edge, (here, cell), to.x, height);
+    }
+
+    /// Draws the part of an edge in one row, whose first cell has the entry `start`. The part begins in a given cell,
+    /// ends at `to`, and adds `height` to the cells beyond. Returns the cell in which it ends.
+    #[expect(
+        clippy::inline_always,
+        reason = "called for every row of every edge: a call takes a third as long as the rest"
+    )]
+    #[inline(always)]
+    fn slice(
+        &mut self,
+        start: usize,
+        edge: &SlopedEdge<T>,
+        (from, (first, first_left)): (T, (usize, T)),
+        to: T,
+        height: T,
+    ) -> (usize, T) {
+        let (last, last_left) = to.cell();
+        let mut add = |column: usize, height: T, way: T| {
+            self.grid
+                .add(start.wrapping_add(column), height * way, height);
+        };
+        let last_right = last_left + T::ONE;
+        if first == last {
+            add(last, height, last_right - (from + to) * T::HALF);
+            return (last, last_left);
+        }
+        // The last cell gets the height that remains after the first cell and the whole cells in between: so a sum that
+        // is too small in one cell by a rounding error is too large by it in the next one.
+        let way = first_left + T::ONE - from;
+        let own = way * edge.climb;
+        add(first, own, way * T::HALF);
+        let mut rest = height - own;
+        for column in first + 1..last {
+            add(column, edge.climb, T::HALF);
+            rest = rest - edge.climb;
+        }
+        add(last, rest, last_right - (last_left + to) * T::HALF);
+        (last, last_left)
+    }
+
+    /// Returns the part of an edge that lies on the grid, for an edge that reaches beyond it; draws the part left of
+    /// the grid.
+    fn clipped(&mut self, edge: &SlopedEdge<T>) -> Option<[Point<T>; 2]> {
+        let (mut from, mut to) = (edge.left, edge.right);
+        let (bottom, right) = (self.grid.bottom(), self.grid.right());
+        let (low, high) = (from.y.min(to.y), from.y.max(to.y));
+        let (top, end) = (low.max(T::ZERO), high.min(bottom));
+        if top >= end {
+            return None;
+        }
+        for point in [&mut from, &mut to] {
+            let y = point.y.max(top).min(end);
+            if y != point.y {
+                *point = Point::new(edge.left.x.max(edge.x_at(y)).min(edge.right.x), y);
+            }
+        }
+        let at = |x: T| Point::new(x, top.max(edge.y_at(x)).min(end));
+        // Left of the grid only the height of an edge counts; right of it, an edge does not count.
+        if from.x < T::ZERO {
+            let rim = if to.x < T::ZERO { to } else { at(T::ZERO) };
+            self.aside(edge, from.y, rim.y);
+            from = rim;
+        }
+        if to.x > right {
+            to = at(right);
+        }
+        (T::ZERO <= from.x && from.x <= to.x).then_some([from, to])
+    }
+
+    /// Draws the part of an edge left of the grid, between two heights.
+    fn aside(&mut self, edge: &SlopedEdge<T>, from: T, to: T) {
+        let (top, end) = (from.min(to), from.max(to));
+        let sign = if from < to { edge.sign } else { -edge.sign };
+        let (mut here, mut row) = (top, top.floor());
+        while here < end {
+            let next = T::whole(row + 1).min(end);
+            let start = self.grid.start(from_first(row));
+            self.grid.add(start, T::ZERO, sign * (next - here));
+            (here, row) = (next, row + 1);
+        }
+    }
+}
+
+/// A straight edge, from left to right.
+#[derive(Clone, Copy)]
+struct SlopedEdge<T> {
+    left: Point<T>,
+    right: Point<T>,
+    /// The distance to the right for each unit down.
+    slope: T,
+    /// The distance down for each unit to the right.
+    steepness: T,
+    /// −1 if the material is below, +1 if it is above: if the boundary runs upwards, the cells on its right gain.
+    sign: T,
+    /// The height that the edge adds to a cell that it crosses from side to side.
+    climb: T,
+}
+
+impl<T: Real> SlopedEdge<T> {
+    /// Creates the edge between two points, with the material on its right for a sign of +1; None if it is horizontal.
+    fn between(from: Point<T>, to: Point<T>, sign: T) -> Option<Self> {
+        let (left, right, sign) = if from.x < to.x {
+            (from, to, -sign)
+        } else {
+            (to, from, sign)
+        };
+        let (width, height) = (right.x - left.x, right.y - left.y);
+        if height == T::ZERO {
+            return None;
+        }
+        let steepness = height / width;
+        Some(Self {
+            left,
+            right,
+            slope: width / height,
+            steepness,
+            sign,
+            climb: sign * steepness,
+        })
+    }
+
+    fn x_at(&self, y: T) -> T {
+        self.left.x + (y - self.left.y) * self.slope
+    }
+
+    fn y_at(&self, x: T) -> T {
+        self.left.y + (x - self.left.x) * self.steepness
+    }
+}
+
+impl<T: Real> Pen<T> for Overlap<T> {
+    fn edge(&mut self, from: Point<T>, to: Point<T>) {
+        let (low, high) = (
+            Point::new(from.x.min(to.x), from.y.min(to.y)),
+            Point::new(from.x.max(to.x), from.y.max(to.y)),
+        );
+        self.grid.include_extent(low, high);
+        self.side(from, to, T::ONE, self.grid.encloses(low, high));
+    }
+
+    fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
+        if let Some(curve) = EllipseCuts::of(ellipse) {
+            self.arcs.draw(&mut self.grid, &curve, material);
+        }
+    }
+
+    /// Compares the whole ring with the grid, instead of each edge.
+    fn ring(&mut self, points: &[Point<T>], material: Side) {
+        let Some(&last) = points.last() else { return };
+        let (mut low, mut high) = (last, last);
+        for point in points {
+            low = Point::new(low.x.min(point.x), low.y.min(point.y));
+            high = Point::new(high.x.max(point.x), high.y.max(point.y));
+        }
+        self.grid.include_extent(low, high);
+        let sign = match material {
+            Side::Inside => T::ONE,
+            Side::Outside => -T::ONE,
+        };
+        let whole = self.grid.encloses(low, high);
+        let mut from = last;
+        for &to in points {
+            self.side(from, to, sign, whole);
+            from = to;
+        }
+    }
+}
+
+/// Returns the areas of a shape inside the first `columns` cells of a row, by the same method.
+pub(crate) fn row_areas<T: Real>(solid: &impl Solid, columns: u8, row: u8) -> Vec<T> {
+    let start = Point::new(T::ZERO, T::whole(-i32::from(row)));
+    let mut overlap = Overlap::new(columns, 1);
+    solid.draw(&mut Moving {
+        by: start,
+        pen: &mut overlap,
+    });
+    let grid = overlap.grid();
+    let mut areas = vec![T::ZERO; columns.into()];
+    let Drawn { rows, columns } = grid.drawn();
+    if rows.contains(&0) && !columns.is_empty() {
+        for (area, found) in areas[columns.clone()].iter_mut().zip(grid.row(0, &columns)) {
+            *area = found;
+        }
+    }
+    areas
+}
+
+/// Returns the area of a shape inside the single cell whose top left corner is (`column`, `row`), by the same method.
+pub fn cell_area<T: Real>(solid: &impl Solid, column: u8, row: u8) -> T {
+    let corner = Point::new(T::whole(-i32::from(column)), T::whole(-i32::from(row)));
+    let mut overlap = Overlap::new(1, 1);
+    solid.draw(&mut Moving {
+        by: corner,
+        pen: &mut overlap,
+    });
+    overlap.grid().first()
+}

@@ -1,0 +1,157 @@
+//! A matrix with one value per taxel, row by row from the top left: for example the measurements of a sensor's cells.
+
+use std::fmt;
+
+use crate::parameter::number::counted;
+use crate::sensor::MatrixSize;
+
+/// A matrix of 1 × 1 to 64 × 64 values, row-major.
+///
+/// ```
+/// use taxel_core::matrix::Matrix;
+/// use taxel_core::sensor::MatrixSize;
+/// let mut heat = Matrix::filled(MatrixSize::new(3, 2)?, 0.0);
+/// heat.set(2, 1, 7.5);
+/// assert_eq!((heat.columns(), heat.rows(), heat.get(2, 1)), (3, 2, Some(7.5)));
+/// assert_eq!(heat.row(1), [0.0, 0.0, 7.5]);
+/// assert_eq!(heat.get(3, 0), None);
+/// # Ok::<(), taxel_core::parameter::ParameterError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Matrix<T> {
+    size: MatrixSize,
+    values: Vec<T>,
+}
+
+impl<T: Copy + Default> Default for Matrix<T> {
+    /// Creates a matrix of one cell, whose memory a [`View`](crate::frame::View) can reuse.
+    fn default() -> Self {
+        Self::filled(MatrixSize::SMALLEST, T::default())
+    }
+}
+
+impl<T: Copy> Matrix<T> {
+    /// Creates a matrix with the same value in every cell.
+    pub fn filled(size: MatrixSize, value: T) -> Self {
+        Self {
+            size,
+            values: vec![value; size.cells()],
+        }
+    }
+
+    /// Creates a matrix from the values of its cells, row by row.
+    ///
+    /// ```
+    /// use taxel_core::matrix::Matrix;
+    /// use taxel_core::sensor::MatrixSize;
+    /// let size = MatrixSize::new(3, 2)?;
+    /// let gain = Matrix::from_values(size, vec![1.0, 1.2, 0.9, 1.0, 1.0, 1.1])?;
+    /// assert_eq!(gain.get(2, 1), Some(1.1));
+    /// let error = Matrix::from_values(size, vec![1.0]).unwrap_err();
+    /// assert_eq!(error.to_string(), "found 1 value, expected 6 for a matrix of 3 × 2");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if the number of values is not the number of cells.
+    pub fn from_values(size: MatrixSize, values: Vec<T>) -> Result<Self, MatrixError> {
+        let found = values.len();
+        if found == size.cells() {
+            Ok(Self { size, values })
+        } else {
+            Err(MatrixError { size, found })
+        }
+    }
+
+    /// Changes the size and sets every cell to `value`. Allocates only if there are more cells than ever before.
+    pub fn reset(&mut self, size: MatrixSize, value: T) {
+        self.size = size;
+        self.values.clear();
+        self.values.resize(size.cells(), value);
+    }
+
+    /// Returns the number of columns and rows.
+    pub fn size(&self) -> MatrixSize {
+        self.size
+    }
+
+    /// Returns the number of columns.
+    pub fn columns(&self) -> u8 {
+        self.size.columns()
+    }
+
+    /// Returns the number of rows.
+    pub fn rows(&self) -> u8 {
+        self.size.rows()
+    }
+
+    /// Returns all values, row by row.
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+
+    /// Returns all values for writing, row by row.
+    pub fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
+    }
+
+    /// Returns the values of a row from the left; empty beyond the last row.
+    pub fn row(&self, row: u8) -> &[T] {
+        let columns = usize::from(self.columns());
+        let start = usize::from(row) * columns;
+        self.values.get(start..start + columns).unwrap_or(&[])
+    }
+
+    /// Returns the value of a cell; None beyond the matrix.
+    pub fn get(&self, column: u8, row: u8) -> Option<T> {
+        self.index(column, row).map(|index| self.values[index])
+    }
+
+    /// Changes the value of a cell; does nothing beyond the matrix.
+    pub fn set(&mut self, column: u8, row: u8, value: T) {
+        if let Some(index) = self.index(column, row) {
+            self.values[index] = value;
+        }
+    }
+
+    fn index(&self, column: u8, row: u8) -> Option<usize> {
+        let inside = column < self.columns() && row < self.rows();
+        inside.then(|| usize::from(row) * usize::from(self.columns()) + usize::from(column))
+    }
+}
+
+/// The error for a number of values that is not the number of cells.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MatrixError {
+    /// The size of the matrix.
+    pub size: MatrixSize,
+    /// The number of values.
+    pub found: usize,
+}
+
+impl fmt::Display for MatrixError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { size, found } = *self;
+        let (found, expected) = (counted(found as u64, "value"), size.cells());
+        write!(
+            f,
+            "found {found}, expected {expected} for a matrix of {size}"
+        )
+    }
+}
+
+impl std::error::Error for MatrixError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_matrix_needs_valid_sides_and_one_value_per_cell() {
+        let full = Matrix::from_values(MatrixSize::LARGEST, vec![0; 4096]);
+        assert_eq!(full, Ok(Matrix::filled(MatrixSize::LARGEST, 0)));
+        let size = MatrixSize::of(2, 2);
+        let error = Matrix::from_values(size, vec![0; 5]);
+        assert_eq!(error, Err(MatrixError { size, found: 5 }));
+    }
+}

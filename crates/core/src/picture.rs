@@ -1,0 +1,273 @@
+//! A picture: a stored imprint that is used as a shape, and is moved, zoomed and turned.
+//!
+//! The union of its active taxels, each a unit square, is the shape. It is placed in three steps. First, the top left
+//! corner of its bounding rectangle goes to (`x0`, `y0`). Then everything, including that position, is scaled about
+//! the origin of the plane. Last, the picture is turned **counter-clockwise** as seen, about the centre of its scaled
+//! bounding rectangle. With angle 0, zoom 1 and its own corner it leaves its own imprint again. Source: the paper's
+//! option Picture; the order of the steps is a convention of this project.
+
+use std::sync::Arc;
+
+use crate::geometry::{Pen, Point, Real, Solid, Turn};
+use crate::imprint::Imprint;
+use crate::parameter::{Parameter, ParameterError};
+use crate::sensor::Sensor;
+
+/// The parameters of a picture, in the order in which forms show them.
+pub const PICTURE_PARAMETERS: &[Parameter] = &[
+    Parameter::X0,
+    Parameter::Y0,
+    Parameter::Angle,
+    Parameter::ZoomX,
+    Parameter::ZoomY,
+];
+
+/// A stored imprint and its placement. The values are always finite, and the zooms above 0.
+///
+/// A picture may carry the name under which its imprint is stored. The name is displayed, but neither compared nor
+/// written to files.
+///
+/// ```
+/// use taxel_core::prelude::*;
+/// let sensor = Sensor::default();
+/// let bar: Imprint = "###".parse().expect("a row of taxels");
+/// let turned = Picture::of(bar).at(5.0, 5.0).angle(90.0).on(&sensor)?;
+/// let bounds = Plane::new(sensor).touch(&turned).bounds().expect("some are active");
+/// assert_eq!((bounds.columns(), bounds.rows()), (6..7, 4..7));
+/// # Ok::<(), ParameterError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Picture {
+    imprint: Imprint,
+    /// The values of [`PICTURE_PARAMETERS`].
+    values: [f64; PICTURE_PARAMETERS.len()],
+    /// The name of the stored imprint; shared, so that moving a picture does not allocate.
+    name: Option<Arc<str>>,
+}
+
+impl PartialEq for Picture {
+    fn eq(&self, other: &Self) -> bool {
+        self.imprint == other.imprint && self.values == other.values
+    }
+}
+
+/// A picture whose values are not checked yet; [`Self::on`] checks them all.
+///
+/// Without any of its methods the imprint stays where it is: at its own corner, with angle 0 and zoom 1.
+#[derive(Clone, Debug, PartialEq)]
+#[must_use = "only `on` makes a picture of it"]
+pub struct PictureBuilder(Picture);
+
+impl PictureBuilder {
+    /// Places the top left corner of the imprint's bounding rectangle, before zoom and rotation; in cell sides.
+    pub fn at(mut self, x0: f64, y0: f64) -> Self {
+        [self.0.values[0], self.0.values[1]] = [x0, y0];
+        self
+    }
+
+    /// Turns the picture about its centre, counter-clockwise as seen; in degrees, from 0 to below 360.
+    pub fn angle(mut self, degrees: f64) -> Self {
+        self.0.values[2] = degrees;
+        self
+    }
+
+    /// Scales the picture and its position along x and y.
+    pub fn zoom(mut self, x: f64, y: f64) -> Self {
+        [self.0.values[3], self.0.values[4]] = [x, y];
+        self
+    }
+
+    /// Returns the picture, after checking its values against the ranges of a sensor.
+    ///
+    /// # Errors
+    /// Returns the error of the first value that is out of range, in the order of [`PICTURE_PARAMETERS`].
+    pub fn on(mut self, sensor: &Sensor) -> Result<Picture, ParameterError> {
+        for (parameter, value) in PICTURE_PARAMETERS.iter().copied().zip(&mut self.0.values) {
+            *value = sensor.check(parameter, *value)?;
+        }
+        Ok(self.0)
+    }
+}
+
+impl Picture {
+    /// Starts a picture of this imprint.
+    pub fn of(imprint: Imprint) -> PictureBuilder {
+        PictureBuilder(Self::at_home(imprint))
+    }
+
+    /// Creates a picture that leaves the imprint where it is: at its own corner, with angle 0 and zoom 1.
+    pub fn at_home(imprint: Imprint) -> Self {
+        let (left, top) = imprint
+            .bounds()
+            .map_or((0, 0), |bounds| (bounds.left, bounds.top));
+        Self {
+            imprint,
+            values: [f64::from(left), f64::from(top), 0.0, 1.0, 1.0],
+            name: None,
+        }
+    }
+
+    /// Returns the same picture with the name under which its imprint is stored.
+    #[must_use]
+    pub fn named(self, name: &str) -> Self {
+        Self {
+            name: Some(name.into()),
+            ..self
+        }
+    }
+
+    /// Creates a picture from the values that `value` returns for [`PICTURE_PARAMETERS`], each in range on the
+    /// sensor.
+    ///
+    /// # Errors
+    /// Returns the error of the first value that is missing or out of range.
+    pub fn new(
+        imprint: Imprint,
+        sensor: &Sensor,
+        mut value: impl FnMut(Parameter) -> Option<f64>,
+    ) -> Result<Self, ParameterError> {
+        let mut picture = Self::at_home(imprint);
+        for (parameter, slot) in PICTURE_PARAMETERS.iter().copied().zip(&mut picture.values) {
+            let missing = ParameterError::Missing {
+                parameter,
+                range: sensor.range(parameter),
+            };
+            *slot = sensor.check(parameter, value(parameter).ok_or(missing)?)?;
+        }
+        Ok(picture)
+    }
+
+    /// Returns the same picture with one parameter changed to `value`, in the parameter's unit.
+    ///
+    /// # Errors
+    /// Returns an error if the value is out of range on the sensor, or the parameter is not one of
+    /// [`PICTURE_PARAMETERS`].
+    pub fn with(
+        mut self,
+        parameter: Parameter,
+        value: f64,
+        sensor: &Sensor,
+    ) -> Result<Self, ParameterError> {
+        self.set(parameter, value, sensor)?;
+        Ok(self)
+    }
+
+    /// Changes one value; after an error, nothing is changed.
+    pub(crate) fn set(
+        &mut self,
+        parameter: Parameter,
+        value: f64,
+        sensor: &Sensor,
+    ) -> Result<(), ParameterError> {
+        let Some(index) = PICTURE_PARAMETERS.iter().position(|&own| own == parameter) else {
+            return Err(ParameterError::Foreign {
+                parameter,
+                owner: "picture",
+                expected: PICTURE_PARAMETERS,
+            });
+        };
+        self.values[index] = sensor.check(parameter, value)?;
+        Ok(())
+    }
+
+    /// Returns the value of a parameter; None for one that a picture does not have.
+    pub fn get(&self, parameter: Parameter) -> Option<f64> {
+        PICTURE_PARAMETERS
+            .iter()
+            .position(|&own| own == parameter)
+            .map(|index| self.values[index])
+    }
+
+    /// Returns the name under which the imprint is stored; None if it was not given.
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// Returns the stored imprint, without placement.
+    pub fn imprint(&self) -> &Imprint {
+        &self.imprint
+    }
+}
+
+impl Solid for Picture {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        let Some(bounds) = self.imprint.bounds() else {
+            return;
+        };
+        let [x0, y0, angle, zoom_x, zoom_y] = self.values.map(T::decimal);
+        let turn = Turn::clockwise(-angle);
+        let size = |from: u8, to: u8| T::whole(i32::from(to - from));
+        let half = Point::new(
+            size(bounds.left, bounds.right) * T::HALF * zoom_x,
+            size(bounds.top, bounds.bottom) * T::HALF * zoom_y,
+        );
+        let centre = Point::new(x0 * zoom_x, y0 * zoom_y).moved(half);
+        let corner = |column: u8, row: u8| {
+            let x = size(bounds.left, column) * zoom_x - half.x;
+            let y = size(bounds.top, row) * zoom_y - half.y;
+            centre.moved(turn.of(Point::new(x, y)))
+        };
+        // A side between two neighbouring taxels belongs to the boundary if just one of them is active. Runs of such
+        // sides on a line are drawn as one edge.
+        let word = |row: i32| {
+            usize::try_from(row)
+                .ok()
+                .and_then(|row| self.imprint.words().get(row))
+                .unwrap_or(&0)
+        };
+        for row in bounds.top..=bounds.bottom {
+            let (above, below) = (*word(i32::from(row) - 1), *word(i32::from(row)));
+            for (left, right) in runs(below & !above) {
+                pen.edge(corner(left, row), corner(right, row));
+            }
+            for (left, right) in runs(above & !below) {
+                pen.edge(corner(right, row), corner(left, row));
+            }
+        }
+        for column in bounds.left..=bounds.right {
+            let bit = |row: u8, column: u8| u64::from(self.imprint.get(column, row)) << row;
+            let line = |column: u8| bounds.rows().fold(0, |line, row| line | bit(row, column));
+            // Column −1 wraps to 255, where no taxel is active.
+            let (before, after) = (line(column.wrapping_sub(1)), line(column));
+            for (top, bottom) in runs(after & !before) {
+                pen.edge(corner(column, bottom), corner(column, top));
+            }
+            for (top, bottom) in runs(before & !after) {
+                pen.edge(corner(column, top), corner(column, bottom));
+            }
+        }
+    }
+}
+
+/// Iterates over the runs of ones in a word, each given by its first bit and the bit after its last.
+fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
+    std::iter::from_fn(move || {
+        if word == 0 {
+            return None;
+        }
+        let first = word.trailing_zeros();
+        let end = first + (word >> first).trailing_ones();
+        word &= u64::MAX.unbounded_shl(end);
+        Some((u8::try_from(first).ok()?, u8::try_from(end).ok()?))
+    })
+}
+
+impl std::fmt::Display for Picture {
+    /// Writes a summary in one line.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let text = |index: usize| PICTURE_PARAMETERS[index].format(self.values[index]);
+        f.write_str("picture")?;
+        if let Some(name) = &self.name {
+            write!(f, " of {name}")?;
+        }
+        write!(
+            f,
+            " at {}, {}, {}°, zoom {} × {}",
+            text(0),
+            text(1),
+            text(2),
+            text(3),
+            text(4)
+        )
+    }
+}

@@ -1,0 +1,188 @@
+//! The axes of a pose, and types with one value per axis: ranges, indices, poses.
+
+use std::ops::{Index, IndexMut};
+
+use crate::parameter::{Parameter, named};
+use crate::pose::range::DecimalRange;
+use crate::source::Source;
+
+/// An axis of a pose. In a grid, the first axis runs fastest and the last one slowest.
+///
+/// Figures have the first three; their zooms are 1. Pictures have all five.
+///
+/// ```
+/// use taxel_core::pose::{Axis, Ranges};
+///
+/// let ranges = Ranges::default().with(Axis::X0, "5:6:0.5".parse()?);
+/// assert_eq!(ranges[Axis::X0].count(), 3);
+/// assert_eq!(Axis::ALL.map(Axis::name), ["x0", "y0", "angle", "zoom_x", "zoom_y"]);
+/// # Ok::<(), taxel_core::pose::RangeError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Axis {
+    /// The position to the right, in cells.
+    X0,
+    /// The position downwards, in cells.
+    Y0,
+    /// The rotation in degrees: clockwise for figures, counter-clockwise for pictures.
+    Angle,
+    /// The horizontal zoom of a picture.
+    ZoomX,
+    /// The vertical zoom of a picture.
+    ZoomY,
+}
+
+impl Axis {
+    /// All axes, the fastest first.
+    pub const ALL: [Self; 5] = [Self::X0, Self::Y0, Self::Angle, Self::ZoomX, Self::ZoomY];
+
+    /// Iterates over the axes that a shape has: all of them for a picture, all except the zooms for a figure.
+    pub fn of(source: &Source) -> impl Iterator<Item = Self> + use<> {
+        let figure = source.kind().is_some();
+        let all = Self::ALL.into_iter();
+        all.filter(move |axis| !(figure && axis.is_zoom()))
+    }
+
+    /// Returns the parameter that this axis sets. It has the unit and the range of the axis.
+    pub const fn parameter(self) -> Parameter {
+        match self {
+            Self::X0 => Parameter::X0,
+            Self::Y0 => Parameter::Y0,
+            Self::Angle => Parameter::Angle,
+            Self::ZoomX => Parameter::ZoomX,
+            Self::ZoomY => Parameter::ZoomY,
+        }
+    }
+
+    /// Returns the name in files, which is the key of the parameter: `"zoom_x"`.
+    pub fn name(self) -> &'static str {
+        self.parameter().row().key
+    }
+
+    /// Returns true if only pictures have the axis.
+    pub const fn is_zoom(self) -> bool {
+        matches!(self, Self::ZoomX | Self::ZoomY)
+    }
+}
+
+named!(Axis, "axis", &Axis::ALL);
+
+/// A value for each axis, indexed by [`Axis`].
+///
+/// ```
+/// use std::collections::HashMap;
+/// use taxel_core::pose::{Axis, PoseIndex, Ranges};
+///
+/// let corner = PoseIndex::new([0; 5]).with(Axis::Angle, 90);
+/// assert_eq!(corner[Axis::Angle], 90);
+/// // Ranges and indices are keys of maps.
+/// let done = HashMap::from([(Ranges::default(), corner)]);
+/// assert_eq!(done.get(&Ranges::default()), Some(&corner));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PerAxis<T>([T; 5]);
+
+/// The range of each axis; together they span a [`PoseGrid`](crate::pose::PoseGrid).
+pub type Ranges = PerAxis<DecimalRange>;
+
+/// The values of one pose: cells, degrees, and zooms, which are 1 for figures.
+///
+/// x0 and y0 locate the anchor. If the anchor of a picture is its corner, they are the position before zooming.
+pub type Pose = PerAxis<f64>;
+
+/// The position of a pose in a grid: for each axis, the index of its value in the range, from 0.
+pub type PoseIndex = PerAxis<u64>;
+
+impl<T> PerAxis<T> {
+    /// Creates values from an array in the order of [`Axis::ALL`].
+    pub const fn new(values: [T; 5]) -> Self {
+        Self(values)
+    }
+
+    /// Creates values by calling `value` for each axis.
+    pub fn from_fn(value: impl FnMut(Axis) -> T) -> Self {
+        Self(Axis::ALL.map(value))
+    }
+
+    /// Returns the same values with another value on one axis.
+    #[must_use]
+    pub fn with(mut self, axis: Axis, value: T) -> Self {
+        self[axis] = value;
+        self
+    }
+
+    /// Returns the values in the order of [`Axis::ALL`].
+    pub fn into_array(self) -> [T; 5] {
+        self.0
+    }
+
+    /// Iterates over the axes and their values, the fastest axis first.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Axis, &T)> + ExactSizeIterator {
+        Axis::ALL.into_iter().zip(&self.0)
+    }
+}
+
+impl<T> Index<Axis> for PerAxis<T> {
+    type Output = T;
+    fn index(&self, axis: Axis) -> &T {
+        &self.0[axis as usize]
+    }
+}
+
+impl<T> IndexMut<Axis> for PerAxis<T> {
+    fn index_mut(&mut self, axis: Axis) -> &mut T {
+        &mut self.0[axis as usize]
+    }
+}
+
+impl Default for Ranges {
+    /// Returns the ranges of the paper: x0 and y0 over one cell from 5 on in hundredths, every whole degree, no zoom.
+    fn default() -> Self {
+        Self([
+            DecimalRange::from_units(500, 1, 2, 100),
+            DecimalRange::from_units(500, 1, 2, 100),
+            DecimalRange::from_units(0, 1, 0, 360),
+            DecimalRange::whole(1),
+            DecimalRange::whole(1),
+        ])
+    }
+}
+
+impl<T> Default for PerAxis<Option<T>> {
+    /// Returns None for every axis.
+    fn default() -> Self {
+        Self([const { None }; 5])
+    }
+}
+
+/// The point of a shape that x0 and y0 locate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Anchor {
+    /// The top left corner of the bounding rectangle before rotation.
+    #[default]
+    Corner,
+    /// The centre of rotation. For a picture, it lies at (x0, y0) under every zoom.
+    Centre,
+}
+
+impl Anchor {
+    /// Both anchors.
+    pub const ALL: [Self; 2] = [Self::Corner, Self::Centre];
+
+    /// The names of the anchors, in the order of [`Self::ALL`].
+    pub const NAMES: [&'static str; 2] = ["corner", "centre"];
+
+    /// Returns the name in files and on the command line; [`str::parse`] reads it.
+    ///
+    /// ```
+    /// use taxel_core::pose::Anchor;
+    /// assert_eq!(Anchor::Centre.name(), "centre");
+    /// assert_eq!("centre".parse(), Ok(Anchor::Centre));
+    /// assert!("middle".parse::<Anchor>().is_err());
+    /// ```
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+named!(Anchor, "anchor", &Anchor::ALL);

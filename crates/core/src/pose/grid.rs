@@ -1,0 +1,496 @@
+//! A grid of poses: a figure or a picture, a sensor, and a range for each axis.
+
+use crate::geometry::{Point, Real};
+use crate::parameter::number::{grouped, to_decimals};
+use crate::parameter::{Parameter, ParameterError};
+use crate::pose::axis::{Anchor, Axis, Pose, PoseIndex, Ranges};
+use crate::pose::boundary::Boundary;
+use crate::pose::placed::{Placed, centre};
+use crate::pose::range::DecimalRange;
+use crate::sensor::Sensor;
+use crate::source::Source;
+
+/// The largest number of decimals of an angle in a range.
+const ANGLE_DECIMALS: i32 = 12;
+
+/// The largest number of poses of a grid.
+pub const MAX_POSES: u64 = 1_000_000_000_000;
+
+/// A shape, a sensor and the poses to sweep, all of them in range. Units are cells and degrees.
+///
+/// **Order of poses.** x0 runs fastest, then y0, the angle, zoom x and zoom y (only pictures have zooms). A *row*
+/// consists of all x0 at one y0; an *orientation* consists of all rows at one angle and one pair of zooms. Poses, rows
+/// and orientations are numbered from 0 in this order.
+///
+/// **Anchor.** The ranges of x0 and y0 locate either the corner of the shape, as everywhere in the program, or its
+/// centre. The centre of a figure is its centre of rotation. That of a picture is the centre of its scaled bounding
+/// rectangle, which then lies *at* the given point under every zoom. The anchor is a convention of this project.
+///
+/// ```
+/// use taxel_core::prelude::*;
+/// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
+/// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
+/// assert_eq!(grid.poses(), 3_600_000);
+/// let pose = grid.pose(10_203);
+/// assert_eq!((pose[Axis::X0], pose[Axis::Y0], pose[Axis::Angle]), (5.03, 5.02, 1.0));
+/// # Ok::<(), taxel_core::pose::GridError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseGrid {
+    source: Source,
+    sensor: Sensor,
+    anchor: Anchor,
+    ranges: Ranges,
+}
+
+impl PoseGrid {
+    /// Creates a grid of poses of `source`, whose own position, angle and zooms do not matter.
+    ///
+    /// # Errors
+    /// Returns an error if a range exceeds that of its parameter, if a figure has zooms other than 1, or if there are
+    /// more than [`MAX_POSES`] poses.
+    pub fn new(
+        source: Source,
+        sensor: Sensor,
+        anchor: Anchor,
+        ranges: Ranges,
+    ) -> Result<Self, GridError> {
+        Self::checked(source, sensor, anchor, ranges, true)
+    }
+
+    /// Creates a grid as [`Self::new`] does, but x0, y0 and the angle need only begin within their range. An angle of
+    /// 360° or more is a further turn; and a shape may lie anywhere, though forms and files do not allow it.
+    ///
+    /// # Errors
+    /// Returns an error if the first value of a range exceeds that of its parameter, and the errors of [`Self::new`]
+    /// for zooms and the number of poses.
+    pub(crate) fn going_beyond(
+        source: Source,
+        sensor: Sensor,
+        anchor: Anchor,
+        ranges: Ranges,
+    ) -> Result<Self, GridError> {
+        Self::checked(source, sensor, anchor, ranges, false)
+    }
+
+    /// Creates a grid, and checks the ends of the ranges of x0, y0 and the angle if `to_the_end` is true.
+    fn checked(
+        source: Source,
+        sensor: Sensor,
+        anchor: Anchor,
+        ranges: Ranges,
+        to_the_end: bool,
+    ) -> Result<Self, GridError> {
+        let (mut source, mut poses) = (source, 1_u128);
+        for (axis, &range) in ranges.iter() {
+            if axis.is_zoom() && source.kind().is_some() {
+                if range != DecimalRange::whole(1) {
+                    return Err(GridError::Zoom {
+                        noun: source.noun(),
+                    });
+                }
+                continue;
+            }
+            if to_the_end || axis.is_zoom() {
+                sensor.check(axis.parameter(), range.last())?;
+            }
+            source = source.with(axis.parameter(), range.value(0), &sensor)?;
+            poses *= u128::from(range.count());
+        }
+        if poses > u128::from(MAX_POSES) {
+            return Err(GridError::Poses { poses });
+        }
+        Ok(Self {
+            source,
+            sensor,
+            anchor,
+            ranges,
+        })
+    }
+
+    /// Returns the shape, in the first pose.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// Returns the sensor.
+    pub fn sensor(&self) -> &Sensor {
+        &self.sensor
+    }
+
+    /// Returns the point of the shape that x0 and y0 locate.
+    pub fn anchor(&self) -> Anchor {
+        self.anchor
+    }
+
+    /// Returns the range of each axis.
+    pub fn ranges(&self) -> &Ranges {
+        &self.ranges
+    }
+
+    /// Iterates over the axes that the shape has: all of them for a picture, all except the zooms for a figure.
+    pub fn axes(&self) -> impl Iterator<Item = Axis> + use<> {
+        Axis::of(&self.source)
+    }
+
+    /// Returns the number of poses.
+    pub fn poses(&self) -> u64 {
+        self.rows() * self.row_length()
+    }
+
+    /// Returns the number of poses in a row.
+    pub fn row_length(&self) -> u64 {
+        self.ranges[Axis::X0].count()
+    }
+
+    /// Returns the number of rows in all orientations together.
+    pub fn rows(&self) -> u64 {
+        self.orientations() * self.rows_per_orientation()
+    }
+
+    /// Returns the number of rows in an orientation.
+    pub fn rows_per_orientation(&self) -> u64 {
+        self.ranges[Axis::Y0].count()
+    }
+
+    /// Returns the number of orientations: angles times zooms.
+    pub(super) fn orientations(&self) -> u64 {
+        let [_, _, angles, zooms_x, zooms_y] = self.counts().into_array();
+        angles * zooms_x * zooms_y
+    }
+
+    /// Returns the number of values of each axis.
+    pub fn counts(&self) -> PoseIndex {
+        PoseIndex::from_fn(|axis| self.ranges[axis].count())
+    }
+
+    /// Returns the index of pose `number` on each axis. Numbers beyond the last pose start again at the first.
+    pub fn index(&self, number: u64) -> PoseIndex {
+        let mut rest = number;
+        PoseIndex::from_fn(|axis| {
+            let count = self.ranges[axis].count();
+            let index = rest % count;
+            rest /= count;
+            index
+        })
+    }
+
+    /// Returns the number of the pose at an index. An index beyond the grid is moved to its edge.
+    pub fn number(&self, index: PoseIndex) -> u64 {
+        index.iter().rev().fold(0, |number, (axis, &index)| {
+            let count = self.ranges[axis].count();
+            number * count + index.min(count - 1)
+        })
+    }
+
+    /// Returns pose `number`. Numbers beyond the last pose start again at the first.
+    pub fn pose(&self, number: u64) -> Pose {
+        let index = self.index(number);
+        Pose::from_fn(|axis| self.ranges[axis].value(index[axis]))
+    }
+
+    /// Returns the part of the grid that has, on each axis, the `counts` values from `from` on. None if it is empty or
+    /// leaves this grid.
+    pub fn part(&self, from: PoseIndex, counts: PoseIndex) -> Option<Self> {
+        let mut ranges = self.ranges;
+        for axis in Axis::ALL {
+            let end = from[axis].checked_add(counts[axis])?;
+            ranges[axis] = ranges[axis].part(from[axis]..end)?;
+        }
+        Self::new(self.source.clone(), self.sensor, self.anchor, ranges).ok()
+    }
+
+    /// Returns the shape in pose `number`. Numbers beyond the last pose start again at the first. For a pose between
+    /// those of the grid, see [`Self::source_at`].
+    pub fn placed(&self, number: u64) -> Placed {
+        self.placed_in(self.pose(number))
+    }
+
+    /// Returns the shape in a pose, which may lie between those of the grid. A centre may lie anywhere, and an angle may be
+    /// of any size; any other value beyond the range of its parameter is ignored.
+    pub fn placed_in(&self, pose: Pose) -> Placed {
+        match self.anchor {
+            Anchor::Corner => Placed::at_corner(self.source_in(pose)),
+            Anchor::Centre => {
+                let at_origin = pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0);
+                Placed::at_centre(
+                    self.source_in(at_origin),
+                    self.source_in(at_origin.with(Axis::Angle, 0.0)),
+                    (pose[Axis::X0], pose[Axis::Y0]),
+                )
+            }
+        }
+    }
+
+    /// Returns the shape with the values of a pose, except those beyond the range of their parameter. An angle is
+    /// reduced to less than a turn.
+    fn source_in(&self, pose: Pose) -> Source {
+        let mut source = self.source.clone();
+        let pose = pose.with(Axis::Angle, within_a_turn(pose[Axis::Angle]));
+        for axis in self.axes() {
+            let _ = source.set(axis.parameter(), pose[axis], &self.sensor);
+        }
+        source
+    }
+
+    /// Returns the point about which the shape turns, in pose `number` and for any anchor: x and y in cells. Numbers
+    /// beyond the last pose start again at the first.
+    ///
+    /// ```
+    /// use taxel_core::prelude::*;
+    ///
+    /// // 6 × 3, with its corner at 5, 5 before it is turned.
+    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
+    /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
+    /// assert_eq!(grid.centre(0), [8.0, 6.5]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn centre(&self, number: u64) -> [f64; 2] {
+        self.centre_in(self.pose(number))
+    }
+
+    fn centre_in(&self, pose: Pose) -> [f64; 2] {
+        if self.anchor == Anchor::Centre {
+            return [pose[Axis::X0], pose[Axis::Y0]];
+        }
+        let centre = centre::<f64>(&self.source_in(pose.with(Axis::Angle, 0.0)));
+        [centre.x, centre.y]
+    }
+
+    /// Returns the shape in a pose, placed by its corner as in forms and files. The pose may lie between those of the
+    /// grid.
+    ///
+    /// If the grid's anchor is the centre, the corner is rounded to nine decimals. So a taxel that is covered just at
+    /// the threshold may differ.
+    ///
+    /// # Errors
+    /// Returns an error if the corner lies outside of the range of x0 or y0, or a value of the pose is out of range.
+    ///
+    /// ```
+    /// use taxel_core::prelude::*;
+    ///
+    /// // 6 × 3, with its centre at 5, 5.
+    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
+    /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Centre, Ranges::default())?;
+    /// let first = grid.source_at(grid.pose(0))?;
+    /// assert_eq!((first.get(Parameter::X0), first.get(Parameter::Y0)), (Some(2.0), Some(3.5)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn source_at(&self, pose: Pose) -> Result<Source, ParameterError> {
+        let with = |source: Source, axes: &[Axis], pose: Pose| {
+            let mut own = self.axes().filter(|axis| axes.contains(axis));
+            own.try_fold(source, |source, axis| {
+                source.with(axis.parameter(), pose[axis], &self.sensor)
+            })
+        };
+        let zoomed = with(self.source.clone(), &[Axis::ZoomX, Axis::ZoomY], pose)?;
+        let placement = [Axis::X0, Axis::Y0, Axis::Angle];
+        let corner = match self.anchor {
+            Anchor::Corner => pose,
+            Anchor::Centre => {
+                let upright = with(zoomed.clone(), &placement, Pose::new([0.0; 5]))?;
+                let centre = centre::<f64>(&upright);
+                // Figures have no zoom.
+                let zoom = |parameter| zoomed.get(parameter).unwrap_or(1.0);
+                let x0 = (pose[Axis::X0] - centre.x) / zoom(Parameter::ZoomX);
+                let y0 = (pose[Axis::Y0] - centre.y) / zoom(Parameter::ZoomY);
+                pose.with(Axis::X0, to_decimals(x0, 9))
+                    .with(Axis::Y0, to_decimals(y0, 9))
+            }
+        };
+        with(zoomed, &placement, corner)
+    }
+
+    /// Returns true if this grid is one of the same shape, in any pose, on the same sensor. The pitch does not matter.
+    pub fn is_of(&self, source: &Source, sensor: &Sensor) -> bool {
+        let own = &self.sensor;
+        let same_sensor = (own.columns(), own.rows(), own.threshold())
+            == (sensor.columns(), sensor.rows(), sensor.threshold());
+        // In the same pose, only the shapes can differ.
+        let posed = |source: &Source| {
+            Axis::of(source).try_fold(source.clone(), |source, axis| {
+                let parameter = axis.parameter();
+                source.with(parameter, own.default_value(parameter), own)
+            })
+        };
+        same_sensor
+            && matches!((posed(&self.source), posed(source)), (Ok(one), Ok(other)) if one == other)
+    }
+
+    /// Returns the first pose of an orientation.
+    pub(super) fn first_pose(&self, orientation: u64) -> Pose {
+        self.pose(orientation * self.rows_per_orientation() * self.row_length())
+    }
+
+    /// Returns the boundary of the shape in an orientation, with its anchor at the origin.
+    pub(crate) fn boundary<T: Real>(&self, orientation: u64) -> Boundary<T> {
+        let pose = self.first_pose(orientation);
+        Boundary::of(&self.placed_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)))
+    }
+
+    /// Returns the point about which the shape turns, in an orientation, with the anchor at the origin.
+    pub(crate) fn centre_from_anchor(&self, orientation: u64) -> [f64; 2] {
+        let pose = self.first_pose(orientation);
+        self.centre_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
+    }
+
+    /// Returns the position of the anchor in the plane, for the values of x0 and y0 with indices `x` and `y`.
+    pub(crate) fn offset<T: Real>(&self, orientation: u64, x: u64, y: u64) -> Point<T> {
+        let anchor = Point::new(
+            T::decimal(self.ranges[Axis::X0].value(x)),
+            T::decimal(self.ranges[Axis::Y0].value(y)),
+        );
+        if self.anchor == Anchor::Centre || self.source.kind().is_some() {
+            return anchor;
+        }
+        // The corner of a picture is zoomed with it.
+        let pose = self.first_pose(orientation);
+        Point::new(
+            anchor.x * T::decimal(pose[Axis::ZoomX]),
+            anchor.y * T::decimal(pose[Axis::ZoomY]),
+        )
+    }
+}
+
+/// Returns the same angle, from 0° to below 360°. The difference is rounded, since that of two numbers that are nearest to
+/// decimals is not always nearest to a decimal.
+fn within_a_turn(angle: f64) -> f64 {
+    if (0.0..360.0).contains(&angle) {
+        return angle;
+    }
+    to_decimals(angle.rem_euclid(360.0), ANGLE_DECIMALS)
+}
+
+/// The error for a grid that cannot be created.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GridError {
+    /// A range exceeds that of its parameter.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// A number has more digits than a range can have.
+    #[error("{value} has too many digits for a range")]
+    Digits {
+        /// The number.
+        value: f64,
+    },
+    /// A figure has zooms other than 1.
+    #[error("a {noun} has no zoom, only a picture has one")]
+    Zoom {
+        /// The noun for the shape: "figure".
+        noun: &'static str,
+    },
+    /// There are too many poses.
+    #[error("{} poses, expected at most {}", grouped(*poses), grouped(MAX_POSES))]
+    Poses {
+        /// The number of poses.
+        poses: u128,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::imprint::Imprint;
+    use crate::picture::Picture;
+    use crate::touch::Plane;
+
+    fn grid(source: Source, anchor: Anchor) -> PoseGrid {
+        let range = |text: &str| text.parse().expect("a range");
+        let zoomed = source.kind().is_none();
+        let zoom = if zoomed { "0.5:1.5:0.25" } else { "1" };
+        let ranges = Ranges::new([
+            // At none of these positions is a cell covered exactly by half.
+            range("5.013:5.913:0.3"),
+            range("6.007:6.507:0.1"),
+            range("0:350:50"),
+            range(zoom),
+            range(zoom),
+        ]);
+        PoseGrid::new(source, Sensor::default(), anchor, ranges).expect("in range")
+    }
+
+    fn picture() -> Source {
+        let imprint = Imprint::from_rows([".##.", ".#..", "####"]).expect("rows");
+        Source::Picture(Picture::at_home(imprint))
+    }
+
+    #[test]
+    fn numbers_and_indices_name_the_same_poses() {
+        let grid = grid(picture(), Anchor::Corner);
+        assert_eq!(grid.counts().into_array(), [4, 6, 8, 5, 5]);
+        for number in [0, 1, 4, 23, 24, 191, 192, 4000, grid.poses() - 1] {
+            let index = grid.index(number);
+            assert_eq!(grid.number(index), number);
+            let pose = grid.pose(number);
+            for axis in [Axis::X0, Axis::Angle] {
+                assert_eq!(pose[axis], grid.ranges()[axis].value(index[axis]));
+            }
+        }
+        let beyond = PoseIndex::new([u64::MAX; 5]);
+        assert_eq!(grid.number(beyond), grid.poses() - 1);
+    }
+
+    #[test]
+    fn a_part_has_the_poses_of_the_whole() {
+        let whole = grid(picture(), Anchor::Corner);
+        let cut = |from, counts| whole.part(PoseIndex::new(from), PoseIndex::new(counts));
+        let from = PoseIndex::new([1, 2, 3, 4, 0]);
+        let part = cut(from.into_array(), [2, 3, 1, 1, 2]).expect("it lies inside");
+        assert_eq!(part.poses(), 12);
+        for number in 0..part.poses() {
+            let index = part.index(number);
+            let inside = PoseIndex::from_fn(|axis| from[axis] + index[axis]);
+            assert_eq!(part.pose(number), whole.pose(whole.number(inside)));
+        }
+        assert_eq!(cut([3, 0, 0, 0, 0], [2, 1, 1, 1, 1]), None);
+        assert_eq!(cut([0; 5], [0, 1, 1, 1, 1]), None);
+        assert_eq!(cut([u64::MAX; 5], [1; 5]), None);
+    }
+
+    /// For any anchor, the shape by itself leaves the imprint of its pose.
+    #[test]
+    fn a_pose_can_be_touched_by_itself() {
+        let triangle = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
+        for (source, anchor) in [
+            (triangle.clone(), Anchor::Corner),
+            (triangle, Anchor::Centre),
+            (picture(), Anchor::Corner),
+            (picture(), Anchor::Centre),
+        ] {
+            let grid = grid(source, anchor);
+            let mut plane = Plane::new(*grid.sensor());
+            for number in (0..grid.poses()).step_by(7) {
+                let pose = grid.pose(number);
+                let source = grid.source_at(pose).expect("inside of the sensor");
+                let expected = plane.touch(&grid.placed(number));
+                assert_eq!(plane.touch(&source), expected, "{anchor:?} {pose:?}");
+                assert!(grid.is_of(&source, grid.sensor()));
+            }
+        }
+    }
+
+    #[test]
+    fn a_grid_is_not_one_of_another_shape_or_sensor() {
+        let sensor = Sensor::default();
+        let hexagon = Figure::default_of(FigureKind::Hexagon, &Sensor::default());
+        let grid = grid(Source::Figure(hexagon), Anchor::Corner);
+        let with = |parameter, value| {
+            Source::Figure(hexagon.with(parameter, value, &sensor).expect("in range"))
+        };
+        assert!(grid.is_of(&with(Parameter::X0, 1.5), &sensor));
+        assert!(grid.is_of(&with(Parameter::Angle, 77.0), &sensor));
+        assert!(!grid.is_of(&with(Parameter::Side, 1.5), &sensor));
+        assert!(!grid.is_of(&with(Parameter::Thickness, 1.0), &sensor));
+        assert!(!grid.is_of(&picture(), &sensor));
+        let octagon = Source::Figure(Figure::default_of(FigureKind::Octagon, &Sensor::default()));
+        assert!(!grid.is_of(&octagon, &sensor));
+        let coarse = sensor.with(Parameter::Threshold, 0.7).expect("in range");
+        assert!(!grid.is_of(grid.source(), &coarse));
+        let pitch = sensor.with(Parameter::Pitch, 2.5).expect("in range");
+        assert!(
+            grid.is_of(grid.source(), &pitch),
+            "the imprints are the same"
+        );
+    }
+}

@@ -1,0 +1,492 @@
+//! Exact ranges of decimals, `start:end:step` with the end included: the values of one axis of a sweep.
+//!
+//! The numbers are integers scaled by a power of ten. So `5:5.99:0.01` has exactly one hundred values, and no error
+//! accumulates: value `i` is the `f64` nearest to the exact decimal `start + i·step`. If the steps do not reach the end
+//! exactly, the last value is the largest one below the end. A single number is a range of one value. Units are those
+//! of the parameter. The form is a convention of this project.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::str::FromStr;
+
+use crate::index::narrow;
+use crate::parameter::number::{self, grouped};
+use crate::quote::shortened;
+
+/// The largest number of values of a range.
+pub const MAX_VALUES: u64 = 1_000_000;
+
+/// The largest number of decimals of a number. In units of the last of them, [`MAX_UNITS`] is just below 1000.
+const MAX_PLACES: usize = 12;
+
+/// The largest number in units of the last decimal. Every decimal of 15 digits has a distinct `f64`, which is written
+/// as the same decimal again.
+const MAX_UNITS: i64 = 999_999_999_999_999;
+
+/// Decimals from a start to an end in equal steps; never empty. As text, `start:end:step` with the end included, or a
+/// single number: `5:5.99:0.01` has exactly one hundred values.
+///
+/// The numbers are exact decimals, and value `i` is the `f64` nearest to `start + i·step`. If the steps do not reach
+/// the end exactly, the last value is the largest one below the end. Units are those of the parameter.
+///
+/// ```
+/// use taxel_core::pose::DecimalRange;
+/// let range: DecimalRange = "5:5.99:0.01".parse()?;
+/// assert_eq!((range.count(), range.value(0), range.value(37), range.last()), (100, 5.0, 5.37, 5.99));
+/// assert_eq!(range.to_string(), "5:5.99:0.01");
+/// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0 is not above 0");
+/// # Ok::<(), taxel_core::pose::RangeError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct DecimalRange {
+    /// The first value and the step, in units of `10^-places`.
+    start: i64,
+    step: i64,
+    places: u32,
+    count: u64,
+}
+
+impl DecimalRange {
+    /// Creates the range from `start` to `end`, which is included, in steps of `step`: as text, `start:end:step`. Each
+    /// number counts as the shortest decimal that reads back as the same number, so 0.1 is one tenth.
+    ///
+    /// ```
+    /// use taxel_core::pose::DecimalRange;
+    /// assert_eq!(DecimalRange::new(5.0, 5.99, 0.01)?, "5:5.99:0.01".parse()?);
+    /// assert_eq!(DecimalRange::try_from(0.3)?, "0.3".parse()?);
+    /// assert!(DecimalRange::new(0.0, 1.0, f64::NAN).is_err());
+    /// # Ok::<(), taxel_core::pose::RangeError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if a number is not finite, or has more than 15 digits or 12 decimals (such as `0.1 + 0.2`); if
+    /// the step is not above 0; if the end lies before the start; or if there are more than [`MAX_VALUES`] values.
+    pub fn new(start: f64, end: f64, step: f64) -> Result<Self, RangeError> {
+        format!("{start}:{end}:{step}").parse()
+    }
+
+    /// Creates the range of a single whole number.
+    pub const fn whole(value: i32) -> Self {
+        Self::from_units(value as i64, 1, 0, 1)
+    }
+
+    /// Creates the range of `count` values from `start` on, at distances of `step`, in units of the last of `places`
+    /// decimals. `count` and `step` are above 0.
+    ///
+    /// The fields are in units of as few decimals as the values need, and the step of a single value is 1. So equal
+    /// ranges have equal fields, however they were written.
+    pub(crate) const fn from_units(mut start: i64, step: i64, mut places: u32, count: u64) -> Self {
+        let mut step = if count == 1 { 10_i64.pow(places) } else { step };
+        while places > 0 && start % 10 == 0 && step % 10 == 0 {
+            (start, step, places) = (start / 10, step / 10, places - 1);
+        }
+        Self {
+            start,
+            step,
+            places,
+            count,
+        }
+    }
+
+    /// Returns the number of values, 1 to [`MAX_VALUES`].
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Returns the `f64` nearest to value `index`, counted from 0; beyond the last value, as if the range went on, up
+    /// to the largest `i64` in units of the last decimal.
+    pub fn value(&self, index: u64) -> f64 {
+        let units = i64::try_from(index)
+            .ok()
+            .and_then(|index| index.checked_mul(self.step))
+            .and_then(|way| way.checked_add(self.start));
+        scaled(units.unwrap_or(i64::MAX), self.places)
+    }
+
+    /// Returns the last value.
+    pub fn last(&self) -> f64 {
+        self.value(self.count - 1)
+    }
+
+    /// Returns the distance from one value to the next.
+    pub fn step(&self) -> f64 {
+        scaled(self.step, self.places)
+    }
+
+    /// Creates the range of a single number, rounded to some decimals; None if the number has too many digits to be
+    /// exact, or is not finite.
+    pub(crate) fn rounded(value: f64, places: u32) -> Option<Self> {
+        #[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
+        let (one, most) = (10_u64.pow(places) as f64, MAX_UNITS as f64);
+        let units = libm::round(value * one);
+        if units.is_nan() || units.abs() > most {
+            return None;
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a whole number below 2^53")]
+        let start = units as i64;
+        Some(Self::from_units(start, 1, places, 1))
+    }
+
+    /// Returns the values with these indices as a range of their own; None if `indices` is empty or leaves the range.
+    ///
+    /// ```
+    /// use taxel_core::pose::DecimalRange;
+    /// let range: DecimalRange = "5:5.99:0.01".parse()?;
+    /// assert_eq!(range.part(10..20).map(|part| part.to_string()).as_deref(), Some("5.1:5.19:0.01"));
+    /// assert_eq!(range.part(90..101), None);
+    /// # Ok::<(), taxel_core::pose::RangeError>(())
+    /// ```
+    pub fn part(&self, indices: std::ops::Range<u64>) -> Option<Self> {
+        if indices.is_empty() || indices.end > self.count {
+            return None;
+        }
+        let way = i64::try_from(indices.start).ok()?.checked_mul(self.step)?;
+        let count = indices.end - indices.start;
+        Some(Self::from_units(
+            self.start + way,
+            self.step,
+            self.places,
+            count,
+        ))
+    }
+
+    /// Returns the range shifted by half a step; the range of a single value stays as it is. None if the shifted values
+    /// need more decimals than a range can have.
+    ///
+    /// ```
+    /// use taxel_core::pose::DecimalRange;
+    /// let range: DecimalRange = "5:5.99:0.01".parse()?;
+    /// assert_eq!(range.shifted_by_half_a_step().map(|range| range.to_string()).as_deref(), Some("5.005:5.995:0.01"));
+    /// # Ok::<(), taxel_core::pose::RangeError>(())
+    /// ```
+    pub fn shifted_by_half_a_step(&self) -> Option<Self> {
+        if self.count == 1 {
+            return Some(*self);
+        }
+        let start = self
+            .start
+            .checked_mul(10)?
+            .checked_add(self.step.checked_mul(5)?)?;
+        let (step, places) = (self.step.checked_mul(10)?, self.places + 1);
+        let last = i64::try_from(self.count - 1)
+            .ok()?
+            .checked_mul(step)?
+            .checked_add(start)?;
+        let fits = places as usize <= MAX_PLACES && start.abs().max(last.abs()) <= MAX_UNITS;
+        fits.then(|| Self::from_units(start, step, places, self.count))
+    }
+
+    /// Iterates over all values in order.
+    ///
+    /// ```
+    /// use taxel_core::pose::DecimalRange;
+    /// let values = DecimalRange::new(0.0, 0.3, 0.1)?;
+    /// assert_eq!(values.values().len(), 4);
+    /// assert!(values.values().rev().eq([0.3, 0.2, 0.1, 0.0]));
+    /// # Ok::<(), taxel_core::pose::RangeError>(())
+    /// ```
+    pub fn values(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
+        (0..narrow(self.count)).map(|index| self.value(index.into()))
+    }
+
+    /// Returns the first value and the step, exactly, in units of the last decimal. Symmetries are decided with them.
+    pub(crate) fn units(&self) -> [i128; 2] {
+        [i128::from(self.start), i128::from(self.step)]
+    }
+
+    /// Returns one, in units of the last decimal.
+    pub(crate) fn one(&self) -> i128 {
+        10_i128.pow(self.places)
+    }
+
+    /// Returns value `index` modulo a whole number, exactly, in units of the last decimal.
+    pub(crate) fn residue(&self, index: u64, modulus: u32) -> i128 {
+        let units = i128::from(self.start) + i128::from(index) * i128::from(self.step);
+        units.rem_euclid(i128::from(modulus) * self.one())
+    }
+}
+
+/// Returns `units · 10^-places`, correctly rounded: both numbers of the quotient are exact.
+#[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
+fn scaled(units: i64, places: u32) -> f64 {
+    units as f64 / 10_u64.pow(places) as f64
+}
+
+impl FromStr for DecimalRange {
+    type Err = RangeError;
+
+    fn from_str(whole: &str) -> Result<Self, RangeError> {
+        let parts = whole.split(':').map(|part| without_exponent(part.trim()));
+        let parts: Vec<Cow<'_, str>> = parts.collect();
+        let (start, end, step) = match &parts[..] {
+            [single] => (&**single, &**single, "1"),
+            [start, end, step] => (&**start, &**end, &**step),
+            _ => {
+                return Err(RangeError::Form {
+                    text: shortened(whole.trim()),
+                });
+            }
+        };
+        let places = places(start).max(places(end)).max(places(step));
+        let units = |text: &str| {
+            units(text, places).ok_or_else(|| {
+                if is_decimal(text) {
+                    // The error shows all three numbers: the one with the most decimals decides how many each of them
+                    // needs.
+                    let text = shortened(whole.trim());
+                    RangeError::Digits { text }
+                } else {
+                    let text = shortened(text);
+                    RangeError::Number { text }
+                }
+            })
+        };
+        let (first, last, by) = (units(start)?, units(end)?, units(step)?);
+        if by <= 0 {
+            return Err(RangeError::Step {
+                step: shortened(step),
+            });
+        }
+        if last < first {
+            return Err(RangeError::Backwards {
+                start: shortened(start),
+                end: shortened(end),
+                step: shortened(step),
+            });
+        }
+        let count = (last - first).unsigned_abs() / by.unsigned_abs() + 1;
+        if count > MAX_VALUES {
+            return Err(RangeError::Many { count });
+        }
+        Ok(Self::from_units(first, by, narrow(places), count))
+    }
+}
+
+impl TryFrom<f64> for DecimalRange {
+    type Error = RangeError;
+
+    /// Creates the range of a single number.
+    ///
+    /// # Errors
+    /// Returns an error if the number is not finite, or has more than 15 digits or 12 decimals, such as `0.1 + 0.2`.
+    fn try_from(value: f64) -> Result<Self, RangeError> {
+        value.to_string().parse()
+    }
+}
+
+/// The largest exponent that is written out, in size. Beyond it, any number has too many digits.
+const LARGEST_EXPONENT: i32 = 30;
+
+/// Writes a number with an exponent as a plain decimal: `1e-3` as `0.001`. Other text stays as it is.
+fn without_exponent(text: &str) -> Cow<'_, str> {
+    let written_out = || {
+        let (number, exponent) = text.split_once(['e', 'E'])?;
+        let exponent: i32 = exponent.parse().ok()?;
+        if !is_decimal(number) {
+            return None;
+        }
+        let exponent = exponent.clamp(-LARGEST_EXPONENT, LARGEST_EXPONENT);
+        let shift = usize::try_from(exponent.unsigned_abs()).ok()?;
+        let (whole, fraction) = parts(number);
+        let zeros = "0".repeat(shift);
+        let sign = if number.starts_with('-') { "-" } else { "" };
+        Some(if exponent < 0 {
+            let digits = format!("{zeros}{whole}");
+            let (whole, moved) = digits.split_at(digits.len() - shift);
+            format!("{sign}{whole}.{moved}{fraction}")
+        } else {
+            let digits = format!("{fraction}{zeros}");
+            let (moved, fraction) = digits.split_at(shift);
+            format!("{sign}{whole}{moved}.{fraction}")
+        })
+    };
+    written_out().map_or(Cow::Borrowed(text), Cow::Owned)
+}
+
+/// Returns the number of decimals with which a number is written, without trailing zeros.
+fn places(text: &str) -> usize {
+    let fraction = text.split_once('.').map_or("", |(_, after)| after);
+    fraction.trim_end_matches('0').len()
+}
+
+/// Returns the digits before and after the decimal point, without the sign.
+fn parts(text: &str) -> (&str, &str) {
+    let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+    digits.split_once('.').unwrap_or((digits, ""))
+}
+
+/// Returns true if text is a plain decimal, of any length.
+fn is_decimal(text: &str) -> bool {
+    let (whole, fraction) = parts(text);
+    let mut digits = whole.bytes().chain(fraction.bytes());
+    let any = digits.clone().next().is_some();
+    any && digits.all(|byte| byte.is_ascii_digit())
+}
+
+/// Converts a decimal to units of `10^-places`; None if the text is not a plain decimal, or too long to be exact.
+fn units(text: &str, places: usize) -> Option<i64> {
+    let negative = text.starts_with('-');
+    if !is_decimal(text) || places > MAX_PLACES {
+        return None;
+    }
+    let (whole, fraction) = parts(text);
+    let kept = fraction.trim_end_matches('0').bytes();
+    let zeros = std::iter::repeat_n(b'0', places - kept.len());
+    let units = whole
+        .bytes()
+        .chain(kept)
+        .chain(zeros)
+        .try_fold(0_i64, |units, digit| {
+            units.checked_mul(10)?.checked_add(i64::from(digit - b'0'))
+        })?;
+    (units <= MAX_UNITS).then_some(if negative { -units } else { units })
+}
+
+impl fmt::Display for DecimalRange {
+    /// Writes the range in the form in which it is read.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The shortest decimal that reads back as the nearest `f64` is the exact decimal itself.
+        write!(f, "{}", self.value(0))?;
+        if self.count > 1 {
+            write!(f, ":{}:{}", self.last(), self.step())?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns the message about text that is not a plain decimal.
+fn not_a_number(text: &str) -> String {
+    match number::with_point(text) {
+        Some(number) => format!("\"{text}\" is not a number; write {number}"),
+        None if text.trim().is_empty() => "missing, expected a number such as 0.25".to_owned(),
+        None => format!("\"{text}\" is not a decimal number, such as 0.25"),
+    }
+}
+
+/// The error for numbers or text that are not a range.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RangeError {
+    /// The text is neither one number nor three.
+    #[error("\"{text}\" is not a range, expected a number or start:end:step")]
+    Form {
+        /// The text, shortened.
+        text: String,
+    },
+    /// A part of the text is not a plain decimal.
+    #[error("{}", not_a_number(text))]
+    Number {
+        /// The text, shortened.
+        text: String,
+    },
+    /// A number has more digits than are exact.
+    #[error(
+        "\"{text}\" has too many digits: at most {MAX_PLACES} after the point, and 15 in all once each number has as many \
+         decimals as the longest"
+    )]
+    Digits {
+        /// The whole range, shortened.
+        text: String,
+    },
+    /// The step is not above 0.
+    #[error("step {step} is not above 0")]
+    Step {
+        /// The step as given, shortened.
+        step: String,
+    },
+    /// The end lies before the start.
+    #[error("the end {end} is below the start {start}")]
+    Backwards {
+        /// The start as given, shortened.
+        start: String,
+        /// The end as given, shortened.
+        end: String,
+        /// The step as given, shortened.
+        step: String,
+    },
+    /// There are too many values.
+    #[error("a range of {} values; at most {} are allowed", grouped(*count), grouped(MAX_VALUES))]
+    Many {
+        /// The number of values.
+        count: u64,
+    },
+}
+
+impl RangeError {
+    /// Returns the part of the message that says what was expected, for a place that shows the text itself.
+    pub fn expected(&self) -> String {
+        match self {
+            Self::Form { .. } => "expected a number or start:end:step".to_owned(),
+            Self::Number { .. } => "not a number".to_owned(),
+            Self::Digits { .. } => format!("at most 15 digits, {MAX_PLACES} decimals"),
+            Self::Step { .. } => "expected a step above 0".to_owned(),
+            Self::Backwards { start, .. } => format!("expected an end of {start} or more"),
+            Self::Many { count } => {
+                format!(
+                    "{} values, at most {}",
+                    grouped(*count),
+                    grouped(MAX_VALUES)
+                )
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_of_numbers_equals_that_of_their_decimals() {
+        for (start, end, step) in [(5.0, 5.99, 0.01), (-0.0, 1e-9, 1e-12), (-3.5, 64.0, 0.3)] {
+            let written = format!("{start}:{end}:{step}").parse();
+            assert_eq!(DecimalRange::new(start, end, step), written);
+        }
+        for odd in [
+            f64::NAN,
+            f64::INFINITY,
+            f64::MAX,
+            f64::MIN_POSITIVE,
+            0.1 + 0.2,
+        ] {
+            assert!(DecimalRange::try_from(odd).is_err(), "{odd}");
+            assert!(DecimalRange::new(odd, odd, 1.0).is_err(), "{odd}");
+            assert!(DecimalRange::new(0.0, 1.0, odd).is_err(), "{odd}");
+        }
+        assert!(DecimalRange::new(2.0, 1.0, 0.5).is_err());
+        assert!(DecimalRange::new(1.0, 2.0, -0.5).is_err());
+    }
+
+    #[test]
+    fn a_rounded_number_equals_the_decimal_that_it_is_written_as() {
+        for (value, expected) in [
+            (1.0, "1"),
+            (0.1 + 0.2, "0.3"),
+            (2.0 / 3.0, "0.666666667"),
+            (-1e-12, "0"),
+            (64.0, "64"),
+        ] {
+            assert_eq!(DecimalRange::rounded(value, 9), expected.parse().ok());
+        }
+        for odd in [f64::NAN, f64::INFINITY, 1e6] {
+            assert_eq!(DecimalRange::rounded(odd, 9), None, "{odd}");
+        }
+    }
+
+    #[test]
+    fn half_a_step_needs_one_more_decimal_if_a_range_can_have_it() {
+        let half = |text: &str| {
+            let range: DecimalRange = text.parse().expect("a range");
+            range.shifted_by_half_a_step().map(|half| half.to_string())
+        };
+        assert_eq!(half("5:5.9:0.1").as_deref(), Some("5.05:5.95:0.1"));
+        assert_eq!(half("5").as_deref(), Some("5"));
+        let finest = "0:0.00000000002:0.00000000001";
+        let expected = "0.000000000005:0.000000000025:0.00000000001";
+        let parsed = |text: &str| text.parse::<DecimalRange>().ok();
+        let range = parsed(finest).expect("a range");
+        assert_eq!(range.shifted_by_half_a_step(), parsed(expected));
+        // They would need thirteen decimals, and sixteen digits.
+        assert_eq!(half("0:0.000000000002:0.000000000001"), None);
+        assert_eq!(half("0:999999999999999:111111111111111"), None);
+    }
+}

@@ -1,0 +1,556 @@
+//! The value of descriptors: the limit of one touch if only some descriptors of the imprint are known.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use crate::atlas::ImprintSummary;
+use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value};
+use crate::imprint::Imprint;
+use crate::index::narrow;
+use crate::parameter::number::share;
+use crate::progress::Progress;
+use crate::quote::{did_you_mean, shortened};
+use crate::recognition::evaluation::Evaluation;
+use crate::recognition::model::{Model, ShapeCount, first_of_most};
+use crate::recognition::simulation::{Judgement, NoisyTouches, RecognitionRate};
+
+/// A descriptor that says something about the shape, because it does not change when the imprint is moved.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeDescriptor(&'static Descriptor);
+
+impl PartialEq for ShapeDescriptor {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.key == other.0.key
+    }
+}
+
+impl Eq for ShapeDescriptor {}
+
+impl std::hash::Hash for ShapeDescriptor {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.0.key.hash(state);
+    }
+}
+
+/// The error for a text that is not a list of descriptors, or not a rounding.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GivenError {
+    /// An unknown name.
+    #[error(
+        "descriptor {found:?} is unknown, expected one of {}{}",
+        ShapeDescriptor::keys().join(", "),
+        did_you_mean(found, ShapeDescriptor::keys())
+    )]
+    Unknown {
+        /// The given text.
+        found: String,
+    },
+    /// A descriptor that depends on the position of the imprint.
+    #[error("{key} depends on the position of the imprint; expected one of {}", ShapeDescriptor::keys().join(", "))]
+    OfPlace {
+        /// The key of the descriptor.
+        key: &'static str,
+    },
+    /// An invalid rounding.
+    #[error(
+        "rounding {found:?}: expected a descriptor and a step from 1e-9 to 1e9, such as cg_cd=0.01"
+    )]
+    Rounding {
+        /// The given text.
+        found: String,
+    },
+}
+
+impl ShapeDescriptor {
+    /// Iterates over all of them, in the order of [`DESCRIPTORS`].
+    pub fn all() -> impl Iterator<Item = Self> {
+        let all = DESCRIPTORS.iter();
+        all.filter(|row| !row.changes_under.shift).map(Self)
+    }
+
+    fn keys() -> Vec<&'static str> {
+        Self::all().map(Self::key).collect()
+    }
+
+    /// Returns the row of the descriptor in the table.
+    pub fn descriptor(self) -> &'static Descriptor {
+        self.0
+    }
+
+    /// Returns the name used in JSON.
+    pub fn key(self) -> &'static str {
+        self.0.key
+    }
+}
+
+impl std::str::FromStr for ShapeDescriptor {
+    type Err = GivenError;
+
+    fn from_str(text: &str) -> Result<Self, GivenError> {
+        let text = text.trim();
+        match Descriptor::from_key(text) {
+            Some(row) if row.changes_under.shift => Err(GivenError::OfPlace { key: row.key }),
+            Some(row) => Ok(Self(row)),
+            None => Err(GivenError::Unknown {
+                found: shortened(text),
+            }),
+        }
+    }
+}
+
+impl std::fmt::Display for ShapeDescriptor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.key())
+    }
+}
+
+/// A descriptor that is measured in steps: values are rounded to the nearest multiple of the step. As text, its key and
+/// the step: `cg_cd=0.01`.
+///
+/// ```
+/// use taxel_core::recognition::{Rounding, ShapeDescriptor};
+///
+/// let distance: ShapeDescriptor = "cg_cd".parse()?;
+/// let rounding = Rounding::new(distance, 0.01)?;
+/// assert_eq!(rounding, "cg_cd=0.01".parse()?);
+/// assert_eq!((rounding.descriptor(), rounding.step()), (distance, 0.01));
+/// assert!(Rounding::new(distance, 0.0).is_err());
+/// # Ok::<(), taxel_core::recognition::GivenError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding {
+    descriptor: ShapeDescriptor,
+    step: f64,
+}
+
+impl Rounding {
+    /// Creates a rounding to multiples of `step`, in the descriptor's own unit.
+    ///
+    /// # Errors
+    /// Returns [`GivenError::Rounding`] if the step is not from 1e-9 to 1e9.
+    pub fn new(descriptor: ShapeDescriptor, step: f64) -> Result<Self, GivenError> {
+        let rounding = Self { descriptor, step };
+        // Below this a step is finer than the numbers themselves.
+        if (1e-9..=1e9).contains(&step) {
+            Ok(rounding)
+        } else {
+            Err(GivenError::Rounding {
+                found: rounding.to_string(),
+            })
+        }
+    }
+
+    /// Returns the step, in the descriptor's own unit.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+}
+
+impl std::str::FromStr for Rounding {
+    type Err = GivenError;
+
+    /// Reads a descriptor and a step, `cg_cd=0.01`.
+    fn from_str(text: &str) -> Result<Self, GivenError> {
+        let error = || GivenError::Rounding {
+            found: shortened(text),
+        };
+        let (descriptor, step) = text.split_once('=').ok_or_else(error)?;
+        let step = step.trim().parse().map_err(|_| error())?;
+        Self::new(descriptor.parse()?, step)
+    }
+}
+
+impl std::fmt::Display for Rounding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}={}", self.descriptor, self.step)
+    }
+}
+
+/// Descriptors that are known instead of the imprint itself; as text, their keys separated by commas: `na,p`. The text
+/// leaves out the roundings, which have texts of their own.
+///
+/// Two imprints count as the same if all given descriptors of their main regions agree. Descriptors are compared
+/// exactly ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A missing value agrees only with a missing value.
+///
+/// ```
+/// use taxel_core::recognition::{Evaluation, GivenDescriptors, GridSteps, Training, equal_figures};
+///
+/// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+/// let error = |given: &str| given.parse().map(|given: GivenDescriptors| given.evaluate(&model).error());
+/// // The perimeter helps, but the whole imprint says more.
+/// assert!(error("na")? > error("na,p")?);
+/// assert!(error("na,p")? > Evaluation::of(&model).error());
+/// // The centre of gravity depends on the position of the imprint.
+/// assert!(error("na,cg").is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GivenDescriptors {
+    descriptors: Vec<ShapeDescriptor>,
+    roundings: Vec<Rounding>,
+}
+
+impl GivenDescriptors {
+    /// Creates a list of descriptors, some of them rounded.
+    pub fn new(descriptors: Vec<ShapeDescriptor>, roundings: Vec<Rounding>) -> Self {
+        Self {
+            descriptors,
+            roundings,
+        }
+    }
+
+    /// Returns the same descriptors, some of them rounded.
+    #[must_use]
+    pub fn rounded(self, roundings: Vec<Rounding>) -> Self {
+        Self { roundings, ..self }
+    }
+
+    /// Returns the descriptors.
+    pub fn descriptors(&self) -> &[ShapeDescriptor] {
+        &self.descriptors
+    }
+
+    /// Returns the limit of one touch if only these descriptors are known.
+    pub fn evaluate(&self, model: &Model) -> Evaluation {
+        let table = GivenTable::new(model);
+        let mut classes = table.one_class();
+        for &descriptor in &self.descriptors {
+            classes = table.refined(&classes, descriptor, &self.roundings);
+        }
+        table.evaluate(&classes)
+    }
+
+    /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
+    /// that has their values most often without noise. Values that no shape has without noise get no name, which counts
+    /// as wrong. None if `progress` stops it, or if no imprint fits on the sensor of the touches.
+    ///
+    /// ```
+    /// use taxel_core::progress::ToTheEnd;
+    /// use taxel_core::recognition::{GivenDescriptors, GridSteps, Noise, NoisyTouches, Training, equal_figures};
+    ///
+    /// let steps = GridSteps::new(4, 15)?;
+    /// let model = Training::fitting(equal_figures(), steps)?.run()?;
+    /// let given: GivenDescriptors = "na,p".parse()?;
+    /// let rate = |noise: f64| {
+    ///     let noise = Noise::new(noise).expect("below ½");
+    ///     let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
+    ///     given.rate(&model, &touches, &ToTheEnd).expect("not stopped")
+    /// };
+    /// assert!(rate(0.0).accuracy() > rate(0.02).accuracy());
+    /// assert_eq!(rate(0.0).held_share(), 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn rate(
+        &self,
+        model: &Model,
+        touches: &NoisyTouches,
+        progress: &dyn Progress,
+    ) -> Option<RecognitionRate> {
+        let table = GivenTable::new(model);
+        let mut counts: HashMap<Vec<ExactValue>, Vec<u128>> = HashMap::new();
+        for (key, description) in table.descriptions().iter().enumerate() {
+            let own = counts.entry(self.values(description.as_ref()));
+            let own = own.or_insert_with(|| vec![0; model.shapes().len()]);
+            for &count in model.counts(key) {
+                own[usize::from(count.shape)] += model.weighted(count);
+            }
+        }
+        let names: HashMap<_, _> = counts
+            .into_iter()
+            .filter_map(|(values, own)| {
+                let all = own.iter().sum();
+                let (shape, most) = first_of_most(own.into_iter().enumerate())?;
+                Some((values, (shape, share(most, all))))
+            })
+            .collect();
+        let judge = |touch: &Imprint, _: &Imprint| {
+            let description = ImprintSummary::of(touch).description;
+            let named = names.get(&self.values(description.as_ref())).copied();
+            Judgement {
+                is_held: named.is_some(),
+                named,
+            }
+        };
+        model.simulated(touches, progress, &judge)
+    }
+
+    /// Returns the values of these descriptors, in steps where they are rounded.
+    fn values(&self, description: Option<&Description>) -> Vec<ExactValue> {
+        let value = |&descriptor: &ShapeDescriptor| {
+            let rounding = Rounding::of(descriptor, &self.roundings);
+            known(descriptor, rounding, description)
+        };
+        self.descriptors.iter().map(value).collect()
+    }
+}
+
+/// Returns the value of one descriptor in a description, in steps if it is rounded. An empty imprint has no
+/// description; its counts are 0, so in large steps they equal small ones.
+fn known(
+    descriptor: ShapeDescriptor,
+    rounding: Option<&Rounding>,
+    description: Option<&Description>,
+) -> ExactValue {
+    let Descriptor {
+        measure,
+        exact,
+        of_nothing,
+        ..
+    } = descriptor.0;
+    match rounding {
+        Some(rounding) => rounding.rounded(description.map_or(*of_nothing, measure)),
+        None => exact(description?),
+    }
+}
+
+impl std::str::FromStr for GivenDescriptors {
+    type Err = GivenError;
+
+    /// Reads a list separated by commas.
+    fn from_str(text: &str) -> Result<Self, GivenError> {
+        let descriptors = text.split(',').map(str::parse);
+        Ok(Self::new(
+            descriptors.collect::<Result<_, _>>()?,
+            Vec::new(),
+        ))
+    }
+}
+
+impl std::fmt::Display for GivenDescriptors {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let keys: Vec<_> = self.descriptors.iter().map(|one| one.key()).collect();
+        f.write_str(&keys.join(","))
+    }
+}
+
+/// The descriptions of all keys of a model, which descriptors divide into classes.
+pub(super) struct GivenTable<'a> {
+    model: &'a Model,
+    /// The description of the main region of each key; None for the empty key.
+    descriptions: Vec<Option<Description>>,
+}
+
+/// For each key, the number of its class. Classes are numbered from 0, in the order of their first keys.
+type Classes = Vec<u32>;
+
+impl<'a> GivenTable<'a> {
+    /// Describes the keys of a model.
+    pub(super) fn new(model: &'a Model) -> Self {
+        let describe = |key| ImprintSummary::of(&model.keys().imprint(key)?).description;
+        let keys = (0..model.keys().len()).into_par_iter();
+        Self {
+            model,
+            descriptions: keys.with_min_len(256).map(describe).collect(),
+        }
+    }
+
+    /// Returns the description of each key, in their order; None for the empty key.
+    pub(super) fn descriptions(&self) -> &[Option<Description>] {
+        &self.descriptions
+    }
+
+    /// Returns the classes if nothing is known: all keys are one class.
+    fn one_class(&self) -> Classes {
+        vec![0; self.descriptions.len()]
+    }
+
+    /// Returns the classes that remain if one more descriptor is known.
+    fn refined(
+        &self,
+        classes: &Classes,
+        descriptor: ShapeDescriptor,
+        roundings: &[Rounding],
+    ) -> Classes {
+        let rounding = Rounding::of(descriptor, roundings);
+        let value =
+            |description: &Option<Description>| known(descriptor, rounding, description.as_ref());
+        let mut numbers = HashMap::new();
+        let members = classes.iter().zip(&self.descriptions);
+        let number = members.map(|(&class, description)| {
+            let next = narrow(numbers.len());
+            *numbers.entry((class, value(description))).or_insert(next)
+        });
+        number.collect()
+    }
+
+    fn evaluate(&self, classes: &Classes) -> Evaluation {
+        let mut counts: Vec<(u32, ShapeCount)> = Vec::new();
+        for (key, &class) in classes.iter().enumerate() {
+            counts.extend(self.model.counts(key).iter().map(|&count| (class, count)));
+        }
+        counts.sort_unstable_by_key(|&(class, count)| (class, count.shape));
+        counts.dedup_by(|next, kept| {
+            let same = (next.0, next.1.shape) == (kept.0, kept.1.shape);
+            if same {
+                kept.1.poses += next.1.poses;
+            }
+            same
+        });
+        let (classes, counts): (Vec<u32>, Vec<ShapeCount>) = counts.into_iter().unzip();
+        let mut rest = &*counts;
+        let of_class = classes.chunk_by(u32::eq).map(|class| {
+            let (own, others) = rest.split_at(class.len());
+            rest = others;
+            own
+        });
+        let (evaluation, _) = Evaluation::of_classes(self.model, of_class);
+        evaluation
+    }
+}
+
+impl Rounding {
+    /// Returns the descriptor that is measured in steps.
+    pub fn descriptor(&self) -> ShapeDescriptor {
+        self.descriptor
+    }
+
+    /// Returns the rounding of a descriptor, if there is one.
+    fn of(descriptor: ShapeDescriptor, all: &[Self]) -> Option<&Self> {
+        all.iter().find(|own| own.descriptor == descriptor)
+    }
+
+    /// Returns the number of steps that is nearest to a number. Directions of 180° and −180° are the same one, if a
+    /// whole number of steps makes a turn.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "values of descriptors over a step of at least 1e-9 are far below 2⁶³"
+    )]
+    fn steps(&self, number: f64) -> i64 {
+        let (steps, turn) = (round(number / self.step) as i64, 360.0 / self.step);
+        let is_circular = self.descriptor.0.dimension == Dimension::Direction;
+        let whole_turn = turn.round();
+        // A quotient of decimals may be off by a rounding error.
+        let is_whole = (turn - whole_turn).abs() <= 4.0 * f64::EPSILON * turn;
+        if is_circular && whole_turn >= 1.0 && is_whole {
+            steps.rem_euclid(whole_turn as i64)
+        } else {
+            steps
+        }
+    }
+
+    fn rounded(&self, value: Value) -> ExactValue {
+        let steps = |number| self.steps(number);
+        let mut rounded = [0; 4];
+        match value {
+            Value::None => return None,
+            Value::Count(count) => rounded[0] = steps(f64::from(count)),
+            Value::Number(number) => rounded[0] = steps(number),
+            Value::Point(point) => [rounded[0], rounded[1]] = [steps(point.x), steps(point.y)],
+            Value::Pair(pair) => [rounded[0], rounded[1]] = pair.map(steps),
+            Value::Rect(rect) => {
+                let sides = [rect.left, rect.top, rect.right, rect.bottom];
+                rounded = sides.map(|side| steps(f64::from(side)));
+            }
+        }
+        Some(rounded)
+    }
+}
+
+/// Rounds to the nearest whole number. Equal values that were computed in different ways differ by rounding errors,
+/// which must not separate them half way between two steps: there, all are rounded away from zero.
+fn round(steps: f64) -> f64 {
+    let halves = (2.0 * steps).round();
+    let error = f64::max(1e-9, 16.0 * f64::EPSILON * steps.abs());
+    if (2.0 * steps - halves).abs() <= error {
+        (halves / 2.0).round()
+    } else {
+        steps.round()
+    }
+}
+
+/// A descriptor that [`Model::choose_descriptors`] has chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChosenDescriptor {
+    /// The descriptor.
+    pub descriptor: ShapeDescriptor,
+    /// The limit of one touch if this descriptor and all those chosen before it are known.
+    pub evaluation: Evaluation,
+}
+
+impl Model {
+    /// Chooses descriptors one by one: each time the one with which the most touches are named right (among equals, the
+    /// first in the table), until no descriptor improves the result. Returns them in the order in which they were
+    /// chosen.
+    ///
+    /// ```
+    /// use taxel_core::recognition::{GridSteps, Training, equal_figures};
+    ///
+    /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+    /// let chosen = model.choose_descriptors(&[]);
+    /// assert!(chosen.is_sorted_by(|one, next| one.evaluation.right < next.evaluation.right));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn choose_descriptors(&self, roundings: &[Rounding]) -> Vec<ChosenDescriptor> {
+        let table = GivenTable::new(self);
+        let mut classes = table.one_class();
+        let mut chosen: Vec<ChosenDescriptor> = Vec::new();
+        let mut right = table.evaluate(&classes).right;
+        loop {
+            let is_open = |one: &ShapeDescriptor| chosen.iter().all(|own| own.descriptor != *one);
+            let tried = ShapeDescriptor::all().filter(is_open).map(|descriptor| {
+                let classes = table.refined(&classes, descriptor, roundings);
+                let evaluation = table.evaluate(&classes);
+                let step = ChosenDescriptor {
+                    descriptor,
+                    evaluation,
+                };
+                (step, classes)
+            });
+            let best = tried.reduce(|best, next| {
+                if next.0.evaluation.right > best.0.evaluation.right {
+                    next
+                } else {
+                    best
+                }
+            });
+            match best {
+                Some((step, refined)) if step.evaluation.right > right => {
+                    (right, classes) = (step.evaluation.right, refined);
+                    chosen.push(step);
+                }
+                _ => return chosen,
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_ends_of_a_turn_are_one_direction() {
+        let steps = |text: &str, numbers: [f64; 3]| {
+            let rounding: Rounding = text.parse().expect("a rounding");
+            numbers.map(|number| rounding.steps(number))
+        };
+        let (turn, numbers) = ("cg_cd_direction=", [180.0, -179.9, -80.0]);
+        assert_eq!(steps(&format!("{turn}180"), numbers), [1, 1, 0]);
+        assert_eq!(steps(&format!("{turn}30"), numbers), [6, 6, 9]);
+        assert_eq!(steps("cg_cd=30", numbers), [6, -6, -3]);
+        // A turn is not a whole number of these steps.
+        assert_eq!(steps(&format!("{turn}7"), numbers), [26, -26, -11]);
+        assert_eq!(steps(&format!("{turn}720"), numbers), [0, 0, 0]);
+    }
+
+    #[test]
+    fn rounding_errors_do_not_separate_equal_values_between_two_steps() {
+        let rounding: Rounding = "cg_cd_direction=10".parse().expect("a rounding");
+        let below = 45.0_f64.next_down().next_down();
+        assert_eq!(
+            [below, 45.0, 44.99].map(|own| rounding.steps(own)),
+            [5, 5, 4]
+        );
+        assert_eq!([-below, -45.0].map(|own| rounding.steps(own)), [31, 31]);
+    }
+
+    #[test]
+    fn steps_are_from_a_billionth_to_a_billion() {
+        let is_read = |step: &str| format!("cg_cd={step}").parse::<Rounding>().is_ok();
+        assert!(is_read("1e-9") && is_read("1e9"));
+        for step in ["9e-10", "1.1e9", "0", "-1", "NaN", "inf"] {
+            assert!(!is_read(step), "{step}");
+        }
+    }
+}

@@ -1,0 +1,289 @@
+//! Keys: the part of an imprint that does not depend on where it lies.
+
+use std::hash::BuildHasher;
+
+use hashbrown::{DefaultHashBuilder, HashTable};
+
+use crate::imprint::Imprint;
+use crate::index::{narrow, wide};
+use crate::sensor::MatrixSize;
+
+/// The key of an imprint: its active taxels, of all its pieces, cropped to their bounding box. The key of an empty
+/// imprint has sides of 0.
+///
+/// Keys are ordered by height, width, and the taxels in reading order.
+///
+/// ```
+/// use taxel_core::prelude::*;
+/// use taxel_core::recognition::ImprintKey;
+///
+/// let here: Imprint = "....\n.##.\n..#.".parse().unwrap();
+/// let there: Imprint = "##\n.#".parse().unwrap();
+/// assert_eq!(ImprintKey::of(&here), ImprintKey::of(&there));
+/// assert_eq!(ImprintKey::of(&here).imprint(), Some(there));
+/// assert_eq!(ImprintKey::of(&here.without(&here)).imprint(), None);
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ImprintKey {
+    height: u8,
+    width: u8,
+    /// A bit per taxel of the box, in reading order.
+    bits: Vec<u64>,
+}
+
+impl ImprintKey {
+    /// Returns the key of an imprint.
+    pub fn of(imprint: &Imprint) -> Self {
+        let mut key = Self {
+            height: 0,
+            width: 0,
+            bits: Vec::new(),
+        };
+        key.set(imprint);
+        key
+    }
+
+    /// Makes this the key of another imprint.
+    pub fn set(&mut self, imprint: &Imprint) {
+        self.bits.clear();
+        let Some(bounds) = imprint.bounds() else {
+            (self.height, self.width) = (0, 0);
+            return;
+        };
+        self.width = bounds.right - bounds.left;
+        self.height = bounds.bottom - bounds.top;
+        self.bits.resize(words(self.width, self.height), 0);
+        let mut place = 0;
+        for row in bounds.rows() {
+            let row = imprint.words()[usize::from(row)] >> bounds.left;
+            or_bits(&mut self.bits, place, row);
+            place += usize::from(self.width);
+        }
+    }
+
+    /// Returns the imprint, on a matrix of exactly its size; None for the empty key.
+    pub fn imprint(&self) -> Option<Imprint> {
+        self.borrowed().imprint()
+    }
+
+    /// Returns the number of columns of the bounding box.
+    pub fn width(&self) -> u8 {
+        self.width
+    }
+
+    /// Returns the number of rows of the bounding box.
+    pub fn height(&self) -> u8 {
+        self.height
+    }
+
+    pub(super) fn borrowed(&self) -> KeyRef<'_> {
+        KeyRef {
+            height: self.height,
+            width: self.width,
+            bits: &self.bits,
+        }
+    }
+}
+
+/// Returns the number of words that the taxels of a box take.
+fn words(width: u8, height: u8) -> usize {
+    (usize::from(width) * usize::from(height)).div_ceil(64)
+}
+
+/// Sets the bits of a row from bit `place` on.
+pub(super) fn or_bits(bits: &mut [u64], place: usize, row: u64) {
+    let (word, shift) = (place / 64, place % 64);
+    bits[word] |= row << shift;
+    let rest = row.unbounded_shr(narrow(64 - shift));
+    if rest != 0 {
+        bits[word + 1] |= rest;
+    }
+}
+
+/// A reference to a key of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct KeyRef<'a> {
+    pub(super) height: u8,
+    pub(super) width: u8,
+    pub(super) bits: &'a [u64],
+}
+
+impl KeyRef<'_> {
+    /// Returns the number of active taxels.
+    pub(super) fn count(self) -> u32 {
+        self.bits.iter().map(|word| word.count_ones()).sum()
+    }
+
+    /// Iterates over the rows from the top, bit `i` for column `i`.
+    pub(super) fn rows(self) -> impl Iterator<Item = u64> {
+        let mask = u64::MAX.unbounded_shr(64 - u32::from(self.width));
+        (0..usize::from(self.height)).map(move |row| {
+            let place = row * usize::from(self.width);
+            let (word, shift) = (place / 64, place % 64);
+            let low = self.bits[word] >> shift;
+            let high = self.bits.get(word + 1).copied().unwrap_or_default();
+            (low | high.unbounded_shl(narrow(64 - shift))) & mask
+        })
+    }
+
+    pub(super) fn imprint(self) -> Option<Imprint> {
+        let mut imprint = Imprint::empty(MatrixSize::new(self.width, self.height).ok()?);
+        for (row, word) in self.rows().enumerate() {
+            imprint.set_word(row, word);
+        }
+        Some(imprint)
+    }
+}
+
+/// A table of many keys, each in as few words as its box needs, found by a seeded hash.
+#[derive(Clone, Debug, Default)]
+pub struct KeyTable {
+    sizes: Vec<(u8, u8)>,
+    /// The index of the first word of each key.
+    starts: Vec<usize>,
+    bits: Vec<u64>,
+    index: HashTable<u32>,
+    hasher: DefaultHashBuilder,
+}
+
+impl PartialEq for KeyTable {
+    /// Returns true if both have the same keys in the same order.
+    fn eq(&self, other: &Self) -> bool {
+        (&self.sizes, &self.bits) == (&other.sizes, &other.bits)
+    }
+}
+
+impl Eq for KeyTable {}
+
+impl KeyTable {
+    /// Returns the number of keys.
+    pub fn len(&self) -> usize {
+        self.sizes.len()
+    }
+
+    /// Returns true if the table has no key.
+    pub fn is_empty(&self) -> bool {
+        self.sizes.is_empty()
+    }
+
+    /// Returns the imprint of a key, on a matrix of exactly its size; None for the empty key.
+    ///
+    /// # Panics
+    /// Panics if there are not that many keys.
+    pub fn imprint(&self, index: usize) -> Option<Imprint> {
+        self.get(index).imprint()
+    }
+
+    /// Returns the number of a key, from 0; None if the table does not have it.
+    pub fn find(&self, key: &ImprintKey) -> Option<usize> {
+        self.find_ref(key.borrowed())
+    }
+
+    pub(super) fn get(&self, index: usize) -> KeyRef<'_> {
+        let (height, width) = self.sizes[index];
+        let start = self.starts[index];
+        KeyRef {
+            height,
+            width,
+            bits: &self.bits[start..start + words(width, height)],
+        }
+    }
+
+    pub(super) fn find_ref(&self, key: KeyRef<'_>) -> Option<usize> {
+        let hash = self.hash(key);
+        let same = |&index: &u32| self.get(wide(index)) == key;
+        self.index.find(hash, same).map(|&index| wide(index))
+    }
+
+    /// Adds a key. Returns false if the table has it already.
+    pub fn add(&mut self, key: &ImprintKey) -> bool {
+        let next = self.len();
+        self.intern(key.borrowed()) == next
+    }
+
+    /// Adds a key unless the table has it; returns its number.
+    pub(super) fn intern(&mut self, key: KeyRef<'_>) -> usize {
+        let hash = self.hash(key);
+        let same = |&index: &u32| self.get(wide(index)) == key;
+        if let Some(&index) = self.index.find(hash, same) {
+            return wide(index);
+        }
+        let index = self.len();
+        let number = narrow(index);
+        self.sizes.push((key.height, key.width));
+        self.starts.push(self.bits.len());
+        self.bits.extend_from_slice(key.bits);
+        let Self {
+            sizes,
+            starts,
+            bits,
+            index: table,
+            hasher,
+        } = self;
+        table.insert_unique(hash, number, |&index| {
+            let ((height, width), start) = (sizes[wide(index)], starts[wide(index)]);
+            hash_of(
+                hasher,
+                KeyRef {
+                    height,
+                    width,
+                    bits: &bits[start..start + words(width, height)],
+                },
+            )
+        });
+        index
+    }
+
+    /// Returns the same keys in their order, and for each its number in this table.
+    pub(super) fn sorted(&self) -> (Self, Vec<usize>) {
+        let mut order: Vec<usize> = (0..self.len()).collect();
+        order.sort_unstable_by_key(|&index| self.get(index));
+        let mut sorted = Self::default();
+        for &index in &order {
+            sorted.intern(self.get(index));
+        }
+        (sorted, order)
+    }
+
+    fn hash(&self, key: KeyRef<'_>) -> u64 {
+        hash_of(&self.hasher, key)
+    }
+}
+
+fn hash_of(hasher: &DefaultHashBuilder, key: KeyRef<'_>) -> u64 {
+    hasher.hash_one(key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_give_back_their_imprints_of_any_size() {
+        let mut table = KeyTable::default();
+        for side in [1_u8, 7, 8, 9, 31, 63, 64] {
+            let mut imprint = Imprint::empty(MatrixSize::of(64, 64));
+            // Both corners, and a pattern that no shift repeats.
+            for place in 0..side {
+                imprint.set(place, place, true);
+                imprint.set(side - 1, place.wrapping_mul(5) % side, true);
+            }
+            let key = ImprintKey::of(&imprint);
+            assert_eq!(
+                key.imprint(),
+                Some(imprint.resized(MatrixSize::of(side, side)))
+            );
+            assert_eq!((key.width(), key.height()), (side, side));
+            let index = table.intern(key.borrowed());
+            assert_eq!(
+                (table.intern(key.borrowed()), table.find(&key)),
+                (index, Some(index))
+            );
+            assert_eq!(table.imprint(index), key.imprint());
+        }
+        assert_eq!(table.len(), 7);
+        let (sorted, order) = table.sorted();
+        assert_eq!(order, [0, 1, 2, 3, 4, 5, 6]);
+        assert!((1..sorted.len()).all(|index| sorted.get(index - 1) < sorted.get(index)));
+    }
+}

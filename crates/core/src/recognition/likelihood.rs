@@ -1,0 +1,424 @@
+//! The likelihood of an imprint with failing taxels ([`Noise`]): each flips with probability e.
+//!
+//! The sums are of integers: for each shape, how many touches lie at each distance. So one scan serves any e, and
+//! neither threads nor the order of keys matter. Only distances up to D are kept: D follows from e, the weights and the
+//! least distance, and larger distances change no probability by more than 1e-9. If several touches contradict each
+//! other, what is improbable for one of them may decide, so D grows until this holds for all of them together.
+//!
+//! [`scan`](super::scan) finds the near keys.
+
+use crate::imprint::Imprint;
+use crate::index::{narrow, wide};
+use crate::parameter::named;
+use crate::recognition::model::{Model, float};
+use crate::recognition::noise::Noise;
+use crate::recognition::scan::{Observed, shift_count};
+use crate::sensor::MatrixSize;
+
+/// The keys that were compared for an answer, the fewest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SearchMethod {
+    /// The key of the imprint itself.
+    Exact,
+    /// The keys of all imprints that differ from it by one taxel at most.
+    OneFlip,
+    /// All keys in all places.
+    Scan,
+}
+
+impl SearchMethod {
+    /// All methods.
+    pub const ALL: &'static [Self] = &[Self::Exact, Self::OneFlip, Self::Scan];
+
+    /// Returns the name used in JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::OneFlip => "one-flip",
+            Self::Scan => "scan",
+        }
+    }
+}
+
+named!(SearchMethod, "method", SearchMethod::ALL);
+
+/// The number of touches of each shape at each distance from an imprint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Distances {
+    /// The least distance of any touch.
+    pub least: u32,
+    /// For each shape, the number of touches at each distance from `least` on.
+    pub touches: Vec<Vec<u64>>,
+    /// The keys that were compared.
+    pub method: SearchMethod,
+}
+
+impl Model {
+    /// Returns P(shape | imprint) for each shape of the set, with failing taxels ([`Noise`]); None if no key fits the
+    /// matrix, or, without noise, if no shape leaves the imprint. Of a shard, only its own poses count.
+    ///
+    /// The prior is uniform over every pose in every place on the matrix. The first call sorts the keys for scans and
+    /// takes longer.
+    ///
+    /// ```
+    /// use taxel_core::prelude::*;
+    /// use taxel_core::recognition::{NamedShape, Noise, Training};
+    ///
+    /// let sensor = Sensor::default();
+    /// let shapes = [
+    ///     NamedShape::new("square", Figure::rectangle(4.0, 4.0).on(&sensor)?),
+    ///     NamedShape::new("bar", Figure::rectangle(8.0, 2.0).on(&sensor)?),
+    /// ];
+    /// let ranges = Ranges::default().with(Axis::Angle, "0:345:15".parse()?);
+    /// let model = Training::new(shapes, sensor, Anchor::Centre, ranges)?.run()?;
+    ///
+    /// // A square with a taxel missing and one too many: no shape leaves it, but a square nearly does.
+    /// let touch = "......#.\n.####...\n.####...\n.###....\n.####...\n........".parse()?;
+    /// assert_eq!(model.posterior(&touch), None);
+    /// let posterior = model.posterior_under(&touch, &Noise::new(0.01)?).expect("keys fit");
+    /// assert!(posterior[0] > 0.99);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn posterior_under(&self, imprint: &Imprint, noise: &Noise) -> Option<Vec<f64>> {
+        let distances = self.distances(imprint, noise)?;
+        let likelihoods = self.likelihoods(imprint, &distances, noise);
+        let sum: f64 = likelihoods.iter().sum();
+        (sum > 0.0).then(|| likelihoods.into_iter().map(|own| own / sum).collect())
+    }
+
+    /// Returns P(imprint | s) · w for each shape, times a common factor. `distances` are those of the imprint.
+    pub(super) fn likelihoods(
+        &self,
+        imprint: &Imprint,
+        distances: &Distances,
+        noise: &Noise,
+    ) -> Vec<f64> {
+        let likelihood = |(touches, total): (&Vec<u64>, u64)| match total {
+            0 => 0.0,
+            total => weighed(touches, noise) / float(total),
+        };
+        let totals = self.touches_on(imprint.size());
+        let weights = self.shapes().iter().map(|shape| shape.weight);
+        let own = distances.touches.iter().zip(totals).map(likelihood);
+        own.zip(weights)
+            .map(|(own, weight)| own * f64::from(weight))
+            .collect()
+    }
+
+    /// Returns a lower and an upper bound of ln P(imprint | s) for each shape, plus a common number: without and with
+    /// all touches beyond `distances`. Both are −∞ for a shape if none of its imprints fits the matrix.
+    pub(super) fn log_likelihoods(
+        &self,
+        imprint: &Imprint,
+        distances: &Distances,
+        noise: &Noise,
+    ) -> Vec<[f64; 2]> {
+        let fall = libm::log(noise.ratio());
+        let all = narrow(imprint.size().cells());
+        let bounds = |(touches, total): (&Vec<u64>, u64)| {
+            if total == 0 {
+                return [f64::NEG_INFINITY; 2];
+            }
+            // From the shape's own nearest touch on, so that no sum is too small for an `f64`.
+            let from = touches.iter().position(|&touches| touches > 0);
+            let least = from.map_or(f64::NEG_INFINITY, |from| {
+                let sum = libm::log(weighed(&touches[from..], noise) / float(total));
+                if from == 0 {
+                    sum
+                } else {
+                    sum + float(from as u64) * fall
+                }
+            });
+            let reached = touches.len() as u64;
+            let beyond = if u64::from(distances.least) + reached > u64::from(all) {
+                f64::NEG_INFINITY
+            } else {
+                float(reached) * fall
+            };
+            [least, log_of_sum(least, beyond)]
+        };
+        let totals = self.touches_on(imprint.size());
+        let own = distances.touches.iter().zip(totals);
+        own.map(bounds).collect()
+    }
+
+    /// Returns the index of the first shape of the set none of whose imprints fits on a matrix of this size.
+    pub fn first_too_large(&self, size: MatrixSize) -> Option<usize> {
+        self.touches_on(size)
+            .iter()
+            .position(|&touches| touches == 0)
+    }
+
+    /// Returns, for each shape of the set, how many of its poses leave an imprint that does not fit on a matrix of
+    /// this size. [`Self::recognition_rate`] draws no such touches.
+    pub fn poses_too_large(&self, size: MatrixSize) -> Vec<u64> {
+        let mut too_large = vec![0; self.shapes().len()];
+        for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
+            if own.width > size.columns() || own.height > size.rows() {
+                for (sum, poses) in too_large.iter_mut().zip(poses) {
+                    *sum += poses;
+                }
+            }
+        }
+        too_large
+    }
+
+    /// Returns the number of touches of each shape on a matrix of this size: its poses, in every place where they
+    /// fit.
+    fn touches_on(&self, size: MatrixSize) -> Vec<u64> {
+        let mut totals = vec![0; self.shapes().len()];
+        for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
+            let shifts = shift_count((own.width, own.height), size);
+            for (total, poses) in totals.iter_mut().zip(poses) {
+                *total += poses * shifts;
+            }
+        }
+        totals
+    }
+
+    /// Returns the number of pairs of a key and a place on a matrix of this size.
+    pub fn pairs(&self, size: MatrixSize) -> u64 {
+        let boxes = self.index().boxes().iter();
+        let pairs =
+            boxes.map(|own| own.keys.len() as u64 * shift_count((own.width, own.height), size));
+        pairs.sum()
+    }
+
+    /// Returns how many touches of each shape lie at the distances from an imprint that matter under a noise. None if
+    /// no key fits the matrix, or, without noise, if no shape leaves the imprint.
+    pub fn distances(&self, imprint: &Imprint, noise: &Noise) -> Option<Distances> {
+        self.distances_further(imprint, noise, 0)
+    }
+
+    /// Returns the same as [`Self::distances`], with `further` more distances.
+    pub(super) fn distances_further(
+        &self,
+        imprint: &Imprint,
+        noise: &Noise,
+        further: u32,
+    ) -> Option<Distances> {
+        let totals = self.touches_on(imprint.size());
+        // All touches of a shape together weigh w; the nearest one weighs w / T of its shape.
+        let weights = self.shapes().iter().map(|shape| f64::from(shape.weight));
+        let of_all: f64 = weights.clone().sum();
+        let of_one = totals.iter().zip(weights);
+        let odds = of_one.map(|(&total, weight)| float(total) / weight * of_all);
+        let reach = noise.reach(odds.fold(1.0, f64::max)) + further;
+        if noise.dead().is_none() && reach <= 1 {
+            let near = self.near(imprint, reach);
+            if near.is_some() || noise.flip() == 0.0 {
+                return near;
+            }
+        }
+        let observed = Observed::new(imprint, noise.dead());
+        let least = self.index().nearest(&observed, |_| ())?.distance;
+        if noise.flip() == 0.0 && least > 0 {
+            return None;
+        }
+        // No distance is larger than the number of taxels.
+        let all = narrow(imprint.size().cells());
+        let most = all.min(least + reach);
+        Some(Distances {
+            least,
+            touches: self.histogram(&observed, least, most),
+            method: SearchMethod::Scan,
+        })
+    }
+
+    /// Looks up the key of the imprint itself and, if larger distances matter, the keys of all imprints that differ by
+    /// one taxel. None if that is not enough.
+    fn near(&self, imprint: &Imprint, reach: u32) -> Option<Distances> {
+        let nowhere = shift_count((0, 0), imprint.size());
+        let at = |imprint: &Imprint, sums: &mut [u64]| {
+            // The empty key is the same in every place.
+            let times = if imprint.is_empty() { nowhere } else { 1 };
+            for count in self.counts_of(imprint) {
+                sums[usize::from(count.shape)] += count.poses * times;
+            }
+        };
+        let shapes = self.shapes().len();
+        let mut sums = [vec![0; shapes], vec![0; shapes]];
+        at(imprint, &mut sums[0]);
+        let exact = sums[0].iter().any(|&sum| sum > 0);
+        let transposed = |sums: &[Vec<u64>]| {
+            let own = |shape: usize| sums.iter().map(|sums| sums[shape]).collect();
+            (0..shapes).map(own).collect()
+        };
+        if reach == 0 {
+            return exact.then(|| Distances {
+                least: 0,
+                touches: transposed(&sums[..1]),
+                method: SearchMethod::Exact,
+            });
+        }
+        if !exact {
+            // The least distance may be 1, but then distance 2 matters too.
+            return None;
+        }
+        let mut flipped = *imprint;
+        for row in 0..imprint.rows() {
+            for column in 0..imprint.columns() {
+                flipped.toggle(column, row);
+                at(&flipped, &mut sums[1]);
+                flipped.toggle(column, row);
+            }
+        }
+        Some(Distances {
+            least: 0,
+            touches: transposed(&sums),
+            method: SearchMethod::OneFlip,
+        })
+    }
+
+    /// Returns the touches of each shape at the distances from `least` to `most`.
+    fn histogram(&self, observed: &Observed, least: u32, most: u32) -> Vec<Vec<u64>> {
+        let (shapes, width) = (self.shapes().len(), wide(most - least) + 1);
+        let take = |sums: &mut Vec<u64>, key: usize, places: &[u32]| {
+            for count in self.counts(key) {
+                let own = &mut sums[usize::from(count.shape) * width..][..width];
+                for (sum, &places) in own.iter_mut().zip(places) {
+                    *sum += count.poses * u64::from(places);
+                }
+            }
+        };
+        let none = || vec![0_u64; shapes * width];
+        let sums = (self.index()).counted(observed, (least, most), none, take, added);
+        sums.chunks(width).map(<[u64]>::to_vec).collect()
+    }
+}
+
+/// Returns the sum of touches at increasing distances, each weighted by the probability of its distance.
+fn weighed(touches: &[u64], noise: &Noise) -> f64 {
+    // From far to near, so that small numbers are added first.
+    let touches = touches.iter().rev();
+    touches.fold(0.0, |sum, &touches| sum * noise.ratio() + float(touches))
+}
+
+/// Returns ln(e^one + e^other).
+fn log_of_sum(one: f64, other: f64) -> f64 {
+    let (low, high) = if one < other {
+        (one, other)
+    } else {
+        (other, one)
+    };
+    if low == f64::NEG_INFINITY {
+        return high;
+    }
+    high + libm::log1p(libm::exp(low - high))
+}
+
+/// Adds sums element by element.
+fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
+    one.iter_mut()
+        .zip(other)
+        .for_each(|(sum, more)| *sum += more);
+    one
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, Axis, Ranges};
+    use crate::recognition::{NamedShape, Training};
+    use crate::sensor::{MatrixSize, Sensor};
+
+    fn rectangles() -> Model {
+        let sensor = Sensor::default();
+        let shapes = [(5.0, 3.0), (5.0, 3.3), (4.2, 4.2)].map(|(length, width)| {
+            let figure = Figure::rectangle(length, width).on(&sensor);
+            NamedShape::new(format!("{length} × {width}"), figure.expect("in range"))
+        });
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("5:5.9:0.1"))
+            .with(Axis::Y0, range("5:5.9:0.1"))
+            .with(Axis::Angle, range("0:350:10"));
+        let training = Training::new(shapes, sensor, Anchor::Corner, ranges).expect("a set");
+        training.run().expect("nothing is cut off")
+    }
+
+    #[test]
+    fn many_tasks_on_several_threads_find_what_one_finds() {
+        let model = rectangles();
+        let tasks = model.keys().len() / 64;
+        assert!(tasks > 4, "{tasks} tasks");
+        let mut touch = Imprint::empty(MatrixSize::of(16, 16));
+        for row in 3..7 {
+            touch.set_word(row, 0b1111_1000);
+        }
+        touch.toggle(12, 12);
+        let noise = Noise::new(0.03).expect("in range");
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let found = || (model.distances(&touch, &noise), model.nearest(&touch));
+            pool.expect("threads").install(found)
+        };
+        let one = with(1);
+        assert!(one.0.is_some() && one.1.is_some());
+        for _ in 0..10 {
+            assert_eq!((with(2), with(4)), (one.clone(), one.clone()));
+        }
+    }
+
+    #[test]
+    fn a_mask_of_another_size_is_cut_or_filled_up() {
+        let model = rectangles();
+        let touch: Imprint = "......\n.####.\n.####.\n.####.\n.#....\n......"
+            .parse()
+            .expect("an imprint");
+        let mask = |columns, rows| {
+            let mut dead = Imprint::empty(MatrixSize::of(columns, rows));
+            dead.set(1, 4, true);
+            let noise = Noise::new(0.01).expect("in range").with_dead(dead);
+            model.posterior_under(&touch, &noise)
+        };
+        let own = mask(6, 6);
+        assert!(own.is_some());
+        assert_eq!((mask(2, 5), mask(64, 64)), (own.clone(), own));
+    }
+
+    #[test]
+    fn a_strong_noise_counts_no_distance_beyond_the_matrix() {
+        let noise = Noise::new(0.4999).expect("in range");
+        let touch = Imprint::empty(MatrixSize::of(16, 16));
+        let distances = rectangles().distances(&touch, &noise).expect("they fit");
+        for touches in &distances.touches {
+            assert_eq!(distances.least as usize + touches.len(), 16 * 16 + 1);
+        }
+    }
+
+    #[test]
+    fn a_likelihood_has_an_upper_bound_until_every_distance_is_counted() {
+        let sensor = Sensor::default();
+        let dot = Figure::rectangle(1.0, 1.0).on(&sensor).expect("in range");
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("5"))
+            .with(Axis::Y0, range("5"))
+            .with(Axis::Angle, range("0"));
+        let training = Training::new(
+            [NamedShape::new("dot", dot)],
+            sensor,
+            Anchor::Corner,
+            ranges,
+        );
+        let model = training.expect("a set").run().expect("not stopped");
+        let noise = Noise::new(0.1).expect("in range");
+        let touch: Imprint = "#.".parse().expect("an imprint");
+        let bounds = |touches: &[u64]| {
+            let distances = Distances {
+                least: 0,
+                touches: vec![touches.to_vec()],
+                method: SearchMethod::Scan,
+            };
+            model.log_likelihoods(&touch, &distances, &noise)[0]
+        };
+        // In the other place both taxels differ.
+        let [least, most] = bounds(&[1, 0, 1]);
+        assert_eq!(least, most);
+        let exact = least;
+        let [least, most] = bounds(&[1, 0]);
+        assert!(least < exact && exact <= most, "{least} {exact} {most}");
+    }
+}

@@ -1,0 +1,86 @@
+//! Names a shape from one touch, and computes how well any method can do this.
+//!
+//! A sweep finds *every* imprint of a shape and how often it occurs, so the best classifier of one touch is not
+//! learned but counted. The place of a touch is unknown, so only the [`ImprintKey`] of an imprint counts: the active
+//! taxels, cropped to their bounding box. A [`Model`] holds, for each key, in how many poses each shape leaves it,
+//! `n[s, k]`. These integers give the [`posterior`](Model::posterior) of a touch and, exactly, the [`Evaluation`]:
+//! which touches the best classifier names right, which are certain, and how much a touch tells in bits. No
+//! classifier of one touch makes fewer errors on these poses.
+//!
+//! ```text
+//! shapes + poses -> Training -> Model -> Answer       to an imprint: posterior, state, nearest imprint
+//!                                     -> Noise        the same with taxels that flip or are dead
+//!                                     -> scan         all keys in all places: the nearest, and those within a distance
+//!                                     -> Evaluation   of the model: the limit of one touch
+//!                                     -> given        the same if only some descriptors are known
+//!                                     -> classifiers  the paper's way: classifiers on descriptors, and templates
+//! shards of a training -> ModelMerge -> Model          the same bytes as from a training in one piece
+//! shapes + sizes                      -> Separation   the limit against size and threshold
+//! ```
+//!
+//! This is a convention of this project, based on the definition of the Bayes classifier (R. O. Duda, P. E. Hart and D.
+//! G. Stork, *Pattern Classification*, 2001, chapter 2).
+
+mod key;
+
+mod model;
+
+mod merge;
+
+mod training;
+
+mod sets;
+
+mod pose_estimate;
+
+mod confusion;
+
+mod evaluation;
+
+mod separation;
+
+mod given;
+
+mod nearest;
+
+mod posterior;
+
+mod answer;
+
+mod noise;
+
+mod likelihood;
+
+mod templates;
+
+mod classifiers;
+
+mod random;
+
+mod simulation;
+
+mod touches_until;
+
+mod half_step;
+
+mod scan;
+
+pub use answer::{Answer, AnswerState, Evidence};
+pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
+pub use confusion::ConfusionMatrix;
+pub use evaluation::{Certainty, Evaluation, PairConfusion};
+pub use given::{ChosenDescriptor, GivenDescriptors, GivenError, Rounding, ShapeDescriptor};
+pub use half_step::{HalfStep, HalfStepWork};
+pub use key::{ImprintKey, KeyTable};
+pub use likelihood::{Distances, SearchMethod};
+pub use merge::ModelMerge;
+pub use model::{Model, ModelError, ModelHead, NamedShape, ShapeCount};
+pub use nearest::Nearest;
+pub use noise::{Noise, NoiseError, UnexplainedDifference};
+pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
+pub use random::below;
+pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
+pub use sets::{CellPositions, GridSteps, GridStepsError, default_figures, equal_figures};
+pub use simulation::{NoisyTouches, RecognitionRate};
+pub use touches_until::{MOST_TOUCHES, TouchesUntil};
+pub use training::{LEAST_SIDE, Training, TrainingError};

@@ -1,0 +1,555 @@
+//! The model of a set of shapes: in how many poses each shape leaves each key.
+
+use std::collections::HashSet;
+use std::sync::OnceLock;
+
+use crate::imprint::Imprint;
+use crate::parameter::number::share;
+use crate::pose::{Anchor, Axis, MAX_POSES, Ranges};
+use crate::quote::shortened;
+use crate::recognition::key::{ImprintKey, KeyTable};
+use crate::recognition::scan::KeyIndex;
+use crate::sensor::{MatrixSize, Sensor};
+use crate::source::Source;
+use crate::sweep::{Shard, ShardOrderError};
+
+/// A shape and the name that answers use for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedShape {
+    /// The name; no other shape of the set has it.
+    pub name: String,
+    /// The shape; its position does not matter.
+    pub source: Source,
+    /// The prior weight: how likely the shape is before the touch, relative to the others; at least 1.
+    pub weight: u32,
+}
+
+impl NamedShape {
+    /// Creates a shape of weight 1, as likely as any other.
+    pub fn new(name: impl Into<String>, source: impl Into<Source>) -> Self {
+        Self {
+            name: name.into(),
+            source: source.into(),
+            weight: 1,
+        }
+    }
+
+    /// Returns the same shape with another weight.
+    #[must_use]
+    pub fn weighted(self, weight: u32) -> Self {
+        Self { weight, ..self }
+    }
+}
+
+/// The number of poses in which a shape leaves a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShapeCount {
+    /// The index of the shape in the set.
+    pub shape: u16,
+    /// The number of its poses with this key; at least 1.
+    pub poses: u64,
+}
+
+impl ShapeCount {
+    /// Creates a count for the shape with this index.
+    pub fn new(shape: u16, poses: u64) -> Self {
+        Self { shape, poses }
+    }
+}
+
+/// The shapes to tell apart, the poses in which each was touched, and the keys that they left.
+///
+/// A model is made by [`Training`](crate::recognition::Training), or read from a file.
+#[derive(Clone, Debug)]
+pub struct Model {
+    head: ModelHead,
+    /// The keys, sorted.
+    keys: KeyTable,
+    /// The index of each key's first count, and at the end the number of counts.
+    starts: Vec<usize>,
+    /// The counts of each key, in the order of the shapes.
+    counts: Vec<ShapeCount>,
+    /// The keys again, in the order in which a scan compares them; made by the first scan.
+    scan: OnceLock<ScanTables>,
+}
+
+impl PartialEq for Model {
+    /// Returns true if both have the same shapes, poses and keys, left equally often.
+    fn eq(&self, other: &Self) -> bool {
+        // Tables for scans follow from the keys.
+        self.head == other.head
+            && self.keys == other.keys
+            && self.starts == other.starts
+            && self.counts == other.counts
+    }
+}
+
+/// The tables that scans of a model need besides its keys.
+#[derive(Clone, Debug)]
+struct ScanTables {
+    index: KeyIndex,
+    /// For each box of the index, the number of poses of each shape.
+    poses: Vec<u64>,
+}
+
+/// The shapes of a model and the poses in which they were touched: everything except the keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelHead {
+    /// The shapes, at least one.
+    pub shapes: Vec<NamedShape>,
+    /// The sensor that they were touched with.
+    pub sensor: Sensor,
+    /// The point of the shape that x0 and y0 locate.
+    pub anchor: Anchor,
+    /// The ranges of the poses.
+    pub ranges: Ranges,
+    /// The part of the poses that the model holds.
+    pub shard: Shard,
+    /// The number of poses of each shape in that part.
+    pub poses: u64,
+    /// The number of poses of each shape that reach beyond the sensor.
+    pub cut: Vec<u64>,
+}
+
+impl ModelHead {
+    /// Creates a head of a whole training, of shapes that the sensor never cuts off; `poses` is the number of poses of
+    /// each shape in the ranges.
+    pub fn new(
+        shapes: Vec<NamedShape>,
+        sensor: Sensor,
+        anchor: Anchor,
+        ranges: Ranges,
+        poses: u64,
+    ) -> Self {
+        Self {
+            cut: vec![0; shapes.len()],
+            shapes,
+            sensor,
+            anchor,
+            ranges,
+            shard: Shard::WHOLE,
+            poses,
+        }
+    }
+
+    /// Returns true if both are parts of one training.
+    pub(super) fn same_training(&self, other: &Self) -> bool {
+        self.shapes == other.shapes
+            && self.sensor == other.sensor
+            && self.anchor == other.anchor
+            && self.ranges == other.ranges
+            && self.shard.of() == other.shard.of()
+    }
+}
+
+/// The largest number of shapes in a set.
+pub(super) const MAX_SHAPES: usize = 1 << 15;
+
+/// The most characters of the name of a shape, as in a library.
+const LONGEST_NAME: usize = 64;
+
+/// The error for shapes or numbers that do not make a model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ModelError {
+    /// No shape, or more than 32,768.
+    #[error("{found} shapes, expected 1 to {MAX_SHAPES}")]
+    Shapes {
+        /// The number of shapes.
+        found: usize,
+    },
+    /// A name that two shapes have.
+    #[error("two shapes are named {name:?}; give each its own name")]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// A shape without a name.
+    #[error("shape {number} has no name")]
+    NoName {
+        /// The number of the shape, from 1.
+        number: usize,
+    },
+    /// A name that would break the lines of an answer.
+    #[error("name {name:?} of shape {number} has a line break or another control character")]
+    ControlCharacter {
+        /// The number of the shape, from 1.
+        number: usize,
+        /// The name.
+        name: String,
+    },
+    /// A name that is longer than 64 characters.
+    #[error(
+        "name {name:?} of shape {number} has {length} characters (allowed: up to {LONGEST_NAME})"
+    )]
+    LongName {
+        /// The number of the shape, from 1.
+        number: usize,
+        /// The beginning of the name.
+        name: String,
+        /// The number of characters.
+        length: usize,
+    },
+    /// A weight of 0.
+    #[error("weight of {name:?}: 0, expected at least 1")]
+    Weight {
+        /// The name of the shape.
+        name: String,
+    },
+    /// Numbers that contradict each other.
+    #[error("{0}")]
+    Parts(&'static str),
+    /// Shards to merge that are missing, or given twice.
+    #[error(transparent)]
+    Shards(#[from] ShardOrderError),
+    /// Models that are not parts of one training.
+    #[error("shard {shard} belongs to another training")]
+    Foreign {
+        /// The shard that does not fit the first one.
+        shard: Shard,
+    },
+}
+
+impl ModelError {
+    /// The error for two equal keys.
+    pub const TWICE: Self = Self::Parts("a key is there twice");
+}
+
+/// Checks the names and weights of a set.
+///
+/// # Errors
+/// Returns the first problem found.
+pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
+    if shapes.is_empty() || shapes.len() > MAX_SHAPES {
+        return Err(ModelError::Shapes {
+            found: shapes.len(),
+        });
+    }
+    let mut names = HashSet::new();
+    for (index, shape) in shapes.iter().enumerate() {
+        let name = || shortened(&shape.name);
+        let number = index + 1;
+        if shape.name.trim().is_empty() {
+            return Err(ModelError::NoName { number });
+        }
+        if shape.name.contains(char::is_control) {
+            return Err(ModelError::ControlCharacter {
+                number,
+                name: name(),
+            });
+        }
+        let length = shape.name.chars().count();
+        if length > LONGEST_NAME {
+            return Err(ModelError::LongName {
+                number,
+                name: name(),
+                length,
+            });
+        }
+        if !names.insert(shape.name.as_str()) {
+            return Err(ModelError::Name { name: name() });
+        }
+        if shape.weight == 0 {
+            return Err(ModelError::Weight { name: name() });
+        }
+    }
+    Ok(())
+}
+
+impl Model {
+    /// Assembles a model from an imprint of each key (None for the key of an empty touch) and its counts, in any order.
+    ///
+    /// # Errors
+    /// Returns an error if a name or weight is invalid, if a key is given twice, or if numbers contradict each other,
+    /// such as counts that do not add up to the poses of a shape.
+    pub fn from_parts(
+        head: ModelHead,
+        keys: &[(Option<Imprint>, Vec<ShapeCount>)],
+    ) -> Result<Self, ModelError> {
+        let mut table = KeyTable::default();
+        let mut key = ImprintKey::of(&Imprint::empty(MatrixSize::SMALLEST));
+        for (imprint, _) in keys {
+            key.set(&imprint.unwrap_or(Imprint::empty(MatrixSize::SMALLEST)));
+            if !table.add(&key) {
+                return Err(ModelError::TWICE);
+            }
+        }
+        Self::of_table(head, &table, |index| keys[index].1.iter().copied())
+    }
+
+    /// Builds a model from the keys of a table, in any order, and the counts of each key, by shape.
+    pub fn of_table<I: IntoIterator<Item = ShapeCount>>(
+        head: ModelHead,
+        table: &KeyTable,
+        counts_of: impl Fn(usize) -> I,
+    ) -> Result<Self, ModelError> {
+        check_shapes(&head.shapes)?;
+        let check = |holds: bool, what| holds.then_some(()).ok_or(ModelError::Parts(what));
+        let shapes = head.shapes.len();
+        check(head.cut.len() == shapes, "a shape without its cut poses")?;
+        let (keys, order) = table.sorted();
+        let (mut starts, mut counts) = (vec![0], Vec::new());
+        let mut sums = vec![0_u64; shapes];
+        for index in order {
+            let start = counts.len();
+            counts.extend(counts_of(index));
+            let own: &[ShapeCount] = &counts[start..];
+            check(
+                own.iter()
+                    .all(|count| usize::from(count.shape) < shapes && count.poses > 0),
+                "a count of a shape that is not in the set",
+            )?;
+            check(
+                !own.is_empty() && own.windows(2).all(|pair| pair[0].shape < pair[1].shape),
+                "counts that are not in the order of the shapes",
+            )?;
+            for count in own {
+                let sum = &mut sums[usize::from(count.shape)];
+                *sum = sum
+                    .checked_add(count.poses)
+                    .ok_or(ModelError::Parts("counts beyond any number of poses"))?;
+            }
+            starts.push(counts.len());
+        }
+        check(
+            sums.iter().all(|&sum| sum == head.poses),
+            "counts that do not sum up to the number of poses",
+        )?;
+        check(
+            poses(&head.ranges, head.shard) == Some(head.poses),
+            "a number of poses that is not that of the ranges",
+        )?;
+        check(
+            head.cut.iter().all(|&cut| cut <= head.poses),
+            "more poses cut off than there are",
+        )?;
+        Ok(Self {
+            head,
+            keys,
+            starts,
+            counts,
+            scan: OnceLock::new(),
+        })
+    }
+
+    /// Returns everything except the keys.
+    pub fn head(&self) -> &ModelHead {
+        &self.head
+    }
+
+    /// Returns the shapes, in the order of the set.
+    pub fn shapes(&self) -> &[NamedShape] {
+        &self.head.shapes
+    }
+
+    /// Returns the sensor that the shapes were touched with.
+    pub fn sensor(&self) -> &Sensor {
+        &self.head.sensor
+    }
+
+    /// Returns the point of the shape that x0 and y0 locate.
+    pub fn anchor(&self) -> Anchor {
+        self.head.anchor
+    }
+
+    /// Returns the poses in which each shape was touched.
+    pub fn ranges(&self) -> &Ranges {
+        &self.head.ranges
+    }
+
+    /// Returns the part of the poses that the model holds. Only a model with [`Shard::WHOLE`] should answer touches.
+    pub fn shard(&self) -> Shard {
+        self.head.shard
+    }
+
+    /// Returns the number of poses of each shape.
+    pub fn poses(&self) -> u64 {
+        self.head.poses
+    }
+
+    /// Returns how many poses of each shape the sensor cuts off, in the order of the set.
+    pub fn cut(&self) -> &[u64] {
+        &self.head.cut
+    }
+
+    /// Returns the keys in their order.
+    pub fn keys(&self) -> &KeyTable {
+        &self.keys
+    }
+
+    /// Returns the shapes that leave the key of that index, in the order of the set; empty if there are not that many
+    /// keys.
+    pub fn counts(&self, key: usize) -> &[ShapeCount] {
+        let end = key.checked_add(1).and_then(|next| self.starts.get(next));
+        end.map_or(&[], |&end| &self.counts[self.starts[key]..end])
+    }
+
+    /// Iterates over the keys in their order. Each item is the imprint of a key (None for touches that activate no
+    /// taxel) and the shapes that leave it.
+    ///
+    /// ```
+    /// use taxel_core::prelude::*;
+    /// use taxel_core::recognition::{NamedShape, Training};
+    ///
+    /// let sensor = Sensor::default();
+    /// let bar = NamedShape::new("bar", Figure::rectangle(4.0, 2.0).on(&sensor)?);
+    /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+    /// let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
+    /// let most = model.entries().max_by_key(|(_, counts)| counts[0].poses).expect("a key");
+    /// assert_eq!(most.0, Some("####\n####".parse()?));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn entries(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = (Option<Imprint>, &[ShapeCount])> + ExactSizeIterator {
+        (0..self.keys.len()).map(|key| (self.keys.imprint(key), self.counts(key)))
+    }
+
+    /// Returns the shapes that leave the key of an imprint; empty if no shape does.
+    pub fn counts_of(&self, imprint: &Imprint) -> &[ShapeCount] {
+        self.keys
+            .find(&ImprintKey::of(imprint))
+            .map_or(&[], |key| self.counts(key))
+    }
+
+    /// Returns P(shape | imprint) for each shape of the set; None for an imprint that no shape leaves. The place of the
+    /// imprint on its matrix does not matter. Of a shard, only its own poses count.
+    pub fn posterior(&self, imprint: &Imprint) -> Option<Vec<f64>> {
+        let counts = self.counts_of(imprint);
+        if counts.is_empty() {
+            return None;
+        }
+        let mut posterior = vec![0.0; self.head.shapes.len()];
+        let total: u128 = counts.iter().map(|&count| self.weighted(count)).sum();
+        for &count in counts {
+            posterior[usize::from(count.shape)] = share(self.weighted(count), total);
+        }
+        Some(posterior)
+    }
+
+    /// Returns the keys in the order in which scans compare them.
+    pub(super) fn index(&self) -> &KeyIndex {
+        &self.scan_tables().index
+    }
+
+    /// Iterates over the boxes of the index: the number of poses in which each shape leaves a key of that box.
+    pub(super) fn poses_by_box(&self) -> impl Iterator<Item = &[u64]> {
+        self.scan_tables().poses.chunks(self.head.shapes.len())
+    }
+
+    fn scan_tables(&self) -> &ScanTables {
+        self.scan.get_or_init(|| {
+            let index = KeyIndex::new(&self.keys);
+            let mut poses = vec![0; index.boxes().len() * self.head.shapes.len()];
+            for (own, sums) in (index.boxes().iter()).zip(poses.chunks_mut(self.head.shapes.len()))
+            {
+                for count in own.keys.clone().flat_map(|key| self.counts(key)) {
+                    sums[usize::from(count.shape)] += count.poses;
+                }
+            }
+            ScanTables { index, poses }
+        })
+    }
+
+    /// Returns a count times the weight of its shape.
+    pub(super) fn weighted(&self, count: ShapeCount) -> u128 {
+        u128::from(count.poses) * u128::from(self.head.shapes[usize::from(count.shape)].weight)
+    }
+
+    /// Iterates over the shapes of some counts, each with its count times its weight.
+    pub(super) fn weighted_shapes<'a>(
+        &'a self,
+        counts: &'a [ShapeCount],
+    ) -> impl Iterator<Item = (usize, u128)> + Clone + 'a {
+        let counts = counts.iter();
+        counts.map(|&count| (usize::from(count.shape), self.weighted(count)))
+    }
+
+    /// Returns ln w of each shape, in the order of the set.
+    pub(super) fn log_weights(&self) -> Vec<f64> {
+        let weights = self.head.shapes.iter().map(|shape| f64::from(shape.weight));
+        weights.map(libm::log).collect()
+    }
+
+    /// Returns the sum of all weights.
+    pub(super) fn weights(&self) -> u128 {
+        let weights = self
+            .head
+            .shapes
+            .iter()
+            .map(|shape| u128::from(shape.weight));
+        weights.sum()
+    }
+}
+
+/// Returns the number of poses of a grid, or of a part of it; None if it is too large for any grid.
+fn poses(ranges: &Ranges, shard: Shard) -> Option<u64> {
+    let count = |axis: Axis| ranges[axis].count();
+    let others = [Axis::Y0, Axis::Angle, Axis::ZoomX, Axis::ZoomY].map(count);
+    let rows = others.into_iter().try_fold(1, u64::checked_mul);
+    let own = rows.map(|rows| shard.rows(rows));
+    let poses = own.and_then(|rows| (rows.end - rows.start).checked_mul(count(Axis::X0)));
+    poses.filter(|&poses| poses <= MAX_POSES)
+}
+
+/// Adds ln n of a key to the logarithm of each shape of a set; −∞ for a shape that does not leave the key.
+pub(super) fn add_log_counts(logarithms: &mut [f64], counts: &[ShapeCount]) {
+    let mut counts = counts.iter().peekable();
+    for (shape, logarithm) in logarithms.iter_mut().enumerate() {
+        let own = counts.next_if(|count| usize::from(count.shape) == shape);
+        *logarithm += own.map_or(f64::NEG_INFINITY, |own| libm::log(float(own.poses)));
+    }
+}
+
+/// Converts a count to an `f64` for computing.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "neither a mean nor a probability has more digits"
+)]
+pub(super) fn float(count: u64) -> f64 {
+    count as f64
+}
+
+/// Returns the largest of some values, with the number of its shape; the first among equals. The values are in the
+/// order of the set.
+pub(super) fn first_of_most<T: PartialOrd>(
+    values: impl IntoIterator<Item = (usize, T)>,
+) -> Option<(usize, T)> {
+    let larger = |best: (usize, T), next: (usize, T)| if next.1 > best.1 { next } else { best };
+    values.into_iter().reduce(larger)
+}
+
+/// Keys with their counts, while they are gathered.
+#[derive(Debug, Default)]
+pub(super) struct Gathered {
+    pub(super) keys: KeyTable,
+    pub(super) counts: Vec<Vec<ShapeCount>>,
+}
+
+impl Gathered {
+    /// Returns the slot in which the counts of a key of another table are gathered.
+    pub(super) fn slot(&mut self, keys: &KeyTable, index: usize) -> usize {
+        let slot = self.keys.intern(keys.get(index));
+        if slot == self.counts.len() {
+            self.counts.push(Vec::new());
+        }
+        slot
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+
+    #[test]
+    fn a_set_may_have_as_many_shapes_as_the_error_says() {
+        let bar = Figure::rectangle(2.0, 1.0).on(&Sensor::default());
+        let bar = bar.expect("in range");
+        let shape = |number: usize| NamedShape::new(number.to_string(), bar);
+        let mut shapes: Vec<NamedShape> = (0..MAX_SHAPES).map(shape).collect();
+        assert_eq!(check_shapes(&shapes), Ok(()));
+        shapes.push(shape(MAX_SHAPES));
+        let refused = check_shapes(&shapes).expect_err("one more");
+        assert_eq!(refused.to_string(), "32769 shapes, expected 1 to 32768");
+    }
+}

@@ -1,0 +1,69 @@
+//! Sweeps every pose of a grid: finds runs of equal imprints, an atlas of the distinct ones, and statistics of their
+//! descriptors.
+//!
+//! The paper wanted "almost all possible imprints" of a shape and could only sample them. A sweep finds all of them.
+//! Instead of touching pose by pose, it finds where along a range of positions the imprint changes; the result is
+//! identical to touching every pose. No I/O, no panics.
+//!
+//! **How a row is swept** (all x0 at one y0 and one angle):
+//! ```text
+//! polygon | ellipse   for each row of the sensor: the spans of x at which a taxel is active
+//!   isolate           the spans of an ellipse, slow but always right, if `ellipse` (which uses `track`) is not certain
+//! -> flips            the steps of x0 at which taxels become active or inactive
+//!   exact             decides with 32 digits where f64 cannot
+//! -> events -> runs   the runs of poses with the same imprint
+//! -> atlas            each imprint counted once per run, and described once per sweep
+//! ```
+//!
+//! **What is skipped.** If the shape looks the same at several angles, only one of them is swept ([`crate::pose`]).
+//! If the shape at one angle is the mirror image of itself at another, the spans of one follow from those of the
+//! other, with right and left exchanged. If a half turn of the plane maps the poses of an angle onto each other, only
+//! half of their rows are swept (`point_symmetry`, `reflected_rows`). Exact decimals decide all of this.
+//!
+//! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads or shards.
+
+mod point_symmetry;
+
+mod plan;
+
+mod exact;
+
+mod span;
+
+mod polygon;
+
+mod ellipse_band;
+
+mod isolate;
+
+mod track;
+
+mod ellipse;
+
+mod events;
+
+mod flips;
+
+mod reflected_rows;
+
+mod runs;
+
+mod ideal;
+
+mod result;
+
+mod merge;
+
+mod run;
+
+mod sample;
+
+mod count;
+
+pub use count::{CountedImprints, PoseRun};
+pub use merge::{MergeError, SweepMerge};
+pub use plan::{Shard, ShardError, ShardOrderError};
+pub use result::Parts;
+pub use result::{PartsError, SweepResult};
+pub use run::{Sweep, TakeRow};
+pub use sample::TimingSample;

@@ -1,0 +1,290 @@
+//! Runs a sweep: distributes the tasks of a shard among all threads and combines their results.
+//!
+//! Tasks run in portions. The tasks of a portion run in parallel, each with its own counters; then the counters are
+//! added to the atlas one after the other, while the next portion is being swept. At the end the imprints are sorted by
+//! their first poses, so their numbers are the same for any number of threads.
+//!
+//! With [`Sweep::run_with_rows`], imprints are numbered as they are found. So tasks come in the order of their first
+//! orientations, mirror images are swept separately, and the rows of a group come together.
+
+use std::fmt;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use crate::atlas::{Atlas, Layout, OrientationSums, Table, VarianceParts};
+use crate::index::{index, wide};
+use crate::pose::{Axis, PoseGrid};
+use crate::progress::{Progress, ToTheEnd, stop_if};
+use crate::sweep::plan::{Shard, SweepDetail, Task, tasks};
+use crate::sweep::result::SweepResult;
+use crate::sweep::runs::{self, GroupResult};
+
+/// A function that takes a row: its number in the grid, and the atlas number of each of its poses. It stops the sweep by
+/// returning `Break`.
+pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) -> ControlFlow<()> + Send + 'a;
+
+/// A sweep to run: a grid of poses, and options.
+///
+/// It uses rayon's current thread pool; run it inside [`rayon::ThreadPool::install`] for another number of threads. The
+/// result is the same for any number of them.
+///
+/// ```
+/// use taxel_core::prelude::*;
+///
+/// let hexagon = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
+/// let grid = PoseGrid::new(hexagon, Sensor::default(), Anchor::Centre, Ranges::default())?;
+/// let result = Sweep::new(&grid).run();
+/// assert_eq!(result.poses(), grid.poses());
+/// # Ok::<(), taxel_core::pose::GridError>(())
+/// ```
+#[must_use = "nothing is swept before `run`, `run_with_rows`, `count` or `poses_where`"]
+pub struct Sweep<'a> {
+    pub(super) grid: &'a PoseGrid,
+    shard: Shard,
+    progress: &'a dyn Progress,
+}
+
+impl fmt::Debug for Sweep<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Sweep")
+            .field("grid", &self.grid)
+            .field("shard", &self.shard)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Sweep<'a> {
+    /// Creates a sweep of a whole grid, to its end.
+    pub fn new(grid: &'a PoseGrid) -> Self {
+        Self {
+            grid,
+            shard: Shard::WHOLE,
+            progress: &ToTheEnd,
+        }
+    }
+
+    /// Sweeps only one shard of the grid.
+    pub fn with_shard(mut self, shard: Shard) -> Self {
+        self.shard = shard;
+        self
+    }
+
+    /// Reports to `progress` from time to time, from any thread, the number of poses done since the last report, which
+    /// is 0 within a long row. The sweep stops when it returns `Break`.
+    pub fn with_progress(mut self, progress: &'a dyn Progress) -> Self {
+        self.progress = progress;
+        self
+    }
+
+    /// Runs the sweep. If it is stopped early, the result holds what is complete: whole orientations or parts of
+    /// them, with all their numbers. Unfinished work is lost, a few seconds at most.
+    pub fn run(self) -> SweepResult {
+        self.run_to(None)
+    }
+
+    /// Runs the sweep as [`Self::run`] does, and calls `take` once for each complete row: one y0 at one angle and one
+    /// pair of zooms. Rows do not come in the order of the grid if several orientations show the same shape. After a
+    /// `Break`, `take` is not called again.
+    pub fn run_with_rows(self, take: &mut TakeRow<'_>) -> SweepResult {
+        self.run_to(Some(take))
+    }
+
+    fn run_to(self, rows: Option<&mut TakeRow<'_>>) -> SweepResult {
+        let (grid, shard) = (self.grid, self.shard);
+        let sensor = grid.sensor();
+        let mut done = Accumulator {
+            grid,
+            atlas: Atlas::new(sensor.size()),
+            table: Table::default(),
+            variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
+            poses: 0,
+            partly_off: 0,
+            rows,
+        };
+        let detail = match done.rows {
+            Some(_) => SweepDetail::Runs,
+            None => SweepDetail::Counts,
+        };
+        let layout = done.atlas.layout().clone();
+        self.each_portion(&layout, detail, |portion| done.add(portion));
+        let poses = (done.poses, done.partly_off);
+        let (table, variance_parts) = (&done.table, done.variance_parts);
+        let mut result = SweepResult::new(
+            grid.clone(),
+            shard,
+            poses,
+            done.atlas,
+            table,
+            variance_parts,
+        );
+        if detail == SweepDetail::Counts {
+            result.atlas.sort_by_first_pose();
+        }
+        result
+    }
+
+    /// Sweeps portion after portion. `take` receives the results of each portion while the next one is being swept;
+    /// if runs are found, the portions come in the order of the grid. If `progress` stops a portion, its results are
+    /// lost; `take` stops the sweep, too. Returns true if nothing did.
+    pub(super) fn each_portion(
+        self,
+        layout: &Layout,
+        detail: SweepDetail,
+        mut take: impl FnMut(&Portion) -> ControlFlow<()> + Send,
+    ) -> bool {
+        let Self {
+            grid,
+            shard,
+            progress,
+        } = self;
+        let rows = shard.rows(grid.rows());
+        let stopped = AtomicBool::new(false);
+        let stop = |flow: ControlFlow<()>| {
+            if flow.is_break() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            stop_if(stopped.load(Ordering::Relaxed))
+        };
+        let report = |poses: u64| stop(progress.add(poses));
+        let found = |task: Task| {
+            (!stopped.load(Ordering::Relaxed))
+                .then(|| runs::sweep_task(grid, layout, &task, &report))
+                .flatten()
+        };
+        let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
+        let blocks = rows.start / block_rows..rows.end.div_ceil(block_rows);
+        let mut tasks = blocks.flat_map(|block| tasks(grid, &rows, block, detail));
+        let mut before = Portion::new();
+        loop {
+            let next = portion(&mut tasks, grid.row_length());
+            if next.is_empty() {
+                return take(&before).is_continue();
+            }
+            let sweep =
+                || -> Option<Vec<Vec<GroupResult>>> { next.into_par_iter().map(found).collect() };
+            let (swept, taken) = rayon::join(sweep, || stop(take(&before)));
+            match swept {
+                Some(swept) if taken.is_continue() => {
+                    before = swept.into_iter().flatten().collect();
+                }
+                _ => return false,
+            }
+        }
+    }
+}
+
+/// The results of the groups of some tasks.
+pub(super) type Portion = Vec<GroupResult>;
+
+/// Takes the next tasks that run side by side: enough to keep all threads busy to the end, few enough for the memory
+/// that their results take. `width` is the number of poses in a row.
+fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
+    const POSES: u64 = 4_000_000;
+    let threads = rayon::current_num_threads();
+    let mut poses = 0;
+    let mut portion = Vec::new();
+    while portion.len() < threads || poses < POSES && portion.len() < 16 * threads {
+        let Some(task) = tasks.next() else { break };
+        poses += (task.rows.end - task.rows.start) * width;
+        portion.push(task);
+    }
+    portion
+}
+
+/// The results of a sweep so far.
+struct Accumulator<'a, 'w, 'r> {
+    grid: &'a PoseGrid,
+    atlas: Atlas,
+    table: Table,
+    variance_parts: VarianceParts,
+    poses: u64,
+    partly_off: u64,
+    rows: Option<&'w mut TakeRow<'r>>,
+}
+
+impl Accumulator<'_, '_, '_> {
+    fn add(&mut self, portion: &Portion) -> ControlFlow<()> {
+        let width = self.grid.row_length();
+        let ids: Vec<Vec<u32>> = portion
+            .iter()
+            .map(|found| {
+                self.atlas
+                    .add(&found.counter, found.orientations.len() as u64)
+            })
+            .collect();
+        self.atlas.describe();
+        self.table.extend(self.atlas.summaries());
+        let table = &self.table;
+        let sums: Vec<OrientationSums> = portion
+            .par_iter()
+            .zip(&ids)
+            .map(|(found, ids)| {
+                let counts = found.counter.tallies().iter().map(|tally| tally.count);
+                let counted = ids.iter().copied().zip(counts);
+                OrientationSums::of(table, found.orientations.len() as u64, counted)
+            })
+            .collect();
+        let mut flow = ControlFlow::Continue(());
+        for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
+            let multiplicity = found.orientations.len() as u64;
+            self.variance_parts.add(found.orientations[0], sums);
+            self.poses += (found.rows.end - found.rows.start) * width * multiplicity;
+            self.partly_off += found.partly_off * multiplicity;
+            if let Some(rows) = &mut self.rows
+                && flow.is_continue()
+            {
+                flow = show_rows(self.grid, found, ids, rows);
+            }
+        }
+        flow
+    }
+}
+
+/// Calls `show` for each row of a group, in each of its orientations, until it stops.
+fn show_rows(
+    grid: &PoseGrid,
+    found: &GroupResult,
+    ids: &[u32],
+    show: &mut TakeRow<'_>,
+) -> ControlFlow<()> {
+    let (width, height) = (grid.row_length(), grid.rows_per_orientation());
+    let mut row = Vec::with_capacity(index(width));
+    for (nth, y) in found.rows.clone().enumerate() {
+        row.clear();
+        for &(imprint, length) in found.runs.row(nth) {
+            row.extend(std::iter::repeat_n(ids[wide(imprint)], wide(length)));
+        }
+        for &orientation in found.orientations.iter() {
+            show(orientation * height + y, &row)?;
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::pose::{Anchor, Ranges};
+    use crate::sensor::Sensor;
+
+    #[test]
+    fn rows_that_are_not_taken_stop_the_sweep() {
+        let sensor = Sensor::default();
+        let source = Figure::default_of(FigureKind::Heptagon, &sensor).into();
+        let grid = PoseGrid::new(source, sensor, Anchor::Corner, Ranges::default());
+        let grid = grid.expect("in range");
+        let mut rows = 0;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let result = pool.expect("a thread").install(|| {
+            Sweep::new(&grid).run_with_rows(&mut |_, _| {
+                rows += 1;
+                stop_if(rows == 150)
+            })
+        });
+        assert_eq!(rows, 150);
+        assert!(!result.complete() && result.poses() >= 150 * grid.row_length());
+    }
+}

@@ -1,0 +1,234 @@
+//! The shapes of a set: one JSON object each, or a few words on the command line.
+
+use std::borrow::Cow;
+use std::num::NonZeroU32;
+
+use serde::de::{Deserialize, Deserializer, MapAccess};
+
+use crate::figure::FigureKind;
+use crate::formats::json::message_of_line;
+use crate::formats::record::{
+    ImprintOrName, KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
+};
+use crate::imprint::Imprint;
+use crate::parameter::{PARAMETERS, Parameter, number};
+use crate::picture::Picture;
+use crate::pose::Axis;
+use crate::quote::shortened;
+use crate::recognition::NamedShape;
+use crate::sensor::Sensor;
+use crate::source::Source;
+
+/// The error for an object or a text that is not a shape of a set.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NamedShapeError {
+    /// Not JSON, or not an object with known keys.
+    #[error("column {column}: {message}")]
+    Json {
+        /// The column of the error, from 1.
+        column: usize,
+        /// A description of the error.
+        message: String,
+    },
+    /// No name.
+    #[error("name: missing; every shape of a set needs one")]
+    Name,
+    /// A value that has no meaning.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// Words that are not a shape.
+    #[error("expected NAME=KIND KEY=NUMBER … or NAME=picture SHAPE")]
+    Words,
+    /// A word of a figure that is not a value.
+    #[error("{found:?}: expected KEY=NUMBER, such as radius_x=3")]
+    Word {
+        /// The word that was given.
+        found: String,
+    },
+    /// A key that is not a parameter; a weight can be given in JSON only.
+    #[error(
+        "{found:?}: not a parameter of the figure {}, which has {}; weights are given in JSON",
+        figure.name(),
+        keys(*figure)
+    )]
+    Key {
+        /// The key that was given.
+        found: String,
+        /// The figure.
+        figure: FigureKind,
+    },
+    /// A position, an angle or a zoom.
+    #[error(
+        "{key}: a shape of a set has no pose of its own; it is touched in all poses of the grid"
+    )]
+    Pose {
+        /// The key of the parameter.
+        key: &'static str,
+    },
+    /// A parameter that is given twice.
+    #[error("{key}: given twice")]
+    Twice {
+        /// The key of the parameter.
+        key: &'static str,
+    },
+}
+
+/// Returns the keys of a figure's parameters that matter in a set: not those of its position and angle.
+fn keys(figure: FigureKind) -> String {
+    let sizes = figure.sizes().iter().chain([&Parameter::Thickness]);
+    let keys = sizes.map(|parameter| parameter.row().key);
+    keys.collect::<Vec<_>>().join(", ")
+}
+
+/// A function that finds the imprint of a stored shape.
+pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
+
+/// Reads a shape of a set from a JSON object. It has neither a pose nor a sensor: the shapes of a set are touched in
+/// the poses of a grid, on one sensor.
+///
+/// ```text
+/// {"name":"disc","figure":"ellipse","radius_x":3.09,"radius_y":3.09}
+/// {"name":"washer","picture":"washer","weight":2}
+/// {"name":"corner","picture":["##","#."]}
+/// ```
+/// The sizes of a figure have no defaults ([`PARAMETERS`] lists keys, units and ranges); without `thickness` it is
+/// solid. A picture is given by its rows, or by the name of a stored shape, which `lookup` finds. The weight, from 1,
+/// says how often the shape is expected compared with the others; by default 1.
+///
+/// # Errors
+/// Returns an error that says in one sentence what is wrong.
+///
+/// ```
+/// use taxel_files::formats::named_shape;
+/// let line = br#"{"name":"disc","figure":"ellipse","radius_x":3.09,"radius_y":3.09}"#;
+/// let disc = named_shape(line, &|name| Err(format!("no shape {name}"))).unwrap();
+/// assert_eq!((disc.name.as_str(), disc.weight), ("disc", 1));
+/// ```
+pub fn named_shape(line: &[u8], lookup: &ShapeLookup<'_>) -> Result<NamedShape, NamedShapeError> {
+    let read = serde_json::from_slice(line);
+    let line: Line<'_> = read.map_err(|error| NamedShapeError::Json {
+        column: error.column().max(1),
+        message: message_of_line(line, &error, Line::EXPECTED),
+    })?;
+    let name = line.name.ok_or(NamedShapeError::Name)?;
+    line.record.no_sensor("shape")?;
+    let source = source(line.record, lookup)?;
+    let weight = line.weight.map_or(1, NonZeroU32::get);
+    Ok(NamedShape::new(name, source).weighted(weight))
+}
+
+/// Reads a shape of a set from words, `disc=ellipse radius_x=3 radius_y=3` or `ring=picture washer`: a name, the kind
+/// of a figure and its sizes, or a picture, which `lookup` finds. The weight is 1.
+///
+/// # Errors
+/// Returns an error that says in one sentence what is wrong.
+///
+/// ```
+/// use taxel_files::formats::named_shape_of_words;
+/// let no_shapes = |name: &str| Err(format!("no shape {name}"));
+/// let disc = named_shape_of_words("disc=ellipse radius_x=3 radius_y=3", &no_shapes).unwrap();
+/// assert_eq!(disc.name, "disc");
+/// let error = named_shape_of_words("disc=ellipse radius_x", &no_shapes).unwrap_err();
+/// assert_eq!(error.to_string(), r#""radius_x": expected KEY=NUMBER, such as radius_x=3"#);
+/// ```
+pub fn named_shape_of_words(
+    text: &str,
+    lookup: &ShapeLookup<'_>,
+) -> Result<NamedShape, NamedShapeError> {
+    let (name, rest) = text.split_once('=').ok_or(NamedShapeError::Words)?;
+    let rest = rest.trim();
+    let (kind, values) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+    if name.trim().is_empty() || kind.is_empty() {
+        return Err(NamedShapeError::Words);
+    }
+    let mut record = Record::default();
+    if kind == "picture" {
+        record.picture = Some(ImprintOrName::Name(Cow::Borrowed(values.trim())));
+    } else {
+        record.figure = Some(Cow::Borrowed(kind));
+    }
+    if let Ok(figure) = kind.parse::<FigureKind>() {
+        for word in values.split_whitespace() {
+            let error = || NamedShapeError::Word {
+                found: shortened(word),
+            };
+            let (key, value) = word.split_once('=').ok_or_else(error)?;
+            let value = number::read(value).ok_or_else(error)?;
+            let row = PARAMETERS.iter().find(|row| row.key == key);
+            let row = row.ok_or_else(|| NamedShapeError::Key {
+                found: shortened(key),
+                figure,
+            })?;
+            if record.values.get(row.parameter).is_some() {
+                return Err(NamedShapeError::Twice { key: row.key });
+            }
+            record.values.set(row.parameter, value);
+        }
+    }
+    Ok(NamedShape::new(name.trim(), source(record, lookup)?))
+}
+
+/// Makes the shape of a record, which must have no pose, at the origin.
+fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, NamedShapeError> {
+    let mut posed = Axis::ALL.map(Axis::parameter).into_iter();
+    let given = posed.find(|&parameter| record.values.get(parameter).is_some());
+    if let Some(parameter) = given {
+        let key = parameter.row().key;
+        return Err(NamedShapeError::Pose { key });
+    }
+    if let Record {
+        figure: None,
+        picture: None,
+        imprint: Some(imprint),
+        values,
+        ..
+    } = &record
+    {
+        values.only("imprint", &[])?;
+        return Ok(Picture::at_home(*imprint).into());
+    }
+    for axis in Axis::ALL {
+        if !axis.is_zoom() {
+            record.values.set(axis.parameter(), 0.0);
+        } else if record.figure.is_none() {
+            record.values.set(axis.parameter(), 1.0);
+        }
+    }
+    Ok(record.source(&Sensor::LARGEST, lookup)?)
+}
+
+/// A line of a set.
+#[derive(Default)]
+struct Line<'a> {
+    /// The name, which the set needs.
+    name: Option<String>,
+    /// The weight: how often the shape is expected; 1 if not given.
+    weight: Option<NonZeroU32>,
+    /// The shape itself.
+    record: Record<'a>,
+}
+
+/// The keys of a line.
+const LINE_KEYS: KnownKeys = KnownKeys {
+    named: &["name", "weight", "figure", "picture", "imprint"],
+    others: &[],
+    parameters: true,
+};
+
+impl<'de: 'a, 'a> Deserialize<'de> for Line<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        keyed_object::<Line<'de>, D>(deserializer)
+    }
+}
+
+impl<'de> KeyedObject<'de> for Line<'de> {
+    const EXPECTED: &'static str = "an object with a name and a figure, a picture or an imprint";
+
+    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
+        match key {
+            "name" => once("name", &mut self.name, value_of("name", map)?),
+            "weight" => once("weight", &mut self.weight, value_of("weight", map)?),
+            _ => self.record.take(key, map, &LINE_KEYS),
+        }
+    }
+}

@@ -1,0 +1,442 @@
+//! The events that a reader reports: the channels of a file, its frames one by one, and notes about oddities.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::metadata::{FrameMark, RecordingMetadata};
+use crate::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
+use crate::parameter::number::{counted, short, time_in_words, to_decimals};
+
+/// Options for reading a recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct ReadOptions {
+    /// The size of a frame, for files that do not state it.
+    pub size: Option<FrameSize>,
+    /// Whether wrong frames in lines may be left out, as in a file that is still being written. Each is reported as
+    /// [`RecordingEvent::Damage`]; otherwise the first one ends the reading.
+    pub leaves_out: bool,
+}
+
+impl ReadOptions {
+    /// Sets the size of a frame, for files that do not state it.
+    #[must_use]
+    pub fn with_size(mut self, size: FrameSize) -> Self {
+        self.size = Some(size);
+        self
+    }
+
+    /// Lets wrong frames in lines be left out.
+    #[must_use]
+    pub fn leaving_out(mut self) -> Self {
+        self.leaves_out = true;
+        self
+    }
+
+    /// Handles a wrong frame, given some of its bytes.
+    ///
+    /// # Errors
+    /// Returns the error, unless the frame is left out.
+    pub(super) fn damage(
+        self,
+        error: RecordingError,
+        bytes: &[u8],
+        sink: &mut Sink<'_>,
+    ) -> Result<(), EarlyEnd> {
+        let damage = RecordingEvent::Damage {
+            error: &error,
+            bytes,
+        };
+        if self.leaves_out && sink(damage).is_ok() {
+            Ok(())
+        } else {
+            Err(error.into())
+        }
+    }
+}
+
+/// The name of a channel without a name.
+pub(crate) const UNNAMED_CHANNEL: &str = "unnamed";
+
+/// The most channels of a recording or a stream.
+pub(in crate::formats::recording) const MOST_CHANNELS: usize = 256;
+
+/// The most bytes of a channel's name.
+pub(in crate::formats::recording) const LONGEST_NAME: usize = 1024;
+
+/// A description of a channel, as far as the recording gives it: a field is None if it does not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChannelInfo {
+    /// The name of the channel: a sensor, an array, a topic.
+    pub name: Option<String>,
+    /// The size of its frames.
+    pub size: Option<FrameSize>,
+    /// The number of values of a frame, if its size is not known.
+    pub values: Option<u64>,
+    /// The unit of the values.
+    pub unit: Option<String>,
+    /// The start of the recording, as it is written there.
+    pub start: Option<String>,
+    /// The time from one frame to the next, in seconds.
+    pub seconds_per_frame: Option<f64>,
+    /// The distance between neighbouring cells in mm, along x and along y.
+    pub pitch_mm: Option<[f64; 2]>,
+    /// The least value at which the recording's own software shows a cell as touched.
+    pub threshold: Option<f64>,
+    /// The rule of the imprints while the recording was made.
+    pub rule: Option<SetRule>,
+    /// The tare while the recording was made, subtracted after crop, flip and turn; the recorded values are those
+    /// before that.
+    pub tare: Option<Tare>,
+    /// The frames that were marked while the recording was made.
+    pub marks: Vec<FrameMark>,
+}
+
+impl ChannelInfo {
+    /// Returns the name by which a channel is listed and chosen: `unnamed` if the recording gives it none.
+    pub fn shown_name(&self) -> &str {
+        self.name.as_deref().unwrap_or(UNNAMED_CHANNEL)
+    }
+
+    /// Returns the channel, with missing fields taken from the metadata beside the recording, if there is one.
+    #[must_use]
+    pub fn completed(&self, metadata: Option<&RecordingMetadata>) -> Self {
+        let mut info = self.clone();
+        if let Some(metadata) = metadata {
+            info.unit = info.unit.or_else(|| metadata.unit.clone());
+            info.pitch_mm = info.pitch_mm.or(metadata.pitch_mm);
+            info.seconds_per_frame = info.seconds_per_frame.or(metadata.seconds_per_frame);
+            info.rule = info.rule.or(metadata.rule);
+            if let Some(Rule::AtLeast(threshold)) = info.rule.map(|set| set.rule) {
+                info.threshold.get_or_insert(threshold);
+            }
+            info.tare = info.tare.or_else(|| metadata.tare.clone());
+            info.marks.clone_from(&metadata.marks);
+        }
+        info
+    }
+
+    /// Returns the side of a cell in mm; None if it is unknown or cells are not square: a sensor has only one pitch.
+    /// Files write the pitch of square cells as the same number twice, so nothing is rounded.
+    pub fn square_pitch_mm(&self) -> Option<f64> {
+        self.pitch_mm.and_then(|[x, y]| (x == y).then_some(x))
+    }
+
+    /// Returns the reason why lengths are not in mm although the cell distances are known; None if they are in mm, or
+    /// if the distances are unknown.
+    pub fn why_not_in_mm(&self) -> Option<String> {
+        let [x, y] = self.pitch_mm.filter(|_| self.square_pitch_mm().is_none())?;
+        Some(format!(
+            "cells of {} × {} mm are not square, so lengths are in cells only",
+            short(x),
+            short(y)
+        ))
+    }
+
+    /// Returns the recording's own tare, if it has the size of the frames in that view.
+    pub fn tare_for(&self, view: &View) -> Option<&Tare> {
+        let seen = view.size(self.size?).ok()?;
+        let fits = |tare: &&Tare| FrameSize::from(tare.baseline().size()) == seen;
+        self.tare.as_ref().filter(fits)
+    }
+
+    /// Returns the rule of the recording itself: that of its metadata, otherwise its threshold. Pieces of fewer
+    /// taxels than `least` are dropped; 0 keeps the metadata's limit.
+    pub fn own_rule(&self, least: u32) -> Option<SetRule> {
+        let threshold = || {
+            let rule = self.threshold.and_then(|own| Rule::at_least(own).ok());
+            let from = RuleOrigin::File;
+            rule.map(|rule| SetRule { rule, least, from })
+        };
+        let mut own = self.rule.or_else(threshold)?;
+        if least > 0 {
+            own.least = least;
+        }
+        Some(own)
+    }
+}
+
+/// An oddity that does not stop a reader.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecordingNote {
+    /// A sum in the file that differs from the sum of the values in the frame.
+    Checksum {
+        /// The number of the frame, from 0.
+        frame: u64,
+        /// The label of the frame in its file.
+        label: Option<i64>,
+        /// The name of the sum.
+        what: &'static str,
+        /// The sum according to the file.
+        stated: f64,
+        /// The sum of the values.
+        found: f64,
+    },
+    /// Rows and columns that were derived from the number of values alone.
+    Square {
+        /// The number of rows, and of columns.
+        side: u16,
+    },
+    /// A two-dimensional array that is taken as one frame, although it is larger than 64 × 64.
+    Flat {
+        /// The number of rows.
+        rows: u16,
+        /// The number of columns.
+        columns: u16,
+    },
+    /// Times whose unit was derived from their size alone.
+    TimeUnit {
+        /// The unit: `nanoseconds`.
+        unit: &'static str,
+    },
+    /// The first time that cannot be read; its frame has none.
+    Time {
+        /// The number of the frame, from 0.
+        frame: u64,
+        /// The text in place of the time, shortened if it is long.
+        text: String,
+    },
+    /// Bytes that belong to no frame.
+    Garbled {
+        /// The number of frames that were dropped.
+        frames: u64,
+    },
+    /// A file that ends before the last of the records that its header counts.
+    Cut {
+        /// The number of whole records in the file.
+        records: u64,
+        /// The number of records according to the header.
+        counted: u64,
+    },
+    /// A long time between two frames, which playback shortens: perhaps a clock was set.
+    Gap {
+        /// The number of the frame after it, from 0.
+        frame: u64,
+        /// The seconds between the frames.
+        seconds: f64,
+        /// The seconds that are played instead, at normal speed.
+        played: f64,
+    },
+    /// Metadata beside the recording that is ignored, because it is broken or cannot be read.
+    Metadata {
+        /// The path of the metadata, and the error in it.
+        complaint: String,
+    },
+}
+
+impl fmt::Display for RecordingNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Checksum {
+                frame,
+                label,
+                what,
+                stated,
+                found,
+            } => {
+                let label = label.map_or(String::new(), |label| format!(" (label {label})"));
+                // A sum of decimals has a rounding error in its last digits.
+                let [stated, found] = [*stated, to_decimals(*found, 9)].map(short);
+                write!(
+                    f,
+                    "frame {frame}{label}: {what} should be {stated}, but the values give {found}"
+                )
+            }
+            Self::Square { side } => write!(
+                f,
+                "the header counts {} values, taken as {side} rows of {side} columns",
+                u32::from(*side) * u32::from(*side)
+            ),
+            Self::Flat { rows, columns } => write!(
+                f,
+                "an array of {rows} × {columns}, taken as one frame, though each of its {rows} rows may be a frame of {columns} values"
+            ),
+            Self::TimeUnit { unit } => {
+                write!(
+                    f,
+                    "the times have no unit and are taken as {unit} since 1970"
+                )
+            }
+            Self::Time { frame, text } => write!(
+                f,
+                "frame {frame}: {text:?} cannot be read as a time; such frames have none"
+            ),
+            Self::Garbled { frames } => {
+                let frames = counted(*frames, "frame");
+                write!(f, "{frames} dropped (torn, short, long or garbled)")
+            }
+            Self::Cut { records, counted } => write!(
+                f,
+                "the file was cut off: it has {records} of the {counted} frames that its header counts"
+            ),
+            Self::Gap {
+                frame,
+                seconds,
+                played,
+            } => write!(
+                f,
+                "frame {frame} comes {} after the one before; this pause is played as {played} s at normal speed",
+                time_in_words(*seconds)
+            ),
+            Self::Metadata { complaint } => f.write_str(complaint),
+        }
+    }
+}
+
+/// An event that a reader reports.
+#[derive(Clone, Copy, Debug)]
+pub enum RecordingEvent<'a> {
+    /// A channel, before its first frame. Channels are numbered from 0.
+    Channel(&'a ChannelInfo),
+    /// A frame.
+    Frame(&'a Frame),
+    /// An oddity.
+    Note(&'a RecordingNote),
+    /// A wrong frame, if [`ReadOptions::leaves_out`] is set: `Break` ends the reading with this error.
+    Damage {
+        /// The error, with its place.
+        error: &'a RecordingError,
+        /// Some bytes of the frame.
+        bytes: &'a [u8],
+    },
+}
+
+/// A function that takes the events of a recording; `Break` ends the reading without an error.
+pub type RecordingSink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
+
+/// A function to which the reader of a format reports events.
+pub(super) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> Result<(), EarlyEnd> + 'a;
+
+/// The reason why a reader ends before the end of its file.
+#[derive(Debug)]
+pub(super) enum EarlyEnd {
+    /// The consumer wants no more.
+    Enough,
+    /// The rest cannot be read.
+    Failed(RecordingError),
+}
+
+impl<E: Into<RecordingError>> From<E> for EarlyEnd {
+    fn from(error: E) -> Self {
+        Self::Failed(error.into())
+    }
+}
+
+/// Runs the reader of a format until the consumer wants no more.
+///
+/// # Errors
+/// Returns the error of the reader.
+pub(super) fn until_enough(
+    consumer: &mut RecordingSink<'_>,
+    read: impl FnOnce(&mut Sink<'_>) -> Result<(), EarlyEnd>,
+) -> Result<(), RecordingError> {
+    let read = read(&mut |event| match consumer(event) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(EarlyEnd::Enough),
+    });
+    match read {
+        Ok(()) | Err(EarlyEnd::Enough) => Ok(()),
+        Err(EarlyEnd::Failed(error)) => Err(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matrix::Matrix;
+    use crate::sensor::MatrixSize;
+
+    #[test]
+    fn metadata_fills_only_the_missing_fields_of_a_channel() {
+        let rule = |percent| SetRule {
+            rule: Rule::Percent(percent),
+            least: 0,
+            from: RuleOrigin::File,
+        };
+        let own = ChannelInfo {
+            rule: Some(rule(30.0)),
+            unit: Some("kPa".to_owned()),
+            seconds_per_frame: Some(0.1),
+            ..ChannelInfo::default()
+        };
+        let metadata = RecordingMetadata {
+            rule: Some(rule(40.0)),
+            unit: Some("mmHg".to_owned()),
+            seconds_per_frame: Some(0.2),
+            pitch_mm: Some([2.0, 3.0]),
+            ..RecordingMetadata::default()
+        };
+        assert_eq!(own.completed(None), own);
+        let completed = own.completed(Some(&metadata));
+        assert_eq!((completed.unit, completed.rule), (own.unit, own.rule));
+        assert_eq!(completed.seconds_per_frame, own.seconds_per_frame);
+        assert_eq!(completed.pitch_mm, metadata.pitch_mm);
+    }
+
+    #[test]
+    fn a_threshold_of_the_metadata_is_that_of_the_recording() {
+        let threshold = |rule| {
+            let (least, from) = (0, RuleOrigin::File);
+            let rule = Some(SetRule { rule, least, from });
+            let metadata = RecordingMetadata {
+                rule,
+                ..RecordingMetadata::default()
+            };
+            let own = ChannelInfo::default();
+            own.completed(Some(&metadata)).threshold
+        };
+        assert_eq!(threshold(Rule::AtLeast(10.0)), Some(10.0));
+        assert_eq!(threshold(Rule::Percent(10.0)), None);
+    }
+
+    #[test]
+    fn a_given_least_size_takes_precedence_over_the_metadata() {
+        let described = ChannelInfo {
+            rule: Some(SetRule {
+                rule: Rule::Percent(30.0),
+                least: 3,
+                from: RuleOrigin::File,
+            }),
+            ..ChannelInfo::default()
+        };
+        let threshold = ChannelInfo {
+            threshold: Some(2.0),
+            ..ChannelInfo::default()
+        };
+        let least = |info: &ChannelInfo, asked| info.own_rule(asked).map(|set| set.least);
+        assert_eq!(
+            [0, 1, 5].map(|asked| least(&described, asked)),
+            [3, 1, 5].map(Some)
+        );
+        assert_eq!(
+            [0, 5].map(|asked| least(&threshold, asked)),
+            [0, 5].map(Some)
+        );
+        assert_eq!(least(&ChannelInfo::default(), 5), None);
+    }
+
+    #[test]
+    fn a_tare_fits_only_views_of_its_size() {
+        let tare = Tare::from_parts(
+            Matrix::filled(MatrixSize::new(3, 2).expect("an allowed size"), 1.0),
+            None,
+            None,
+            1,
+        )
+        .expect("sizes fit");
+        let info = ChannelInfo {
+            size: Some(FrameSize::new(3, 2).expect("an allowed size")),
+            tare: Some(tare.clone()),
+            ..ChannelInfo::default()
+        };
+        let turned = View {
+            quarter_turns: 1,
+            ..View::default()
+        };
+        assert_eq!(info.tare_for(&View::default()), Some(&tare));
+        assert_eq!(info.tare_for(&turned), None);
+        // If the size of the frames is unknown, nothing shows whether the tare fits.
+        let unknown = ChannelInfo { size: None, ..info };
+        assert_eq!(unknown.tare_for(&View::default()), None);
+    }
+}

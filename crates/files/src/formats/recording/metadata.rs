@@ -1,0 +1,424 @@
+//! The metadata beside one of taxel's own recordings: `touch.json` says where the frames of `touch.npy` come from,
+//! their unit, and how they were viewed.
+
+use serde::ser::Serializer;
+use serde::{Deserialize, Serialize};
+
+use crate::formats::framed::{FrameRows, LeastTaxels, RuleRecord, matrix};
+use crate::formats::recording::length::{LengthUnit, pitches_in_mm};
+use crate::formats::recording::time::unit::TimeUnit;
+use crate::formats::{json, json_object};
+use crate::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
+use crate::matrix::Matrix;
+use crate::quote::shortened_message;
+
+/// The name of the format.
+const FORMAT: &str = "taxel-touch/1";
+
+/// The beginning of its name in every version.
+const FAMILY: &str = "taxel-touch/";
+
+/// A frame that was marked while it was recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameMark {
+    /// The source's number of the frame, which is its label in the recording.
+    pub number: u64,
+    /// The time of the frame in seconds.
+    pub time: Option<f64>,
+}
+
+/// The current view of the frames while they are recorded, which may change meanwhile.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedView {
+    /// The rule of the imprints on view.
+    pub rule: Option<SetRule>,
+    /// The tare that is subtracted from each cell.
+    pub tare: Option<Tare>,
+    /// The marked frames.
+    pub marks: Vec<FrameMark>,
+}
+
+/// The content of `touch.json`, the metadata beside the recording `touch.npy`: where its frames come from, their
+/// unit, and how they were viewed.
+///
+/// ```text
+/// {"format":"taxel-touch/1","source":"/dev/ttyUSB0","unit":"kPa","pitch_mm":[2.0,2.0],"seconds_per_frame":0.01,
+///  "rule":{"at_least":10,"from":"flag"},"tare_frames":30,"tare":[[0.5,null],…],"marks":[{"number":65,"time":6.5}],
+///  "ended":true}
+/// ```
+/// `ended` is false while frames are recorded, and stays false if the program is killed. `ended_by` gives the reason
+/// if an error ended the recording, such as a full disk.
+///
+/// Every key except `format` may be missing. Without `tare_frames`, a tare counts as one of a single frame, so its
+/// noise is unknown. The array holds the values as the sensor sent them, in f64; the rule and the tare are applied
+/// again when the values are read, unless flags say otherwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordingMetadata {
+    /// The name of the source.
+    pub source: String,
+    /// The unit of the values.
+    pub unit: Option<String>,
+    /// The distance between neighbouring cells in mm, along x and along y: 1e-9 to 1000. Other values are left out of
+    /// the text.
+    pub pitch_mm: Option<[f64; 2]>,
+    /// The time from one frame to the next, in seconds: 1e-9 to 1e9. Another value is left out of the text.
+    pub seconds_per_frame: Option<f64>,
+    /// The rule of the imprints on view at the end.
+    pub rule: Option<SetRule>,
+    /// The tare that was subtracted from each cell at the end. The recorded values are those before that.
+    pub tare: Option<Tare>,
+    /// The frames that were marked.
+    pub marks: Vec<FrameMark>,
+    /// Whether the recording was ended properly: false while frames are recorded, and after the program was killed;
+    /// None if the metadata does not say.
+    pub ended: Option<bool>,
+    /// The error that ended the recording early.
+    pub ended_by: Option<String>,
+}
+
+/// The metadata as a JSON object.
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Described {
+    format: String,
+    source: String,
+    unit: Option<String>,
+    pitch_mm: Option<[f64; 2]>,
+    seconds_per_frame: Option<f64>,
+    #[serde(serialize_with = "rule_or_null")]
+    rule: Option<DescribedRule>,
+    tare_frames: Option<u64>,
+    tare: Option<FrameRows>,
+    tare_spread: Option<FrameRows>,
+    tare_step: Option<f64>,
+    marks: Vec<FrameMark>,
+    ended: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ended_by: Option<String>,
+}
+
+/// A rule. It is written with its origin, but once it is read, its origin is the file.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum DescribedRule {
+    #[serde(skip)]
+    Set(SetRule),
+    Noise {
+        noise: f64,
+        least: Option<LeastTaxels>,
+    },
+    Other(RuleRecord),
+}
+
+/// Writes the rule as an object, or null if there is none.
+#[expect(clippy::ref_option, reason = "serde calls it so")]
+fn rule_or_null<S: Serializer>(
+    rule: &Option<DescribedRule>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match rule {
+        Some(DescribedRule::Set(rule)) => rule.serialize(serializer),
+        _ => serializer.serialize_none(),
+    }
+}
+
+/// The error for metadata that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MetadataError {
+    /// The metadata is not JSON, or the value of a key has the wrong type.
+    #[error("line {line}, column {column}: {message}")]
+    Json {
+        /// The line number, from 1.
+        line: usize,
+        /// The column number, from 1.
+        column: usize,
+        /// A description of the error.
+        message: String,
+    },
+    /// The metadata has a rule or a tare that is not valid.
+    #[error("{key}: {message}")]
+    Value {
+        /// The key of the format, the rule or the tare.
+        key: &'static str,
+        /// A description of the error.
+        message: String,
+    },
+}
+
+impl MetadataError {
+    fn json(error: &serde_json::Error) -> Self {
+        Self::Json {
+            line: error.line().max(1),
+            column: error.column().max(1),
+            message: json::message(error),
+        }
+    }
+
+    /// Returns a function that makes the error for the value of a key.
+    fn of_key<E: ToString>(key: &'static str) -> impl FnOnce(E) -> Self {
+        move |error| Self::Value {
+            key,
+            message: error.to_string(),
+        }
+    }
+}
+
+impl RecordingMetadata {
+    /// Reads metadata. Returns None if the bytes are something else, as any file beside an array may be. If it is
+    /// torn, it is recognised by the name of its format.
+    ///
+    /// # Errors
+    /// Returns an error if the metadata is damaged, or of another version; it names the line and column, or the key.
+    pub fn read(bytes: &[u8]) -> Option<Result<Self, MetadataError>> {
+        #[derive(Deserialize)]
+        struct Format {
+            format: String,
+        }
+        let is_own = match json_object::read::<Format>(bytes) {
+            Ok(own) if own.format != FORMAT && own.format.starts_with(FAMILY) => {
+                let found = shortened_message(&own.format);
+                return Some(Err(MetadataError::Value {
+                    key: "format",
+                    message: format!(
+                        "{found:?} is unknown to this version, which reads {FORMAT:?}"
+                    ),
+                }));
+            }
+            Ok(own) => own.format == FORMAT,
+            Err(_) => bytes
+                .windows(FAMILY.len())
+                .any(|text| text == FAMILY.as_bytes()),
+        };
+        is_own.then(|| {
+            let described = json_object::read::<Described>(bytes);
+            described
+                .map_err(|error| MetadataError::json(&error))
+                .and_then(Self::of)
+        })
+    }
+
+    fn of(described: Described) -> Result<Self, MetadataError> {
+        let rule = match described.rule {
+            None => None,
+            Some(DescribedRule::Set(rule)) => Some(rule),
+            Some(DescribedRule::Noise { noise, least }) => Some(SetRule {
+                rule: Rule::noise(noise).map_err(MetadataError::of_key("rule"))?,
+                least: least.map_or(0, LeastTaxels::get),
+                from: RuleOrigin::File,
+            }),
+            Some(DescribedRule::Other(record)) => Some(SetRule {
+                rule: record.rule().map_err(MetadataError::of_key("rule"))?,
+                least: record.least.map_or(0, LeastTaxels::get),
+                from: RuleOrigin::File,
+            }),
+        };
+        let tare = match described.tare {
+            Some(rows) => {
+                let frames = described.tare_frames.filter(|&frames| frames > 0);
+                let baseline = matrix(&rows).map_err(MetadataError::of_key("tare"))?;
+                let spread = described.tare_spread.as_ref();
+                let spread = spread.map(|rows| matrix(rows)).transpose();
+                let spread = spread.map_err(MetadataError::of_key("tare_spread"))?;
+                let tare_step = described.tare_step;
+                let tare_step = tare_step.filter(|&step| step > 0.0 && step <= LARGEST_VALUE);
+                let tare = Tare::from_parts(baseline, spread, tare_step, frames.unwrap_or(1));
+                Some(tare.map_err(|error| match error {
+                    FrameError::Rule {
+                        what,
+                        found,
+                        allowed,
+                    } => MetadataError::Value {
+                        key: what,
+                        message: format!("{found} is out of range (allowed: {allowed})"),
+                    },
+                    error => MetadataError::of_key("tare")(error),
+                })?)
+            }
+            None => None,
+        };
+        Ok(Self {
+            source: shortened_message(&described.source),
+            unit: described.unit.as_deref().map(shortened_message),
+            pitch_mm: pitch(described.pitch_mm),
+            seconds_per_frame: step(described.seconds_per_frame),
+            rule,
+            tare,
+            marks: described.marks,
+            ended: described.ended,
+            ended_by: described.ended_by.as_deref().map(shortened_message),
+        })
+    }
+
+    /// Returns the metadata as the text of a file.
+    pub fn text(&self) -> Vec<u8> {
+        let tare = self.tare.as_ref();
+        json::written(serde_json::to_vec_pretty(&Described {
+            format: FORMAT.to_owned(),
+            source: self.source.clone(),
+            unit: self.unit.clone(),
+            pitch_mm: pitch(self.pitch_mm),
+            seconds_per_frame: step(self.seconds_per_frame),
+            rule: self.rule.map(DescribedRule::Set),
+            tare_frames: tare.map(Tare::frames),
+            tare: tare.map(|tare| rows(tare.baseline())),
+            tare_spread: tare.map(|tare| rows(tare.median_absolute_deviation())),
+            tare_step: tare.and_then(Tare::step),
+            marks: self.marks.clone(),
+            ended: self.ended,
+            ended_by: self.ended_by.clone(),
+        }))
+    }
+}
+
+/// Returns the pitch unless a side is out of range. JSON has no number for NaN, so it could not be read again.
+fn pitch(pitch_mm: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    pitches_in_mm(pitch_mm?.map(Some), LengthUnit::Millimetres)
+}
+
+/// Returns the time from one frame to the next unless it is out of range.
+fn step(seconds: Option<f64>) -> Option<f64> {
+    TimeUnit::Seconds.step_in_seconds(seconds?)
+}
+
+fn rows(matrix: &Matrix<f64>) -> FrameRows {
+    let row = |row| {
+        let values = matrix.row(row).iter();
+        values
+            .map(|&value| (!value.is_nan()).then_some(value))
+            .collect()
+    };
+    (0..matrix.rows()).map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::TareFrames;
+    use crate::sensor::MatrixSize;
+
+    #[test]
+    fn metadata_is_read_as_it_was_written() {
+        let mut values = Matrix::filled(MatrixSize::new(2, 1).expect("an allowed size"), 0.5);
+        values.set(1, 0, f64::NAN);
+        let mut tare = TareFrames::new(2);
+        tare.add(&values).expect("it fits");
+        tare.add(&values).expect("it fits");
+        for rule in [
+            Rule::AtLeast(10.0),
+            Rule::Percent(12.5),
+            Rule::Hysteresis {
+                low: 1.0,
+                high: 2.0,
+            },
+            Rule::Noise(4.0),
+        ] {
+            let metadata = RecordingMetadata {
+                source: "/dev/ttyUSB0".to_owned(),
+                unit: Some("kPa".to_owned()),
+                pitch_mm: Some([2.0, 3.0]),
+                seconds_per_frame: Some(0.01),
+                rule: Some(SetRule {
+                    rule,
+                    least: 3,
+                    from: RuleOrigin::File,
+                }),
+                tare: Some(tare.clone().finish().expect("two frames")),
+                marks: vec![FrameMark {
+                    number: 65,
+                    time: None,
+                }],
+                ended: Some(true),
+                ended_by: Some("no room".to_owned()),
+            };
+            let text = metadata.text();
+            let read = RecordingMetadata::read(&text).expect("metadata");
+            let read = read.expect("a right one");
+            // NaN is not equal to itself.
+            assert_eq!(
+                read.tare.map(|tare| rows(tare.baseline())),
+                Some(vec![vec![Some(0.5), None]])
+            );
+            assert_eq!(
+                (read.rule, read.marks, read.unit, read.seconds_per_frame),
+                (metadata.rule, metadata.marks, metadata.unit, Some(0.01))
+            );
+            assert_eq!(
+                (read.ended, read.ended_by.as_deref()),
+                (Some(true), Some("no room"))
+            );
+        }
+    }
+
+    #[test]
+    fn metadata_with_any_numbers_can_be_read_again() {
+        for number in [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e-13, 2e9, 1e301] {
+            let metadata = RecordingMetadata {
+                pitch_mm: Some([number, 2.0]),
+                seconds_per_frame: Some(number),
+                unit: Some("kPa".to_owned()),
+                marks: vec![FrameMark {
+                    number: 65,
+                    time: Some(number).filter(|time| time.is_finite()),
+                }],
+                ..RecordingMetadata::default()
+            };
+            let text = metadata.text();
+            let read = RecordingMetadata::read(&text).expect("metadata");
+            let expected = RecordingMetadata {
+                pitch_mm: None,
+                seconds_per_frame: None,
+                ..metadata
+            };
+            assert_eq!(read, Ok(expected), "{number}");
+        }
+    }
+
+    #[test]
+    fn a_tare_without_a_number_of_frames_is_of_one_frame() {
+        for key in ["", "\"tare_frames\":0,"] {
+            let text = format!("{{\"format\":\"{FORMAT}\",{key}\"tare\":[[0.5,2]]}}");
+            let read = RecordingMetadata::read(text.as_bytes()).expect("metadata");
+            let tare = read.expect("a right one").tare.expect("a tare");
+            assert_eq!(
+                (tare.frames(), tare.baseline().values()),
+                (1, &[0.5, 2.0][..])
+            );
+        }
+    }
+
+    #[test]
+    fn other_files_are_ignored_and_wrong_metadata_is_refused() {
+        for other in ["", "[1]", "{\"format\":\"taxel-shape/1\"", "{}"] {
+            assert_eq!(RecordingMetadata::read(other.as_bytes()), None, "{other}");
+        }
+        let wrong = |rest: &str| {
+            let text = format!("{{\"format\":\"{FORMAT}\",{rest}}}");
+            let read = RecordingMetadata::read(text.as_bytes()).expect("metadata");
+            read.err()
+                .map_or(String::from("right"), |error| error.to_string())
+        };
+        assert_eq!(wrong("\"marks\":[]"), "right");
+        assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
+        assert_eq!(wrong("\"rule\":{\"noise\":4,\"least\":4096}"), "right");
+        for rule in ["noise", "percent"] {
+            let rule = format!("\"rule\":{{\"{rule}\":4,\"least\":4097}}");
+            assert_ne!(wrong(&rule), "right", "{rule}");
+        }
+        assert!(
+            wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("tare: row 2 has 2 values")
+        );
+        let newer = RecordingMetadata::read(b"{\"format\":\"taxel-touch/2\",\"tare\":7}");
+        let error = newer.expect("metadata").expect_err("another version");
+        assert_eq!(
+            error.to_string(),
+            "format: \"taxel-touch/2\" is unknown to this version, which reads \"taxel-touch/1\""
+        );
+        let unit = wrong("\"unit\":3");
+        let expected = "line 1, column 34: found the number 3, expected a string";
+        assert_eq!(unit, expected);
+        let list = format!("[\"{FORMAT}\",\"a source\"]");
+        let read = RecordingMetadata::read(list.as_bytes()).expect("it names the format");
+        let error = read.expect_err("a list").to_string();
+        assert_eq!(error, "line 1, column 1: found a list, expected an object");
+    }
+}

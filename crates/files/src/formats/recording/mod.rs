@@ -1,0 +1,105 @@
+//! Reads recordings of real tactile and pressure sensors: files of any length in, frames out, one after the other.
+//!
+//! The content of a file decides its format. Nothing is cut or padded: if the number of values does not fit the rows
+//! and columns, that is an error, and if a file does not say how many there are, the caller must. If a file is
+//! damaged, every whole frame before the damage is given, then the error with line and column. Memory does not grow
+//! with the length of a recording.
+//!
+//! ```
+//! use std::io::Cursor;
+//! use std::ops::ControlFlow;
+//! use taxel_files::formats::recording::{ReadOptions, RecordingEvent, RecordingFormat, read};
+//! let file = b"time,r0c0,r0c1,r1c0,r1c1\n0.0,1,2,3,4\n0.1,5,6,7,8\n";
+//! let mut sums = Vec::new();
+//! let format = read(Cursor::new(file), ReadOptions::default(), &mut |event| {
+//!     if let RecordingEvent::Frame(frame) = event {
+//!         sums.push((frame.time, frame.values().iter().sum::<f64>()));
+//!     }
+//!     ControlFlow::Continue(())
+//! })?;
+//! assert_eq!(format, RecordingFormat::Csv);
+//! assert_eq!(sums, [(Some(0.0), 10.0), (Some(0.1), 26.0)]);
+//! # Ok::<(), taxel_files::formats::recording::RecordingError>(())
+//! ```
+//!
+//! ```text
+//! format           the formats, with their names
+//! error            why a recording cannot be read, and where
+//! event            what a reader reports: channels, frames, notes
+//! metadata         the file beside a recording of taxel's own
+//! channel_choice   one channel of several, by its name
+//! channel_table    the channels of a recording, as they appear
+//! answer           a frame as a line of JSON
+//! side             numbers of rows and columns
+//! length           distances between cells, with their units
+//! stream_size      the rows and columns of a stream, which may change
+//! text             lines, fields and numbers
+//! time             the times of frames
+//! table            numbers in rows and columns, with or without a header
+//! json             JSON lines
+//! numpy            NPY and NPZ
+//! ros              MCAP, and ros2 topic echo
+//! vendor           Tekscan, XSENSOR and FlexiTac
+//! signs            magic bytes and words of vendors, by which formats are recognised
+//! detect           which of these a file is
+//! start_search     whether a stream begins like a recording
+//! ```
+//! Each format uses the modules above it; formats do not use each other.
+
+mod format;
+
+mod error;
+
+mod event;
+
+mod metadata;
+
+mod channel_choice;
+
+mod channel_table;
+
+mod answer;
+
+pub(super) mod side;
+
+mod length;
+
+pub(super) mod stream_size;
+
+pub(super) mod text;
+
+pub(super) mod time;
+
+mod table;
+
+pub(super) mod json;
+
+mod numpy;
+
+pub(super) mod ros;
+
+mod vendor;
+
+mod signs;
+
+mod detect;
+
+#[cfg(unix)]
+mod start_search;
+
+pub use answer::FrameAnswer;
+pub use channel_choice::ChannelChoice;
+pub use channel_choice::no_channel;
+pub use detect::may_be_recording;
+#[cfg(unix)]
+pub use detect::{RecordingInput, format_after, format_of, read_as};
+pub use detect::{read, recognised};
+pub use error::RecordingError;
+pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, RecordingSink};
+pub use format::RecordingFormat;
+pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
+#[cfg(unix)]
+pub(crate) use start_search::{StartKind, StartSearch};
+#[cfg(unix)]
+pub(crate) use table::arrangement::EarlierLayout;
+pub use table::delimited::read_rows;

@@ -1,0 +1,22 @@
+//! Bytes and files of taxel: what `taxel-core` computes, read and written.
+//!
+//! ```text
+//!  formats   text, PBM, CSV, NPY, JSON, atlases, models; recordings and streams of sensors; drawings
+//!  storage   files: atomic writes, the folder of stored shapes, journal, trash
+//!  acquire   where frames come from: serial, pipes, tcp, files; recording them
+//!  memory    a limit on the memory of sweeps and trainings
+//! ```
+//! `formats` only reads and writes streams that its callers have opened; the others open them.
+
+#![warn(missing_docs)]
+
+use taxel_core::{
+    atlas, description, figure, frame, geometry, imprint, index, lock, matrix, parameter, picture,
+    pose, progress, quote, recognition, sensor, serialize, source, sweep, touch,
+};
+
+#[cfg(unix)]
+pub mod acquire;
+pub mod formats;
+pub mod memory;
+pub mod storage;

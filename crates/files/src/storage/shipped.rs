@@ -1,0 +1,87 @@
+//! The shapes that come with the program, compiled in. They were made with the program itself, by `library/make`.
+
+use crate::formats::{Name, StoredShape};
+use crate::storage::LibraryError;
+use crate::storage::folder::stamp;
+
+macro_rules! shapes {
+    ($($name:literal),* $(,)?) => {
+        [$(($name, include_str!(concat!("../../../../library/", $name, ".json")))),*]
+    };
+}
+
+/// The name and the file of each shape, by name.
+const SHIPPED: [(&str, &str); 28] = shapes![
+    "arrow",
+    "bar",
+    "bracket",
+    "button",
+    "clover",
+    "cross",
+    "dice five",
+    "disc",
+    "flange",
+    "frame",
+    "gear",
+    "hexagon bar",
+    "key",
+    "letter A",
+    "letter B",
+    "letter C",
+    "letter E",
+    "nut",
+    "oval ring",
+    "pentagon",
+    "ring and dot",
+    "saltire",
+    "slot plate",
+    "smile",
+    "star",
+    "triangle ring",
+    "two pins",
+    "washer",
+];
+
+/// Iterates over their names, in alphabetical order.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    SHIPPED.iter().map(|&(name, _)| name)
+}
+
+/// Returns true if a shape of that name comes with the program, regardless of case.
+pub fn has(name: &Name) -> bool {
+    SHIPPED.iter().any(|(shipped, _)| name.same(shipped))
+}
+
+/// Returns the shape of that name with its stamp; None if no shape of that name comes with the program.
+pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryError>> {
+    let &(name, text) = SHIPPED.iter().find(|(shipped, _)| name.same(shipped))?;
+    let broken = |error| LibraryError::Broken {
+        path: format!("{name}.json").into(),
+        error,
+    };
+    let loaded = |shape| (shape, stamp(text.as_bytes()));
+    Some(
+        StoredShape::read(text.as_bytes())
+            .map(loaded)
+            .map_err(broken),
+    )
+}
+
+/// Returns the shape of that name, regardless of case; None if no shape of that name comes with the program.
+///
+/// ```
+/// use taxel_files::storage::shipped;
+///
+/// let washer = shipped::get("Washer").expect("it is shipped");
+/// assert_eq!(washer.name.as_str(), "washer");
+/// assert!(shipped::get("wrench").is_none());
+/// ```
+pub fn get(name: &str) -> Option<StoredShape> {
+    let (shape, _) = load(&Name::new(name).ok()?)?.ok()?;
+    Some(shape)
+}
+
+/// Iterates over all shapes, by name.
+pub fn all() -> impl Iterator<Item = StoredShape> {
+    names().filter_map(get)
+}
