@@ -82,12 +82,6 @@ pub(crate) enum CliError {
         /// The system's reason.
         error: io::Error,
     },
-    /// Standard output appends to the file whose lines are answered.
-    #[error("{name} is the output as well; write the answers to another file")]
-    OwnInput {
-        /// The file, or standard input.
-        name: String,
-    },
     /// Standard output cannot be written to.
     #[error("cannot write to standard output: {}", system_reason(.0))]
     Write(io::Error),
@@ -327,18 +321,6 @@ pub(crate) enum CliError {
         name: String,
         /// A description of the error, and how to correct it.
         message: String,
-    },
-    /// `--resume` finds a file that is not the file of this shard.
-    #[error(
-        "{name} is {what} ({reason}); remove it, or use --force instead of --resume to replace it"
-    )]
-    NotResumed {
-        /// The file's name.
-        name: String,
-        /// The state of the file: "incomplete" or "part of another study".
-        what: &'static str,
-        /// The reason.
-        reason: String,
     },
     /// An atlas cannot be read or written, or the file of all poses cannot be written.
     #[error(transparent)]

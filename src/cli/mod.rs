@@ -56,8 +56,8 @@ use commands::export::Exported;
 use commands::frames::FramesOutput;
 use commands::naming::FrameNamer;
 use commands::{
-    batch, completions, confusion, describe, export, frames, library, man, merge, model, noise,
-    recognise, screen, script, separate, sweep, touch, watch,
+    batch, confusion, describe, export, frames, library, man, merge, model, noise, recognise,
+    screen, script, separate, sweep, touch, watch,
 };
 use error::CliError;
 use input::lines::LineInput;
@@ -77,7 +77,6 @@ use crate::tui::live::request::WatchRequest;
 /// cannot be written to, the exit status still tells what happened.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     signals::outlive_file_limit();
-    threads::bound();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let mut charset = Charset::of(&arguments, std::env::var_os);
     let failure = match perform(arguments, &mut charset) {
@@ -103,7 +102,7 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
     } = request::read(arguments)?;
     let charset = settings.charset(*characters);
     *characters = charset;
-    let shelf = Shelf::new(settings.library().cloned(), library_named);
+    let shelf = Shelf::new(settings.library.clone(), library_named);
     let surroundings = Surroundings {
         settings,
         shelf,
@@ -168,9 +167,7 @@ impl Surroundings {
             }
             Request::Sweep(asked) => self.sweep(*asked)?,
             Request::Merge(files, wanted) => {
-                print_summary(threads::on_all_cores(|| {
-                    merge::merge(&files, &wanted, charset)
-                })?)?;
+                print_summary(merge::merge(&files, &wanted, charset)?)?;
             }
             Request::Model(request) => self.model(request)?,
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
@@ -178,7 +175,11 @@ impl Surroundings {
             Request::Help(text) => print(&charset.lines(&text))?,
             Request::Settings => print(&self.settings.text(charset))?,
             Request::Script(asked) => script::run(&asked, &self.settings, shelf, charset)?,
-            Request::Completions(shell) => print(&completions::script(shell, definitions::all()))?,
+            Request::Completions(shell) => {
+                let mut script = Vec::new();
+                clap_complete::generate(shell, &mut definitions::all(), "taxel", &mut script);
+                write(&script)?;
+            }
             Request::Man(None) => write(&man::main_page()?)?,
             Request::Man(Some(folder)) => {
                 print(&(charset.line(&man::write(&folder)?).into_owned() + "\n"))?;
@@ -263,13 +264,10 @@ impl Surroundings {
                 return print_summary(model::train(&asked, shelf, charset)?);
             }
             ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
-            ModelRequest::Names => model::names(shelf)?,
             ModelRequest::List(json) => model::list(json, shelf, charset)?,
             ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
             ModelRequest::Confusion(asked) => confusion::confusion(&asked, shelf, charset)?,
-            ModelRequest::Touches(asked) => {
-                threads::on_all_cores(|| noise::touches(&asked, shelf, charset))?
-            }
+            ModelRequest::Touches(asked) => noise::touches(&asked, shelf, charset)?,
             ModelRequest::Separate(asked) => separate::separate(&asked, shelf, charset)?,
         };
         print(&text)
@@ -282,12 +280,11 @@ impl Surroundings {
     /// all of them.
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
-        let is_list = matches!(asked, LibraryCommand::Names(_) | LibraryCommand::List(_));
+        let is_list = matches!(asked, LibraryCommand::List(_));
         if let Some(text) = library::missing(shelf).filter(|_| is_list) {
             note(&text, charset);
         }
         let text = match asked {
-            LibraryCommand::Names(which) => library::names(shelf, which)?,
             LibraryCommand::List(json) => library::list(shelf, json, charset)?,
             LibraryCommand::Show(name, form) => library::show(shelf, name.as_str(), form, charset)?,
             LibraryCommand::Save(saving, what) => {

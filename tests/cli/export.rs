@@ -290,10 +290,6 @@ fn a_drawn_screen_has_the_theme_and_is_not_overwritten() {
     assert_eq!((light.status, light.stderr.as_str()), (Some(0), ""));
     let light = String::from_utf8(folder.read("screen-1.svg")).expect("text");
     assert!(light.contains("fill=\"#ffffff\"/>") && light.contains("fill=\"#008700\"/>"));
-    misused(
-        "script --theme light -k f",
-        "'--theme' does not belong to 'script', but to 'watch', 'config' and the screen\n",
-    );
 }
 
 #[test]

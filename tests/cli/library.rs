@@ -111,7 +111,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     );
     shelf.refuses(
         "library|restore|my ring",
-        "no shape named \"my ring\" in the trash; to list those that are: taxel library list --library FOLDER --names --deleted",
+        "no shape named \"my ring\" in the trash",
     );
     let count = taxel::storage::shipped::names().count() + 1;
     assert_eq!(
@@ -160,7 +160,7 @@ fn an_existing_shape_is_only_replaced_with_force() {
     shelf.refuses("library|delete|washer", undeletable);
     shelf.refuses(
         "library|restore|washer",
-        "no shape named \"washer\" in the trash; to list those that are: taxel library list --library FOLDER --names --deleted",
+        "no shape named \"washer\" in the trash",
     );
 }
 
@@ -235,7 +235,7 @@ fn a_check_of_a_folder_that_does_not_exist_fails_and_a_list_warns() {
         let failed = (Some(1), String::new(), format!("error: {said}"));
         assert_eq!((run.status, run.stdout, run.stderr), failed);
     }
-    for (form, start) in [("", "name"), (" --json", "[{"), (" --names", "arrow")] {
+    for (form, start) in [("", "name"), (" --json", "[{")] {
         let run = super::taxel(&format!("library list{form} --library {missing}"), "");
         assert_eq!(
             (run.status, run.stderr),

@@ -305,77 +305,6 @@ fn shards_and_threads_give_the_same_bytes() {
 }
 
 #[test]
-fn an_interrupted_training_can_be_resumed() {
-    let place = Place::new();
-    let train = |more: &str| {
-        let coarse = "--positions 5 --angle 0:350:10 --resume --out part.npz";
-        place.run(&format!("model train {coarse} {more}"), "")
-    };
-    let of = "washer parts.jsonl --shard 2/3";
-    let first = train(of);
-    assert_eq!(first.status, Some(0), "{}", first.stderr);
-    let written = place.read("part.npz");
-    let again = train(of);
-    let kept = first
-        .stdout
-        .replace("written: ", "kept, complete and part of this study: ");
-    assert_eq!((again.status, again.stdout.as_str()), (Some(0), &*kept));
-    // With --quiet, neither message is printed.
-    let summary = kept.split_once('\n').map(|(_, summary)| summary.to_owned());
-    assert_eq!(
-        Some(train(&format!("{of} --quiet")).stdout),
-        summary,
-        "{kept}"
-    );
-    assert!(place.read("part.npz") == written);
-    for (more, reason) in [
-        (
-            "washer parts.jsonl --shard 1/3",
-            "its shard is 2/3, not 1/3",
-        ),
-        ("parts.jsonl washer --shard 2/3", "is missing, or differs"),
-        (
-            "washer --shard 2/3 --columns 16 --rows 16",
-            "it has more shapes",
-        ),
-        (
-            "washer parts.jsonl --shard 2/3 --threshold 0.4",
-            "its sensor is ",
-        ),
-    ] {
-        let run = train(more);
-        assert!(
-            run.status == Some(1) && run.stderr.contains(reason),
-            "{}",
-            run.stderr
-        );
-        assert!(
-            run.stderr
-                .contains("error: part.npz is part of another study (")
-        );
-    }
-    // Poses that are cut off must be allowed again.
-    fs::remove_file(place.path("part.npz")).expect("it is there");
-    let cut = "washer --columns 8 --rows 8";
-    assert_eq!(train(&format!("{cut} --allow-cut")).status, Some(0));
-    assert_eq!(train(&format!("{cut} --allow-cut")).status, Some(0));
-    let run = train(cut);
-    let said = "it has poses that the sensor cuts off";
-    assert!(
-        run.status == Some(1) && run.stderr.contains(said),
-        "{}",
-        run.stderr
-    );
-    fs::write(place.path("part.npz"), &written[..100]).expect("written");
-    let run = train(of);
-    assert!(
-        run.status == Some(1) && run.stderr.contains("part.npz is incomplete ("),
-        "{}",
-        run.stderr
-    );
-}
-
-#[test]
 fn models_can_be_named_listed_and_shown() {
     let place = Place::new();
     let built_in = "figures: built in\nfigures-30: built in\nshapes: built in\n";
@@ -759,16 +688,6 @@ fn damaged_models_are_refused() {
     let run = place.run("model show atlas.npz", "");
     let kind = "atlas.npz: an atlas of taxel sweep, expected a model";
     refused(&run, 1, kind);
-    let run = place.run(
-        "sweep hexagon --x0 5 --y0 5 --angle 0 --quiet --resume --atlas m.npz",
-        "",
-    );
-    let kind = "m.npz is part of another study (a model, expected an atlas of taxel sweep); ";
-    assert!(
-        run.status == Some(1) && run.stderr.contains(kind),
-        "{}",
-        run.stderr
-    );
     let untrained = "parts.jsonl: not a model; if it is a set of shapes, 'taxel model train' makes a model of it";
     for line in [
         "recognise - --model parts.jsonl",
@@ -1153,8 +1072,6 @@ fn flags_that_would_be_ignored_are_refused() {
         "model confusion figures --dead 4 --classifier knn",
         "model confusion figures --neighbours 3 --greedy",
         "model confusion figures --force --pairs",
-        "library list --own --json",
-        "library list --deleted --json",
     ] {
         misused(line, "the following required arguments were not provided");
     }
@@ -1220,34 +1137,6 @@ fn impossible_requests_are_refused_with_the_reason() {
     let run = place.run("model confusion parts --export there.csv", "");
     assert_eq!(run.status, Some(1), "{}", run.stderr);
     assert_eq!(place.read("there.csv"), b"kept");
-}
-
-#[test]
-fn a_truncated_first_line_is_answered_with_its_error_like_any_other() {
-    let place = Place::new();
-    place.done(&format!("model train parts.jsonl {COARSE} --out m.npz"));
-    let line = "{\"imprint\":[\".....\",\".###.\",\".###.\",\".....\"]}\n";
-    let torn = "{\"imprint\":[\".....\"\n";
-    let run = place.run("recognise - --model m.npz", &format!("\n\n{torn}{line}"));
-    assert_eq!(run.status, Some(1));
-    let answers: Vec<&str> = run.stdout.lines().collect();
-    assert_eq!(answers.len(), 2, "{}", run.stderr);
-    assert!(
-        answers[0].starts_with("{\"error\":\"line 3: "),
-        "{}",
-        answers[0]
-    );
-    assert!(answers[1].starts_with("{\"answer\":"), "{}", answers[1]);
-    // A stored shape continues in its next line, wherever the first one ends.
-    let shape = "{\"format\":\"taxel-shape/1\",\"name\":\"a\",\"imprint\":[\"##\"],\"sensor\":\n\
-        {\"columns\":2,\"rows\":1,\"pitch_mm\":1.0,\"threshold\":0.5}}\n";
-    let run = place.run("recognise - --model m.npz", shape);
-    assert_eq!(run.status, Some(0), "{}", run.stderr);
-    place.done("library save mine washer");
-    let shape = String::from_utf8(place.read("library/mine.json")).expect("UTF-8");
-    assert!(shape.starts_with("{\n"));
-    let run = place.run("recognise - --model m.npz", &shape);
-    assert_eq!(run.status, Some(0), "{}", run.stderr);
 }
 
 #[test]

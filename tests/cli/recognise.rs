@@ -299,27 +299,6 @@ fn lines_are_answered_in_their_order() {
     let two = read(lines[3])["ranking"][0]["probability"].as_f64();
     assert!(two > one, "two touches tell more than one");
     assert_eq!(read(lines[4])["state"], "unknown");
-    // A truncated first line is answered like any other, wherever it was cut.
-    for torn in [
-        "{\"imprint\":",
-        "{\"touches\":[",
-        "{\"imprint\":[\"##\"",
-        "{",
-    ] {
-        let input = format!("{torn}\n{{\"imprint\":{bar}}}\n{{\"imprint\":{bar}}}\n");
-        let run = place.run("recognise - --model r", &input);
-        assert_eq!(
-            run.stderr, "error: 1 of 3 lines could not be answered\n",
-            "{torn}"
-        );
-    }
-    let run = place.run("recognise - --model r", "{\"touches\":[\n");
-    assert!(
-        run.stdout.contains("\"error\""),
-        "{}{}",
-        run.stdout,
-        run.stderr
-    );
     let expected = "expected an object with an imprint, touches or a frame";
     for (other, found) in [("5", "the number 5"), ("[[\"#\"]]", "a list")] {
         let lines = format!("{{\"imprint\":[\"#\"]}}\n{other}\n");

@@ -1,12 +1,10 @@
-//! Tests of `taxel config`: the settings in effect, and the origin of each.
+//! Tests of `taxel config`, and of the settings that commands use.
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use super::Run;
-use super::program;
-use super::wait;
+use super::{Run, program, wait};
 
 /// A settings file with settings of every kind.
 const FILE: &str = "theme = \"light\"\ncolor = \"256\"\nmouse = false\nlibrary = \"~/shapes\"\n\n\
@@ -32,77 +30,81 @@ fn home(text: &str) -> tempfile::TempDir {
 
 fn at_home(line: &str, home: &Path) -> Command {
     let mut command = taxel(line);
-    command
-        .env_remove("TAXEL_CONFIG")
-        .env_remove("TAXEL_LIBRARY")
-        .env_remove("NO_COLOR")
-        .env_remove("XDG_CONFIG_HOME")
-        .env_remove("XDG_DATA_HOME")
-        .env("HOME", home);
+    for variable in [
+        "TAXEL_CONFIG",
+        "TAXEL_LIBRARY",
+        "NO_COLOR",
+        "XDG_CONFIG_HOME",
+        "XDG_DATA_HOME",
+    ] {
+        command.env_remove(variable);
+    }
+    command.env("HOME", home);
     command
 }
 
-fn shows(command: &mut Command, lines: &[(&str, &str)]) {
+fn shows(command: &mut Command, lines: &[&str]) {
     let run = run(command);
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
-    for (entry, origin) in lines {
-        let line = format!("{entry:<37}  # {origin}\n");
-        assert!(run.stdout.contains(&line), "no {line} in\n{}", run.stdout);
+    for line in lines {
+        assert!(
+            run.stdout.lines().any(|own| own == *line),
+            "no {line} in\n{}",
+            run.stdout
+        );
     }
 }
 
 #[test]
-fn each_value_is_shown_with_its_origin() {
+fn a_flag_beats_the_environment_which_beats_the_file() {
     let home = home(FILE);
     let folder = home.path();
+    let path = format!("# {}", folder.join(".config/taxel/config.toml").display());
     let shapes = format!("library = \"{}\"", folder.join("shapes").display());
     shows(
         &mut at_home("config", folder),
         &[
-            ("theme = \"light\"", "file, line 1"),
-            ("color = \"256\"", "file, line 2"),
-            ("charset = \"auto\"", "default"),
-            ("mouse = false", "file, line 3"),
-            (&shapes, "file, line 4"),
-            ("columns = 32", "file, line 7"),
-            ("rows = 16", "default"),
-            ("pitch = 2.5", "file, line 8"),
-            ("\"x\" = \"toggle\"", "file, line 11"),
-            ("\"<Space>\" = \"toggle\"", "default"),
-            ("\"d\" = \"none\"", "file, line 12"),
+            &path,
+            "theme = \"light\"",
+            "color = \"256\"",
+            "charset = \"auto\"",
+            "mouse = false",
+            &shapes,
+            "columns = 32",
+            "rows = 16",
+            "pitch = 2.5",
+            "\"x\" = \"toggle\"",
+            "\"<Space>\" = \"toggle\"",
+            "\"d\" = \"none\"",
         ],
     );
-    // A flag overrides a variable, which overrides the file.
     shows(
         at_home("config --theme mono --columns 8 --ascii", folder)
             .env("NO_COLOR", "1")
             .env("TAXEL_LIBRARY", "/shapes"),
         &[
-            ("theme = \"mono\"", "flag, --theme"),
-            ("color = \"never\"", "environment, NO_COLOR"),
-            ("charset = \"ascii\"", "flag, --ascii"),
-            ("library = \"/shapes\"", "environment, TAXEL_LIBRARY"),
-            ("columns = 8", "flag, --columns"),
-            ("pitch = 2.5", "file, line 8"),
+            "theme = \"mono\"",
+            "color = \"never\"",
+            "charset = \"ascii\"",
+            "library = \"/shapes\"",
+            "columns = 8",
+            "pitch = 2.5",
         ],
     );
     shows(
         at_home("config --color 16 --library /other", folder)
             .env("NO_COLOR", "1")
             .env("TAXEL_LIBRARY", "/shapes"),
-        &[
-            ("color = \"16\"", "flag, --color"),
-            ("library = \"/other\"", "flag, --library"),
-        ],
+        &["color = \"16\"", "library = \"/other\""],
     );
     let empty = tempfile::tempdir().expect("a folder");
     shows(
         &mut at_home("config", empty.path()),
         &[
-            ("theme = \"auto\"", "default"),
-            ("mouse = true", "default"),
-            ("# pitch is not set", "default"),
-            ("\"<C-c>\" = \"quit\"", "default"),
+            "theme = \"auto\"",
+            "mouse = true",
+            "# pitch is not set",
+            "\"<C-c>\" = \"quit\"",
         ],
     );
 }
@@ -111,18 +113,6 @@ fn each_value_is_shown_with_its_origin() {
 #[test]
 fn the_printed_settings_read_back() {
     let home = home(&FILE.replace("~/shapes", "/a \\\"b\\\" \\\\ é"));
-    let values = |text: &str| -> Vec<String> {
-        let entries = text.lines().filter(|line| !line.starts_with('#'));
-        entries
-            .map(|line| {
-                line.split("  #")
-                    .next()
-                    .unwrap_or_default()
-                    .trim()
-                    .to_owned()
-            })
-            .collect()
-    };
     for flag in ["", "--ascii"] {
         let first = run(&mut at_home(&format!("config {flag}"), home.path()));
         let file = home.path().join("printed.toml");
@@ -130,7 +120,8 @@ fn the_printed_settings_read_back() {
         let line = format!("config {flag} --config {}", file.display());
         let second = run(&mut at_home(&line, home.path()));
         assert_eq!(second.stderr, "");
-        assert_eq!(values(&first.stdout), values(&second.stdout));
+        let below_path = |text: &str| text.split_once('\n').map(|(_, rest)| rest.to_owned());
+        assert_eq!(below_path(&first.stdout), below_path(&second.stdout));
     }
 }
 
@@ -140,10 +131,9 @@ fn the_settings_file_applies_to_every_command_except_scripts() {
     let folder = home.path();
     let figure = run(&mut at_home("figure ellipse", folder)).stdout;
     assert!(
-        figure.contains("32 x 16") || figure.contains("32 × 16"),
+        figure.contains("32 × 16") && figure.contains("mm"),
         "{figure}"
     );
-    assert!(figure.contains("mm"), "{figure}");
     let explicit = run(&mut at_home("figure ellipse --columns 8", folder)).stdout;
     assert!(explicit.contains("8 × 16"), "{explicit}");
     let path = run(&mut at_home("library path", folder)).stdout;
@@ -158,10 +148,10 @@ fn the_settings_file_applies_to_every_command_except_scripts() {
     let file = folder.join(".config/taxel/config.toml");
     let told = script(&format!("--config {}", file.display()));
     assert!(told.contains("NA 1 in all"), "{told}");
-    let mut charset = taxel("library list");
     let ascii = folder.join("ascii.toml");
     fs::write(&ascii, "charset = 'unicode'\n").expect("written");
-    let unicode = run(charset.env("LC_ALL", "C").env("TAXEL_CONFIG", &ascii));
+    let mut list = taxel("library list");
+    let unicode = run(list.env("LC_ALL", "C").env("TAXEL_CONFIG", &ascii));
     assert!(unicode.stdout.contains('×'), "{}", unicode.stdout);
 }
 
@@ -171,7 +161,7 @@ fn a_broken_settings_file_is_reported_and_nothing_is_started() {
     let folder = home.path();
     let file = folder.join(".config/taxel/config.toml");
     let message = format!(
-        "error: {}: line 2, column 1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; did you mean \"color\"?\n",
+        "error: {}: line 2, column 1: unknown key \"colour\", ",
         file.display()
     );
     for line in [
@@ -182,11 +172,8 @@ fn a_broken_settings_file_is_reported_and_nothing_is_started() {
         "batch",
     ] {
         let run = run(&mut at_home(line, folder));
-        assert_eq!(
-            (run.status, run.stdout.as_str(), run.stderr.as_str()),
-            (Some(2), "", message.as_str()),
-            "{line}"
-        );
+        assert_eq!((run.status, run.stdout.as_str()), (Some(2), ""), "{line}");
+        assert!(run.stderr.starts_with(&message), "{line}: {}", run.stderr);
     }
     assert!(!folder.join(".local").exists(), "nothing was stored");
     // Commands that are the same for everybody do not read the file.
@@ -206,104 +193,77 @@ fn a_named_settings_file_must_exist_and_be_text() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("missing.toml");
     let told = |message: &str| {
-        let mut command = taxel("config");
-        let run = run(command.env("TAXEL_CONFIG", &file));
-        let expected = format!("error: {}: {message}", file.display());
-        assert_eq!(run.status, Some(2));
-        assert!(run.stderr.starts_with(&expected), "{}", run.stderr);
+        let run = run(taxel("config").env("TAXEL_CONFIG", &file));
+        let expected = format!("error: {}: {message}\n", file.display());
+        assert_eq!((run.status, run.stderr), (Some(2), expected));
     };
     told("cannot read: no such file or folder");
     fs::write(&file, b"theme = '\xff'").expect("written");
     told("not UTF-8");
     fs::write(&file, vec![b'#'; (1 << 20) + 1]).expect("written");
     told("larger than 64 KiB, the limit for a file of settings");
-    let run = run(taxel("config").env("TAXEL_CONFIG", "/dev/zero"));
-    assert_eq!(run.status, Some(2), "it comes to an end");
-}
-
-/// The disk that a link leads to may not be mounted; then the usual settings would be a surprise.
-#[cfg(unix)]
-#[test]
-fn a_link_to_settings_that_are_missing_is_reported() {
-    let home = tempfile::tempdir().expect("a folder");
-    let folder = home.path().join(".config");
-    fs::create_dir_all(&folder).expect("made");
-    assert_eq!(run(&mut at_home("config", home.path())).status, Some(0));
-    std::os::unix::fs::symlink("/nonexistent/taxel", folder.join("taxel")).expect("linked");
-    let run = run(&mut at_home("config", home.path()));
-    assert_eq!(run.status, Some(2));
-    let message = "config.toml: cannot read: no such file or folder";
-    assert!(run.stderr.contains(message), "{}", run.stderr);
-}
-
-#[cfg(unix)]
-#[test]
-fn a_library_whose_path_is_not_utf_8_is_a_comment_in_the_settings() {
-    use std::os::unix::ffi::OsStrExt;
-    let folder = std::ffi::OsStr::from_bytes(b"/srv/caf\xe9");
-    let run = run(taxel("config").env("TAXEL_LIBRARY", folder));
-    let line =
-        "# library: /srv/caf\u{fffd}; this path is not UTF-8, so it cannot be in a settings file";
-    assert!(run.stdout.contains(line), "{}", run.stdout);
-    assert!(!run.stdout.contains("library = "), "{}", run.stdout);
+    fs::remove_file(&file).expect("it is there");
+    // Opening a pipe would wait for a writer.
+    if wait::fifo(&file) {
+        told("cannot read: a pipe, expected a regular file");
+    }
+    // The disk that a link leads to may not be mounted; then the usual settings would be a surprise.
+    #[cfg(unix)]
+    {
+        fs::create_dir(folder.path().join(".config")).expect("made");
+        let link = folder.path().join(".config/taxel");
+        std::os::unix::fs::symlink("/nonexistent/taxel", link).expect("linked");
+        let run = run(&mut at_home("config", folder.path()));
+        let message = "config.toml: cannot read: no such file or folder";
+        assert!(
+            run.status == Some(2) && run.stderr.contains(message),
+            "{}",
+            run.stderr
+        );
+    }
 }
 
 /// A flag of the screen before a command would have no effect, so it is refused.
 #[test]
 fn flags_of_the_screen_are_refused_before_a_command() {
-    for flag in [
-        "--theme light",
-        "--record r.taxel",
-        "--size 80x24",
-        "--no-mouse",
-        "--columns 8",
+    for (line, expected) in [
+        (
+            "--theme light library list",
+            "cannot be used with '--theme', which is only for the screen",
+        ),
+        (
+            "--columns 8 library list",
+            "cannot be used with '--columns', which is only for the screen",
+        ),
+        // The live page is also a screen.
+        (
+            "--no-mouse watch touch.csv",
+            "'--no-mouse' must come after 'watch'",
+        ),
     ] {
-        let run = run(&mut taxel(&format!("{flag} library list")));
-        assert_eq!(run.status, Some(2), "{flag}");
-        let name = flag.split(' ').next().expect("a flag");
-        let expected = format!("cannot be used with '{name}', which is only for the screen");
-        assert!(run.stderr.contains(&expected), "{flag}: {}", run.stderr);
+        let run = run(&mut taxel(line));
+        assert!(
+            run.status == Some(2) && run.stderr.contains(expected),
+            "{line}: {}",
+            run.stderr
+        );
     }
-    // The live page is also a screen.
-    let run = run(&mut taxel("--no-mouse watch touch.csv"));
-    let expected = "'--no-mouse' must come after 'watch'";
-    assert!(run.stderr.contains(expected), "{}", run.stderr);
 }
 
-/// Opening a pipe would wait for a writer.
 #[test]
-fn a_settings_file_that_is_a_pipe_is_refused_at_once() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let pipe = folder.path().join("pipe");
-    if !wait::fifo(&pipe) {
-        return;
-    }
-    let mut command = taxel("config");
-    let run = run(command.arg("--config").arg(&pipe));
-    assert_eq!(run.status, Some(2));
-    assert!(
-        run.stderr
-            .ends_with("cannot read: a pipe, expected a regular file\n"),
-        "{}",
-        run.stderr
-    );
-}
-
-/// Settings of real sensors apply to frames and watch; flags override them.
-#[test]
-fn settings_for_frames_are_used() {
+fn settings_for_frames_are_used_unless_flags_override_them() {
     let text =
         "[source]\nrows = 4\ncolumns = 5\nformat = 'flexitac'\n[frames]\npercent = 40\ntare = 1\n";
     let home = home(text);
     shows(
         &mut at_home("config", home.path()),
         &[
-            ("format = \"flexitac\"", "file, line 4"),
-            ("baud = 115200", "default"),
-            ("rows = 4", "file, line 2"),
-            ("percent = 40", "file, line 6"),
-            ("# at_least is not set", "default"),
-            ("history_bytes = 33554432", "default"),
+            "format = \"flexitac\"",
+            "baud = 115200",
+            "rows = 4",
+            "percent = 40",
+            "# at_least is not set",
+            "history_bytes = 33554432",
         ],
     );
     let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files/frames/samples");
@@ -313,27 +273,21 @@ fn settings_for_frames_are_used() {
         run.stdout
     };
     let settings = answered(format!("frames {samples}/tekscan.asf --frame 2 --json"));
-    assert!(
-        settings.contains("\"tare\":1,\"rule\":{\"percent\":40,\"from\":\"settings\"}"),
-        "{settings}"
-    );
+    let rule = "\"tare\":1,\"rule\":{\"percent\":40,\"from\":\"settings\"}";
+    assert!(settings.contains(rule), "{settings}");
     let flags = answered(format!(
         "frames {samples}/tekscan.asf --frame 2 --json --at-least 9 --tare 0"
     ));
-    assert!(
-        flags.contains("\"rule\":{\"at_least\":9,\"from\":\"flag\"}") && !flags.contains("tare"),
-        "{flags}"
-    );
+    let rule = "\"rule\":{\"at_least\":9,\"from\":\"flag\"}";
+    assert!(flags.contains(rule) && !flags.contains("tare"), "{flags}");
     // A tare that is impossible is reported as coming from the settings.
     let few = self::home("[frames]\ntare = 9\n");
     for command in ["frames --all", "watch --once"] {
-        let line = |tare| format!("{command} {samples}/tekscan.asf --json --at-least 9 {tare}");
-        let said = |tare| run(&mut at_home(&line(tare), few.path())).stderr;
-        let lacking = "the tare needs 9 frames, but there are only 3";
-        let of_settings = format!("{lacking} (tare under [frames] in the settings");
-        assert!(said("").contains(&of_settings), "{}", said(""));
-        let of_flag = said("--tare 9");
-        assert!(of_flag.ends_with(&format!("{lacking}\n")), "{of_flag}");
+        let line = format!("{command} {samples}/tekscan.asf --json --at-least 9");
+        let said = run(&mut at_home(&line, few.path())).stderr;
+        let expected =
+            "the tare needs 9 frames, but there are only 3 (tare under [frames] in the settings";
+        assert!(said.contains(expected), "{said}");
     }
     // A stream has the format, rows and columns of the settings; a recording has its own.
     let mut stream = at_home("watch - --once", home.path());
@@ -355,15 +309,12 @@ fn settings_for_frames_are_used() {
     let refused = watched("");
     assert_eq!(refused.status, Some(1), "{}", refused.stderr);
     assert!(refused.stderr.ends_with(origin), "{}", refused.stderr);
-    let named = watched(" --format flexitac");
-    assert!(!named.stderr.contains("settings"), "{}", named.stderr);
     assert_eq!(watched(" --format lines").status, Some(0));
 }
 
 #[test]
 fn a_bad_number_for_a_flag_is_refused_with_the_expected_range() {
     for (line, expected) in [
-        ("batch --jobs -1", "expected a whole number from 1 to 1024"),
         (
             "batch --jobs many",
             "expected a whole number from 1 to 1024",
@@ -387,8 +338,11 @@ fn a_bad_number_for_a_flag_is_refused_with_the_expected_range() {
         ),
     ] {
         let run = run(&mut taxel(line));
-        assert_eq!(run.status, Some(2), "{line}");
         let expected = format!(">': {expected}\n");
-        assert!(run.stderr.contains(&expected), "{line}: {}", run.stderr);
+        assert!(
+            run.status == Some(2) && run.stderr.contains(&expected),
+            "{line}: {}",
+            run.stderr
+        );
     }
 }

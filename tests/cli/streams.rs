@@ -138,33 +138,6 @@ fn a_full_disk_is_reported() {
     }
 }
 
-/// Answers have the key of a question, so the program would answer its own answers until the disk is full.
-#[test]
-fn lines_are_not_appended_to_the_file_that_is_read() {
-    let file = tempfile::NamedTempFile::new().expect("a file");
-    let name = file.path().to_str().expect("UTF-8");
-    for arguments in [
-        &["batch", name][..],
-        &["batch"],
-        &["recognise", name, "--model", "figures"],
-        &["recognise", "-", "--model", "figures"],
-    ] {
-        let lines = format!("{POINT}\n{POINT}\n");
-        std::fs::write(&file, &lines).expect("written");
-        let append = std::fs::File::options().append(true).open(&file);
-        let mut command = program(arguments, "C");
-        command.stdout(append.expect("there is one"));
-        command.stdin(std::fs::File::open(&file).expect("there is one"));
-        let run = command.output().expect("the program runs");
-        let message = String::from_utf8(run.stderr).expect("UTF-8");
-        let ending = "is the output as well; write the answers to another file\n";
-        assert!(message.ends_with(ending), "{arguments:?}: {message}");
-        assert_eq!(run.status.code(), Some(1), "{arguments:?}");
-        let left = std::fs::read_to_string(&file).expect("there is one");
-        assert_eq!(left, lines, "{arguments:?}");
-    }
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn unreadable_input_is_reported() {

@@ -11,8 +11,7 @@ use crate::paper::RING_IMPRINTS;
 use super::python_has;
 use super::refused;
 use super::sh;
-use super::wait;
-use super::{Run, taxel};
+use super::taxel;
 
 /// A sweep of the paper's ring over one cell.
 const RING: &str = "sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --x0 1:1.99:0.01 --y0 1:1.99:0.01";
@@ -248,111 +247,6 @@ fn shards_merge_into_the_same_bytes() {
 }
 
 #[test]
-fn an_interrupted_study_can_be_resumed() {
-    let scratch = folder();
-    let folder = scratch.path();
-    let path = |name: &str| folder.join(name).display().to_string();
-    let sweep = "sweep hexagon --side 3 --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10";
-    let part = |more: &str| taxel(&format!("{sweep} {more} --atlas {}", path("2.npz")), "");
-    let first = part("--shard 2/3 --resume --json");
-    assert_eq!(first.status, Some(0), "{}", first.stderr);
-    let written = fs::read(path("2.npz")).expect("an atlas");
-    let again = part("--shard 2/3 --resume --json");
-    assert!(
-        again
-            .stderr
-            .contains("kept, complete and part of this study: ")
-    );
-    let of = |run: &Run| {
-        let mut answer: Value = serde_json::from_str(&run.stdout).expect("an answer");
-        answer["seconds"] = Value::Null;
-        answer
-    };
-    assert_eq!(of(&again), of(&first), "it is summed up as if it had run");
-    for (more, reason) in [
-        ("--shard 3/3", "its shard is 2/3, not 3/3"),
-        ("--shard 2/3 --columns 20", "its sensor is 16 × 16 with"),
-        (
-            "--shard 2/3 --anchor centre",
-            "its anchor is corner, not centre",
-        ),
-        ("--shard 2/3 --thickness 1", "its shape is another one"),
-    ] {
-        let run = part(&format!("{more} --resume"));
-        let said = format!("2.npz is part of another study ({reason}");
-        assert!(
-            run.status == Some(1) && run.stderr.contains(&said),
-            "{}",
-            run.stderr
-        );
-    }
-    let run = part("--shard 2/3 --angle 0:40:10 --resume");
-    assert_eq!(run.status, Some(2), "an axis is given twice");
-    fs::write(path("2.npz"), &written[..written.len() / 2]).expect("written");
-    let run = part("--shard 2/3 --resume");
-    assert!(
-        run.status == Some(1) && run.stderr.contains("2.npz is incomplete ("),
-        "{}",
-        run.stderr
-    );
-    assert_eq!(part("--shard 2/3 --force --quiet").status, Some(0));
-    assert_eq!(fs::read(path("2.npz")).ok(), Some(written));
-    let table = taxel(&format!("{sweep} --resume --atlas {}", path("2.csv")), "");
-    let said = "2.csv: expected a name that ends in .npz, for an atlas that --resume keeps";
-    assert!(
-        table.status == Some(1) && table.stderr.contains(said),
-        "{}",
-        table.stderr
-    );
-    // Opening a pipe would wait for a writer.
-    if wait::fifo(Path::new(&path("pipe.npz"))) {
-        let pipe = taxel(
-            &format!("{sweep} --resume --atlas {}", path("pipe.npz")),
-            "",
-        );
-        assert!(
-            pipe.status == Some(1) && pipe.stderr.contains("not a regular file"),
-            "{}",
-            pipe.stderr
-        );
-    }
-    for wrong in ["--resume --force", "--resume --poses p.npy"] {
-        assert_eq!(part(wrong).status, Some(2), "{wrong}");
-    }
-}
-
-/// A job that a cluster has queued again may run beside the first one.
-#[test]
-fn two_jobs_may_resume_one_shard_at_the_same_time() {
-    let scratch = folder();
-    let atlas = scratch.path().join("part.npz");
-    let sweep = "sweep octagon --side 6 --columns 32 --rows 32 --angle 0:44:4 --shard 1/2 --jobs 1 --resume --atlas";
-    let mut arguments: Vec<&std::ffi::OsStr> = sweep.split(' ').map(std::ffi::OsStr::new).collect();
-    arguments.push(atlas.as_os_str());
-    let jobs = [(); 2].map(|()| {
-        let child = super::program(&arguments, "C.UTF-8").spawn();
-        child.expect("the program starts")
-    });
-    for run in jobs.map(|job| super::finish(job, b"")) {
-        assert_eq!(run.status, Some(0), "{}", run.stderr);
-    }
-}
-
-/// A thread for each would take minutes to start.
-#[test]
-fn a_million_threads_are_not_started() {
-    for (line, input) in [("sweep rectangle --angle 0 --quiet", ""), ("batch", "{}\n")] {
-        let arguments: Vec<&std::ffi::OsStr> = line.split(' ').map(std::ffi::OsStr::new).collect();
-        let mut program = super::program(&arguments, "C.UTF-8");
-        let child = program.env("RAYON_NUM_THREADS", "999999").spawn();
-        let started = std::time::Instant::now();
-        let run = super::finish(child.expect("the program starts"), input.as_bytes());
-        assert!(started.elapsed().as_secs() < 20, "{line}");
-        assert!(!run.stdout.is_empty(), "{line}: {}", run.stderr);
-    }
-}
-
-#[test]
 fn a_sweep_goes_on_if_a_signal_is_ignored() {
     let sweep = "sweep octagon --side 6 --columns 32 --rows 32 --angle 0:44:0.02 --jobs 1 --quiet";
     let script = format!("trap '' INT TERM; echo ready; exec \"$0\" {sweep}");
@@ -393,7 +287,7 @@ fn paths_of_atlases_need_not_be_utf_8() {
 }
 
 #[test]
-fn the_memory_of_a_merge_is_limited_and_printed() {
+fn the_memory_of_a_merge_is_limited() {
     let scratch = folder();
     let path = |name: &str| scratch.path().join(name).display().to_string();
     let (one, two) = (path("1.npz"), path("2.npz"));
@@ -402,19 +296,9 @@ fn the_memory_of_a_merge_is_limited_and_printed() {
     }
     let merge = |more: &str| taxel(&format!("merge {two} {one} {more}"), "");
     let run = merge(&format!("--atlas {}", path("m.npz")));
-    assert_eq!(run.status, Some(0), "{}", run.stderr);
-    let lines: Vec<&str> = run.stderr.lines().collect();
-    assert!(
-        lines[0].starts_with("2 files, ") && lines[0].ends_with(" of memory"),
-        "{}",
-        run.stderr
-    );
-    assert!(
-        lines[1].starts_with("merged: 393 imprints, "),
-        "{}",
-        run.stderr
-    );
-    assert_eq!(lines[2..], [format!("written: {}", path("m.npz"))]);
+    let written = format!("written: {}\n", path("m.npz"));
+    assert_eq!((run.status, run.stderr), (Some(0), written));
+    assert!(run.stdout.contains("393 "), "{}", run.stdout);
     let run = merge(&format!("--atlas {one} --force"));
     let expected = format!("error: {one}: one of the shards; write to another file\n");
     assert_eq!((run.status, run.stderr), (Some(1), expected));
@@ -430,7 +314,7 @@ fn the_memory_of_a_merge_is_limited_and_printed() {
     let run = merge(&format!("--atlas {} --quiet", path("q.npz")));
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     let run = merge(&format!("--atlas {} --memory 1M", path("no.npz")));
-    let said = "of memory needed, but only 1.0M allowed; allow more (--memory)";
+    let said = "of the 1.0M of memory allowed";
     assert!(
         run.status == Some(1) && run.stderr.contains(said),
         "{}",
@@ -482,19 +366,6 @@ fn damaged_archives_are_refused() {
         refusals += i32::from(numbers[place]);
     }
     assert!(refusals > 100, "{refusals}");
-    // Resuming notices it, too: an array is damaged that merging does not need.
-    let mut bad = good.clone();
-    let name = b"na.npy";
-    let at = good.windows(name.len()).position(|bytes| bytes == name);
-    bad[at.expect("an array of the feature") + 150] ^= 1;
-    fs::write(path("bad.npz"), &bad).expect("a file");
-    let run = taxel(&format!("{RING} --resume --atlas {}", path("bad.npz")), "");
-    assert_eq!(run.status, Some(1), "{}", run.stdout);
-    assert!(
-        run.stderr.contains("array \"na\" is damaged"),
-        "{}",
-        run.stderr
-    );
     for (name, content) in [
         ("empty", &b""[..]),
         ("text", b"no archive"),

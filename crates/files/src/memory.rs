@@ -167,17 +167,6 @@ impl MemoryGuard {
         }
     }
 
-    /// Refuses work that needs a known amount of memory, if that is too much.
-    ///
-    /// # Errors
-    /// Returns a message with both amounts.
-    pub fn check_bytes(&self, needed: MemorySize) -> Result<(), String> {
-        match &self.limits {
-            Some(limits) if needed > limits.allowed => Err(limits.refusal(needed)),
-            _ => Ok(()),
-        }
-    }
-
     /// Refuses a sweep, before it starts, if its grid needs far more memory than is allowed.
     ///
     /// # Errors
@@ -283,12 +272,6 @@ fn used() -> Option<MemorySize> {
     listed("/proc/self/status", "VmRSS:")
 }
 
-/// Returns the most memory that the program has used at one time; None if the system does not tell.
-#[cfg(target_os = "linux")]
-pub fn peak() -> Option<MemorySize> {
-    listed("/proc/self/status", "VmHWM:")
-}
-
 /// Returns how much memory the program may use: the machine's free memory and what the program uses already, or less
 /// if a limit is set for the process, its control group or a group around it.
 #[cfg(target_os = "linux")]
@@ -331,12 +314,6 @@ fn group_limits(table: &str) -> Vec<PathBuf> {
         files.extend(around.map(|group| Path::new(root).join(group).join(name)));
     }
     files
-}
-
-/// Returns None: systems other than Linux are not asked.
-#[cfg(not(target_os = "linux"))]
-pub(crate) fn peak() -> Option<MemorySize> {
-    None
 }
 
 /// Returns None: systems other than Linux are not asked.

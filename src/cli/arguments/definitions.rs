@@ -46,17 +46,19 @@ pub(crate) fn all() -> Command {
         .subcommand(config().args(sensor()))
         .subcommand(completions())
         .subcommand(man());
-    // These commands get a hidden flag of their own in place of the one that every command has.
-    let program = WITHOUT_LIBRARY.into_iter().fold(program, |program, name| {
-        program.mut_subcommand(name, |command| command.arg(folder().hide(true)))
-    });
+    // These use no library, so their help does not list its flag.
+    let program = ["merge", "completions", "man"]
+        .into_iter()
+        .fold(program, |program, name| {
+            program.mut_subcommand(name, |command| command.arg(folder().hide(true)))
+        });
     in_order(with_negative_numbers(program))
 }
 
 /// Flags that several commands have. The help of a command lists them in this order, after the command's own flags.
-const SHARED: [&str; 18] = [
-    "out", "name", "atlas", "poses", "write", "export", "svg", "format", "force", "shard",
-    "resume", "jobs", "memory", "json", "csv", "quiet", "config", "ascii",
+const SHARED: [&str; 17] = [
+    "out", "name", "atlas", "poses", "write", "export", "svg", "format", "force", "shard", "jobs",
+    "memory", "json", "csv", "quiet", "config", "ascii",
 ];
 
 /// Lists the flags of [`SHARED`] in one order in the help of a command and of its subcommands. Flags under a heading
@@ -85,10 +87,7 @@ fn with_negative_numbers(command: Command) -> Command {
         .mut_subcommands(with_negative_numbers)
 }
 
-/// The commands that use no library.
-pub(crate) const WITHOUT_LIBRARY: [&str; 3] = ["merge", "completions", "man"];
-
-/// Defines `--library`, which every command takes except those of [`WITHOUT_LIBRARY`].
+/// Defines `--library`.
 fn folder() -> Arg {
     option("library", "DIR", "The library's folder")
         .value_parser(value_parser!(PathBuf))

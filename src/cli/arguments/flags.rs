@@ -127,7 +127,7 @@ pub(super) fn anchor() -> Arg {
     .help_heading("Grid")
 }
 
-/// Defines `--jobs`, the number of threads, of which [`count`](crate::cli::threads::count) takes eight per core at most.
+/// Defines `--jobs`, the number of threads.
 pub(super) fn jobs() -> Arg {
     option("jobs", "N", "Threads; default all cores").value_parser(whole::<u16>(1..=1024))
 }
@@ -167,48 +167,9 @@ pub(super) fn shard_of(matches: &ArgMatches) -> Shard {
     matches.get_one("shard").copied().unwrap_or(Shard::WHOLE)
 }
 
-/// Defines `--resume`, for shards of a study that was interrupted.
-pub(super) fn resume() -> Arg {
-    switch(
-        "resume",
-        "Skip the shard if its file is complete and belongs\nto this study; refuse any other file",
-    )
-    .conflicts_with("force")
-}
-
 /// Defines `--force` for commands that write a file.
 pub(super) fn replace() -> Arg {
     force().help("Replace an existing file")
-}
-
-/// The action if the file of a shard exists already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ShardFile {
-    /// Report an error: the default.
-    Refused,
-    /// Replace it: `--force`.
-    Replaced,
-    /// Compute nothing if the file is this shard and complete; otherwise report an error: `--resume`.
-    Resumed,
-}
-
-impl ShardFile {
-    /// Returns what the flags ask for. A merge has no `--resume`.
-    pub(super) fn of(matches: &ArgMatches) -> Self {
-        match (existing(matches), matches.try_get_one("resume")) {
-            (Existing::Replaced, _) => Self::Replaced,
-            (Existing::Kept, Ok(Some(true))) => Self::Resumed,
-            (Existing::Kept, _) => Self::Refused,
-        }
-    }
-
-    /// Returns whether the finished file replaces one that exists by then.
-    pub(crate) fn at_writing(self) -> Existing {
-        match self {
-            Self::Replaced => Existing::Replaced,
-            Self::Refused | Self::Resumed => Existing::Kept,
-        }
-    }
 }
 
 /// Returns what to do about files that exist: `--force` replaces them.

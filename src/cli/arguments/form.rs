@@ -32,6 +32,6 @@ impl Form {
 pub(super) fn pitch_of(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, CliError> {
     Ok(Pitch {
         given: Given::of(matches).pitch()?,
-        usual: settings.pitch(),
+        usual: settings.pitch,
     })
 }

@@ -158,7 +158,7 @@ ignore the settings unless you give --config, so they run alike for everybody.
 
 Examples:
   taxel config
-  taxel config --theme light --columns 32 | grep flag
+  taxel config --theme light --columns 32
   TAXEL_CONFIG=/dev/null taxel config | grep keys"#;
 
 /// `taxel completions`: where each shell looks for them.
@@ -190,7 +190,7 @@ pub(crate) const ENVIRONMENT: &str = "
                    ASCII only, unless the locale is UTF-8
   COLUMNS, LINES   the size of a terminal that does not report it
   RAYON_NUM_THREADS
-                   threads of a command without --jobs, at most 8 per core
+                   threads of a command without --jobs
   XDG_CONFIG_HOME, XDG_DATA_HOME, XDG_CACHE_HOME
                    the folders in place of ~/.config, ~/.local/share, ~/.cache";
 
@@ -277,7 +277,7 @@ Examples:
 /// `taxel model list`: where models are.
 pub(crate) const MODEL_LIST_EXAMPLES: &str = "\
 Your models are files in the folder 'models' beside the library. The built-in
-ones are trained when first used; --names and --json leave them out.
+ones are trained when first used; --json leaves them out.
 
 Examples:
   taxel model list --json";

@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::{ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    alone, existing, force, json, name, of_sensor, required, switch, unhandled_subcommand, what,
+    existing, force, json, name, of_sensor, required, unhandled_subcommand, what,
 };
 use crate::cli::arguments::form::Form;
 use crate::cli::arguments::help::{
@@ -23,8 +23,6 @@ use crate::parameter::Parameter;
 pub(crate) enum LibraryCommand {
     /// List all shapes; true for JSON.
     List(bool),
-    /// Print the names of some shapes.
-    Names(NameSet),
     /// Describe a shape.
     Show(Name, Form),
     /// Store a shape of the library or of a file under a name.
@@ -39,31 +37,13 @@ pub(crate) enum LibraryCommand {
     Check(bool),
 }
 
-/// The shapes whose names are listed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum NameSet {
-    /// All shapes: the user's own and those that come with the program.
-    All,
-    /// The user's own shapes.
-    Own,
-    /// The deleted shapes, the last deleted first.
-    Deleted,
-}
-
 /// Defines `taxel library` and its subcommands, one of which is required: `taxel library list --json`,
 /// `taxel library save NAME FILE` and so on.
 pub(super) fn command() -> Command {
     let command = |name: &'static str, about: &'static str, examples: &'static str| {
         Command::new(name).about(about).after_help(examples)
     };
-    let names = switch("names", "Print only the names, one per line").conflicts_with("json");
-    let own = switch("own", "With --names: only your own shapes").requires("with_names");
-    let deleted = switch("deleted", "With --names: only those in the trash")
-        .requires("with_names")
-        .conflicts_with("own");
-    let list =
-        command("list", "List all shapes", LIST_EXAMPLES).args([names, own, deleted, json()]);
-    let list = list.group(alone("with_names", "names"));
+    let list = command("list", "List all shapes", LIST_EXAMPLES).arg(json());
     let show = command("show", "Show a shape and describe it", SHOW_EXAMPLES)
         .arg(name("Name of the shape"))
         .args(of_sensor(&[Parameter::Pitch]))
@@ -105,9 +85,6 @@ impl LibraryCommand {
         };
         let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
         Ok(match (command, name) {
-            ("list", _) if own.get_flag("own") => Self::Names(NameSet::Own),
-            ("list", _) if own.get_flag("deleted") => Self::Names(NameSet::Deleted),
-            ("list", _) if own.get_flag("names") => Self::Names(NameSet::All),
             ("list", _) => Self::List(own.get_flag("json")),
             ("show", Some(name)) => Self::Show(name, Form::of(own, settings)?),
             ("save", Some(name)) => {

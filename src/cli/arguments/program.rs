@@ -5,16 +5,14 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
+use clap_complete::Shell;
 
-use crate::cli::arguments::flags::{self, misused, option, switch};
+use crate::cli::arguments::flags::{self, option, switch};
 use crate::cli::arguments::help::{
     COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES,
 };
-use crate::cli::arguments::parameters;
-use crate::cli::error::CliError;
 use crate::cli::input::content::InputSource;
 use crate::cli::settings::file::AUTO;
-use crate::parameter::named;
 use crate::storage::Existing;
 use crate::tui::script::command;
 use crate::tui::widget::theme::{ColorDepth, Palette};
@@ -94,41 +92,14 @@ pub(crate) fn script() -> Command {
         .args([file, keys, size(), styles, json, svg, force, allow_outside])
 }
 
-/// A shell with completions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shell {
-    /// bash.
-    Bash,
-    /// zsh.
-    Zsh,
-    /// fish.
-    Fish,
-}
-
-impl Shell {
-    /// All shells.
-    pub(crate) const ALL: [Self; 3] = [Self::Bash, Self::Zsh, Self::Fish];
-
-    /// Returns its name, as in the argument.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Bash => "bash",
-            Self::Zsh => "zsh",
-            Self::Fish => "fish",
-        }
-    }
-}
-
-named!(Shell, "shell", &Shell::ALL);
-
 /// Defines `taxel completions SHELL`.
 pub(crate) fn completions() -> Command {
     let shell = Arg::new("shell")
         .value_name("SHELL")
         .required(true)
-        .value_parser(parameters::one_of::<Shell, _>(Shell::ALL.map(Shell::name)))
+        .value_parser(value_parser!(Shell))
         .hide_possible_values(true)
-        .help("bash, zsh or fish");
+        .help("bash, elvish, fish, powershell or zsh");
     Command::new("completions")
         .about("Print the completion script for your shell")
         .after_help(COMPLETIONS_EXAMPLES)
@@ -190,7 +161,7 @@ pub(crate) fn record() -> Arg {
 /// Defines `taxel config`. It also takes the flags that change settings, to show their effect.
 pub(crate) fn config() -> Command {
     Command::new("config")
-        .about("Print the settings and where each comes from")
+        .about("Print the settings in force, and the path of their file")
         .after_help(CONFIG_EXAMPLES)
         .args(look())
 }
@@ -214,25 +185,4 @@ pub(crate) fn size() -> Arg {
 /// the flag before clap does, because messages about wrong arguments need it.
 pub(crate) fn ascii() -> Arg {
     switch("ascii", "Use ASCII only, as if the locale were not UTF-8")
-}
-
-/// Returns the folder for manual pages, if one is given.
-///
-/// # Errors
-/// Returns a usage error if the folder is the name of a command: its page was meant.
-pub(super) fn man_folder(
-    matches: &ArgMatches,
-    command: &mut Command,
-) -> Result<Option<PathBuf>, CliError> {
-    let folder = matches.get_one::<PathBuf>("folder").cloned();
-    let named = folder.as_ref().and_then(|folder| folder.to_str());
-    match named.filter(|name| command.find_subcommand(name).is_some()) {
-        Some(name) => {
-            let message = format!(
-                "'{name}' is a command, see 'taxel help {name}'; for a folder of this name, write './{name}'"
-            );
-            Err(misused(command, "man", &message))
-        }
-        None => Ok(folder),
-    }
 }

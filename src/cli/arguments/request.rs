@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command};
+use clap_complete::Shell;
 
 use crate::cli::arguments::advice::with_tips;
 use crate::cli::arguments::export::Export;
@@ -19,7 +20,7 @@ use crate::cli::arguments::kept::Kept;
 use crate::cli::arguments::library::LibraryCommand;
 use crate::cli::arguments::model::ModelRequest;
 use crate::cli::arguments::parameters::Given;
-use crate::cli::arguments::program::{self, Script, Shell};
+use crate::cli::arguments::program::Script;
 use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::arguments::sweep::{SweepArguments, Wanted};
 use crate::cli::arguments::watch::WatchArguments;
@@ -106,7 +107,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => {
-            return Err(with_tips(error, &mut command).into());
+            return Err(with_tips(error).into());
         }
         Err(help) => {
             let none = Chosen::default();
@@ -132,11 +133,6 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     if let Some(flag) = Given::of(&matches).first().or(of_screen(&matches)) {
         let message = too_early(&flag, name, &command);
         return Err(command.error(ErrorKind::ArgumentConflict, message).into());
-    }
-    if definitions::WITHOUT_LIBRARY.contains(&name) && (library_named || own.contains_id("library"))
-    {
-        let message = format!("'--library' does not belong to '{name}', which uses no library");
-        return Err(misused(&mut command, name, &message));
     }
     if let Some(message) = shared_input(deepest(own)) {
         return Err(misused(&mut command, name, &message));
@@ -243,7 +239,7 @@ fn request(
         "library" => Request::Library(LibraryCommand::of(own, settings)?),
         "script" => Request::Script(Script::of(own)),
         "completions" => Request::Completions(required::<Shell>(own, "shell")?),
-        "man" => Request::Man(program::man_folder(own, command)?),
+        "man" => Request::Man(own.get_one::<PathBuf>("folder").cloned()),
         "sweep" => Request::Sweep(Box::new(SweepArguments::of(own, command, settings)?)),
         "merge" => {
             let files = own.get_many::<PathBuf>("files").into_iter().flatten();
@@ -257,7 +253,7 @@ fn request(
         "batch" => {
             let file = own.get_one::<PathBuf>("file").cloned();
             let file = file.filter(|file| file.as_os_str() != "-");
-            Request::Batch(file, settings.sensor(), flags::jobs_of(own))
+            Request::Batch(file, settings.sensor, flags::jobs_of(own))
         }
         other => return Err(unhandled_subcommand(other)),
     })

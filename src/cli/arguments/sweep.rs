@@ -7,8 +7,8 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, ShardFile, anchor, jobs, json, memory, misused, name_or_path, npy, option, quiet, range,
-    replace, resume, sensor_of_imprints, shard,
+    self, anchor, jobs, json, memory, misused, name_or_path, npy, option, quiet, range, replace,
+    sensor_of_imprints, shard,
 };
 use crate::cli::arguments::help::{MERGE_EXAMPLES, SWEEP_EXAMPLES};
 use crate::cli::arguments::parameters::{self, Given};
@@ -20,7 +20,7 @@ use crate::memory::MemorySize;
 use crate::pose::{Anchor, Axis, GivenRanges};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::AtlasFile;
+use crate::storage::{AtlasFile, Existing};
 use crate::sweep::Shard;
 
 /// The arguments of `taxel sweep`.
@@ -48,7 +48,7 @@ pub(crate) struct Wanted {
     /// `--poses`: the file of each pose's imprint.
     pub(crate) poses: Option<PathBuf>,
     /// The action if a file exists already.
-    pub(crate) existing: ShardFile,
+    pub(crate) existing: Existing,
     /// Whether the summary is one line of JSON.
     pub(crate) json: bool,
     /// Whether to show no progress and no notes.
@@ -107,7 +107,6 @@ pub(super) fn command() -> Command {
             jobs(),
             memory(),
             shard(),
-            resume().requires("atlas").conflicts_with("poses"),
             json(),
             quiet(),
         ])
@@ -196,7 +195,7 @@ impl Wanted {
         Self {
             atlas: matches.get_one::<AtlasFile>("atlas").cloned(),
             poses: poses.ok().flatten().cloned(),
-            existing: ShardFile::of(matches),
+            existing: flags::existing(matches),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
             memory: flags::memory_of(matches),

@@ -123,7 +123,7 @@ pub(super) fn source(
         );
         return Err(misused(command, name, &message));
     }
-    let sensor = settings.sensor();
+    let sensor = settings.sensor;
     let figure = Source::Figure(given.figure(kind, &sensor)?);
     Ok((figure, sensor))
 }

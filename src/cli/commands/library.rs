@@ -1,6 +1,6 @@
 //! `taxel library`: lists, shows, stores, deletes, restores and checks shapes.
 //!
-//! `list` prints a line for each shape, with `--names` only the name. For a damaged shape, the reason takes the place
+//! `list` prints a line for each shape. For a damaged shape, the reason takes the place
 //! of the numbers:
 //! ```text
 //! name           origin      size   NA  pieces  holes
@@ -20,12 +20,10 @@ use serde::ser::{SerializeMap, Serializer};
 
 use crate::cli::arguments::form::Form;
 use crate::cli::arguments::kept::Saving;
-use crate::cli::arguments::library::NameSet;
 use crate::cli::commands::describe;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::threads;
 use crate::description::{RegionKind, regions};
 use crate::formats::Content;
 use crate::formats::name::folded;
@@ -131,25 +129,7 @@ impl Serialize for ListLine {
 fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     let entries = library.list()?;
     let line = |entry| ListLine::of(library, entry);
-    let lines = || Ok(entries.into_par_iter().filter_map(line).collect());
-    threads::on_all_cores(lines)
-}
-
-/// Returns the answer of `taxel library list --names`, for scripts and for shell completions. No file is read.
-///
-/// # Errors
-/// Returns an error if the folder cannot be listed.
-pub(crate) fn names(shelf: &Shelf, which: NameSet) -> Result<String, CliError> {
-    let library = shelf.readable();
-    let is_asked = |entry: &LibraryEntry| which == NameSet::All || entry.origin == ShapeOrigin::Own;
-    let names: Vec<String> = match which {
-        NameSet::Deleted => library.in_trash()?,
-        NameSet::All | NameSet::Own => {
-            let entries = library.list()?.into_iter().filter(is_asked);
-            entries.map(|entry| entry.name).collect()
-        }
-    };
-    Ok(names.into_iter().map(|name| name + "\n").collect())
+    Ok(entries.into_par_iter().filter_map(line).collect())
 }
 
 /// Returns a warning about a list without shapes of the user's: the folder that `--library` names does not exist.

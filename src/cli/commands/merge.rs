@@ -1,12 +1,7 @@
 //! `taxel merge`: merges the shards of a sweep or of a training.
 //!
 //! Shards are recognised and sorted by their headers, then read one after another. Memory holds the merged result and
-//! one shard. The most memory this can take follows from the sizes of the files and is printed before; the memory it
-//! took is printed after:
-//! ```text
-//! 8 files, 155.2M: merging needs at most 682.8M of memory
-//! merged: 212,907 imprints, 402.3M of memory
-//! ```
+//! one shard.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -22,32 +17,20 @@ use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson};
-use crate::cli::output::note::note;
 use crate::cli::signals::Signals;
-use crate::formats::value::counted;
 use crate::formats::{MODEL_FORMAT, archive_kind, json};
-use crate::memory::{MemoryGuard, MemorySize, peak};
+use crate::memory::MemoryGuard;
 use crate::recognition::{Evaluation, Model, ModelError, ModelMerge, TrainingError};
 use crate::storage::{
     ArchiveFileError, AtlasFile, load_atlas, load_model, open_archive, save_model,
 };
 use crate::sweep::{MergeError, Shard, ShardOrderError, SweepMerge, SweepResult};
 
-/// Bytes that the program needs without any shard.
-const BYTES_OF_PROGRAM: u64 = 24 << 20;
-
-/// Bytes of memory per byte of a file, at most, once it is merged; including what writing the result needs.
-const TIMES_MERGED: u64 = 3;
-
-/// Bytes of memory per byte of a file, at most, while it is read.
-const TIMES_READ: u64 = 4;
-
 /// A file of a shard.
 struct Part {
     path: PathBuf,
     format: String,
     shard: Shard,
-    bytes: u64,
 }
 
 impl Part {
@@ -55,16 +38,11 @@ impl Part {
     fn of(path: &Path) -> Result<Self, ArchiveFileError> {
         let refused = |error| ArchiveFileError::new(path, error);
         let file = open_archive(path)?;
-        let bytes = file
-            .metadata()
-            .map_err(|error| refused(error.into()))?
-            .len();
         let kind = archive_kind(BufReader::new(file)).map_err(refused)?;
         Ok(Self {
             path: path.to_owned(),
             format: kind.format,
             shard: kind.shard,
-            bytes,
         })
     }
 
@@ -162,7 +140,7 @@ pub(crate) fn merge(
 ) -> Result<Summary, CliError> {
     let start = Instant::now();
     if let Some(file) = &wanted.atlas {
-        file.check(wanted.existing.at_writing())?;
+        file.check(wanted.existing)?;
     }
     check_no_shard(files, wanted)?;
     let parts = files.iter().map(|path| Part::of(path));
@@ -180,58 +158,16 @@ pub(crate) fn merge(
         wanted.memory,
         "allow more (--memory), or merge on a machine that has more",
     );
-    let say = |text: &str| {
-        if !wanted.quiet {
-            note(text, charset);
-        }
-    };
-    let bound = bound(&parts, &memory)?;
-    // If shards are missing or given twice, only this error is printed.
-    if parts
-        .iter()
-        .zip(1..)
-        .all(|(part, k)| part.shard.number() == k)
-        && parts
-            .last()
-            .is_some_and(|part| part.shard.number() == part.shard.of())
-    {
-        say(&bound);
-    }
-    let (imprints, summary) = if is_model {
-        let model = models(&parts, wanted, &memory)?;
-        (model.keys().len(), leave_model(&model, wanted)?)
+    let summary = if is_model {
+        leave_model(&models(&parts, wanted, &memory)?, wanted)?
     } else {
         let result = sweeps(&parts, &memory)?;
         // Until here nothing is written, so a signal may just end the program.
         let signals = Signals::catch()?;
-        let summary = leave(&result, start, wanted, Ok(None), charset, &signals)?;
-        (result.atlas.len(), summary)
+        leave(&result, start, wanted, Ok(None), charset, &signals)?
     };
-    if let Some(peak) = peak() {
-        let imprints = counted(imprints as u64, "imprint");
-        say(&format!("merged: {imprints}, {peak} of memory"));
-    }
     wanted.note_written(&summary, charset);
     Ok(summary)
-}
-
-/// Returns the most memory that merging may need, in words.
-///
-/// # Errors
-/// Returns an error if even the largest file needs too much memory. Whether all together do is unknown before the
-/// merge: it depends on how many imprints they share.
-fn bound(parts: &[Part], memory: &MemoryGuard) -> Result<String, CliError> {
-    let sum: u64 = parts.iter().map(|part| part.bytes).sum();
-    let largest = parts.iter().map(|part| part.bytes).max().unwrap_or(0);
-    let least = BYTES_OF_PROGRAM + TIMES_READ * largest;
-    let most = MemorySize(least + TIMES_MERGED * sum);
-    memory
-        .check_bytes(MemorySize(least))
-        .map_err(CliError::Memory)?;
-    let (files, sum) = (counted(parts.len() as u64, "file"), MemorySize(sum));
-    Ok(format!(
-        "{files}, {sum}: merging needs at most {most} of memory"
-    ))
 }
 
 /// Refuses a file name without the extension of a model, which has one format.
@@ -292,8 +228,7 @@ fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model
 fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
     let signals = Signals::catch()?;
     let saved = wanted.atlas.as_ref().map_or(Ok(()), |file| {
-        let existing = wanted.existing.at_writing();
-        let saved = save_model(model, file.path(), existing, &signals.stopped);
+        let saved = save_model(model, file.path(), wanted.existing, &signals.stopped);
         saved.map_err(|error| signals.failure_or(error.into()))
     });
     let written = unless_stopped(saved)?;

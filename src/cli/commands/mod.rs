@@ -15,8 +15,6 @@ pub(super) mod library;
 
 pub(super) mod batch;
 
-pub(super) mod resume;
-
 pub(super) mod sweep;
 
 pub(super) mod merge;
@@ -47,8 +45,6 @@ pub(super) mod screen;
 
 pub(super) mod script;
 
-pub(super) mod completions;
-
 pub(super) mod man;
 
 use crate::cli::error::CliError;
@@ -60,13 +56,6 @@ pub(super) struct Summary {
     pub(super) text: String,
     /// Whether the files were written. An error is reported after the text is printed, so that the work is not lost.
     pub(super) written: Result<(), CliError>,
-}
-
-impl Summary {
-    /// Creates the summary of work whose files were written, or not.
-    fn new(text: String, written: Result<(), CliError>) -> Self {
-        Self { text, written }
-    }
 }
 
 /// Returns the outcome of writing files unless a signal stopped it: then there is no summary.

@@ -17,9 +17,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use crate::cli::arguments::flags::{ShardFile, TOO_LITTLE_MEMORY};
+use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
-use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::commands::training_grid::TrainingGrid;
 use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
@@ -66,21 +65,12 @@ pub(crate) fn train(
     let training = Training::new(shapes, sensor, anchor, ranges)?
         .with_shard(asked.shard)
         .allow_cut(asked.allow_cut);
-    let wanted = training.clone();
-    let kept = || match asked.existing {
-        ShardFile::Resumed => resume::model(&path, &wanted, asked.shard, asked.allow_cut),
-        ShardFile::Refused | ShardFile::Replaced => Ok(None),
-    };
-    if let Some(model) = kept()? {
-        let text = trained(&model, &path, Some(KEPT), asked, charset);
-        return Ok(Summary::new(text, Ok(())));
-    }
     let make_folder = || match &asked.to {
         ModelTarget::Named(_) => Ok(Some(folder(shelf)?.make()?)),
         ModelTarget::File(_) => Ok::<_, CliError>(None),
     };
     let _folder = make_folder()?;
-    check_writable(&path, asked.existing.at_writing())?;
+    check_writable(&path, asked.existing)?;
     if !asked.quiet {
         note(&grid_text(&sensor, anchor, &ranges), charset);
     }
@@ -88,20 +78,13 @@ pub(crate) fn train(
     // Another training that was stopped may have removed the folder, which was empty. If it cannot be made again,
     // `save_model` says so.
     let _again = make_folder();
-    let saved = save_model(&model, &path, asked.existing.at_writing(), stopped);
-    let (done, written) = match saved {
-        Ok(()) => (Some("written"), Ok(())),
-        // Another job may have written this shard meanwhile: it was queued again, or started twice.
-        Err(error) if error.exists() => match kept() {
-            Ok(Some(_)) => (Some(KEPT), Ok(())),
-            Ok(None) => (None, Err(error.into())),
-            // It is not that of another job: it is damaged, or belongs to another study.
-            Err(error) => (None, Err(error)),
-        },
-        Err(error) => (None, unless_stopped(Err(signals.failure_or(error.into())))?),
-    };
-    let text = trained(&model, &path, done, asked, charset);
-    Ok(Summary::new(text, written))
+    let saved = save_model(&model, &path, asked.existing, stopped);
+    let written = unless_stopped(saved.map_err(|error| match error {
+        error if error.exists() => error.into(),
+        error => signals.failure_or(error.into()),
+    }))?;
+    let text = trained(&model, &path, written.is_ok(), asked, charset);
+    Ok(Summary { text, written })
 }
 
 /// Runs a training and shows its progress. `remedy` is the advice about poses that the sensor cuts off.
@@ -130,12 +113,10 @@ fn run(
         })
 }
 
-/// Returns the text to print about a model. `done` tells whether its file was written or existed already; None if there
-/// is none.
 fn trained(
     model: &Model,
     path: &Path,
-    done: Option<&str>,
+    is_written: bool,
     asked: &TrainArguments,
     charset: Charset,
 ) -> String {
@@ -143,14 +124,14 @@ fn trained(
     let name = path.to_string_lossy();
     if asked.json {
         let mut text = card_json(model, &limit);
-        if done.is_some() {
+        if is_written {
             text.insert("file".to_owned(), json!(name));
         }
         json::ascii(&text) + "\n"
     } else {
         let mut text = evaluation::summary(&limit, NamedBy::Imprint);
-        if let Some(done) = done.filter(|_| !asked.quiet) {
-            let said = charset.line(&format!("{done}: {name}")).into_owned();
+        if is_written && !asked.quiet {
+            let said = charset.line(&format!("written: {name}")).into_owned();
             text.insert_str(0, &(said + "\n"));
         }
         text
@@ -459,12 +440,6 @@ fn card_json(model: &Model, limit: &Evaluation) -> serde_json::Map<String, serde
     card
 }
 
-/// Returns the answer of `taxel model list --names`, for scripts and for shell completions. No file is read.
-pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
-    let names = stored(shelf)?.into_iter();
-    Ok(names.map(|(name, _)| format!("{name}\n")).collect())
-}
-
 /// Lists the built-in models, which are trained when they are first used, and those beside the library, sorted by name.
 /// If a model cannot be read, the reason takes the place of the numbers. The JSON lists only models in files.
 /// ```text
@@ -548,6 +523,5 @@ mod tests {
             text,
             "figures: built in\nfigures-30: built in\nshapes: built in\n"
         );
-        assert_eq!(names(&shelf).expect("listed"), "");
     }
 }

@@ -316,7 +316,7 @@ enum RecogniseInput {
 
 /// Decides what the argument means: a stored shape, a file or standard input; and whether its content is lines.
 fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
-    let LineInput { name, read, file } = match shelf.locate(what)? {
+    let LineInput { name, read } = match shelf.locate(what)? {
         Located::Shape(shape) => return Ok(RecogniseInput::Touch(Content::Shape(shape))),
         Located::File(path, file) => LineInput::of_file(path, file),
         Located::Standard => LineInput::standard()?,
@@ -337,23 +337,11 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
     }
     // Blank lines are not kept, since there may be many, but they count.
     let blank = io::repeat(b'\n').take(blank);
-    let is_line = if let Some(is_line) = is_line(&start) {
-        is_line
-    } else {
-        let first = start.len();
-        line(&mut input, &mut start).map_err(|error| refused(error.into()))?;
-        // If the first line was torn, the second one decides; otherwise both are the beginning of a stored shape.
-        let (torn, second) = start.split_at(first);
-        match is_line(second) {
-            Some(true) if !has(torn, b"\"format\"") => true,
-            _ if second.is_empty() => is_torn_line(torn),
-            _ => is_line(&start).unwrap_or(false),
-        }
-    };
+    let is_line = is_line(&start);
     let whole = blank.chain(Cursor::new(start)).chain(input);
     if is_line {
         let read = Box::new(whole);
-        return Ok(RecogniseInput::Lines(LineInput { name, read, file }));
+        return Ok(RecogniseInput::Lines(LineInput { name, read }));
     }
     Ok(RecogniseInput::Touch(
         content::read_from(whole).map_err(refused)?,
@@ -367,8 +355,8 @@ fn line(input: &mut impl BufRead, start: &mut Vec<u8>) -> io::Result<usize> {
 }
 
 /// Returns true if the first line of a text is a question: a whole JSON object that is not a stored shape, even if it
-/// is wrong. None for an object that does not end in this line: it is a stored shape, or a line that was torn.
-fn is_line(text: &[u8]) -> Option<bool> {
+/// is wrong. An object that does not end in this line is a stored shape.
+fn is_line(text: &[u8]) -> bool {
     /// The key that stored shapes have, and questions do not.
     #[derive(Deserialize)]
     struct FormatKey {
@@ -376,23 +364,12 @@ fn is_line(text: &[u8]) -> Option<bool> {
     }
     let text = without_mark(text);
     if !text.trim_ascii_start().starts_with(b"{") {
-        return Some(false);
+        return false;
     }
     match serde_json::from_slice::<FormatKey>(text) {
-        Ok(keys) => Some(keys.format.is_none()),
-        Err(error) if error.is_eof() => None,
-        Err(_) => Some(true),
+        Ok(keys) => keys.format.is_none(),
+        Err(error) => !error.is_eof(),
     }
-}
-
-/// Returns true if a text without its end was a question: it has a key of one, and none that only stored shapes have.
-fn is_torn_line(text: &[u8]) -> bool {
-    let keys = [&b"\"imprint\""[..], b"\"touches\"", b"\"frame\""];
-    !has(text, b"\"format\"") && keys.into_iter().any(|key| has(text, key))
-}
-
-fn has(text: &[u8], word: &[u8]) -> bool {
-    text.windows(word.len()).any(|window| window == word)
 }
 
 /// The reason to refuse a line with none of these keys, or with two.
@@ -535,12 +512,11 @@ mod tests {
 
     #[test]
     fn lines_are_distinguished_from_stored_shapes() {
-        assert_eq!(is_line(b"{\"imprint\":[\"##\"]}\n"), Some(true));
-        assert_eq!(is_line(b"{\"imprint\":}\n"), Some(true));
-        assert_eq!(is_line(b"{\"format\":\"taxel-shape/1\"}\n"), Some(false));
-        assert_eq!(is_line(b"##..\n"), Some(false));
-        assert_eq!(is_line(b"{\n"), None);
-        assert_eq!(is_line(b"{\"imprint\":[\"##\"\n"), None);
+        assert!(is_line(b"{\"imprint\":[\"##\"]}\n"));
+        assert!(is_line(b"{\"imprint\":}\n"));
+        assert!(!is_line(b"{\"format\":\"taxel-shape/1\"}\n"));
+        assert!(!is_line(b"##..\n"));
+        assert!(!is_line(b"{\n"));
     }
 
     #[test]

@@ -51,7 +51,7 @@ pub(crate) fn screen(
 ) -> Result<u8, CliError> {
     let terminal = terminal_settings(settings, size, charset);
     let options = Options {
-        sensor: settings.sensor(),
+        sensor: settings.sensor,
         theme: terminal.theme(),
         // A different seed each time.
         seed: RandomState::new().hash_one(0),
@@ -116,10 +116,10 @@ fn terminal_settings(
     // A locale that is not UTF-8 means ASCII; a UTF-8 locale tells nothing about the terminal's font.
     let ascii = (charset == Charset::Ascii).then_some(true);
     let flags = Flags {
-        color: settings.color(),
-        palette: settings.theme(),
-        ascii: settings.ascii().or(ascii),
-        no_mouse: !settings.mouse(),
+        color: settings.color,
+        palette: settings.theme,
+        ascii: settings.ascii.or(ascii),
+        no_mouse: !settings.mouse,
         size,
     };
     TerminalSettings::from_environment(std::env::var_os, &flags)

@@ -107,7 +107,7 @@ fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOpti
     };
     ScriptOptions {
         options: Options {
-            sensor: settings.sensor(),
+            sensor: settings.sensor,
             theme,
             seed: 0,
         },

@@ -12,10 +12,9 @@
 
 use std::time::Instant;
 
-use crate::cli::arguments::flags::{ShardFile, TOO_LITTLE_MEMORY};
+use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::sweep::Wanted;
 use crate::cli::commands::export::written;
-use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
@@ -97,17 +96,13 @@ pub(crate) fn sweep(
 ) -> Result<Summary, CliError> {
     let start = Instant::now();
     let signals = Signals::catch()?;
-    let summary = |kept| Summary::new(text(kept, start, wanted, charset), Ok(()));
-    if let Some(kept) = kept(grid, shard, wanted, charset)? {
-        return Ok(summary(&kept));
-    }
     if let Some(file) = &wanted.atlas {
-        file.check(wanted.existing.at_writing())?;
+        file.check(wanted.existing)?;
     }
     let pool = threads::pool(jobs)?;
     let memory = MemoryGuard::new(wanted.memory, TOO_LITTLE_MEMORY);
     memory.check(grid).map_err(CliError::Memory)?;
-    let new = |path| PoseFile::new(path, grid, wanted.existing.at_writing());
+    let new = |path| PoseFile::new(path, grid, wanted.existing);
     let mut poses = wanted.poses.as_ref().map(new).transpose()?;
     let display = ProgressDisplay::new(shard.poses(grid), wanted.quiet, charset);
     let result = memory.limit(&signals.progress(&display), |progress| {
@@ -126,16 +121,7 @@ pub(crate) fn sweep(
     }
     let left = leave(&result, start, wanted, poses, charset, &signals)?;
     wanted.note_written(&left, charset);
-    if !matches!(left.written, Err(CliError::Taken { .. })) {
-        return Ok(left);
-    }
-    // Another job may have written this shard meanwhile: it was queued again, or started twice.
-    Ok(match kept(grid, shard, wanted, charset) {
-        Ok(Some(kept)) => summary(&kept),
-        Ok(None) => left,
-        // It is not that of another job: it is damaged, or belongs to another study.
-        Err(error) => Summary::new(left.text, Err(error)),
-    })
+    Ok(left)
 }
 
 /// Writes the atlas, gives the files their names, and returns the summary to print, with the error if there are no
@@ -168,7 +154,7 @@ fn write(
 ) -> Result<(), CliError> {
     let atlas = match &wanted.atlas {
         Some(file) => {
-            let whole = file.prepare(result, wanted.existing.at_writing(), &signals.stopped);
+            let whole = file.prepare(result, wanted.existing, &signals.stopped);
             if !signals.goes_on() {
                 return Err(signals.failure());
             }
@@ -192,37 +178,4 @@ fn text(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset)
     } else {
         summary.text(charset)
     }
-}
-
-/// Returns the atlas of an earlier run of this shard, and notes that it is kept; None without `--resume`, or if there
-/// is none.
-///
-/// # Errors
-/// Returns an error if the file is something else, or if its format is one that cannot be read.
-fn kept(
-    grid: &PoseGrid,
-    shard: Shard,
-    wanted: &Wanted,
-    charset: Charset,
-) -> Result<Option<SweepResult>, CliError> {
-    let Some(file) = wanted
-        .atlas
-        .as_ref()
-        .filter(|_| wanted.existing == ShardFile::Resumed)
-    else {
-        return Ok(None);
-    };
-    let name = file.path().to_string_lossy().into_owned();
-    if !file.is_archive() {
-        return Err(CliError::Ending {
-            name,
-            what: "an atlas that --resume keeps",
-            expected: ".npz",
-        });
-    }
-    let kept = resume::atlas(file.path(), grid, shard)?;
-    if kept.is_some() && !wanted.quiet {
-        note(&format!("{KEPT}: {name}"), charset);
-    }
-    Ok(kept)
 }

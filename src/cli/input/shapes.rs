@@ -197,13 +197,12 @@ impl Shelf {
         if !similar.is_empty() {
             return similar;
         }
-        let (flags, listed) = match error {
-            LibraryError::NotInTrash { .. } => (" --names --deleted", "those that are"),
-            _ => ("", "all shapes"),
-        };
+        if matches!(error, LibraryError::NotInTrash { .. }) {
+            return String::new();
+        }
         let command = self.library_command("list");
         command.map_or(String::new(), |list| {
-            format!("; to list {listed}: {list}{flags}")
+            format!("; to list all shapes: {list}")
         })
     }
 

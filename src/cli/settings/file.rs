@@ -5,7 +5,7 @@
 //! ```
 //! use taxel::cli::settings::file::Config;
 //! let config = Config::read("theme = 'light'\n[sensor]\ncolumns = 32\n[keys.matrix]\nx = 'toggle'\n").unwrap();
-//! assert_eq!(config.sensor_entries()[0].line, 3);
+//! assert_eq!(config.sensor_entries().len(), 1);
 //! let error = Config::read("theme = 'light'\ncolour = 'never'\n").unwrap_err();
 //! assert_eq!(error.to_string(),
 //!     "line 2, column 1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; \
@@ -15,8 +15,9 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::cli::settings::flags::Choice;
 use crate::cli::settings::sensors::{
-    FormatSetting, SENSOR_SETTINGS, SensorSetting, SensorSettings, SettingKind, Written,
+    FormatSetting, SENSOR_SETTINGS, SensorSetting, SensorSettings, SettingKind,
 };
 use crate::formats::stream::StreamFormat;
 use crate::parameter::{Parameter, ParameterError};
@@ -42,26 +43,26 @@ pub(crate) const CHARSETS: [(&str, bool); 2] = [("ascii", true), ("unicode", fal
 /// The largest settings file, in bytes. The parser may need seventy times the size of a hostile file.
 pub const MAX_BYTES: usize = 64 << 10;
 
-/// The content of the settings file. None means that the file does not set a value; an inner None means `auto`.
+/// The content of the settings file. None means that the file does not set a value.
 #[derive(Clone, Debug, Default)]
 pub struct Config {
     /// The palette of the screen.
-    pub(crate) theme: Option<Written<Option<Palette>>>,
+    pub(crate) theme: Option<Choice<Palette>>,
     /// The number of colours that the screen uses.
-    pub(crate) color: Option<Written<Option<ColorDepth>>>,
+    pub(crate) color: Option<Choice<ColorDepth>>,
     /// Whether characters are ASCII only.
-    pub(crate) charset: Option<Written<Option<bool>>>,
+    pub(crate) charset: Option<Choice<bool>>,
     /// Whether the screen reacts to the mouse.
-    pub(crate) mouse: Option<Written<bool>>,
+    pub(crate) mouse: Option<bool>,
     /// The folder of the library: an absolute path, or one that starts with `~/`, below the user's home.
-    pub(crate) library: Option<Written<String>>,
+    pub(crate) library: Option<String>,
     /// The default sensor with the values of the file.
     sensor: Sensor,
     /// The parameters of the sensor that the file sets, with their lines.
-    sensor_entries: Vec<Written<Parameter>>,
+    sensor_entries: Vec<Parameter>,
     sensors: SensorSettings,
     /// The keys that the file binds or frees, in its order.
-    changes: Vec<Written<Change>>,
+    changes: Vec<Change>,
     /// The default keys with these changes.
     keymap: Keymap,
 }
@@ -146,7 +147,7 @@ impl Config {
     }
 
     /// Returns the parameters of the sensor that the file sets.
-    pub fn sensor_entries(&self) -> &[Written<Parameter>] {
+    pub fn sensor_entries(&self) -> &[Parameter] {
         &self.sensor_entries
     }
 
@@ -156,7 +157,7 @@ impl Config {
     }
 
     /// Returns the key bindings that the file changes.
-    pub fn changes(&self) -> &[Written<Change>] {
+    pub fn changes(&self) -> &[Change] {
         &self.changes
     }
 
@@ -180,15 +181,13 @@ impl Config {
     /// Reads one entry of the top level.
     fn take(&mut self, text: &str, entry: TomlEntry<'_, '_>) -> Result<(), Refusal> {
         let (key, byte, value) = entry;
-        let line = line_and_column(text, byte).0;
         match key {
-            "theme" => self.theme = Some(choice(&Palette::NAMES, value, line)?),
-            "color" => self.color = Some(choice(&ColorDepth::NAMES, value, line)?),
-            "charset" => self.charset = Some(choice(&CHARSETS, value, line)?),
+            "theme" => self.theme = Some(choice(&Palette::NAMES, value)?),
+            "color" => self.color = Some(choice(&ColorDepth::NAMES, value)?),
+            "charset" => self.charset = Some(choice(&CHARSETS, value)?),
             "mouse" => {
                 let wanted = value.get_ref().as_bool();
-                let value = wanted.ok_or_else(|| other_kind("true or false", value))?;
-                self.mouse = Some(Written { value, line });
+                self.mouse = Some(wanted.ok_or_else(|| other_kind("true or false", value))?);
             }
             "library" => {
                 let path = string(value)?;
@@ -196,8 +195,7 @@ impl Config {
                     let expected = "a path that starts with / or ~/".to_owned();
                     return Err(unfit(expected, path, value));
                 }
-                let value = path.to_owned();
-                self.library = Some(Written { value, line });
+                self.library = Some(path.to_owned());
             }
             "sensor" => {
                 for (key, byte, value) in entries(table(value)?) {
@@ -212,14 +210,11 @@ impl Config {
                         .sensor
                         .with(parameter, number)
                         .map_err(|error| (value.span().start, error.into()))?;
-                    self.sensor_entries.push(Written {
-                        value: parameter,
-                        line: line_and_column(text, byte).0,
-                    });
+                    self.sensor_entries.push(parameter);
                 }
             }
             "source" | "frames" => self.take_sensors(text, key, value)?,
-            "keys" => self.bind_keys(text, value)?,
+            "keys" => self.bind_keys(value)?,
             _ => return Err(unknown(key, byte, &TOP)),
         }
         Ok(())
@@ -239,8 +234,7 @@ impl Config {
                 let names: Vec<&'static str> = rows().map(|row| row.name).collect();
                 unknown(key, byte, &names)
             })?;
-            let line = line_and_column(text, byte).0;
-            fill_sensor(&mut self.sensors, text, row, (value, line))?;
+            fill_sensor(&mut self.sensors, text, row, value)?;
             places.push((row.key, byte));
         }
         let conflict = self.sensors.conflict();
@@ -256,7 +250,7 @@ impl Config {
     }
 
     /// Reads the table `[keys]`: for each place a table, in which each key has an action or `"none"`.
-    fn bind_keys(&mut self, text: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
+    fn bind_keys(&mut self, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
         let mut spans = Vec::new();
         for (name, byte, value) in entries(table(value)?) {
             let known = Context::ALL.into_iter().find(|own| own.name() == name);
@@ -272,18 +266,14 @@ impl Config {
                 };
                 let key = one_key(key).ok_or_else(|| (byte, Wrong::Key(shortened_message(key))))?;
                 spans.push((byte, value.span().start));
-                self.changes.push(Written {
-                    value: Change {
-                        context,
-                        key,
-                        action,
-                    },
-                    line: line_and_column(text, byte).0,
+                self.changes.push(Change {
+                    context,
+                    key,
+                    action,
                 });
             }
         }
-        let changes: Vec<Change> = self.changes.iter().map(|own| own.value).collect();
-        self.keymap = Keymap::with(&changes).map_err(|(index, error)| {
+        self.keymap = Keymap::with(&self.changes).map_err(|(index, error)| {
             let (key, value) = spans[index];
             let byte = if matches!(error, KeymapError::Elsewhere { .. }) {
                 value
@@ -326,8 +316,7 @@ fn one_key(text: &str) -> Option<Key> {
 fn choice<T: Copy, const N: usize>(
     names: &[(&'static str, T); N],
     value: &Spanned<DeValue<'_>>,
-    line: usize,
-) -> Result<Written<Option<T>>, Refusal> {
+) -> Result<Choice<T>, Refusal> {
     let text = string(value)?;
     let known = names.iter().find(|(name, _)| *name == text);
     if known.is_none() && text != AUTO {
@@ -335,8 +324,7 @@ fn choice<T: Copy, const N: usize>(
         let expected = format!("one of \"{AUTO}\", {}", others.join(", "));
         return Err(unfit(expected, text, value));
     }
-    let value = known.map(|(_, own)| *own);
-    Ok(Written { value, line })
+    Ok(known.map_or(Choice::Auto, |(_, own)| Choice::Made(*own)))
 }
 
 /// Reads a value that must be text.
@@ -351,29 +339,20 @@ fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Ref
     table.ok_or_else(|| other_kind("a table", value))
 }
 
-/// Reads the value of a setting of real sensors, which is in that line.
 fn fill_sensor(
     sensors: &mut SensorSettings,
     text: &str,
     row: &SensorSetting,
-    (value, line): (&Spanned<DeValue<'_>>, usize),
+    value: &Spanned<DeValue<'_>>,
 ) -> Result<(), Refusal> {
     let (is_filled, found) = if let SettingKind::Format { fill } = row.kind {
         let name = string(value)?;
         let format = name.parse::<StreamFormat>().ok();
-        let setting = Written {
-            value: FormatSetting(format),
-            line,
-        };
         let is_known = format.is_some() || name == AUTO;
-        (is_known && fill(sensors, setting), name)
+        (is_known && fill(sensors, FormatSetting(format)), name)
     } else {
         let number = number(text, value)?;
-        let setting = Written {
-            value: number,
-            line,
-        };
-        (row.kind.fill(sensors, setting), written(text, value))
+        (row.kind.fill(sensors, number), written(text, value))
     };
     if is_filled {
         return Ok(());

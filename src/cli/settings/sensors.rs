@@ -11,36 +11,10 @@ use crate::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::live::request::WatchRequest;
 
-/// A value of the settings file, with its line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Written<T> {
-    /// The value.
-    pub value: T,
-    /// The line, from 1.
-    pub line: usize,
-}
-
-impl<T> Written<T> {
-    /// Puts the value into a field of its type. Returns false if it does not fit in.
-    fn fill<U: TryFrom<T>>(self, field: &mut Option<Written<U>>) -> bool {
-        let Ok(value) = U::try_from(self.value) else {
-            return false;
-        };
-        let line = self.line;
-        *field = Some(Written { value, line });
-        true
-    }
-
-    /// Returns the value as it is written in the file.
-    fn shown(&self) -> Written<String>
-    where
-        T: fmt::Display,
-    {
-        Written {
-            value: self.value.to_string(),
-            line: self.line,
-        }
-    }
+/// Puts a value into a field of its type. Returns false if it does not fit in.
+fn fill<T, U: TryFrom<T>>(value: T, field: &mut Option<U>) -> bool {
+    *field = U::try_from(value).ok();
+    field.is_some()
 }
 
 /// A setting of real sensors.
@@ -71,7 +45,7 @@ impl fmt::Display for FormatSetting {
 }
 
 /// A function that puts a value into its field. It returns false if the value does not fit in.
-type Fill<T> = fn(&mut SensorSettings, Written<T>) -> bool;
+type Fill<T> = fn(&mut SensorSettings, T) -> bool;
 
 /// The values that a setting may have, and how one gets into its field.
 #[derive(Clone, Copy, Debug)]
@@ -103,7 +77,7 @@ pub(crate) struct SensorSetting {
     pub(crate) name: &'static str,
     pub(crate) kind: SettingKind,
     /// Returns the value as the file has it; None if it does not set it.
-    shown: fn(&SensorSettings) -> Option<Written<String>>,
+    shown: fn(&SensorSettings) -> Option<String>,
 }
 
 /// The tables, in the order in which they are shown.
@@ -132,9 +106,9 @@ pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
                 name: stringify!($field),
                 kind: SettingKind::$kind {
                     $(least: $least, most: $most,)?
-                    fill: |own, written| written.fill(&mut own.$field),
+                    fill: |own, value| fill(value, &mut own.$field),
                 },
-                shown: |own| own.$field.as_ref().map(Written::shown),
+                shown: |own| own.$field.map(|value| value.to_string()),
             }
         };
     }
@@ -190,8 +164,7 @@ impl SettingKind {
     }
 
     /// Puts a number into its field. Returns false if it is out of range, or if no number is expected.
-    pub(crate) fn fill(self, settings: &mut SensorSettings, written: Written<f64>) -> bool {
-        let (number, line) = (written.value, written.line);
+    pub(crate) fn fill(self, settings: &mut SensorSettings, number: f64) -> bool {
         #[expect(
             clippy::cast_precision_loss,
             clippy::cast_possible_truncation,
@@ -202,15 +175,12 @@ impl SettingKind {
             Self::Format { .. } => false,
             Self::Whole { least, most, fill } => {
                 let range = least as f64..=most as f64;
-                let value = number as u64;
-                number.fract() == 0.0
-                    && range.contains(&number)
-                    && fill(settings, Written { value, line })
+                number.fract() == 0.0 && range.contains(&number) && fill(settings, number as u64)
             }
             Self::Number { least, most, fill } => {
-                (least..=most).contains(&number) && fill(settings, written)
+                (least..=most).contains(&number) && fill(settings, number)
             }
-            Self::Percent { fill } => Rule::percent(number).is_ok() && fill(settings, written),
+            Self::Percent { fill } => Rule::percent(number).is_ok() && fill(settings, number),
         }
     }
 }
@@ -218,22 +188,17 @@ impl SettingKind {
 /// The settings of real sensors that the file sets.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SensorSettings {
-    format: Option<Written<FormatSetting>>,
-    baud: Option<Written<u32>>,
-    rows: Option<Written<u16>>,
-    columns: Option<Written<u16>>,
-    at_least: Option<Written<f64>>,
-    percent: Option<Written<f64>>,
-    low: Option<Written<f64>>,
-    high: Option<Written<f64>>,
-    least: Option<Written<u32>>,
-    tare: Option<Written<u64>>,
-    history_bytes: Option<Written<usize>>,
-}
-
-/// Returns the value of a field; None if the file does not set it.
-fn value<T: Copy>(field: Option<&Written<T>>) -> Option<T> {
-    field.map(|written| written.value)
+    format: Option<FormatSetting>,
+    baud: Option<u32>,
+    rows: Option<u16>,
+    columns: Option<u16>,
+    at_least: Option<f64>,
+    percent: Option<f64>,
+    low: Option<f64>,
+    high: Option<f64>,
+    least: Option<u32>,
+    tare: Option<u64>,
+    history_bytes: Option<usize>,
 }
 
 impl SensorSettings {
@@ -245,7 +210,7 @@ impl SensorSettings {
 
     /// Returns low and high, if both are set.
     fn low_and_high(&self) -> Option<(f64, f64)> {
-        value(self.low.as_ref()).zip(value(self.high.as_ref()))
+        self.low.zip(self.high)
     }
 
     /// Returns the first key that conflicts with the others or lacks one, what was expected, and the key with which it
@@ -277,36 +242,35 @@ impl SensorSettings {
 
     /// Returns the rule for imprints.
     pub(crate) fn rule(&self) -> Option<Rule> {
-        let made = |field, make: fn(f64) -> Result<Rule, _>| make(value(field)?).ok();
+        let made = |value: Option<f64>, make: fn(f64) -> Result<Rule, _>| make(value?).ok();
         let both = || self.low_and_high();
-        made(self.at_least.as_ref(), Rule::at_least)
-            .or_else(|| made(self.percent.as_ref(), Rule::percent))
+        made(self.at_least, Rule::at_least)
+            .or_else(|| made(self.percent, Rule::percent))
             .or_else(|| both().and_then(|(low, high)| Rule::hysteresis(low, high).ok()))
     }
 
     /// Returns the smallest piece that is kept, in taxels.
     pub(crate) fn least(&self) -> Option<u32> {
-        value(self.least.as_ref())
+        self.least
     }
 
     /// Returns the number of frames for a tare.
     pub(crate) fn tare(&self) -> Option<u64> {
-        value(self.tare.as_ref())
+        self.tare
     }
 
     /// Returns the memory for the history of frames, in bytes.
     pub(crate) fn history_bytes(&self) -> usize {
-        value(self.history_bytes.as_ref()).unwrap_or(HISTORY_BYTES)
+        self.history_bytes.unwrap_or(HISTORY_BYTES)
     }
 
     /// Sets how a source is read, for the settings that the file has.
     pub(crate) fn apply(&self, options: &mut AcquireOptions) {
-        if let Some(FormatSetting(format)) = value(self.format.as_ref()) {
+        if let Some(FormatSetting(format)) = self.format {
             options.stream_format = format;
         }
-        options.baud = value(self.baud.as_ref()).unwrap_or(options.baud);
-        options.stream_size =
-            FrameSize::of_sides(value(self.columns.as_ref()), value(self.rows.as_ref()));
+        options.baud = self.baud.unwrap_or(options.baud);
+        options.stream_size = FrameSize::of_sides(self.columns, self.rows);
     }
 
     /// Returns the request that `:watch` starts with; its source is still missing.
@@ -323,8 +287,8 @@ impl SensorSettings {
         request
     }
 
-    /// Returns the value of a setting as it is written in the file, with its line.
-    pub(crate) fn written(&self, setting: &SensorSetting) -> Option<Written<String>> {
+    /// Returns the value of a setting as it is written in the file.
+    pub(crate) fn shown(&self, setting: &SensorSetting) -> Option<String> {
         (setting.shown)(self)
     }
 
@@ -356,19 +320,15 @@ mod tests {
         for row in &SENSOR_SETTINGS {
             for end in ends(row.kind) {
                 let mut settings = SensorSettings::default();
-                let line = 7;
                 let is_filled = match (row.kind, end) {
-                    (SettingKind::Format { fill }, _) => {
-                        let value = FormatSetting(None);
-                        fill(&mut settings, Written { value, line })
-                    }
-                    (kind, Some(value)) => kind.fill(&mut settings, Written { value, line }),
+                    (SettingKind::Format { fill }, _) => fill(&mut settings, FormatSetting(None)),
+                    (kind, Some(value)) => kind.fill(&mut settings, value),
                     (_, None) => false,
                 };
                 assert!(is_filled, "{row:?} {end:?}");
                 let value = end.map_or("\"auto\"".to_owned(), |end| end.to_string());
-                let shown = |other: &SensorSetting| settings.written(other);
-                assert_eq!(shown(row), Some(Written { value, line }));
+                let shown = |other: &SensorSetting| settings.shown(other);
+                assert_eq!(shown(row), Some(value));
                 let all = SENSOR_SETTINGS
                     .iter()
                     .filter(|other| shown(other).is_some());

@@ -16,7 +16,7 @@ use std::ffi::OsString;
 
 use clap::{ArgMatches, Command};
 
-use crate::cli::arguments::flags::{self, json, required, switch, unhandled_subcommand};
+use crate::cli::arguments::flags::{self, json, required, unhandled_subcommand};
 use crate::cli::arguments::help::{
     MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES, MODEL_SHOW_EXAMPLES,
 };
@@ -45,8 +45,6 @@ pub(crate) enum ModelRequest {
     Show(OsString, bool),
     /// List the models beside the library; true for JSON.
     List(bool),
-    /// Print the names of the models.
-    Names,
     /// Delete a model beside the library.
     Delete(Name),
     /// Evaluate which shapes one touch confuses.
@@ -74,7 +72,6 @@ impl ModelRequest {
             "touches" => Self::Touches(touches::TouchesArguments::of(own)),
             "confusion" => Self::Confusion(Box::new(confusion::ConfusionArguments::of(own)?)),
             "separate" => Self::Separate(Box::new(separate::SeparateArguments::of(own)?)),
-            "list" if own.get_flag("names") => Self::Names,
             "list" => Self::List(own.get_flag("json")),
             other => return Err(unhandled_subcommand(other)),
         })
@@ -90,7 +87,6 @@ pub(super) fn command() -> Command {
     let list = Command::new("list")
         .about("List the models")
         .after_help(MODEL_LIST_EXAMPLES)
-        .arg(switch("names", "Print only the names, one per line").conflicts_with("json"))
         .arg(json());
     let delete = Command::new("delete")
         .about("Delete a model")

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, ShardFile, anchor, jobs, json, memory, of_sensor, option, quiet, range, replace, resume,
-    shard, switch,
+    self, anchor, jobs, json, memory, of_sensor, option, quiet, range, replace, shard, switch,
 };
 use crate::cli::arguments::help::MODEL_TRAIN_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
@@ -19,6 +18,7 @@ use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, GivenRanges, SensorSides};
 use crate::recognition::{CellPositions, LEAST_SIDE};
 use crate::sensor::Sensor;
+use crate::storage::Existing;
 use crate::sweep::Shard;
 
 /// A set of shapes, the settings of its training, and where the model is written.
@@ -47,7 +47,7 @@ pub(crate) struct TrainArguments {
     /// Where the model is written.
     pub(crate) to: ModelTarget,
     /// The action if a model of this name exists.
-    pub(crate) existing: ShardFile,
+    pub(crate) existing: Existing,
     /// Whether the answer is a line of JSON.
     pub(crate) json: bool,
     /// Whether to leave out the chosen grid and the progress.
@@ -102,7 +102,6 @@ pub(super) fn command() -> Command {
             jobs(),
             memory(),
             shard(),
-            resume(),
             replace(),
             json(),
             quiet(),
@@ -154,7 +153,7 @@ impl TrainArguments {
             memory: flags::memory_of(matches),
             allow_cut: matches.get_flag("allow-cut"),
             to,
-            existing: ShardFile::of(matches),
+            existing: flags::existing(matches),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         })

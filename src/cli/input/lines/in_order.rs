@@ -8,8 +8,8 @@
 
 use std::collections::BTreeMap;
 use std::panic::resume_unwind;
+use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex};
 use std::thread;
 
 use crate::lock::locked;
@@ -42,8 +42,7 @@ impl<T, R> Drop for PanicReport<T, R> {
 }
 
 /// Passes each item of `source` to one of up to `jobs` workers, and the results to `sink`, in the order of the items.
-/// Each thread makes its worker with `worker`. With one job, or if the system provides no threads, all work is done
-/// on this thread.
+/// Each thread makes its worker with `worker`. With one job, all work is done on this thread.
 ///
 /// # Errors
 /// Returns the first error of `sink`; no more items are started then.
@@ -59,35 +58,28 @@ where
     S: FnMut() -> Option<T> + Send + 'static,
     W: FnMut(T) -> R,
 {
-    // Shared, because a thread that cannot be started does not return its closure.
-    let source = Arc::new(Mutex::new(source));
+    if jobs <= 1 {
+        let (mut source, mut worker) = (source, worker());
+        while let Some(item) = source() {
+            sink(worker(item))?;
+        }
+        return Ok(());
+    }
     let (events, heard) = channel();
     let (work, jobs_given) = channel();
     let jobs_given = Mutex::new(jobs_given);
-    let begun = thread::scope(|scope| {
+    thread::scope(|scope| {
         // They are dropped at the end of this block, which ends the workers: after a failure, no queued item is
         // started.
         let (work, heard) = (work, heard);
-        let started = (0..if jobs > 1 { jobs } else { 0 }).take_while(|_| {
+        for _ in 0..jobs {
             let (jobs_given, worker) = (&jobs_given, &worker);
             let events = PanicReport(events.clone());
-            let thread = thread::Builder::new();
-            let body = move || work_off(jobs_given, worker(), &events.0);
-            thread.spawn_scoped(scope, body).is_ok()
-        });
-        let workers = started.count();
-        let reader = (workers > 0).then(|| read_ahead(&source, workers, events));
-        let next = reader.flatten()?;
-        Some(hand_over(&heard, &work, &next, &mut sink))
-    });
-    if let Some(done) = begun {
-        return done;
-    }
-    let (mut next, mut worker) = (locked(&source), worker());
-    while let Some(item) = next() {
-        sink(worker(item))?;
-    }
-    Ok(())
+            scope.spawn(move || work_off(jobs_given, worker(), &events.0));
+        }
+        let next = read_ahead(source, jobs, events);
+        hand_over(&heard, &work, &next, &mut sink)
+    })
 }
 
 /// Processes items until there are no more, on a thread of its own.
@@ -108,12 +100,8 @@ fn work_off<T, R>(
 }
 
 /// Starts the thread of the source. It reads an item for each message that it receives; the first messages are
-/// already sent. Returns None if the thread cannot be started.
-fn read_ahead<T, R, S>(
-    source: &Arc<Mutex<S>>,
-    workers: usize,
-    events: Sender<Event<T, R>>,
-) -> Option<Sender<()>>
+/// already sent.
+fn read_ahead<T, R, S>(mut source: S, workers: usize, events: Sender<Event<T, R>>) -> Sender<()>
 where
     T: Send + 'static,
     R: Send + 'static,
@@ -124,10 +112,8 @@ where
         // Its receiver is in this function.
         let _ = next.send(());
     }
-    let source = Arc::clone(source);
     let events = PanicReport(events);
-    let body = move || {
-        let mut source = locked(&source);
+    thread::spawn(move || {
         for () in asked {
             let item = source();
             let last = item.is_none();
@@ -136,8 +122,8 @@ where
                 return;
             }
         }
-    };
-    thread::Builder::new().spawn(body).ok().map(|_| next)
+    });
+    next
 }
 
 /// Passes items to the workers as they come, and results to `sink` in order, until both have ended.
@@ -178,6 +164,7 @@ fn hand_over<T, R, E>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
     use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     use std::time::Duration;
 

@@ -10,7 +10,6 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::os::fd::AsFd;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -21,7 +20,6 @@ use crate::cli::input::lines::buffers::Buffers;
 use crate::cli::threads;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::json;
-use crate::storage::FileId;
 
 pub(crate) mod block;
 mod buffers;
@@ -35,8 +33,6 @@ pub(crate) struct LineInput {
     pub(crate) name: String,
     /// The lines.
     pub(crate) read: Box<dyn Read + Send>,
-    /// The file that they are in, if it is known.
-    pub(crate) file: Option<FileId>,
 }
 
 impl LineInput {
@@ -49,7 +45,6 @@ impl LineInput {
         match content::standard() {
             Ok(input) => Ok(Self {
                 name,
-                file: FileId::of_stream(&input).ok(),
                 read: Box::new(input),
             }),
             Err(error) => Err(CliError::Read { name, error }),
@@ -74,20 +69,8 @@ impl LineInput {
     pub(crate) fn of_file(path: PathBuf, file: File) -> Self {
         Self {
             name: InputSource::File(path).name(),
-            file: FileId::of(&file).ok(),
             read: Box::new(file),
         }
-    }
-
-    /// Returns true if standard output appends to the file: answers would be read as lines, and answered again without
-    /// end. A file that the shell has emptied has no lines.
-    fn is_output(&self) -> bool {
-        let output = io::stdout().as_fd().try_clone_to_owned();
-        let output = output.and_then(|output| File::from(output).metadata());
-        output.is_ok_and(|output| {
-            let id = FileId::in_metadata(&output);
-            output.is_file() && output.len() > 0 && self.file == Some(id)
-        })
     }
 }
 
@@ -97,8 +80,7 @@ impl LineInput {
 /// is too long.
 ///
 /// # Errors
-/// Returns [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`], [`CliError::Write`] or, if the
-/// answers would be appended to the input, [`CliError::OwnInput`] at once.
+/// Returns [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at once.
 pub(crate) fn answer_all<A>(
     jobs: usize,
     input: LineInput,
@@ -109,9 +91,6 @@ pub(crate) fn answer_all<A>(
 where
     A: FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
 {
-    if input.is_output() {
-        return Err(CliError::OwnInput { name: input.name });
-    }
     // There are separate buffers for lines and for answers, which are longer.
     let (read, written) = (Arc::<Buffers>::default(), Buffers::default());
     let mut blocks = BlockReader::new(input.read, Arc::clone(&read));
@@ -253,7 +232,6 @@ mod tests {
         let input = LineInput {
             name: "a test".to_owned(),
             read: Box::new(input),
-            file: None,
         };
         let done = answer_all(jobs, input, &mut output, "line", || {
             |line: &[u8], text: &mut Vec<u8>| {
