@@ -23,6 +23,11 @@
 //! A closed pipe, as in `taxel batch | head -1`, is not an error: the program stops and returns 0. Escape codes are
 //! written only by the screen, and by the progress bar of a sweep if standard error is a terminal.
 
+#![expect(
+    missing_docs,
+    reason = "this is the program; only its tests call it from outside"
+)]
+
 mod error;
 
 mod signals;
@@ -115,18 +120,13 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
     Ok(status)
 }
 
-/// The settings and resources that every command may use.
 struct Surroundings {
-    /// The settings in effect.
     settings: Effective,
-    /// The place where shapes are found by name: the library, files and standard input.
     shelf: Shelf,
-    /// The characters that an answer may contain.
     charset: Charset,
 }
 
 impl Surroundings {
-    /// Runs a command, prints its answer and returns the exit status: 0 unless the command has a status of its own.
     fn run(&self, request: Request) -> Result<u8, CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         match request {
@@ -188,7 +188,6 @@ impl Surroundings {
         Ok(0)
     }
 
-    /// Opens the screen; if a source of frames is given, on the page that shows it.
     fn screen(
         &self,
         size: Option<(u16, u16)>,
@@ -199,7 +198,6 @@ impl Surroundings {
         screen::screen(&self.settings, size, record, shelf, charset, watched)
     }
 
-    /// Touches a figure or a picture and prints its imprint, with notes on standard error.
     fn touch(
         &self,
         source: &Source,
@@ -256,7 +254,6 @@ impl Surroundings {
         done
     }
 
-    /// Runs a subcommand of `taxel model`.
     fn model(&self, request: ModelRequest) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let text = match request {
@@ -273,11 +270,6 @@ impl Surroundings {
         print(&text)
     }
 
-    /// Runs a subcommand of `taxel library`.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Shapes`] or [`CliError::UnsavedWork`] if `check` finds damaged files, after it has printed
-    /// all of them.
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let is_list = matches!(asked, LibraryCommand::List(_));
@@ -319,21 +311,15 @@ fn path_line(path: &Path, on_terminal: bool, charset: Charset) -> Vec<u8> {
     [bytes, b"\n"].concat()
 }
 
-/// Writes text to standard output.
 fn print(text: &str) -> Result<(), CliError> {
     write(text.as_bytes())
 }
 
-/// Prints a summary, and then returns the error if its files could not be written.
 fn print_summary(summary: Summary) -> Result<(), CliError> {
     print(&summary.text)?;
     summary.written
 }
 
-/// Writes bytes to standard output and flushes it.
-///
-/// # Errors
-/// Returns [`CliError::Write`], which is not reported if the pipe was closed at its other end.
 fn write(bytes: &[u8]) -> Result<(), CliError> {
     let mut output = io::stdout().lock();
     output

@@ -12,7 +12,6 @@ use crate::cli::error::CliError;
 use crate::progress::{Progress, stop_if};
 use crate::recognition::TrainingError;
 
-/// The signals that stop the work, each with the exit status that a shell reports for it: 128 plus its number.
 const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
 
 /// Lets a write beyond the limit of file sizes (`ulimit -f`) fail like a write to a full disk. Otherwise the signal
@@ -39,22 +38,15 @@ fn is_ignored(signal: i32) -> bool {
 /// Records whether a signal asks to stop the work. A second signal ends the program at once, as if it were not
 /// caught.
 pub(crate) struct Signals {
-    /// Whether a signal came.
     pub(crate) stopped: Arc<AtomicBool>,
-    /// The index in [`STOPPING`] of the signal that came last.
     last: Arc<AtomicUsize>,
 }
 
 impl Signals {
-    /// Catches the signals from now on.
-    ///
-    /// # Errors
-    /// Returns [`CliError::System`] if the system does not allow this.
     pub(crate) fn catch() -> Result<Self, CliError> {
         Self::registered().map_err(CliError::System)
     }
 
-    /// Returns the same as [`Self::catch`], with the system's error.
     fn registered() -> io::Result<Self> {
         let (stopped, last) = (Arc::default(), Arc::default());
         for (index, &(signal, status)) in STOPPING.iter().enumerate() {
@@ -68,7 +60,6 @@ impl Signals {
         Ok(Self { stopped, last })
     }
 
-    /// Returns the progress of work that `display` shows, and that stops at a signal.
     pub(crate) fn progress<'a, Done: 'a>(
         &'a self,
         display: &'a dyn Progress<Done>,
@@ -79,12 +70,10 @@ impl Signals {
         }
     }
 
-    /// Returns true until a signal asks to stop.
     pub(crate) fn goes_on(&self) -> bool {
         !self.stopped.load(Ordering::Relaxed)
     }
 
-    /// Returns the error of a command that failed: "stopped" if a signal came, else its own error.
     pub(crate) fn failure_or(&self, error: CliError) -> CliError {
         if self.goes_on() {
             error
@@ -93,7 +82,6 @@ impl Signals {
         }
     }
 
-    /// Returns the error of a training, which only a signal stops.
     pub(crate) fn training_failure(&self, error: TrainingError) -> CliError {
         match error {
             TrainingError::Stopped => self.failure(),
@@ -101,13 +89,11 @@ impl Signals {
         }
     }
 
-    /// Returns the error of a command that was stopped by the last signal.
     pub(crate) fn failure(&self) -> CliError {
         let status = self.status();
         CliError::Stopped { status }
     }
 
-    /// Returns the exit status of a command that was stopped by the last signal.
     pub(crate) fn status(&self) -> u8 {
         STOPPING[self.last.load(Ordering::Relaxed)].1
     }

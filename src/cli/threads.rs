@@ -15,7 +15,6 @@ pub(crate) fn count(jobs: usize) -> usize {
     }
 }
 
-/// Creates a pool of that [`count`] of threads.
 pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, CliError> {
     let pool = ThreadPoolBuilder::new().num_threads(jobs).build();
     pool.map_err(|error| CliError::System(io::Error::other(error)))

@@ -33,7 +33,6 @@ pub(super) fn with_tips(mut error: Error) -> Error {
     error
 }
 
-/// Returns a text that the error quotes.
 fn quoted(error: &Error, kind: ContextKind) -> Option<&str> {
     match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text),
@@ -41,7 +40,6 @@ fn quoted(error: &Error, kind: ContextKind) -> Option<&str> {
     }
 }
 
-/// Returns tips if a recording is given in place of a command: the commands that read it.
 fn for_recording(error: &Error) -> Vec<String> {
     let Some(given) = quoted(error, ContextKind::InvalidSubcommand) else {
         return Vec::new();
@@ -58,7 +56,6 @@ fn for_recording(error: &Error) -> Vec<String> {
     ]
 }
 
-/// Returns tips for a word that is not a kind of figure. For a misspelt kind, clap has a tip.
 fn for_no_figure(error: &Error) -> Vec<String> {
     let argument = quoted(error, ContextKind::InvalidArg);
     let given = quoted(error, ContextKind::InvalidValue).filter(|given| !given.is_empty());
@@ -81,7 +78,6 @@ fn for_no_figure(error: &Error) -> Vec<String> {
     }
 }
 
-/// Returns tips for missing arguments whose names do not explain them.
 fn for_missing(error: &Error) -> Vec<String> {
     let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else {
         return Vec::new();

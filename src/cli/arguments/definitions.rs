@@ -87,7 +87,6 @@ fn with_negative_numbers(command: Command) -> Command {
         .mut_subcommands(with_negative_numbers)
 }
 
-/// Defines `--library`.
 fn folder() -> Arg {
     option("library", "DIR", "The library's folder")
         .value_parser(value_parser!(PathBuf))
@@ -100,7 +99,6 @@ mod tests {
     use clap::error::{ContextKind, ContextValue, ErrorKind};
     use clap::{Arg, Command, Error};
 
-    /// Returns the commands that have no subcommands. All their arguments accept any text.
     fn innermost(command: &Command) -> Vec<Command> {
         let own: Vec<_> = command.get_subcommands().collect();
         if own.is_empty() {
@@ -114,7 +112,6 @@ mod tests {
         own.into_iter().flat_map(innermost).collect()
     }
 
-    /// Returns the words that give an argument, with a value if it takes one.
     fn given(arg: &Arg) -> Vec<String> {
         let flag = arg.get_long().map(|long| format!("--{long}"));
         let short = arg.get_short().map(|short| format!("-{short}"));
@@ -122,7 +119,6 @@ mod tests {
         flag.or(short).into_iter().chain(value).collect()
     }
 
-    /// Parses a command with these arguments and with everything that it always requires.
     fn parsed(command: &Command, args: &[&Arg]) -> Result<(), Error> {
         let is_given = |id: &clap::Id| args.iter().any(|arg| arg.get_id() == id);
         let mut all = args.to_vec();

@@ -15,8 +15,6 @@ use crate::formats::{DrawingFormat, ImprintFormat, Name};
 use crate::parameter::Parameter;
 use crate::storage::Existing;
 
-/// Defines `taxel export NAME|FILE TO`, such as `taxel export washer washer.svg`. Standard output is `-` with
-/// `--format`.
 pub(super) fn command() -> Command {
     let to = Arg::new("to")
         .value_name("TO")
@@ -35,7 +33,6 @@ pub(super) fn command() -> Command {
         .arg(replace())
 }
 
-/// Defines `--format`, for file names whose extension does not tell the format.
 pub(super) fn format() -> Arg {
     let names = names();
     let help = format!(
@@ -47,53 +44,39 @@ pub(super) fn format() -> Arg {
         .hide_possible_values(true)
 }
 
-/// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ExportFormat {
-    /// The imprint, as text, PBM, CSV or NPY.
     Imprint(ImprintFormat),
-    /// A drawing of the imprint with its descriptors.
     Drawing(DrawingFormat),
 }
 
 impl ExportFormat {
-    /// Returns the format of this name, as in `--format`.
     fn of(name: &str) -> Option<Self> {
         let format = name.parse().map(Self::Imprint);
         format.or_else(|_| name.parse().map(Self::Drawing)).ok()
     }
 
-    /// Returns the format of a file's extension.
     fn of_ending(path: &Path) -> Option<Self> {
         let format = ImprintFormat::of_path(path).map(Self::Imprint);
         format.or_else(|| DrawingFormat::of_path(path).map(Self::Drawing))
     }
 }
 
-/// Returns the names of all formats, for `--format`.
 pub(crate) fn names() -> Vec<&'static str> {
     let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
     let drawings = DrawingFormat::ALL.iter().map(|format| format.name());
     imprints.chain(drawings).collect()
 }
 
-/// A file to write.
 #[derive(Clone, Debug)]
 pub(crate) struct Export {
     /// Its path; None for standard output.
     pub(crate) path: Option<PathBuf>,
-    /// The format that is written.
     pub(crate) format: ExportFormat,
-    /// Whether an existing file is replaced.
     pub(crate) existing: Existing,
 }
 
 impl Export {
-    /// Creates an export to `path`, or to standard output for `-`, in the format named by `format`, or else by the
-    /// path's extension.
-    ///
-    /// # Errors
-    /// Returns a message if neither names a format.
     pub(crate) fn new(
         path: &Path,
         format: Option<&str>,
@@ -120,10 +103,6 @@ impl Export {
         })
     }
 
-    /// Returns the file to write, in the format given by `--format` or by its extension.
-    ///
-    /// # Errors
-    /// Returns an error if the format is not known, and [`CliError::Unused`] for a `--force` that replaces nothing.
     pub(super) fn of(
         matches: &ArgMatches,
         path: &Path,
@@ -143,10 +122,6 @@ impl Export {
         Ok(export)
     }
 
-    /// Returns the pitch for an export.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Unused`] if a flag gives one and nothing is drawn.
     pub(super) fn pitch(
         &self,
         matches: &ArgMatches,
@@ -163,7 +138,6 @@ impl Export {
         Ok(pitch)
     }
 
-    /// Returns true if it is a drawing.
     pub(crate) fn is_drawing(&self) -> bool {
         matches!(self.format, ExportFormat::Drawing(_))
     }

@@ -26,7 +26,6 @@ use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::Existing;
 use crate::sweep::{Shard, ShardError};
 
-/// Defines a flag without a value, `--NAME`.
 pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
     Arg::new(name)
         .long(name)
@@ -34,7 +33,6 @@ pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
         .help(help)
 }
 
-/// Defines a flag with a value, `--NAME VALUE`. The value is a text unless a parser is set.
 pub(super) fn option(name: &'static str, value: &'static str, help: impl Into<StyledStr>) -> Arg {
     Arg::new(name)
         .long(name)
@@ -107,7 +105,6 @@ pub(super) fn range(axis: Axis, default: &str) -> Arg {
         .help(parameters::wrapped(&help, 46))
 }
 
-/// Returns the axes of the grid whose flags, made by [`range`], are given.
 pub(super) fn ranges_of(matches: &ArgMatches) -> GivenRanges {
     GivenRanges::from_fn(|axis| {
         let range = matches.get_one(&format!("range_{}", axis.name()));
@@ -115,7 +112,6 @@ pub(super) fn ranges_of(matches: &ArgMatches) -> GivenRanges {
     })
 }
 
-/// Defines `--anchor`, the point of a shape that the ranges of x0 and y0 place.
 pub(super) fn anchor() -> Arg {
     option(
         "anchor",
@@ -127,19 +123,16 @@ pub(super) fn anchor() -> Arg {
     .help_heading("Grid")
 }
 
-/// Defines `--jobs`, the number of threads.
 pub(super) fn jobs() -> Arg {
     option("jobs", "N", "Threads; default all cores").value_parser(whole::<u16>(1..=1024))
 }
 
-/// Returns the value of [`jobs`]; if not given 0, which means the default number.
 pub(super) fn jobs_of(matches: &ArgMatches) -> usize {
     matches
         .get_one::<u16>("jobs")
         .map_or(0, |&jobs| jobs.into())
 }
 
-/// Defines `--memory`, the most memory that a sweep or a training may use.
 pub(super) fn memory() -> Arg {
     option(
         "memory",
@@ -149,30 +142,24 @@ pub(super) fn memory() -> Arg {
     .value_parser(|text: &str| text.parse::<MemorySize>())
 }
 
-/// Advice if memory does not suffice for work that has the flags [`memory`] and [`shard`].
 pub(crate) const TOO_LITTLE_MEMORY: &str = "take coarser steps, work in shards (--shard 1/8, ..., then taxel merge), or allow more (--memory)";
 
-/// Returns the value of [`memory`], if it is given.
 pub(super) fn memory_of(matches: &ArgMatches) -> Option<MemorySize> {
     matches.get_one("memory").copied()
 }
 
-/// Defines `--shard`, for work that is divided among several machines.
 pub(super) fn shard() -> Arg {
     option("shard", "K/N", "Compute only shard K of N of the grid").value_parser(parse_shard)
 }
 
-/// Returns the value of [`shard`]; if not given, the whole grid.
 pub(super) fn shard_of(matches: &ArgMatches) -> Shard {
     matches.get_one("shard").copied().unwrap_or(Shard::WHOLE)
 }
 
-/// Defines `--force` for commands that write a file.
 pub(super) fn replace() -> Arg {
     force().help("Replace an existing file")
 }
 
-/// Returns what to do about files that exist: `--force` replaces them.
 pub(crate) fn existing(matches: &ArgMatches) -> Existing {
     if matches.get_flag("force") {
         Existing::Replaced
@@ -181,35 +168,29 @@ pub(crate) fn existing(matches: &ArgMatches) -> Existing {
     }
 }
 
-/// Defines `--quiet`.
 pub(super) fn quiet() -> Arg {
     switch("quiet", "Show no progress and no notes")
 }
 
-/// Defines `--force` for commands that store a shape.
 pub(super) fn force() -> Arg {
     switch("force", "Replace an existing shape of this name")
 }
 
-/// Defines all flags of the sensor.
 pub(super) fn sensor() -> Vec<Arg> {
     of_sensor(SENSOR_PARAMETERS)
 }
 
-/// Defines the flags of the sensor except `--pitch`, for commands that show no lengths.
 pub(super) fn sensor_of_imprints() -> Vec<Arg> {
     let own = SENSOR_PARAMETERS.iter().copied();
     let own = own.filter(|&parameter| parameter != Parameter::Pitch);
     of_sensor(&own.collect::<Vec<_>>())
 }
 
-/// Defines the flags of some parameters of the sensor.
 pub(super) fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
     let flag = |&parameter: &Parameter| parameters::arg(parameter).help_heading("Sensor");
     parameters.iter().map(flag).collect()
 }
 
-/// Defines a positional argument that is the name of a stored shape.
 pub(super) fn name(help: &'static str) -> Arg {
     Arg::new("name")
         .value_name("NAME")
@@ -235,24 +216,18 @@ pub(super) fn what(help: &'static str) -> Arg {
         .help(help)
 }
 
-/// Defines `--json`.
 pub(super) fn json() -> Arg {
     switch("json", "Print JSON, one line per answer")
 }
 
-/// The form in which an evaluation is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EvaluationForm {
-    /// Tables and bars for people; the default.
     Text,
-    /// Comma-separated values with names in the first row: `--csv`.
     Csv,
-    /// One line of JSON: `--json`.
     Json,
 }
 
 impl EvaluationForm {
-    /// Returns the form that `--json` or `--csv` asks for; they exclude each other.
     pub(super) fn of(matches: &ArgMatches) -> Self {
         match (matches.get_flag("json"), matches.get_flag("csv")) {
             (true, _) => Self::Json,
@@ -262,7 +237,6 @@ impl EvaluationForm {
     }
 }
 
-/// Parses a number from 0 to 1.
 pub(super) fn parse_probability(text: &str) -> Result<f64, String> {
     let number = parse_number(text)?;
     (0.0..=1.0)
@@ -280,23 +254,19 @@ pub(super) fn parse_range(text: &str) -> Result<DecimalRange, String> {
     })
 }
 
-/// Parses a shard. clap quotes the argument, so the message does not.
 fn parse_shard(text: &str) -> Result<Shard, &'static str> {
     text.parse().map_err(|error: ShardError| error.expected())
 }
 
-/// Parses a finite number with a decimal point.
 pub(super) fn parse_number(text: &str) -> Result<f64, String> {
     number::read(text).ok_or_else(|| number::complaint(text))
 }
 
-/// Parses the name of a file of numbers or of a drawing; its extension decides which.
 pub(super) fn report() -> impl TypedValueParser<Value = PathBuf> {
     let expected = "expected a name that ends in .csv, .svg or .png";
     file_of(&["csv", "svg", "png"], expected)
 }
 
-/// Parses the name of a file for numpy: all poses of a sweep, or recorded frames.
 pub(super) fn npy() -> impl TypedValueParser<Value = PathBuf> {
     file_of(&["npy"], "expected a name that ends in .npy")
 }
@@ -313,7 +283,6 @@ fn file_of(
     })
 }
 
-/// Returns the value of an argument that clap requires; if it is missing, clap has refused the command before.
 pub(super) fn required<T: Clone + Send + Sync + 'static>(
     matches: &ArgMatches,
     id: &str,
@@ -330,7 +299,6 @@ pub(super) fn unhandled_subcommand(name: &str) -> CliError {
     clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
 }
 
-/// Defines the required argument `MODEL`: the name of a model beside the library, or its file.
 pub(super) fn which_model() -> Arg {
     Arg::new("model")
         .value_name("MODEL")
@@ -339,7 +307,6 @@ pub(super) fn which_model() -> Arg {
         .help("Name of a model, or its file")
 }
 
-/// Defines `--seed`. The same seed draws the same touches with any number of threads.
 pub(super) fn seed() -> Arg {
     option("seed", "N", "Seed of the random numbers; default 0")
         .value_parser(whole::<u64>(0..))
@@ -347,7 +314,6 @@ pub(super) fn seed() -> Arg {
         .hide_default_value(true)
 }
 
-/// Returns the value of a flag, or its default.
 pub(super) fn number_of<T: Copy + Send + Sync + 'static>(
     matches: &ArgMatches,
     id: &str,
@@ -356,7 +322,6 @@ pub(super) fn number_of<T: Copy + Send + Sync + 'static>(
     matches.get_one(id).copied().unwrap_or(default)
 }
 
-/// Returns a usage error with the usage of the command `name`.
 pub(super) fn misused(command: &mut Command, name: &str, message: &str) -> CliError {
     let error = command.find_subcommand_mut(name).map_or_else(
         || clap::Error::raw(ErrorKind::ArgumentConflict, format!("{message}\n")),

@@ -7,17 +7,14 @@ use crate::cli::error::CliError;
 use crate::cli::settings::pitch::Pitch;
 use crate::cli::settings::resolved::Effective;
 
-/// The form in which an imprint and its descriptors are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Form {
-    /// One line of JSON, in cells. The pitch is for a drawing that is exported too.
     Json(Pitch),
     /// The matrix and a table, which is in mm too if the pitch is known.
     Table(Pitch),
 }
 
 impl Form {
-    /// Returns JSON for `--json`, otherwise a table.
     pub(super) fn of(matches: &ArgMatches, settings: &Effective) -> Result<Self, CliError> {
         let pitch = pitch_of(matches, settings)?;
         Ok(if matches.get_flag("json") {
@@ -28,7 +25,6 @@ impl Form {
     }
 }
 
-/// Returns the pitch of the flags and of the settings.
 pub(super) fn pitch_of(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, CliError> {
     Ok(Pitch {
         given: Given::of(matches).pitch()?,

@@ -26,61 +26,44 @@ use crate::imprint::Imprint;
 use crate::parameter::{Parameter, number};
 use crate::recognition::Noise;
 
-/// The frames that are answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FrameChoice {
     /// The frame of this number, from 0.
     Number(u64),
-    /// The frames that the recording labels with this number.
     Label(i64),
-    /// The frame with the greatest sum.
     Peak,
-    /// All frames.
     All,
-    /// No single frame: a report on all of them, how often taxels flip and which are dead or stuck.
     NoiseReport,
 }
 
-/// The processing that turns frames into imprints.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ProcessingArguments {
-    /// The size of a frame, for recordings that do not state it.
     pub(crate) size: Option<FrameSize>,
-    /// The channel of a recording that has several.
     pub(crate) channel: Option<String>,
-    /// The crop, the flips and the turn. The mask is still a file.
     pub(crate) view: View,
     /// The file with an imprint of the cells without a value, placed as the frame is seen after the turn.
     pub(crate) mask: Option<PathBuf>,
     /// The number of frames for the tare; 0 for no tare, None for that of the recording.
     pub(crate) tare: Option<u64>,
-    /// Whether the tare comes from a flag or from the settings.
     pub(crate) tare_from: RuleOrigin,
     /// A recording of one frame: the factors that cells are multiplied by after the tare.
     pub(crate) gain: Option<PathBuf>,
     /// The threshold; None for that of the recording.
     pub(crate) rule: Option<Rule>,
-    /// Whether the rule comes from a flag or from the settings.
     pub(crate) rule_from: RuleOrigin,
-    /// The smallest 8-connected piece that is kept, in taxels; 0 for the limit of the recording's own rule, or none.
     pub(crate) least: u32,
 }
 
-/// The arguments of `taxel frames`.
 #[derive(Clone, Debug)]
 pub(crate) struct FramesArguments {
-    /// The recording; `-` for standard input.
     pub(crate) file: PathBuf,
     /// The frames to answer; None lists all channels.
     pub(crate) choice: Option<FrameChoice>,
-    /// The processing from values to the imprint.
     pub(crate) processing: ProcessingArguments,
-    /// Whether values are shown in shades.
     pub(crate) heat: bool,
     pub(crate) naming: NamingArguments,
 }
 
-/// Defines `taxel frames FILE`.
 pub(crate) fn command() -> Command {
     let file = Arg::new("file")
         .value_name("FILE")
@@ -207,7 +190,6 @@ pub(crate) fn processing() -> [Arg; 9] {
     .map(|arg| arg.help_heading("Processing"))
 }
 
-/// Defines the flags that name the shape of each imprint.
 pub(crate) fn naming() -> [Arg; 2] {
     let model = option(
         "model",
@@ -296,10 +278,6 @@ fn parse_crop(text: &str) -> Result<Crop, &'static str> {
 }
 
 impl FramesArguments {
-    /// Reads the arguments of [`command`].
-    ///
-    /// # Errors
-    /// Returns an error if a threshold is out of range.
     pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
         let file = required(matches, "file")?;
         let choice = match (matches.get_one("frame"), matches.get_one("label")) {
@@ -320,17 +298,14 @@ impl FramesArguments {
     }
 }
 
-/// The model that names imprints, and the probability that a taxel of the sensor flips.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NamingArguments {
     /// The model's name or file; None to name nothing.
     pub(crate) model: Option<OsString>,
-    /// The probability that a taxel flips.
     pub(crate) noise: Option<Noise>,
 }
 
 impl NamingArguments {
-    /// Reads the arguments of [`naming`].
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         Self {
             model: matches.get_one::<OsString>("model").cloned(),
@@ -338,7 +313,6 @@ impl NamingArguments {
         }
     }
 
-    /// Returns the noise, with the dead cells of a mask left out.
     pub(crate) fn noise_with(&self, mask: Option<&Imprint>) -> Option<Noise> {
         let noise = self.noise?;
         Some(mask.map_or(noise, |mask| noise.with_dead(*mask)))
@@ -346,10 +320,6 @@ impl NamingArguments {
 }
 
 impl ProcessingArguments {
-    /// Reads the arguments of [`processing`] and [`rules`]; the settings apply to those that are not given.
-    ///
-    /// # Errors
-    /// Returns an error if a threshold is out of range.
     pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
         let asked = rule(matches)?;
         let rule_from = if asked.is_some() {
@@ -392,7 +362,6 @@ impl ProcessingArguments {
 }
 
 impl ProcessingArguments {
-    /// Returns the rule of the flags, or else of the settings.
     pub(crate) fn set_rule(&self) -> Option<SetRule> {
         let (least, from) = (self.least, self.rule_from);
         self.rule.map(|rule| SetRule { rule, least, from })
@@ -410,11 +379,6 @@ impl ProcessingArguments {
     }
 }
 
-/// Returns the rule of the flags, if one is given.
-///
-/// # Errors
-/// Returns [`CliError::Range`] for a value that the rule does not allow:
-/// `is out of range (allowed: above 0, up to 100)`.
 fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
     let value = |id: &str| matches.get_one::<f64>(id).copied();
     let out_of_range = |flag: &str, value: f64| {

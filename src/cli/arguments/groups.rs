@@ -4,7 +4,6 @@ use clap::Command;
 
 use crate::cli::arguments::parameters;
 
-/// The headings and their commands, in the order of the help.
 const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Touch",
@@ -19,10 +18,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ),
 ];
 
-/// The width of the longest command name, and two spaces.
 const COLUMN: usize = 13;
 
-/// The width that is left of 80 columns.
 const WIDTH: usize = 65;
 
 /// Makes the help list the commands by groups. It is used only for reading arguments: it hides the commands, and

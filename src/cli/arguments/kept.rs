@@ -11,26 +11,18 @@ use crate::cli::error::CliError;
 use crate::formats::Name;
 use crate::storage::Existing;
 
-/// The places in which a touch is kept, in addition to printing it.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept {
-    /// The name to store the shape under: `--save`.
     pub(crate) saving: Option<Saving>,
-    /// The file to write: `--export`.
     pub(crate) export: Option<Export>,
 }
 
-/// How to store a shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Saving {
-    /// The name of the stored shape.
     pub(crate) name: Name,
-    /// Whether to replace an own shape of this name.
     pub(crate) existing: Existing,
 }
 
-/// Defines the flags that keep the result of a touch: `--save`, `--export` with `--format`, and `--force`. They are
-/// for commands that answer with one imprint: `figure`, `picture` and `frames`.
 pub(super) fn flags() -> [Arg; 4] {
     let save = option("save", "NAME", "Also store the shape in the library")
         .value_parser(Name::new)
@@ -49,7 +41,6 @@ pub(super) fn flags() -> [Arg; 4] {
     ]
 }
 
-/// Groups `--save` and `--export`: `--force` requires at least one of them.
 pub(super) fn group() -> ArgGroup {
     ArgGroup::new("kept")
         .args(["save", "export"])
@@ -57,10 +48,6 @@ pub(super) fn group() -> ArgGroup {
 }
 
 impl Kept {
-    /// Reads what to keep of a touch.
-    ///
-    /// # Errors
-    /// Returns an error if standard output would get more than one export: an answer too, or several frames.
     pub(super) fn of(
         matches: &ArgMatches,
         command: &mut Command,
@@ -86,14 +73,12 @@ impl Kept {
         })
     }
 
-    /// Returns true if anything is to be kept.
     pub(crate) fn is_asked(&self) -> bool {
         self.saving.is_some() || self.export.is_some()
     }
 }
 
 impl Saving {
-    /// Reads `--save` with its `--force`.
     fn of(matches: &ArgMatches) -> Option<Self> {
         let name = matches.get_one::<Name>("save")?.clone();
         let existing = existing(matches);

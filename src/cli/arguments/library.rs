@@ -18,27 +18,17 @@ use crate::cli::settings::resolved::Effective;
 use crate::formats::Name;
 use crate::parameter::Parameter;
 
-/// A subcommand of `taxel library`.
 #[derive(Clone, Debug)]
 pub(crate) enum LibraryCommand {
-    /// List all shapes; true for JSON.
     List(bool),
-    /// Describe a shape.
     Show(Name, Form),
-    /// Store a shape of the library or of a file under a name.
     Save(Saving, OsString),
-    /// Move a shape to the trash.
     Delete(Name),
-    /// Restore a deleted shape.
     Restore(Name),
-    /// Print the library's folder.
     Path,
-    /// Read every shape and report damaged ones and other files; true for JSON.
     Check(bool),
 }
 
-/// Defines `taxel library` and its subcommands, one of which is required: `taxel library list --json`,
-/// `taxel library save NAME FILE` and so on.
 pub(super) fn command() -> Command {
     let command = |name: &'static str, about: &'static str, examples: &'static str| {
         Command::new(name).about(about).after_help(examples)
@@ -77,7 +67,6 @@ pub(super) fn command() -> Command {
 }
 
 impl LibraryCommand {
-    /// Reads the subcommand of `taxel library`.
     pub(super) fn of(matches: &ArgMatches, settings: &Effective) -> Result<Self, CliError> {
         let Some((command, own)) = matches.subcommand() else {
             // clap requires a subcommand, so there is always one.

@@ -17,29 +17,21 @@ use crate::storage::Existing;
 use crate::tui::script::command;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// The arguments of `taxel script`: what to run and how.
 #[derive(Clone, Debug)]
 pub(crate) struct Script {
     /// The source of its lines; None if only `keys` are given.
     pub(crate) source: Option<InputSource>,
-    /// The keys to press before the script.
     pub(crate) keys: Option<String>,
-    /// Columns and rows of the screen.
     pub(crate) size: (u16, u16),
-    /// Whether screens are printed with a grid of style letters.
     pub(crate) styles: bool,
-    /// Whether screens are printed as lines of JSON.
     pub(crate) json: bool,
-    /// The folder for drawings of screens, if given.
     pub(crate) drawings: Option<PathBuf>,
-    /// Whether drawings that exist are replaced.
     pub(crate) existing: Existing,
     /// Whether the script may use any library and write anywhere.
     pub(crate) allow_outside: bool,
 }
 
 impl Script {
-    /// Reads the arguments of [`script`]. Without a file and `--keys`, the script comes from standard input.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let file = matches.get_one::<PathBuf>("file");
         let source = file.map(|file| InputSource::of(file));
@@ -62,7 +54,6 @@ impl Script {
     }
 }
 
-/// Defines `taxel script [FILE]`.
 pub(crate) fn script() -> Command {
     let file = Arg::new("file")
         .value_name("FILE")
@@ -92,7 +83,6 @@ pub(crate) fn script() -> Command {
         .args([file, keys, size(), styles, json, svg, force, allow_outside])
 }
 
-/// Defines `taxel completions SHELL`.
 pub(crate) fn completions() -> Command {
     let shell = Arg::new("shell")
         .value_name("SHELL")
@@ -106,7 +96,6 @@ pub(crate) fn completions() -> Command {
         .arg(shell)
 }
 
-/// Defines `taxel man [DIR]`.
 pub(crate) fn man() -> Command {
     let folder = Arg::new("folder")
         .value_name("DIR")
@@ -148,7 +137,6 @@ pub(crate) fn look() -> [Arg; 3] {
     .map(|arg| arg.help_heading("Terminal"))
 }
 
-/// Defines `--record`.
 pub(crate) fn record() -> Arg {
     option(
         "record",
@@ -158,7 +146,6 @@ pub(crate) fn record() -> Arg {
     .value_parser(value_parser!(PathBuf))
 }
 
-/// Defines `taxel config`. It also takes the flags that change settings, to show their effect.
 pub(crate) fn config() -> Command {
     Command::new("config")
         .about("Print the settings in force, and the path of their file")
@@ -166,7 +153,6 @@ pub(crate) fn config() -> Command {
         .args(look())
 }
 
-/// Defines `--config`, which every command takes.
 pub(crate) fn config_file() -> Arg {
     option(
         "config",
@@ -176,7 +162,6 @@ pub(crate) fn config_file() -> Arg {
     .value_parser(value_parser!(PathBuf))
 }
 
-/// Defines `--size`, for the screen and for scripts.
 pub(crate) fn size() -> Arg {
     option("size", "CxR", "Columns and rows of the screen").value_parser(command::size)
 }

@@ -19,34 +19,23 @@ use crate::index::wide;
 use crate::parameter::Parameter;
 use crate::recognition::{Noise, NoiseError};
 
-/// The touches to recognise, and how.
 #[derive(Clone, Debug)]
 pub(crate) struct RecogniseArguments {
-    /// An imprint, or lines of touches: a stored shape, a file, or `-`.
     pub(crate) what: OsString,
-    /// Name or file of the model.
     pub(crate) model: OsString,
     /// The number of shapes of the ranking to show; None for eight in text and all in JSON.
     pub(crate) top: Option<usize>,
-    /// The least probability of an answer (0 to 1); less probable answers are rejected.
     pub(crate) reject: Option<f64>,
-    /// The expected answer; any other ends with status 3.
     pub(crate) expect: Option<String>,
-    /// The probability that a taxel flips.
     pub(crate) noise: Option<Noise>,
-    /// An imprint of the dead taxels, which tell nothing about the shape.
     pub(crate) mask: Option<OsString>,
-    /// Whether to tell where the shape lies.
     pub(crate) pose: bool,
     /// The pitch in mm; if given, the place of the shape is in mm too.
     pub(crate) pitch_mm: Option<f64>,
-    /// The number of threads that answer lines; 0 means the default.
     pub(crate) jobs: usize,
-    /// Whether the answer is a line of JSON. Lines of touches are always answered in JSON.
     pub(crate) json: bool,
 }
 
-/// Defines `taxel recognise NAME|FILE`.
 pub(super) fn command() -> Command {
     let model = option(
         "model",
@@ -99,14 +88,12 @@ pub(super) fn command() -> Command {
         .args([jobs(), json()])
 }
 
-/// Parses the probability that a taxel flips: 0 or more, below 0.5.
 pub(crate) fn parse_noise(text: &str) -> Result<Noise, String> {
     let number = flags::parse_number(text)?;
     Noise::new(number).map_err(|error: NoiseError| error.expected().to_owned())
 }
 
 impl RecogniseArguments {
-    /// Reads the arguments of [`command`]; `pitch_mm` is that of the flag, or else of the settings.
     pub(super) fn of(matches: &ArgMatches, pitch_mm: Option<f64>) -> Self {
         Self {
             what: flags::word(matches, "what"),

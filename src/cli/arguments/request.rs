@@ -32,56 +32,35 @@ use crate::cli::settings::resolved::{Effective, Loaded};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// The request of a command line, and the settings for it.
 #[derive(Clone, Debug)]
 pub(crate) struct Invocation {
-    /// The command.
     pub(crate) request: Request,
-    /// Whether `--library` is given.
     pub(crate) library_named: bool,
-    /// The settings in effect.
     pub(crate) settings: Effective,
 }
 
-/// A command with its arguments.
 #[derive(Clone, Debug)]
 pub(crate) enum Request {
-    /// Print this text: the help, or the version.
     Help(String),
     /// Open the screen: with this size instead of the terminal's, and recording into this file, if given.
     Screen(Option<(u16, u16)>, Option<PathBuf>),
-    /// Run a script.
     Script(Script),
-    /// Touch a figure.
     Figure(Box<Source>, Sensor, Form, Kept),
-    /// Touch a stored shape after changing the given values.
     Picture(OsString, Given, Form, Kept),
-    /// Describe a stored shape or a file.
     Describe(OsString, Form),
-    /// Write a stored shape or a file in another format.
     Export(OsString, Export, Pitch),
     /// Answer lines of JSON from a file or standard input; with the sensor for lines without one, and the number of
     /// threads (0 means the default).
     Batch(Option<PathBuf>, Sensor, usize),
-    /// Sweep a grid of poses.
     Sweep(Box<SweepArguments>),
-    /// Merge the shards in these files.
     Merge(Vec<PathBuf>, Wanted),
-    /// A subcommand of `taxel model`.
     Model(ModelRequest),
-    /// Name the shape that left an imprint.
     Recognise(Box<RecogniseArguments>),
-    /// List a recording, or describe its frames.
     Frames(Box<FramesArguments>, Form, Kept),
-    /// Answer the frames of a source as they arrive.
     Watch(Box<WatchArguments>),
-    /// A subcommand of `taxel library`.
     Library(LibraryCommand),
-    /// Print the settings.
     Settings,
-    /// Print completions for a shell.
     Completions(Shell),
-    /// Print the manual page of the program, or write those of all commands into a folder.
     Man(Option<PathBuf>),
 }
 
@@ -93,11 +72,6 @@ fn without_notes(command: Command) -> Command {
         .mut_subcommands(without_notes)
 }
 
-/// Reads the arguments, the first of which is the program's own name, and the settings.
-///
-/// # Errors
-/// Returns [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`]
-/// for values out of range.
 pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     let has = |flag: &str| arguments.iter().any(|argument| argument == flag);
     let is_short = has("-h") && !has("--help");
@@ -151,7 +125,6 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     })
 }
 
-/// Returns the arguments of the innermost command, such as those of `model train`.
 fn deepest(matches: &ArgMatches) -> &ArgMatches {
     matches
         .subcommand()
@@ -186,7 +159,6 @@ fn of_screen(matches: &ArgMatches) -> Option<String> {
     flags.into_iter().find(given).map(str::to_owned)
 }
 
-/// Returns the message about a flag of the screen before the command `name`.
 fn too_early(flag: &str, name: &str, command: &Command) -> String {
     let has_flag = |own: &Command| own.get_arguments().any(|own| own.get_long() == Some(flag));
     if command.find_subcommand(name).is_some_and(has_flag) {
@@ -198,12 +170,10 @@ fn too_early(flag: &str, name: &str, command: &Command) -> String {
     }
 }
 
-/// Returns the settings in effect, from the file, the flags of a command and the environment.
 fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, CliError> {
     Effective::new(loaded, Chosen::of(matches), std::env::var_os)
 }
 
-/// Reads the arguments of the command `name`. `command` is for usage errors.
 fn request(
     name: &str,
     own: &ArgMatches,

@@ -23,47 +23,30 @@ use crate::source::Source;
 use crate::storage::{AtlasFile, Existing};
 use crate::sweep::Shard;
 
-/// The arguments of `taxel sweep`.
 #[derive(Clone, Debug)]
 pub(crate) struct SweepArguments {
-    /// The shape to sweep.
     pub(crate) what: Swept,
-    /// The point of the shape that x0 and y0 place.
     pub(crate) anchor: Anchor,
-    /// The axes that are given. The others use the range of the paper, or for x0 and y0 a cell that suits the shape.
     pub(crate) ranges: GivenRanges,
-    /// The part of the grid to sweep.
     pub(crate) shard: Shard,
-    /// The number of threads; 0 means the default.
     pub(crate) jobs: usize,
-    /// The files to write, and the form of the summary.
     pub(crate) wanted: Wanted,
 }
 
-/// The files that a sweep or a merge writes, and the form of its summary.
 #[derive(Clone, Debug)]
 pub(crate) struct Wanted {
-    /// `--atlas`: the file of all distinct imprints.
     pub(crate) atlas: Option<AtlasFile>,
-    /// `--poses`: the file of each pose's imprint.
     pub(crate) poses: Option<PathBuf>,
-    /// The action if a file exists already.
     pub(crate) existing: Existing,
-    /// Whether the summary is one line of JSON.
     pub(crate) json: bool,
-    /// Whether to show no progress and no notes.
     pub(crate) quiet: bool,
-    /// `--memory`: the most memory to use.
     pub(crate) memory: Option<MemorySize>,
 }
 
-/// The shape of a sweep.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 pub(crate) enum Swept {
-    /// A figure on a sensor.
     Figure(Source, Sensor),
-    /// A stored shape, which is read later, and the given values of its sensor.
     Picture(OsString, Given),
 }
 
@@ -155,10 +138,6 @@ fn atlas() -> Arg {
 }
 
 impl SweepArguments {
-    /// Reads the arguments of `taxel sweep`.
-    ///
-    /// # Errors
-    /// Returns a usage error for sizes of a figure given with a picture, and the errors of [`touch::source`].
     pub(super) fn of(
         matches: &ArgMatches,
         command: &mut Command,
@@ -189,7 +168,6 @@ impl SweepArguments {
 }
 
 impl Wanted {
-    /// Reads what a sweep or a merge is to write and print.
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let poses = matches.try_get_one::<PathBuf>("poses");
         Self {

@@ -44,8 +44,6 @@ pub(super) fn figure() -> Command {
         .arg(json())
 }
 
-/// Defines `taxel picture NAME|FILE`, such as `taxel picture washer --x0 6 --angle 30`. Without a flag, the picture
-/// keeps the value it was stored with.
 pub(super) fn picture() -> Command {
     let own = |parameter: Parameter| parameters::arg_with_own(parameter);
     Command::new("picture")
@@ -69,7 +67,6 @@ pub(super) fn picture() -> Command {
         .arg(json())
 }
 
-/// Defines `taxel describe NAME|FILE`, such as `taxel describe imprint.txt --pitch 2.5`.
 pub(super) fn describe() -> Command {
     Command::new("describe")
         .about("Describe an imprint or a stored shape")
@@ -81,8 +78,6 @@ pub(super) fn describe() -> Command {
         .arg(json())
 }
 
-/// Defines `taxel batch`, such as `taxel batch < poses.jsonl > answers.jsonl`. Lines may set a sensor; the flags are
-/// for lines that do not.
 pub(super) fn batch() -> Command {
     Command::new("batch")
         .about("Describe poses, one JSON object per line")
@@ -97,11 +92,6 @@ pub(super) fn batch() -> Command {
         .arg(jobs())
 }
 
-/// Returns the figure given to a command, and its sensor.
-///
-/// # Errors
-/// Returns a usage error for a parameter that this kind of figure does not have; [`CliError::Range`] for values out
-/// of range.
 pub(super) fn source(
     matches: &ArgMatches,
     command: &mut Command,

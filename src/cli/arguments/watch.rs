@@ -23,22 +23,16 @@ use crate::cli::settings::sensors::SensorSettings;
 use crate::formats::stream::StreamFormat;
 use crate::storage::Existing;
 
-/// The arguments of `taxel watch`.
 #[derive(Clone, Debug)]
 pub(crate) struct WatchArguments {
     /// A serial line, a FIFO, `tcp://HOST:PORT`, a recording, or `-` for standard input; which one is decided when it
     /// is opened.
     pub(crate) source: OsString,
-    /// How the source is read: format, rows and columns, baud rate, speed and repetition.
     pub(crate) options: AcquireOptions,
-    /// Whether `--baud` is given, which is only for serial lines.
     pub(crate) baud_named: bool,
-    /// The processing from values to the imprint.
     pub(crate) processing: ProcessingArguments,
     pub(crate) naming: NamingArguments,
-    /// The file that frames are recorded in.
     pub(crate) write: Option<PathBuf>,
-    /// Whether that file may exist already.
     pub(crate) existing: Existing,
     /// The memory for the history of the page, in bytes.
     pub(crate) history_bytes: usize,
@@ -46,7 +40,6 @@ pub(crate) struct WatchArguments {
     pub(crate) json: bool,
 }
 
-/// Defines `taxel watch SOURCE`. Without `--format`, the first bytes tell the format of a stream.
 pub(crate) fn command() -> Command {
     let source = Arg::new("source")
         .value_name("SOURCE")
@@ -89,14 +82,12 @@ pub(crate) fn command() -> Command {
         .args(program::look().map(|arg| arg.conflicts_with("json")))
 }
 
-/// Parses a factor above 0: 2 plays twice as fast, 0.5 at half the speed.
 fn parse_speed(text: &str) -> Result<f64, String> {
     let speed = flags::parse_number(text)?;
     let allowed = Playback::allows(speed).then_some(speed);
     allowed.ok_or_else(|| format!("expected {}", Playback::SPEEDS))
 }
 
-/// Returns how the source is played.
 fn playback(matches: &ArgMatches) -> Playback {
     if matches.get_flag("once") {
         return Playback::Once;
@@ -106,10 +97,6 @@ fn playback(matches: &ArgMatches) -> Playback {
 }
 
 impl WatchArguments {
-    /// Reads the arguments of [`command`].
-    ///
-    /// # Errors
-    /// Returns an error if a threshold is out of range.
     pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
         let source = required(matches, "source")?;
         let processing = ProcessingArguments::of(matches, settings)?;

@@ -14,11 +14,6 @@ use crate::quote::shortened_message;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
 
-/// Answers each line of `input`, with up to `jobs` threads (0 means the default). `sensor` is for lines without one;
-/// `lookup` finds pictures by name.
-///
-/// # Errors
-/// Returns the errors of [`lines::answer_all`].
 pub(crate) fn answer_lines(
     sensor: Sensor,
     jobs: usize,

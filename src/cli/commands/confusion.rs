@@ -26,11 +26,6 @@ use crate::parameter::number::share;
 use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model};
 use crate::storage::check_writable;
 
-/// Evaluates a model. Returns the text to print.
-///
-/// # Errors
-/// Returns an error if there is no such model, if the file of the matrix cannot be written, or if a signal stops a
-/// classifier or a simulation.
 pub(crate) fn confusion(
     asked: &ConfusionArguments,
     shelf: &Shelf,
@@ -65,10 +60,6 @@ pub(crate) fn confusion(
 
 /// Refuses what the shapes and the sensor of a model do not allow, and a file that cannot be written: before the work,
 /// not after it.
-///
-/// # Errors
-/// Returns [`CliError::TooManyPairs`], [`CliError::TooManyShapes`], [`CliError::Range`] for too many dead taxels, and
-/// the errors of the file.
 fn check(asked: &ConfusionArguments, model: &FoundModel) -> Result<(), CliError> {
     let table = table_of_pairs(&asked.of);
     if let Some(table) = table {
@@ -103,9 +94,6 @@ fn table_of_pairs(of: &Evaluated) -> Option<&'static str> {
 }
 
 /// Refuses a table of all pairs of shapes that would take gigabytes.
-///
-/// # Errors
-/// Returns [`CliError::TooManyPairs`].
 pub(crate) fn fits_in_table(table: &'static str, shapes: usize) -> Result<(), CliError> {
     if shapes > MOST_PAIRED {
         return Err(CliError::TooManyPairs { table, shapes });
@@ -113,7 +101,6 @@ pub(crate) fn fits_in_table(table: &'static str, shapes: usize) -> Result<(), Cl
     Ok(())
 }
 
-/// Returns the descriptors that [`Model::choose_descriptors`] chooses, with the result of each step.
 fn chosen(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String {
     let chosen = model.choose_descriptors(&asked.roundings);
     let limit = Evaluation::of(model);
@@ -132,7 +119,6 @@ fn chosen(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String
     json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n"
 }
 
-/// Returns the error of the best classifier for each pair of shapes, as if there were no others.
 fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
     let errors = model.pair_errors();
     let names = model.shapes().iter().map(|shape| shape.name.clone());
@@ -143,10 +129,6 @@ fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
     json::ascii(&json!({"labels": labels, "errors": errors})) + "\n"
 }
 
-/// Returns the result of a classifier that is not the best one, and shows the progress meanwhile.
-///
-/// # Errors
-/// Returns [`CliError::Stopped`] after a signal.
 fn reached(
     classifier: Classifier,
     model: &Model,
@@ -161,11 +143,6 @@ fn reached(
     reached.ok_or_else(|| signals.failure())
 }
 
-/// Returns the errors of all other classifiers and the limit. Also writes them as comma-separated values if a file is
-/// given.
-///
-/// # Errors
-/// Returns [`CliError::Stopped`] after a signal.
 fn all_classifiers(
     model: &Model,
     asked: &ConfusionArguments,
@@ -194,8 +171,6 @@ fn all_classifiers(
     Ok(json::text(&table) + "\n")
 }
 
-/// Returns an evaluation in the form of the flags. `classifier` is the result of a classifier that is not the best
-/// one. Also writes the matrix if a file is given.
 fn shown(
     asked: &ConfusionArguments,
     own: &Evaluation,
@@ -230,7 +205,6 @@ fn shown(
     })
 }
 
-/// Returns a line of advice if the distance of CG and CD, or its direction, is given at full precision; else nothing.
 fn advice(asked: &ConfusionArguments) -> String {
     let Evaluated::Given(given) = &asked.of else {
         return String::new();
@@ -251,10 +225,6 @@ fn advice(asked: &ConfusionArguments) -> String {
     })
 }
 
-/// Returns the matrix as the content of a file, in the format of its extension.
-///
-/// # Errors
-/// Returns the errors of [`drawing`].
 fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
     let Some(format) = DrawingFormat::of_path(path) else {
         return Ok(evaluation::csv(own).into_bytes());
@@ -270,10 +240,6 @@ fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
         .map_err(|error| CliError::of_file(path, error))
 }
 
-/// Returns the drawing of a matrix, which [`file`] writes to `path`.
-///
-/// # Errors
-/// Returns [`CliError::TooManyShapes`] for a matrix that would not be legible.
 fn drawing(
     path: &Path,
     labels: &[String],

@@ -21,7 +21,6 @@ use crate::source::Source;
 use crate::storage::{Existing, FinishedFile, check_writable};
 
 impl Export {
-    /// Returns the same export with the number of a frame at the end of the file name, before the extension.
     pub(crate) fn numbered(&self, number: u64) -> Self {
         let path = self.path.as_ref().map(|path| {
             let stem = path.file_stem().unwrap_or(path.as_os_str());
@@ -38,9 +37,6 @@ impl Export {
 
     /// Refuses a file that would replace the recording being read, or that cannot be written. So one of
     /// several files that cannot be written is an error before the first of them is written.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Frames`], or the errors of [`check_writable`].
     pub(crate) fn check(&self, recording: &RecordingFile) -> Result<(), CliError> {
         let Some(path) = &self.path else {
             return Ok(());
@@ -49,7 +45,6 @@ impl Export {
         Ok(check_writable(path, self.existing)?)
     }
 
-    /// Like [`Self::begin`], for a frame. A drawing shows its values in shades, if they are given.
     pub(crate) fn begin_frame(
         &self,
         imprint: &Imprint,
@@ -124,9 +119,6 @@ impl Kept {
     /// Keeps a touch: the file is written, then the shape is stored, then the file gets its name, which hardly ever
     /// fails. So both are kept or neither. Notes of what was kept are added to `notes`. Returns the content for
     /// standard output that takes the place of the answer, if any.
-    ///
-    /// # Errors
-    /// Returns the errors of `begin`, of the library and of the file.
     pub(crate) fn keep(
         &self,
         begin: impl FnOnce(&Export) -> Result<Begun, CliError>,
@@ -150,20 +142,14 @@ impl Kept {
     }
 }
 
-/// A file that has no name yet. If it is dropped, it is removed.
 #[derive(Debug)]
 pub(crate) enum Begun {
     /// The bytes for standard output.
     Content(Vec<u8>),
-    /// The file.
     File(FinishedFile),
 }
 
 impl Begun {
-    /// Gives the file its name.
-    ///
-    /// # Errors
-    /// Returns an error if this fails, for example because a file of this name exists by now.
     pub(crate) fn end(self) -> Result<Exported, CliError> {
         match self {
             Self::Content(content) => Ok(Exported::Content(content)),
@@ -181,19 +167,13 @@ impl Begun {
 pub(crate) enum Exported {
     /// The exported bytes.
     Content(Vec<u8>),
-    /// A note that names the file.
     Said(String),
 }
 
-/// Returns the note that a file was written.
 pub(crate) fn written(path: &Path) -> String {
     format!("written: {}", path.display())
 }
 
-/// Makes a folder for the files to write, and the folders above it, if they do not exist.
-///
-/// # Errors
-/// Returns [`CliError::File`] if this fails, or if the folder is a file.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
     fs::create_dir_all(folder).map_err(|error| {
         let error = if folder.exists() {
@@ -205,12 +185,10 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
     })
 }
 
-/// Writes a file, completely or not at all.
 pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
     Ok(FinishedFile::new(path, content, existing)?.persist()?)
 }
 
-/// Looks up a shape and exports it. The drawing of a stored shape shows the outline of its source.
 pub(crate) fn export(
     shelf: &Shelf,
     what: &OsStr,

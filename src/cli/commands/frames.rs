@@ -49,26 +49,17 @@ use crate::parameter::Parameter;
 use crate::parameter::number::short;
 use crate::sensor::Sensor;
 
-/// The destination of answers and notes, and their form.
 pub(crate) struct FramesOutput<'a> {
-    /// One line of JSON per frame, or a matrix and a table.
     pub(crate) form: Form,
-    /// The places in which the imprint is kept, in addition to the answer: `--save` and `--export`.
     pub(crate) kept: Kept,
-    /// The library in which imprints are saved.
     pub(crate) shelf: &'a Shelf,
-    /// The character set of texts; JSON is always ASCII.
     pub(crate) charset: Charset,
-    /// Names the shapes that left the imprints.
     pub(crate) namer: Option<FrameNamer<'a>>,
-    /// Standard output.
     pub(crate) answers: &'a mut dyn Write,
-    /// Takes notes for standard error, one line each.
     pub(crate) notes: &'a mut dyn FnMut(&str),
 }
 
 impl FramesOutput<'_> {
-    /// Writes an answer or a part of one.
     fn write(&mut self, text: impl AsRef<[u8]>) -> Result<(), CliError> {
         self.answers
             .write_all(text.as_ref())
@@ -76,10 +67,6 @@ impl FramesOutput<'_> {
     }
 }
 
-/// Opens the recording.
-///
-/// # Errors
-/// Returns an error if it cannot be opened.
 pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
     let mut options = ReadOptions::default();
     if let Some(size) = asked.processing.size {
@@ -88,11 +75,6 @@ pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
     RecordingFile::open(&asked.file, options)
 }
 
-/// Lists a recording, or answers frames. `processing` is the processing of the flags.
-///
-/// # Errors
-/// Returns an error if the recording is damaged, after all frames before the damage are answered; or if channel,
-/// frame, threshold or size do not fit.
 pub(crate) fn frames(
     asked: &FramesArguments,
     mut recording: RecordingFile,
@@ -145,10 +127,6 @@ pub(crate) fn frames(
     }
 }
 
-/// Lists all channels, or the one that the flags name.
-///
-/// # Errors
-/// Returns an error if no channel has this name, or the crop does not fit.
 fn list(
     scan: &Scan,
     recording: &RecordingFile,
@@ -184,7 +162,6 @@ fn report_noise(
     Ok(found.transpose()?.is_some())
 }
 
-/// Writes a report on flips and its mask.
 fn write_noise(
     found: &FlipReport,
     name: &str,
@@ -208,7 +185,6 @@ fn write_noise(
     output.write(output.charset.lines(&text))
 }
 
-/// Returns the reason why an undamaged recording has no such frame.
 fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
     match choice {
         FrameChoice::Label(label) if listed.frames > 0 => {
@@ -234,41 +210,26 @@ fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
     }
 }
 
-/// A frame that is answered.
 struct FoundFrame<'a> {
-    /// The name of the recording.
     name: &'a str,
-    /// The channel of the frame.
     listed: &'a ListedChannel,
     frame: &'a Frame,
     processed: Processed<'a>,
 }
 
-/// The frames that are answered, and how.
 struct Selection {
-    /// The choice of the flags.
     choice: FrameChoice,
-    /// The number of the only frame, if it is known.
     number: Option<u64>,
-    /// The index of the channel; frames of other channels are skipped.
     channel: usize,
-    /// The threshold, and whether it is from the flags, the settings or the recording.
     rule: SetRule,
-    /// The number of frames of the tare, 0 without one; only for the answers.
     tare: u64,
-    /// Whether the tared values are multiplied by a gain; only for the answers.
     gain: bool,
-    /// Whether values are shown in shades, above the imprint and in drawings.
     heat: bool,
 }
 
 impl Selection {
     /// Selects the frames of the flags, and completes their processing: with the rule, and with the tare and the
     /// peak, for which the recording is read again.
-    ///
-    /// # Errors
-    /// Returns an error if rows and columns are unknown, if there is no rule, or if there are too few frames for the
-    /// tare.
     fn new(
         asked: &FramesArguments,
         choice: FrameChoice,
@@ -308,7 +269,6 @@ impl Selection {
         Ok((selection, processing))
     }
 
-    /// Returns true if this frame of the channel is to be answered.
     fn has(&self, frame: &Frame) -> bool {
         match self.choice {
             FrameChoice::All | FrameChoice::NoiseReport => true,
@@ -319,9 +279,6 @@ impl Selection {
 
     /// Checks what can be checked of the frames to keep before the first of them is answered: that no file that may
     /// not be replaced has the name of an export.
-    ///
-    /// # Errors
-    /// Returns an error if several frames have the label, and the errors of [`Export::check`].
     fn check_kept(
         &self,
         recording: &mut RecordingFile,
@@ -346,9 +303,6 @@ impl Selection {
 
     /// Returns the number of the frame with a label, if there is one. A label that several frames have is refused: it
     /// is not clear which of them is meant.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Frames`] with the numbers of the first two.
     fn numbers_labelled(
         &self,
         recording: &mut RecordingFile,
@@ -373,9 +327,6 @@ impl Selection {
 
     /// Answers the selected frames; returns true if there were any. The recording is read from its beginning again,
     /// but not beyond a frame whose number is known.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Self::check_kept`] and of [`Self::give`].
     fn answer(
         &self,
         recording: &mut RecordingFile,
@@ -413,10 +364,6 @@ impl Selection {
     /// Answers a frame. Notes about it are lines below the matrix; with JSON they go to standard error. An export to
     /// standard output takes the place of the answer. `again` tells whether other frames came before, so that an
     /// empty line separates them.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Frames`] for a `--pitch` given for cells that are not square, and the errors of saving,
-    /// exporting and writing.
     fn give(
         &self,
         found: &FoundFrame<'_>,
@@ -468,7 +415,6 @@ impl Selection {
         output.write(&text)
     }
 
-    /// Returns a frame as a line of JSON, with the name of its shape if a model is given.
     fn line(
         &self,
         found: &FoundFrame<'_>,
@@ -552,7 +498,6 @@ impl Selection {
     }
 }
 
-/// Returns the unit of a channel as the end of a number, such as ` kPa`; empty if it is unknown.
 fn unit(info: &ChannelInfo) -> String {
     let unit = info.unit.as_ref();
     unit.map_or(String::new(), |unit| format!(" {unit}"))
@@ -560,9 +505,6 @@ fn unit(info: &ChannelInfo) -> String {
 
 /// Returns the side of a cell in mm, and a line if the recording's cells are not square. `--pitch` overrides the
 /// recording. The pitch of the settings is not used: it is that of the simulated sensor.
-///
-/// # Errors
-/// Returns [`CliError::Frames`] if `--pitch` is given although the recording states that its cells are not square.
 fn cell_size(
     name: &str,
     pitch: Pitch,
@@ -580,7 +522,6 @@ fn cell_size(
     Ok((None, Some(reason)))
 }
 
-/// Returns the imprint of a frame as a shape to store. The pitch of its sensor is `pitch`, or else the default.
 fn stored(name: Name, imprint: &Imprint, pitch: Option<f64>) -> StoredShape {
     let sensor = Sensor::of_size(imprint.size());
     let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());

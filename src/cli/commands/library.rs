@@ -32,29 +32,18 @@ use crate::quote::{as_argument, shortened_message};
 use crate::sensor::Sensor;
 use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, Orphan, ShapeOrigin};
 
-/// A shape of the library, as a line of the list.
 struct ListLine {
-    /// The shape's name.
     name: String,
-    /// Whether the user stored the shape, or it comes with the program.
     origin: ShapeOrigin,
-    /// The numbers that the list shows, or the reason why the shape cannot be read.
     found: Result<ShapeSummary, String>,
 }
 
-/// The facts about a readable shape that the list and the check report.
 struct ShapeSummary {
-    /// The name inside its file.
     written_name: Name,
-    /// Columns of its matrix.
     columns: u8,
-    /// Rows of its matrix.
     rows: u8,
-    /// The number of active taxels, in all pieces.
     na: u32,
-    /// The number of connected regions of active taxels.
     pieces: usize,
-    /// The number of enclosed regions of inactive taxels.
     holes: usize,
 }
 
@@ -73,7 +62,6 @@ impl ListLine {
         })
     }
 
-    /// Returns the word in the column `origin`.
     fn origin(&self) -> &'static str {
         match (&self.found, self.origin) {
             (Err(_), _) => "broken",
@@ -84,7 +72,6 @@ impl ListLine {
 }
 
 impl ShapeSummary {
-    /// Counts the regions of a shape.
     fn of(loaded: LoadedShape) -> Self {
         let shape = &loaded.shape;
         let regions = regions(&shape.imprint);
@@ -122,17 +109,12 @@ impl Serialize for ListLine {
     }
 }
 
-/// Reads every shape of the library, own and shipped, on all cores: a library may be large.
-///
-/// # Errors
-/// Returns an error if the folder cannot be listed. A shape that cannot be read is not an error here, but a line.
 fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     let entries = library.list()?;
     let line = |entry| ListLine::of(library, entry);
     Ok(entries.into_par_iter().filter_map(line).collect())
 }
 
-/// Returns a warning about a list without shapes of the user's: the folder that `--library` names does not exist.
 pub(crate) fn missing(shelf: &Shelf) -> Option<String> {
     let folder = shelf.missing_folder()?.display();
     Some(format!(
@@ -140,7 +122,6 @@ pub(crate) fn missing(shelf: &Shelf) -> Option<String> {
     ))
 }
 
-/// Lists all shapes: a table, or an array of objects in JSON.
 pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<String, CliError> {
     let lines = lines(&shelf.readable())?;
     if as_json {
@@ -168,10 +149,6 @@ pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<Str
     Ok(text)
 }
 
-/// Describes a stored shape, like `taxel describe`.
-///
-/// # Errors
-/// Returns an error if there is no such shape, or it cannot be read.
 pub(crate) fn show(
     shelf: &Shelf,
     name: &str,
@@ -185,9 +162,6 @@ pub(crate) fn show(
 
 /// Stores a shape of the library or of a file under another name. An imprint without a sensor gets one of its own
 /// size.
-///
-/// # Errors
-/// Returns [`CliError::Taken`] if there is an own shape of this name and `--force` is not given.
 pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, CliError> {
     let found = shelf.find(what);
     let shape = match found.map_err(|error| in_order(error, saving.name.as_str()))? {
@@ -216,10 +190,6 @@ fn in_order(error: CliError, file: &str) -> CliError {
     }
 }
 
-/// Moves an own shape to the trash. Returns the text to print, with the command that restores the shape.
-///
-/// # Errors
-/// Returns an error if there is no such shape, or it comes with the program.
 pub(crate) fn delete(shelf: &Shelf, name: &str, charset: Charset) -> Result<String, CliError> {
     let deleted = shelf.library()?.delete(name);
     let name = deleted.map_err(|error| shelf.refused(error))?;
@@ -230,7 +200,6 @@ pub(crate) fn delete(shelf: &Shelf, name: &str, charset: Charset) -> Result<Stri
     Ok(charset.lines(&format!("deleted {name}{hint}\n")))
 }
 
-/// Returns the command that restores a shape; None if the library's path is not UTF-8.
 fn restoring(shelf: &Shelf, name: &str) -> Option<String> {
     let mut command = shelf.library_command("restore")?;
     // Otherwise a name with a dash would be taken for a flag.
@@ -238,30 +207,21 @@ fn restoring(shelf: &Shelf, name: &str) -> Option<String> {
     Some(command + &as_argument(name))
 }
 
-/// Restores the shape of this name that was deleted last.
-///
-/// # Errors
-/// Returns an error if no such shape is in the trash, or a shape has this name again.
 pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let restored = shelf.library()?.restore(name);
     let name = restored.map_err(|error| shelf.refused(error))?;
     Ok(format!("restored {name}\n"))
 }
 
-/// A finding of `taxel library check`.
 #[derive(Serialize)]
 #[serde(tag = "finding")]
 enum Finding {
-    /// A shape that cannot be read.
     #[serde(rename = "broken")]
     Broken { name: String, reason: String },
-    /// A shape whose name is ambiguous.
     #[serde(rename = "name")]
     Name { name: String, reason: String },
-    /// A file that is not a shape.
     #[serde(rename = "other file")]
     OtherFile { path: String, reason: &'static str },
-    /// Unsaved work that cannot be read.
     #[serde(rename = "damaged")]
     Damaged { path: String, reason: String },
 }
@@ -277,7 +237,6 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Returns the user's shapes with another name inside their file, and those whose names differ only in case.
 fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let own = lines.iter().filter(|line| line.origin == ShapeOrigin::Own);
@@ -313,16 +272,13 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
 /// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or a JSON
 /// array of objects, and [`CliError::Shapes`] if a shape is damaged or [`CliError::UnsavedWork`] if unsaved work is, to
 /// be reported after it.
-///
-/// # Errors
-/// Returns an error if the folder cannot be listed, and [`CliError::NoFolder`] if `--library` names one that does not
-/// exist: a script must not take a mistyped name, or a disk that is not there, for a sound library.
 pub(crate) fn check(
     shelf: &Shelf,
     as_json: bool,
     charset: Charset,
 ) -> Result<(String, Result<(), CliError>), CliError> {
     if let Some(folder) = shelf.missing_folder() {
+        // A script must not take a mistyped name, or a disk that is not there, for a sound library.
         let name = folder.to_string_lossy().into_owned();
         return Err(CliError::NoFolder { name });
     }

@@ -17,7 +17,6 @@ pub(crate) fn main_page() -> Result<Vec<u8>, CliError> {
     page(&built()).map_err(CliError::Write)
 }
 
-/// Writes the pages of all commands into a folder, which is created if necessary. Returns the text to print.
 pub(crate) fn write(folder: &Path) -> Result<String, CliError> {
     export::make_folder(folder)?;
     let built = built();
@@ -33,7 +32,6 @@ pub(crate) fn write(folder: &Path) -> Result<String, CliError> {
     Ok(format!("written: {pages} in {}", folder.display()))
 }
 
-/// Returns the commands with everything that clap adds to them, except its `help`, which needs no page.
 fn built() -> Command {
     let notes = format!("{EXAMPLES}\n\nEnvironment:{ENVIRONMENT}\n\nFiles:{FILES}");
     let mut all = definitions::all()
@@ -43,7 +41,6 @@ fn built() -> Command {
     all
 }
 
-/// Returns a command and all its subcommands, at any depth.
 fn all(command: &Command) -> Vec<&Command> {
     let below = command.get_subcommands().flat_map(all);
     std::iter::once(command).chain(below).collect()

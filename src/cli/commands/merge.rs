@@ -26,7 +26,6 @@ use crate::storage::{
 };
 use crate::sweep::{MergeError, Shard, ShardOrderError, SweepMerge, SweepResult};
 
-/// A file of a shard.
 struct Part {
     path: PathBuf,
     format: String,
@@ -34,7 +33,6 @@ struct Part {
 }
 
 impl Part {
-    /// Reads the header of a file.
     fn of(path: &Path) -> Result<Self, ArchiveFileError> {
         let refused = |error| ArchiveFileError::new(path, error);
         let file = open_archive(path)?;
@@ -46,7 +44,6 @@ impl Part {
         })
     }
 
-    /// Returns the error that the file does not fit the others.
     fn refused(&self, error: &dyn fmt::Display) -> CliError {
         CliError::Shard {
             path: self.path.clone(),
@@ -54,7 +51,6 @@ impl Part {
         }
     }
 
-    /// Returns the error that the file is a shard of another number of shards than the first one.
     fn other_study(&self, first: &Self) -> CliError {
         self.refused(&format_args!(
             "shard {}, but {} is shard {}: not the same study",
@@ -81,10 +77,8 @@ fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The most missing shards that a message lists.
 const MOST_LISTED: usize = 10;
 
-/// Refuses a mixture of atlases and models.
 fn check_one_kind(parts: &[Part]) -> Result<(), CliError> {
     let noun = |part: &Part| match part.format.as_str() {
         MODEL_FORMAT => "a model",
@@ -128,11 +122,6 @@ fn check_all_there(parts: &[Part]) -> Result<(), CliError> {
     Err(CliError::MissingShards { count, of, numbers })
 }
 
-/// Merges the shards in `files`, writes the atlas or the model, and returns the summary to print.
-///
-/// # Errors
-/// Returns an error if a file cannot be read, if the shards are not all those of one study, each once, or if they
-/// need too much memory.
 pub(crate) fn merge(
     files: &[PathBuf],
     wanted: &Wanted,
@@ -170,7 +159,6 @@ pub(crate) fn merge(
     Ok(summary)
 }
 
-/// Refuses a file name without the extension of a model, which has one format.
 fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     match &wanted.atlas {
         Some(file) => model_file(file.path()),
@@ -178,7 +166,6 @@ fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     }
 }
 
-/// Merges the shards of a sweep.
 fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError> {
     let mut merge = SweepMerge::default();
     for part in parts {
@@ -224,7 +211,6 @@ fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model
     Ok(merge.finish().map_err(TrainingError::from)?)
 }
 
-/// Writes a merged model, and returns the summary to print, with the error if there is no file.
 fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
     let signals = Signals::catch()?;
     let saved = wanted.atlas.as_ref().map_or(Ok(()), |file| {

@@ -49,10 +49,8 @@ pub(super) mod man;
 
 use crate::cli::error::CliError;
 
-/// The summary of long work.
 #[derive(Debug)]
 pub(super) struct Summary {
-    /// The text to print.
     pub(super) text: String,
     /// Whether the files were written. An error is reported after the text is printed, so that the work is not lost.
     pub(super) written: Result<(), CliError>,

@@ -47,10 +47,6 @@ use crate::sweep::Shard;
 
 /// Trains a model and writes it. Returns the text to print, with the error if there is no file. The path is tried
 /// before the work begins. A signal stops the training and leaves no file.
-///
-/// # Errors
-/// Returns the errors of the shapes; an error if the sensor cuts shapes off and `--allow-cut` is not given, or if the
-/// file exists and `--force` is not given; [`CliError::Stopped`] after a signal.
 pub(crate) fn train(
     asked: &TrainArguments,
     shelf: &Shelf,
@@ -87,10 +83,6 @@ pub(crate) fn train(
     Ok(Summary { text, written })
 }
 
-/// Runs a training and shows its progress. `remedy` is the advice about poses that the sensor cuts off.
-///
-/// # Errors
-/// Returns [`CliError::Stopped`] after a signal; [`CliError::Memory`]; the error of the training.
 fn run(
     training: Training<'_>,
     asked: &TrainArguments,
@@ -138,7 +130,6 @@ fn trained(
     }
 }
 
-/// Returns the file of a new model. Its folder may not exist yet.
 fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
     match target {
         ModelTarget::File(path) => Ok(path.clone()),
@@ -166,18 +157,10 @@ fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
     )
 }
 
-/// Returns the folder of the models beside the library.
-///
-/// # Errors
-/// Returns an error if there is no folder for a library.
 fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
     Ok(ModelFolder::beside(shelf.library()?.folder()))
 }
 
-/// Returns the names of the models beside the library, each with its file; none without a folder for a library.
-///
-/// # Errors
-/// Returns the system's error, except if the folder does not exist.
 fn stored(shelf: &Shelf) -> Result<Vec<(Name, PathBuf)>, CliError> {
     let Ok(models) = folder(shelf) else {
         return Ok(Vec::new());
@@ -199,14 +182,11 @@ pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
 /// A model that was found but may have to be trained first, so that other errors can be reported before a training.
 #[derive(Debug)]
 pub(crate) enum FoundModel {
-    /// A model that was read from a file.
     Read(Box<Model>),
-    /// The training of a built-in set.
     BuiltIn(Training<'static>),
 }
 
 impl FoundModel {
-    /// Returns its shapes.
     pub(crate) fn shapes(&self) -> &[NamedShape] {
         match self {
             Self::Read(model) => model.shapes(),
@@ -214,7 +194,6 @@ impl FoundModel {
         }
     }
 
-    /// Returns the sensor that they were touched with, or will be.
     pub(crate) fn sensor(&self) -> Sensor {
         match self {
             Self::Read(model) => *model.sensor(),
@@ -225,9 +204,6 @@ impl FoundModel {
     /// Returns the model. A built-in set comes from the user's cache, or if it is not there, it is trained, which
     /// takes some seconds; `display` makes the display of its progress. Signals are not caught meanwhile: nothing
     /// would have to be removed.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Memory`].
     pub(crate) fn ready(self, display: &dyn Fn(u64) -> ProgressDisplay) -> Result<Model, CliError> {
         let training = match self {
             Self::Read(model) => return Ok(*model),
@@ -246,16 +222,10 @@ impl FoundModel {
     }
 }
 
-/// Finds a model to use: a built-in set, or else one beside the library, or else a file.
-///
-/// # Errors
-/// Returns [`CliError::NoSet`] if nothing has this name; otherwise the reason why the file cannot be read, or that it
-/// is only a shard.
 pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<FoundModel, CliError> {
     found(which, shelf, &load_whole_model)
 }
 
-/// Like [`find`], with a given function to read files.
 fn found(
     which: &OsStr,
     shelf: &Shelf,
@@ -272,10 +242,6 @@ fn found(
     Ok(FoundModel::Read(Box::new(load(&path)?)))
 }
 
-/// Returns the set of shapes that a name or a file means, without reading it.
-///
-/// # Errors
-/// Returns an error if there is no such set.
 pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliError> {
     let name = which.to_str().and_then(|name| Name::new(name).ok());
     // Built-in sets come before models and files of their names, so that nothing changes the meaning of the default;
@@ -294,7 +260,6 @@ pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliErr
     Err(unknown(which, shelf))
 }
 
-/// Returns the error that nothing has this name; it lists the sets.
 fn unknown(which: &OsStr, shelf: &Shelf) -> CliError {
     let stored = folder(shelf).ok().and_then(|models| models.names().ok());
     let stored: Vec<Name> = stored.into_iter().flatten().collect();
@@ -355,7 +320,6 @@ pub(crate) fn show(
     Ok(charset.lines(&text))
 }
 
-/// Returns a line about the shapes that are never certain.
 fn never_certain(model: &Model) -> String {
     let never = model.never_certain();
     let names = never.iter().map(|&shape| &*model.shapes()[shape].name);
@@ -491,9 +455,6 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
 }
 
 /// Deletes a model. Unlike a shape of the library, it does not go to the trash: it can be trained again.
-///
-/// # Errors
-/// Returns [`CliError::NoModel`] if no model has this name, and [`CliError::BuiltInModel`] for a built-in one.
 pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
     match folder(shelf)?.delete(name) {
         Err(error) if error.is_missing() => {

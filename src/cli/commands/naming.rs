@@ -11,17 +11,12 @@ use crate::imprint::Imprint;
 use crate::recognition::{Evidence, Model, Noise};
 
 impl NamingArguments {
-    /// Finds the model; None if none is given.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such model, or it cannot be read.
     pub(crate) fn find(&self, shelf: &Shelf) -> Result<Option<FoundModel>, CliError> {
         let model = self.model.as_ref();
         model.map(|model| model::find(model, shelf)).transpose()
     }
 }
 
-/// Names imprints one by one.
 #[derive(Debug)]
 pub(crate) struct FrameNamer<'a> {
     model: &'a Model,
@@ -29,7 +24,6 @@ pub(crate) struct FrameNamer<'a> {
 }
 
 impl<'a> FrameNamer<'a> {
-    /// Creates a namer with this model, and with noise if it is given.
     pub(crate) fn new(model: &'a Model, noise: Option<&Noise>) -> Self {
         Self {
             model,
@@ -70,7 +64,6 @@ impl<'a> FrameNamer<'a> {
         line.extend(b"}\n");
     }
 
-    /// Returns the answer in words, like `taxel recognise`; empty if no taxel is active.
     pub(crate) fn text(&self, imprint: &Imprint, charset: Charset) -> String {
         if imprint.is_empty() {
             return String::new();

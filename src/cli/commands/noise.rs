@@ -45,22 +45,15 @@ use crate::recognition::{
 };
 use crate::sensor::Sensor;
 
-/// A row of the table: the noise, the number of dead taxels, and the result.
 struct NoiseRow {
-    /// The probability that a taxel flips, 0 to below ½.
     noise: f64,
-    /// The number of dead taxels.
     dead: u32,
-    /// The touches that were drawn, and those named right.
     rate: RecognitionRate,
 }
 
 /// Returns how often noisy touches are named right, for each noise and each number of dead taxels. The dead taxels
 /// are drawn anew for each touch, but are the same at every noise, so that rows can be compared. The classifier knows
 /// the noise and which taxels are dead.
-///
-/// # Errors
-/// Returns [`CliError::Stopped`] after a signal, and an error for a noise out of range.
 pub(crate) fn degradation(
     model: &Model,
     asked: &NoiseArguments,
@@ -109,7 +102,6 @@ pub(crate) fn degradation(
     })
 }
 
-/// Returns the line that touches count with weights; empty if they do not.
 fn weighted(model: &Model) -> &'static str {
     let has_weights = model.shapes().iter().any(|shape| shape.weight > 1);
     if has_weights {
@@ -119,10 +111,6 @@ fn weighted(model: &Model) -> &'static str {
     }
 }
 
-/// Refuses more dead taxels than the matrix has.
-///
-/// # Errors
-/// Returns [`CliError::Range`].
 pub(crate) fn check_dead(dead: &[u32], sensor: &Sensor) -> Result<(), CliError> {
     let cells = narrow(sensor.size().cells());
     match dead.iter().find(|&&dead| dead > cells) {
@@ -137,10 +125,6 @@ pub(crate) fn check_dead(dead: &[u32], sensor: &Sensor) -> Result<(), CliError> 
     }
 }
 
-/// Writes the table as numbers or as curves, if a file is given.
-///
-/// # Errors
-/// Returns an error if the file cannot be written.
 fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), CliError> {
     let Some(path) = asked.export.as_deref() else {
         return Ok(());
@@ -154,15 +138,10 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
     put(path, &content, asked.existing)
 }
 
-/// Returns the sensor that is touched: of the given size, or else that of the model.
 pub(crate) fn sensor(asked: &NoiseArguments, of_model: &Sensor) -> Sensor {
     asked.size.map_or(*of_model, Sensor::of_size)
 }
 
-/// Refuses a sensor on which no imprint of some shape fits.
-///
-/// # Errors
-/// Returns [`CliError::NoTouch`].
 fn check_fits(model: &Model, sensor: &Sensor) -> Result<(), CliError> {
     match model.first_too_large(sensor.size()) {
         None => Ok(()),
@@ -176,7 +155,6 @@ fn check_fits(model: &Model, sensor: &Sensor) -> Result<(), CliError> {
 /// Returns a note about the shapes whose imprints do not all fit on the matrix, with the share of their poses; None
 /// if all fit.
 fn left_out(model: &Model, sensor: &Sensor) -> Option<String> {
-    /// The most shapes that are named.
     const NAMED: usize = 3;
     let size = sensor.size();
     let too_large = model.poses_too_large(size);
@@ -198,13 +176,11 @@ fn left_out(model: &Model, sensor: &Sensor) -> Option<String> {
         .then(|| format!("left out, because they do not fit on {size}: {named}{more}"))
 }
 
-/// Returns the known descriptors, rounded to the given steps; None for the whole imprint.
 fn given_of(asked: &NoiseArguments, all_asked: &ConfusionArguments) -> Option<GivenDescriptors> {
     let given = asked.given.clone()?;
     Some(given.rounded(all_asked.roundings.clone()))
 }
 
-/// Returns noise and accuracy of the rows, for each number of dead taxels.
 fn noise_points(table: &[NoiseRow]) -> Vec<(u32, Vec<(f64, f64)>)> {
     let groups = table.chunk_by(|one, other| one.dead == other.dead);
     let points = |rows: &[NoiseRow]| {
@@ -214,7 +190,6 @@ fn noise_points(table: &[NoiseRow]) -> Vec<(u32, Vec<(f64, f64)>)> {
     groups.map(points).collect()
 }
 
-/// Returns a plot with a curve for each number of dead taxels.
 fn noise_plot(table: &[NoiseRow]) -> LinePlot {
     let plot = LinePlot::new("noise", "right");
     let curves = noise_points(table).into_iter();
@@ -223,7 +198,6 @@ fn noise_plot(table: &[NoiseRow]) -> LinePlot {
     })
 }
 
-/// Draws the same curves in the terminal, one below the other; nothing for a single noise.
 fn noise_curves(table: &[NoiseRow], charset: Charset) -> String {
     let curves = noise_points(table).into_iter();
     let curves = curves.map(|(dead, points)| {
@@ -237,7 +211,6 @@ fn noise_curves(table: &[NoiseRow], charset: Charset) -> String {
     curves.collect()
 }
 
-/// Returns one line of JSON: the size of the matrix, the seed, and a list of the rows, with all digits.
 fn noise_json(table: &[NoiseRow], sensor: &Sensor, seed: u64) -> String {
     let rows_json: Vec<_> = table
         .iter()
@@ -263,7 +236,6 @@ fn noise_json(table: &[NoiseRow], sensor: &Sensor, seed: u64) -> String {
     json::text(&answer) + "\n"
 }
 
-/// Returns the rows as comma-separated values, with a row of names.
 fn noise_csv(table: &[NoiseRow]) -> String {
     let mut text = String::from("noise,dead,touches,right,accuracy,standard_error,claimed,held\n");
     for row in table {
@@ -285,7 +257,6 @@ fn noise_csv(table: &[NoiseRow]) -> String {
     text
 }
 
-/// Returns the table, with a bar in each row.
 fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> String {
     /// The length of a bar for 100 %, in characters.
     const BAR: usize = 30;
@@ -327,9 +298,6 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
 /// error, counting these as wrong              48.000 %
 /// error, naming these by the nearest imprint  12.148 %
 /// ```
-///
-/// # Errors
-/// Returns [`CliError::Stopped`] after a signal; [`CliError::Memory`]; an error if half a step has too many decimals.
 pub(crate) fn half_step(
     model: &Model,
     asked: &ConfusionArguments,
@@ -378,10 +346,6 @@ pub(crate) fn half_step(
     Ok(charset.lines(&text))
 }
 
-/// Simulates how many touches of one shape it takes until it is as probable as wanted. Returns the text to print.
-///
-/// # Errors
-/// Returns an error if there is no such model, or a signal stops the simulation.
 pub(crate) fn touches(
     asked: &TouchesArguments,
     shelf: &Shelf,
@@ -419,7 +383,6 @@ fn mean(weights: &[f64], results: &[TouchesUntil]) -> (Option<f64>, Option<f64>)
     )
 }
 
-/// Returns one line of JSON: the arguments, the mean of all shapes, and each shape.
 fn touches_json(
     asked: &TouchesArguments,
     shapes: &[(&str, &TouchesUntil)],
@@ -481,7 +444,6 @@ fn touches_text(
     charset.lines(&text)
 }
 
-/// Formats a mean and its standard error, which may be missing.
 fn with_error(mean: Option<f64>, error: Option<f64>) -> String {
     let mean = mean.map_or("–".to_owned(), |mean| format!("{mean:.2}"));
     let error = error.map_or(String::new(), |error| format!(" ± {error:.2}"));

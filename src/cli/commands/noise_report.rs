@@ -11,26 +11,19 @@ use crate::formats::value::{counted, grouped};
 use crate::frame::{FlipCounter, FlipReport, FrameError, Processing};
 use crate::imprint::Imprint;
 
-/// The report as a JSON object, with its keys in the order of the documentation.
 #[derive(Serialize)]
 struct NoiseJson {
     frames: u64,
     cells: u32,
-    /// Null if it is unknown, or ½ or more.
     noise: Option<f64>,
     standard_error: Option<f64>,
     flips: u64,
     repeated: u64,
-    /// The column and row of each taxel.
     stuck_on: Vec<[u8; 2]>,
     stuck_off: Vec<[u8; 2]>,
     mask: Vec<String>,
 }
 
-/// Counts the flips of a channel, whose frames become imprints by `processing`. Returns None if there is no frame.
-///
-/// # Errors
-/// Returns an error if a frame cannot be processed.
 pub(crate) fn gather(
     recording: &mut RecordingFile,
     channel: usize,
@@ -58,7 +51,6 @@ pub(crate) fn gather(
     Ok(counter.map(|counter| counter.finish()))
 }
 
-/// Returns the column and row of each active taxel, row by row.
 fn taxels(imprint: &Imprint) -> Vec<[u8; 2]> {
     let rows = 0..imprint.rows();
     let all = rows.flat_map(|row| (0..imprint.columns()).map(move |column| [column, row]));
@@ -66,7 +58,6 @@ fn taxels(imprint: &Imprint) -> Vec<[u8; 2]> {
         .collect()
 }
 
-/// Returns the report as a line of JSON.
 pub(crate) fn json(found: &FlipReport) -> String {
     let line = json::text(&NoiseJson {
         frames: found.frames,
@@ -82,7 +73,6 @@ pub(crate) fn json(found: &FlipReport) -> String {
     line + "\n"
 }
 
-/// Returns the report in words.
 pub(crate) fn text(found: &FlipReport) -> String {
     let frames = counted(found.frames, "frame");
     let mut text = format!("{frames} of {}\n", counted(found.cells, "taxel"));

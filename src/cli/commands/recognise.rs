@@ -41,12 +41,6 @@ use crate::quote::{did_you_mean, shortened_message};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, NamedShape, Noise};
 use crate::sensor::Sensor;
 
-/// Answers the given imprint or lines on `output`.
-///
-/// # Errors
-/// Returns [`CliError::Unexpected`] at the end if an answer differs from the shape of `--expect`; [`CliError::NoSet`]
-/// and [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels of another size than
-/// the touch; and the errors of reading files. The answer to a wrong line is its error.
 pub(crate) fn recognise(
     asked: &RecogniseArguments,
     shelf: &Shelf,
@@ -76,13 +70,8 @@ pub(crate) fn recognise(
     }
 }
 
-/// The most shapes of a model that a message lists.
 const MOST_LISTED: usize = 10;
 
-/// Checks that a model has a shape of this name.
-///
-/// # Errors
-/// Returns [`CliError::NotInModel`].
 fn check_expected(name: &str, shapes: &[NamedShape]) -> Result<(), CliError> {
     if shapes.iter().any(|shape| shape.name == name) {
         return Ok(());
@@ -99,18 +88,13 @@ fn check_expected(name: &str, shapes: &[NamedShape]) -> Result<(), CliError> {
     })
 }
 
-/// A model with the settings for its answers.
 struct Recogniser<'a> {
-    /// The flags.
     asked: &'a RecogniseArguments,
-    /// The model.
     model: &'a Model,
-    /// The noise of the taxels and the dead taxels, if given.
     noise: Option<Noise>,
 }
 
 impl Recogniser<'_> {
-    /// Returns a note if a stored shape touched a sensor with another threshold than that of the model.
     fn other_threshold(&self, content: &Content) -> Option<String> {
         let Content::Shape(shape) = content else {
             return None;
@@ -124,10 +108,6 @@ impl Recogniser<'_> {
         })
     }
 
-    /// Answers one imprint, as text or JSON.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Unexpected`] if the answer is not the expected one.
     fn answer_imprint(
         &self,
         imprint: &Imprint,
@@ -169,10 +149,6 @@ impl Recogniser<'_> {
         }
     }
 
-    /// Answers each line by a line of JSON.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Unexpected`] if some answers are not the expected one.
     fn answer_lines(&self, input: LineInput, output: &mut dyn Write) -> Result<(), CliError> {
         let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
         let answer = |line: &[u8], text: &mut Vec<u8>| {
@@ -205,10 +181,6 @@ impl Recogniser<'_> {
         Evidence::of(touches).under(self.noise.as_ref())
     }
 
-    /// Names the shape that left all these touches.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Mask`] if the mask of dead taxels differs in size from a touch.
     fn answer(&self, touches: &[Imprint]) -> Result<Answer, CliError> {
         let mut evidence = self.evidence(touches);
         if let Some(mask) = self.noise.as_ref().and_then(Noise::dead)
@@ -225,10 +197,6 @@ impl Recogniser<'_> {
         Ok(self.model.recognise(evidence))
     }
 
-    /// Returns an answer as JSON; `line` is the question, if it was one of many.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Self::pose`].
     fn json<'b>(
         &'b self,
         touches: &[Imprint],
@@ -249,9 +217,6 @@ impl Recogniser<'_> {
 
     /// Returns where the shape of an answer lies in the last touch, if this is asked for. None without an answer, and
     /// if the shape does not leave this imprint.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Memory`].
     fn pose(&self, touches: &[Imprint], answer: &Answer) -> Result<Option<PoseReport>, CliError> {
         let (true, Some(shape), Some(touch)) = (self.asked.pose, answer.shape, touches.last())
         else {
@@ -267,7 +232,6 @@ impl Recogniser<'_> {
         }))
     }
 
-    /// Returns true if the answer is the expected one, or if none is expected.
     fn is_expected(&self, answer: &Answer) -> bool {
         let Some(expected) = &self.asked.expect else {
             return true;
@@ -276,7 +240,6 @@ impl Recogniser<'_> {
         answer.state != AnswerState::Tied && named == Some(expected)
     }
 
-    /// Returns an answer in words, for the message about one that was not expected: `"ring" (likely)`.
     fn found(&self, answer: &Answer) -> String {
         let name = |shape: usize| format!("{:?}", self.model.shapes()[shape].name);
         let named = match answer.shape {
@@ -291,10 +254,6 @@ impl Recogniser<'_> {
     }
 }
 
-/// Returns the noise of the taxels and the dead taxels, if given.
-///
-/// # Errors
-/// Returns an error if the mask cannot be read.
 fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, CliError> {
     Ok(match (asked.noise, &asked.mask) {
         (Some(noise), Some(mask)) => {
@@ -305,16 +264,12 @@ fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, Cli
     })
 }
 
-/// The input to recognise.
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 enum RecogniseInput {
-    /// One touch: an imprint, or a stored shape.
     Touch(Content),
-    /// Lines of JSON that are not read yet.
     Lines(LineInput),
 }
 
-/// Decides what the argument means: a stored shape, a file or standard input; and whether its content is lines.
 fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
     let LineInput { name, read } = match shelf.locate(what)? {
         Located::Shape(shape) => return Ok(RecogniseInput::Touch(Content::Shape(shape))),
@@ -348,7 +303,6 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
     ))
 }
 
-/// Reads a line, but no more than the longest line. Returns its length; 0 at the end.
 fn line(input: &mut impl BufRead, start: &mut Vec<u8>) -> io::Result<usize> {
     let mut limited = Read::by_ref(input).take(MAX_LINE as u64);
     limited.read_until(b'\n', start)
@@ -357,7 +311,6 @@ fn line(input: &mut impl BufRead, start: &mut Vec<u8>) -> io::Result<usize> {
 /// Returns true if the first line of a text is a question: a whole JSON object that is not a stored shape, even if it
 /// is wrong. An object that does not end in this line is a stored shape.
 fn is_line(text: &[u8]) -> bool {
-    /// The key that stored shapes have, and questions do not.
     #[derive(Deserialize)]
     struct FormatKey {
         format: Option<IgnoredAny>,
@@ -372,31 +325,22 @@ fn is_line(text: &[u8]) -> bool {
     }
 }
 
-/// The reason to refuse a line with none of these keys, or with two.
 const ONE_KEY: &str = "expected exactly one of the keys frame (with values), imprint, touches";
 
-/// The reason to refuse a line whose imprint is null.
 const NO_IMPRINT: &str = "imprint: null, as of a frame without a threshold; set one where the frame is read, such as --at-least";
 
-/// The keys of a line that are read; others are ignored.
 #[derive(Deserialize)]
 #[serde(expecting = "an object with an imprint, touches or a frame")]
 struct LineKeys<'a> {
-    /// One touch.
     #[serde(borrow, default, deserialize_with = "given")]
     imprint: Option<RowsOrNull<'a>>,
-    /// Several touches of one shape.
     #[serde(borrow)]
     touches: Option<Vec<Vec<Text<'a>>>>,
-    /// The number of a frame, as `taxel frames --json` writes it; or the values of a frame.
     frame: Option<Box<RawValue>>,
-    /// The label of this frame in the recording.
     #[serde(default, deserialize_with = "given")]
     label: Option<Box<RawValue>>,
-    /// The time of the frame in seconds.
     #[serde(default, deserialize_with = "given")]
     time: Option<Box<RawValue>>,
-    /// The channel of the frame. It is null for a recording without channels, which is copied like a name.
     #[serde(default, deserialize_with = "given")]
     channel: Option<Box<RawValue>>,
 }
@@ -410,19 +354,16 @@ fn no_touch(line: &[u8]) -> String {
     }
 }
 
-/// A text for each row, `#` for an active taxel; null for a frame without a threshold.
 #[derive(Deserialize)]
 #[serde(transparent)]
 struct RowsOrNull<'a>(#[serde(borrow)] Option<Vec<Text<'a>>>);
 
-/// Reads any value of a key that is there, even null.
 fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }
 
-/// Reads the values of a frame, which are given in place of an imprint if `frame` is not a number.
 fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, String> {
     let Some(frame) = frame.filter(|frame| frame.get().starts_with('[')) else {
         return Ok(None);
@@ -433,19 +374,13 @@ fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, Stri
     rule.imprint(&rows).map(Some)
 }
 
-/// A line that was read and checked: its touches, and what is copied into its answer.
 struct RecogniseLine {
-    /// One or more imprints, each in a matrix of its own size.
     touches: Vec<Imprint>,
-    /// The keys and values that the answer repeats.
     copied: Vec<(&'static str, Box<RawValue>)>,
 }
 
 impl RecogniseLine {
     /// Reads a line. Other keys are ignored, so that answers of `taxel frames` can be given as they are.
-    ///
-    /// # Errors
-    /// Returns what is wrong with the line, with the key and the row.
     fn read(line: &[u8]) -> Result<Self, String> {
         let without_nan = json::WithoutNan::new(line);
         let line = &*without_nan.line;
@@ -495,7 +430,6 @@ impl RecogniseLine {
         })
     }
 
-    /// Returns what is copied, in the order frame, label, time, channel.
     fn copied(&self) -> Vec<(&'static str, &RawValue)> {
         self.copied
             .iter()

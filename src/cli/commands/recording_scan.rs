@@ -16,28 +16,20 @@ use crate::formats::value::counted;
 use crate::frame::{FrameError, FrameSize, View};
 use crate::matrix::Matrix;
 
-/// The most warnings that are shown; further ones are counted.
 const MOST_WARNINGS: usize = 20;
 
-/// The result of reading a recording once.
 #[derive(Debug, Default)]
 pub(crate) struct Scan {
     /// The format; None if a damage comes before the format is certain.
     pub(super) format: Option<RecordingFormat>,
-    /// The channels, in the order of the recording; a frame's channel is an index here.
     pub(super) channels: Vec<ListedChannel>,
-    /// The first [`MOST_WARNINGS`] oddities that are not damage, such as a line of the wrong length.
     notes: Vec<RecordingNote>,
-    /// The number of further oddities.
     more_notes: u64,
-    /// The damage at which reading ended.
     pub(super) error: Option<RecordingError>,
-    /// The first error of a frame that could not be cropped as asked.
     pub(super) misfit: Option<FrameError>,
 }
 
 impl Scan {
-    /// Reads a recording. Sums are those of the part that the view shows, or of the whole frame if this is too large.
     pub(super) fn of(recording: &mut RecordingFile, view: &View) -> Self {
         let mut scan = Self::default();
         let mut seen = Matrix::default();
@@ -82,7 +74,6 @@ impl Scan {
         scan
     }
 
-    /// Returns the oddities of the recording, for standard error.
     pub(super) fn warnings(&self, name: &str) -> Vec<String> {
         let line = |note| format!("{name}: {note}{}", note_advice(note));
         let lines = self.notes.iter().map(line);
@@ -113,10 +104,6 @@ impl Scan {
 
     /// Returns the index of the chosen channel. Without `--channel` there must be only one. A channel without a name
     /// is called `unnamed`.
-    ///
-    /// # Errors
-    /// Returns an error if no channel has this name, or if none is named and there are several. The message lists the
-    /// names.
     pub(super) fn channel(
         &self,
         recording: &RecordingFile,

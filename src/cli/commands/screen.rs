@@ -36,11 +36,6 @@ use crate::tui::terminal::settings::{Flags, TerminalSettings};
 /// Runs the screen until the user quits, and returns the exit status.
 ///
 /// With `watched`, it starts with the frames of this source.
-///
-/// # Errors
-/// Returns [`CliError::Screen`] if there is no terminal; [`CliError::Recorded`] or [`CliError::Record`] if the record
-/// cannot be created. If the record fails later, messages tell this, and the exit status becomes 1 if it would have
-/// been 0.
 pub(crate) fn screen(
     settings: &Effective,
     size: Option<(u16, u16)>,
@@ -95,7 +90,6 @@ pub(crate) fn screen(
     }
 }
 
-/// Ends a record, and returns true if it is whole. If it is not, a note says why.
 fn is_whole(record: ScreenRecord, outcome: Option<terminal::Outcome>, charset: Charset) -> bool {
     let name = record.path.to_string_lossy().into_owned();
     let ended = record.end(outcome);
@@ -107,7 +101,6 @@ fn is_whole(record: ScreenRecord, outcome: Option<terminal::Outcome>, charset: C
     ended.is_ok()
 }
 
-/// Returns how the terminal is used, according to the settings and the environment.
 fn terminal_settings(
     settings: &Effective,
     size: Option<(u16, u16)>,
@@ -125,11 +118,8 @@ fn terminal_settings(
     TerminalSettings::from_environment(std::env::var_os, &flags)
 }
 
-/// A record that is being written.
 struct ScreenRecord {
-    /// The path of the file, for messages.
     path: PathBuf,
-    /// The writer of the file.
     writer: RecordWriter,
     /// The recorder, which turns events into lines of a script.
     recorder: Recorder,
@@ -137,10 +127,6 @@ struct ScreenRecord {
 
 impl ScreenRecord {
     /// Creates the file, which must not exist: it may be another record.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Recorded`] if the file exists; [`CliError::Record`] if it cannot be created. A later error
-    /// is sent to the screen.
     fn begin(
         path: PathBuf,
         options: &Options,
@@ -172,10 +158,6 @@ impl ScreenRecord {
         })
     }
 
-    /// Records how the program ended. An empty record is removed.
-    ///
-    /// # Errors
-    /// Returns the error that ended the record early, if there was one.
     fn end(mut self, outcome: Option<terminal::Outcome>) -> io::Result<()> {
         if let Some(outcome) = outcome {
             let lines = self.recorder.end(outcome);
@@ -185,13 +167,11 @@ impl ScreenRecord {
     }
 }
 
-/// Returns the unsaved work that the program finds at its start, for the record.
 fn found(library: &Library) -> impl Iterator<Item = ScriptSetting> {
     let left = Orphan::all(library).into_iter();
     left.map(|orphan| ScriptSetting::Leftover(Box::new(orphan.shape)))
 }
 
-/// Returns a similar name that no file has: `demo-2.taxel` for `demo.taxel`.
 fn free(path: &Path) -> PathBuf {
     let last = path.with_extension("new");
     let Some(stem) = path.file_stem().map(|stem| stem.to_string_lossy()) else {

@@ -41,10 +41,6 @@ use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 /// The longest script, in bytes.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// Runs a script, and prints and draws its screens as they come.
-///
-/// # Errors
-/// Returns [`CliError::NoScript`] if it cannot be read; [`CliError::Script`] if it is wrong or an expectation fails.
 pub(crate) fn run(
     asked: &Script,
     settings: &Effective,
@@ -93,7 +89,6 @@ pub(crate) fn run(
     }
 }
 
-/// Returns how the script is run.
 fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOptions {
     let plain = Theme::plain(charset == Charset::Ascii);
     let theme = match asked.drawings {
@@ -129,7 +124,6 @@ fn folder_of(asked: &Script) -> Option<PathBuf> {
     })
 }
 
-/// Prints a text at once; draws a screen, if there is a folder for drawings.
 fn write(
     shown: ScriptOutput<'_>,
     asked: &Script,
@@ -154,9 +148,7 @@ fn write(
 /// The names of the drawings so far, which must all differ.
 #[derive(Debug, Default)]
 struct Names {
-    /// The names that are taken, folded: some file systems do not distinguish upper and lower case.
     taken: HashSet<String>,
-    /// The last number that was added to each name.
     last: HashMap<String, u32>,
 }
 
@@ -184,10 +176,6 @@ impl Names {
     }
 }
 
-/// Returns the text of a script.
-///
-/// # Errors
-/// Returns an error with the line of the first byte that is not UTF-8.
 fn text(script: &[u8]) -> Result<&str, ScriptError> {
     let script = without_mark(script);
     str::from_utf8(script).map_err(|error| ScriptError {
@@ -199,9 +187,6 @@ fn text(script: &[u8]) -> Result<&str, ScriptError> {
 }
 
 /// Reads a script. It may be long, since a record contains a whole library.
-///
-/// # Errors
-/// Returns the errors of the file, and an error for more than [`MOST_BYTES`] bytes.
 fn bytes(source: &InputSource) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut input = source.open()?.take(MOST_BYTES + 1);

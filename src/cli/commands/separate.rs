@@ -34,13 +34,8 @@ use crate::sensor::Sensor;
 use crate::storage::ModelChoice;
 use crate::storage::check_writable;
 
-/// The number of sizes that a search tries between two sizes of a scan.
 const REFINED: u64 = 9;
 
-/// Evaluates all sizes and thresholds. Returns the text to print.
-///
-/// # Errors
-/// Returns the errors of the set and of the file; [`CliError::Stopped`] after a signal.
 pub(crate) fn separate(
     asked: &SeparateArguments,
     shelf: &Shelf,
@@ -101,7 +96,6 @@ pub(crate) fn separate(
     })
 }
 
-/// Computes one curve for each threshold.
 fn curves(
     asked: &SeparateArguments,
     separation: &Separation,
@@ -126,11 +120,6 @@ fn curves(
     Ok(curves)
 }
 
-/// Returns the sizes at which a sensor holds the shapes, the smallest first.
-///
-/// # Errors
-/// Returns [`CliError::Separation`] for errors that would occur later: a value out of range, or shapes that fit at no
-/// size.
 fn fitting(
     asked: &SeparateArguments,
     separation: &Separation,
@@ -180,7 +169,6 @@ fn left_out(asked: &SeparateArguments, fitting: &[f64]) -> Option<String> {
     Some(format!("left out: {name} {sizes}: {reason}"))
 }
 
-/// Returns the set, and the threshold to use if none is given.
 fn set(
     asked: &SeparateArguments,
     shelf: &Shelf,
@@ -235,7 +223,6 @@ fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
     has_ending(what, "npz") || model::is_kept(&name, shelf) || built_in()
 }
 
-/// Returns notes about what differs from the model, even at scale 1 and its threshold; none with `--quiet`.
 fn departures(model: &Model, asked: &SeparateArguments) -> Vec<String> {
     let mut notes = Vec::new();
     if asked.quiet {
@@ -261,7 +248,6 @@ fn departures(model: &Model, asked: &SeparateArguments) -> Vec<String> {
     notes
 }
 
-/// Returns a model's positions per cell along x and y, such as 5 for `7:7.8:0.2`; None if its grid is not one cell.
 fn positions_of(model: &Model) -> Option<CellPositions> {
     let of = |range: &DecimalRange| {
         let count = u8::try_from(range.count()).ok()?;

@@ -32,7 +32,6 @@ use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile, persis
 use crate::sweep::{Shard, Sweep, SweepResult};
 
 impl Wanted {
-    /// Notes each file in a line on standard error, if the files of a summary were written.
     pub(super) fn note_written(&self, summary: &Summary, charset: Charset) {
         let atlas = self.atlas.as_ref().map(AtlasFile::path);
         let files = atlas.into_iter().chain(self.poses.as_deref());
@@ -82,11 +81,6 @@ pub(crate) fn grid(
     Ok((grid, notes))
 }
 
-/// Sweeps a shard of a grid on `jobs` threads (0 means the default), writes the files, and returns the summary to
-/// print.
-///
-/// # Errors
-/// Returns [`CliError::Stopped`] after a signal; otherwise the errors of the files that show before the sweep.
 pub(crate) fn sweep(
     grid: &PoseGrid,
     shard: Shard,
@@ -126,9 +120,6 @@ pub(crate) fn sweep(
 
 /// Writes the atlas, gives the files their names, and returns the summary to print, with the error if there are no
 /// files.
-///
-/// # Errors
-/// Returns [`CliError::Stopped`] after a signal.
 pub(super) fn leave(
     result: &SweepResult,
     start: Instant,
@@ -145,7 +136,6 @@ pub(super) fn leave(
     })
 }
 
-/// Writes the atlas and gives the files their names.
 fn write(
     result: &SweepResult,
     wanted: &Wanted,
@@ -170,7 +160,6 @@ fn write(
     Ok(named.map_err(ArchiveFileError::from)?)
 }
 
-/// Returns the text to print about a result.
 fn text(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset) -> String {
     let summary = SweepSummary::new(result, start.elapsed());
     if wanted.json {

@@ -18,7 +18,6 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::Plane;
 
-/// The output of a touch.
 pub(crate) struct Touched {
     /// For standard output: the imprint with its descriptors, or with `--export -` the exported file instead.
     pub(crate) answer: Vec<u8>,
@@ -27,10 +26,6 @@ pub(crate) struct Touched {
     pub(crate) notes: Vec<String>,
 }
 
-/// Touches a source, and stores and exports the shape as asked.
-///
-/// # Errors
-/// Returns the errors of [`Kept::keep`].
 pub(crate) fn touch(
     source: &Source,
     sensor: Sensor,
@@ -74,9 +69,6 @@ pub(crate) fn touch(
 ///
 /// The sensor is that of the stored shape. An imprint alone gets the default sensor, or a larger one if it needs
 /// that.
-///
-/// # Errors
-/// Returns an error if the shape cannot be read, or a value is out of range.
 pub(crate) fn picture(
     what: &OsStr,
     given: &Given,

@@ -12,21 +12,16 @@ use crate::recognition::{CellPositions, LEAST_SIDE, NamedShape};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// The sensor and the poses of a training.
 pub(super) struct TrainingGrid {
     pub(super) sensor: Sensor,
     pub(super) anchor: Anchor,
     pub(super) ranges: Ranges,
-    /// The advice if the sensor cuts off poses.
     pub(super) remedy: &'static str,
 }
 
 impl TrainingGrid {
     /// Returns the grid for some shapes. If neither x0 nor y0 is given, the anchor is the centre, since a shape's
     /// centre stays in place when it turns: one cell is then enough for all positions.
-    ///
-    /// # Errors
-    /// Returns an error if a given value is out of range.
     pub(super) fn of(asked: &TrainArguments, shapes: &[NamedShape]) -> Result<Self, CliError> {
         let given = &asked.ranges;
         let placed = given[Axis::X0].is_some() || given[Axis::Y0].is_some();

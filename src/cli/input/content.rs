@@ -18,17 +18,13 @@ use crate::formats::system_error::system_reason;
 use crate::formats::{Content, ContentError, read_content};
 use crate::quote::shortened_message;
 
-/// A file or standard input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum InputSource {
-    /// A file.
     File(PathBuf),
-    /// Standard input, given as `-`.
     Standard,
 }
 
 impl InputSource {
-    /// Returns the source that an argument names; `-` is standard input.
     pub(crate) fn of(path: &Path) -> Self {
         if path.as_os_str() == "-" {
             Self::Standard
@@ -37,7 +33,6 @@ impl InputSource {
         }
     }
 
-    /// Returns its name for messages: the path, or `standard input`.
     pub(crate) fn name(&self) -> String {
         match self {
             Self::File(path) => path.to_string_lossy().into_owned(),
@@ -45,10 +40,6 @@ impl InputSource {
         }
     }
 
-    /// Opens it; standard input only once.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be opened, or if standard input was taken before.
     pub(crate) fn open(&self) -> io::Result<Box<dyn Read>> {
         Ok(match self {
             Self::File(path) => Box::new(File::open(path)?),
@@ -58,9 +49,6 @@ impl InputSource {
 }
 
 /// Returns standard input, but only once: a second reader would find only its end, and take it for an empty input.
-///
-/// # Errors
-/// Returns an error if it was taken before.
 pub(crate) fn standard() -> io::Result<io::Stdin> {
     static IS_TAKEN: AtomicBool = AtomicBool::new(false);
     if IS_TAKEN.swap(true, Ordering::Relaxed) {
@@ -69,34 +57,22 @@ pub(crate) fn standard() -> io::Result<io::Stdin> {
     Ok(io::stdin())
 }
 
-/// The reason why input cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum InputError {
-    /// The input cannot be opened or read.
     #[error("cannot read: {}", system_reason(.0))]
     Read(#[from] io::Error),
-    /// The input is larger than any imprint or shape.
     #[error("larger than 1 MiB, the limit for an imprint or a shape")]
     Large,
-    /// The input is neither an imprint nor a stored shape.
     #[error("{}", shortened_message(&.0.to_string()))]
     Content(#[from] ContentError),
-    /// The input looks like something that another command reads.
     #[error("{error}; if this is {what}, use taxel {command}")]
     Elsewhere {
-        /// The reason why it is not an imprint.
         error: Box<InputError>,
-        /// The kind of input that it looks like.
         what: &'static str,
-        /// The command that reads it.
         command: &'static str,
     },
 }
 
-/// Reads an open source. Input that starts with `{` is a stored shape, any other an imprint.
-///
-/// # Errors
-/// Returns [`InputError`], which does not name the source.
 pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
     let bytes = bytes(source)?;
     read(&bytes).map_err(|error| {
@@ -131,7 +107,6 @@ fn lines_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
 /// Returns what a JSON line is, a pose or a shape of a set, and the command that reads it; None if it is neither. A
 /// stored shape has neither of the keys `figure` and `picture`.
 pub(crate) fn line_of_sources(line: &[u8]) -> Option<(&'static str, &'static str)> {
-    /// The keys that tell the kinds of lines apart.
     #[derive(Deserialize)]
     struct SourceKeys {
         figure: Option<IgnoredAny>,
@@ -146,7 +121,6 @@ pub(crate) fn line_of_sources(line: &[u8]) -> Option<(&'static str, &'static str
     })
 }
 
-/// Reads all bytes of a source, but at most one more than the limit.
 fn bytes(source: impl Read) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
     let limit = MAX_BYTES as u64;

@@ -13,9 +13,6 @@ use crate::sensor::MatrixSize;
 
 /// Returns the processing of the flags, without tare and rule, which need the recording. Crop, flips, turn and mask
 /// are applied in this order, then the tare, then the gain.
-///
-/// # Errors
-/// Returns an error if the mask or the gain cannot be read.
 pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliError> {
     let mut processing = Processing::default();
     processing.view = View {
@@ -30,9 +27,6 @@ pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliE
 
 /// Reads a table of factors, in any format of recordings with one frame. Reading stops at a second frame, which is an
 /// error. The table must have the size of the cropped frames, which is checked when the first of them is processed.
-///
-/// # Errors
-/// Returns an error if the file is damaged, or does not have exactly one frame.
 fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let opened = RecordingFile::open(path, ReadOptions::default());
     let mut file = opened.map_err(|error| error.of_flag("--gain"))?;
@@ -75,10 +69,8 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
 }
 
 /// Returns the rule of the flags, or else that of the recording. A recording's threshold is the one with which its
-/// maker's program draws pictures; values that reach it are active.
-///
-/// # Errors
-/// Returns an error if neither has a rule. There is no default: the meaning of values differs from sensor to sensor.
+/// maker's program draws pictures; values that reach it are active. There is no default: the meaning of values differs from
+/// sensor to sensor.
 pub(crate) fn rule(
     recording: &RecordingFile,
     asked: &ProcessingArguments,
@@ -126,9 +118,6 @@ pub(crate) fn unknown_step(processing: &Processing) -> Option<&'static str> {
 
 /// Computes the tare from the channel's first frames. The median of each cell over these frames is its value at rest,
 /// which is subtracted from then on.
-///
-/// # Errors
-/// Returns an error if the channel has fewer frames than wanted: `the tare needs 5 frames, but there are only 3`.
 pub(crate) fn tare(
     recording: &mut RecordingFile,
     (channel, wanted): (usize, u64),

@@ -24,30 +24,20 @@ use crate::storage::FileId;
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
 
-/// A recording that can be read repeatedly.
 #[derive(Debug)]
 pub(crate) struct RecordingFile {
-    /// The path, or `standard input`; for messages.
     name: String,
-    /// The content, which can be read again from its beginning.
     file: Box<dyn ReadAgain>,
     /// The file that holds the content, so that it is not replaced.
     id: FileId,
-    /// Rows and columns, for formats that do not state them.
     options: ReadOptions,
-    /// The metadata in the file beside it, if taxel made the recording.
     metadata: Option<RecordingMetadata>,
-    /// The problem with the metadata or the recording's end, if there is one.
     complaint: Option<String>,
     /// Whether the recording is known to be damaged, so that the damage is not reported again.
     is_damaged: bool,
 }
 
 impl RecordingFile {
-    /// Opens a file, or standard input for `-`.
-    ///
-    /// # Errors
-    /// Returns an error if it cannot be opened or read.
     pub(crate) fn open(path: &Path, options: ReadOptions) -> Result<Self, CliError> {
         let source = InputSource::of(path);
         let name = source.name();
@@ -101,15 +91,11 @@ impl RecordingFile {
         }
     }
 
-    /// Returns its name in messages.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
     /// Refuses to write to the recording, under any path: a recording cannot be made again.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Frames`] with the path.
     pub(crate) fn refuse_as_target(&self, target: &Path) -> Result<(), CliError> {
         match FileId::behind(target) {
             Ok(id) if id == self.id => Err(CliError::Frames {
@@ -120,20 +106,14 @@ impl RecordingFile {
         }
     }
 
-    /// Puts the flag that gave the file before its name in messages.
     pub(crate) fn prefix_name(&mut self, flag: &str) {
         self.name.insert_str(0, flag);
     }
 
-    /// Returns the problem with the metadata beside it, if there is one.
     pub(crate) fn complaint(&self) -> Option<&str> {
         self.complaint.as_deref()
     }
 
-    /// Reads the recording from its beginning.
-    ///
-    /// # Errors
-    /// Returns an error if it cannot be read, is not a recording, or is damaged.
     pub(crate) fn read(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()>,
@@ -147,10 +127,6 @@ impl RecordingFile {
         })
     }
 
-    /// Reads a small text as one frame, with a row for each line, even if it has a single row or column.
-    ///
-    /// # Errors
-    /// Returns an error if it cannot be read, or is not such a text.
     pub(crate) fn read_table(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()>,
@@ -163,17 +139,12 @@ impl RecordingFile {
         read_rows(&bytes, sink)
     }
 
-    /// Remembers that the recording is damaged; the caller reports the damage.
     pub(crate) fn remember_damage(&mut self) {
         self.is_damaged = true;
     }
 
     /// Reads the frames of a channel from the beginning of the recording again, until `take` breaks or fails. The
     /// inner result has the error of `take`.
-    ///
-    /// # Errors
-    /// Returns an error if the recording cannot be read as before: the disk is gone, or the file was changed. A known
-    /// damage is not an error; it is reported by the caller.
     pub(crate) fn frames_again<E>(
         &mut self,
         channel: usize,
@@ -195,7 +166,6 @@ impl RecordingFile {
         }
     }
 
-    /// Returns the names of its channels, all or up to one of them; and whether it could be read that far.
     pub(crate) fn channel_names(&mut self, up_to: Option<&str>) -> (Vec<String>, bool) {
         let mut names = Vec::new();
         let read = self.read(&mut |event| {
@@ -210,13 +180,11 @@ impl RecordingFile {
         (names, read.is_ok())
     }
 
-    /// Returns the format that its beginning shows, even if it is damaged.
     pub(crate) fn format(&mut self) -> Option<RecordingFormat> {
         self.file.seek(SeekFrom::Start(0)).ok()?;
         format_of(&mut self.file, self.options).ok()
     }
 
-    /// Returns the message about a damage.
     pub(crate) fn damaged(&self, error: RecordingError) -> CliError {
         CliError::Recording {
             name: self.name.clone(),
@@ -224,7 +192,6 @@ impl RecordingFile {
         }
     }
 
-    /// Returns the message about a frame, a channel or a threshold.
     pub(crate) fn refused(&self, message: &(impl ToString + ?Sized)) -> CliError {
         CliError::Frames {
             name: self.name.clone(),
@@ -233,10 +200,6 @@ impl RecordingFile {
     }
 }
 
-/// Reads an imprint, alone or in a stored shape, from a file or, for `-`, from standard input.
-///
-/// # Errors
-/// Returns the errors of [`content::read_from`], with the flag and the name of the file.
 pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
     let source = InputSource::of(path);
     let opened = source.open().map_err(InputError::Read);
@@ -249,7 +212,6 @@ pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
     }
 }
 
-/// Returns the message that a recording has no end, or that it was ended by something other than its user.
 fn unended(path: &Path, metadata: &RecordingMetadata) -> Option<String> {
     let beside = path.with_extension("json");
     let beside = beside.display();
@@ -262,15 +224,10 @@ fn unended(path: &Path, metadata: &RecordingMetadata) -> Option<String> {
     Some(format!("{beside}: the recording ended early: {reason}"))
 }
 
-/// Content that can be read from its beginning as often as needed.
 trait ReadAgain: Read + Seek + Debug {}
 
 impl<T: Read + Seek + Debug> ReadAgain for T {}
 
-/// Opens standard input or a pipe, which is copied as it is read.
-///
-/// # Errors
-/// Returns an error if no temporary file can be made.
 fn spooled(input: impl Read + 'static) -> io::Result<Box<dyn ReadAgain>> {
     Ok(Box::new(SpooledInput::new(input)?))
 }
@@ -279,7 +236,6 @@ fn spooled(input: impl Read + 'static) -> io::Result<Box<dyn ReadAgain>> {
 mod tests {
     use super::*;
 
-    /// Reads frames of the first channel again, and notes their first values; `take` fails at the value `fatal`.
     fn taken(
         text: &str,
         is_damaged: bool,

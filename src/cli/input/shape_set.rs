@@ -31,11 +31,6 @@ use crate::storage::LibraryError;
 /// The largest file of shapes, in bytes.
 const MAX_SET: u64 = 64 << 20;
 
-/// Reads the shapes of a set, in the order of the arguments.
-///
-/// # Errors
-/// Returns [`CliError::Set`] with the place of a shape that cannot be read, such as `parts.jsonl: line 3`, and the
-/// errors of files and the library.
 pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let lookup = |name: &str| {
         shelf
@@ -101,10 +96,6 @@ fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     CliError::NoShape { error, near }
 }
 
-/// Returns all shapes of the library, in its order.
-///
-/// # Errors
-/// Returns an error if one of them is damaged.
 fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let library = shelf.readable();
     let mut shapes = Vec::new();
@@ -116,7 +107,6 @@ fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     Ok(shapes)
 }
 
-/// Returns the file, or standard input, that an argument names; None if it is the name of a shape.
 fn source_of_lines(what: &OsStr, shelf: &Shelf) -> Option<InputSource> {
     let path = Path::new(what);
     let ending = has_ending(path, "jsonl") || has_ending(path, "json");
@@ -132,11 +122,6 @@ fn source_of_lines(what: &OsStr, shelf: &Shelf) -> Option<InputSource> {
     is_source.then(|| InputSource::of(path))
 }
 
-/// Reads a set of shapes, one line of JSON each. Blank lines are skipped.
-///
-/// # Errors
-/// Returns an error if the text is larger than [`MAX_SET`], has no shape, or has a line that is not one. A wrong line
-/// is not skipped: a set without one of its shapes would have another limit.
 fn lines(
     input: &mut dyn Read,
     name: &str,

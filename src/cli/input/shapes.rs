@@ -27,9 +27,7 @@ use crate::storage::{Existing, Expected, Library, LibraryError};
 pub(crate) struct Shelf {
     /// The folder of the library; None if the user has no home.
     folder: Option<PathBuf>,
-    /// Whether `--library` names the folder.
     asked: bool,
-    /// The library once it has been opened.
     library: OnceLock<Option<Library>>,
     /// The imprints that [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked
     /// up.
@@ -39,15 +37,11 @@ pub(crate) struct Shelf {
 /// A folder that cannot exist, because it would be below a device.
 const NO_FOLDER: &str = "/dev/null/library";
 
-/// The meaning of a `NAME|FILE` argument.
 #[derive(Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 pub(crate) enum Located {
-    /// A shape of the library.
     Shape(StoredShape),
-    /// A file that is open.
     File(PathBuf, File),
-    /// Standard input.
     Standard,
 }
 
@@ -63,17 +57,12 @@ impl Shelf {
         }
     }
 
-    /// Returns the library.
-    ///
-    /// # Errors
-    /// Returns [`LibraryError::NoPlace`] if there is no folder for one.
     pub(crate) fn library(&self) -> Result<Library, LibraryError> {
         let library = || self.folder.clone().map(Library::open);
         let library = self.library.get_or_init(library);
         library.clone().ok_or(LibraryError::NoPlace)
     }
 
-    /// Returns the library to read from. Without a folder for one, it has the shapes that come with the program.
     pub(crate) fn readable(&self) -> Library {
         self.library()
             .unwrap_or_else(|_| Library::open(PathBuf::from(NO_FOLDER)))
@@ -104,10 +93,6 @@ impl Shelf {
         (folder.metadata().as_ref().err().is_some_and(is_missing)).then_some(folder)
     }
 
-    /// Looks up a `NAME|FILE` argument and reads it.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Self::locate`], and of reading the file.
     pub(crate) fn find(&self, what: &OsStr) -> Result<Content, CliError> {
         let (name, content) = match self.locate(what)? {
             Located::Shape(shape) => return Ok(Content::Shape(shape)),
@@ -122,11 +107,6 @@ impl Shelf {
         content.map_err(|error| CliError::Input { name, error })
     }
 
-    /// Looks up a `NAME|FILE` argument: `-`, then a name, then a file.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Nowhere`] if the argument is none of these; otherwise the error of the shape, or of
-    /// opening the file.
     pub(crate) fn locate(&self, what: &OsStr) -> Result<Located, CliError> {
         if what == "-" {
             return Ok(Located::Standard);
@@ -224,10 +204,6 @@ impl Shelf {
         Some(words)
     }
 
-    /// Returns the imprint of a stored shape, for the lines of a batch. Each shape is read once.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such shape, or it cannot be read.
     pub(crate) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
         // The map is never left half changed.
         let found = || locked(&self.found);
@@ -243,10 +219,6 @@ impl Shelf {
 
     /// Stores a shape and returns its name in the library, which may differ in case. `existing` tells whether an own
     /// shape of that name is replaced.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Taken`] if there is such a shape and it is kept; otherwise the errors of the
-    /// library.
     pub(crate) fn save(&self, shape: &StoredShape, existing: Existing) -> Result<String, CliError> {
         let library = self.library()?;
         let saved = match library.save(shape, Expected::Nothing) {

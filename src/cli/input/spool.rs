@@ -12,11 +12,9 @@ use crate::formats::system_error::system_reason;
 /// The most that is copied, in bytes, so that an endless input does not fill the disk.
 const MOST: u64 = 4 << 30;
 
-/// Standard input or a pipe with a copy of what was read.
 pub(crate) struct SpooledInput {
     /// The input that has not been read yet; None at its end.
     rest: Option<Box<dyn Read>>,
-    /// The copy of what has been read, in a file without a name.
     copy: File,
     /// The length of the copy, in bytes.
     length: u64,
@@ -27,10 +25,6 @@ pub(crate) struct SpooledInput {
 }
 
 impl SpooledInput {
-    /// Wraps an input that has not been read yet.
-    ///
-    /// # Errors
-    /// Returns an error if no temporary file can be made.
     pub(crate) fn new(input: impl Read + 'static) -> io::Result<Self> {
         Ok(Self {
             rest: Some(Box::new(input)),
@@ -41,7 +35,6 @@ impl SpooledInput {
         })
     }
 
-    /// Reads on from the input and copies what was read. Returns the number of bytes.
     fn advance(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let Some(rest) = &mut self.rest else {
             return Ok(0);
@@ -62,7 +55,6 @@ impl SpooledInput {
     }
 }
 
-/// Returns the error of the copy: it names the folder, which has nothing to do with the input.
 fn not_copied(error: &io::Error) -> io::Error {
     let folder = std::env::temp_dir();
     let text = format!(

@@ -14,40 +14,28 @@ use crate::imprint::Imprint;
 use crate::parameter::number::{differing, short};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest, Noise, SearchMethod};
 
-/// The number of shapes that a text shows by default.
 const SHOWN: usize = 8;
 
-/// The length of the longest bar, in characters.
 const BAR: usize = 30;
 
-/// The nearest imprint as a JSON object. If several imprints are equally near, it is the most frequent one.
 #[derive(Serialize)]
 struct NearestJson<'a> {
-    /// The shape that leaves it most often.
     name: &'a str,
-    /// The number of taxels that differ in the best position.
     distance: u32,
-    /// The rows of the imprint, in the matrix of the touch.
     imprint: &'a Imprint,
 }
 
-/// An answer as a JSON object, with its keys in the order of the documentation.
 pub(crate) struct AnswerJson<'a> {
-    /// The model, for the names of shapes.
     pub(crate) model: &'a Model,
-    /// The answer, with the posterior.
     pub(crate) answer: &'a Answer,
-    /// The noise that was assumed.
     pub(crate) noise: Option<Noise>,
     /// The nearest imprint of the model; None if all are larger than the matrix.
     pub(crate) nearest: Option<Nearest>,
     /// The number of shapes of the ranking to write; None for all.
     pub(crate) top: Option<usize>,
-    /// Whether the place of the shape is written.
     pub(crate) asks_pose: bool,
     /// The place of the shape; None if it is unknown.
     pub(crate) pose: Option<PoseReport>,
-    /// The keys of the question that are copied to the beginning.
     pub(crate) copied: Vec<(&'static str, &'a RawValue)>,
 }
 
@@ -87,12 +75,9 @@ impl Serialize for AnswerJson<'_> {
     }
 }
 
-/// A shape of the ranking.
 #[derive(Serialize)]
 struct Ranked<'a> {
-    /// The shape's name.
     name: &'a str,
-    /// The shape's posterior, 0 to 1.
     probability: f64,
 }
 
@@ -107,20 +92,15 @@ struct Ranked<'a> {
 ///   # both   + only in the touch   - only in the nearest imprint
 /// ```
 pub(crate) struct AnswerText<'a> {
-    /// The model.
     pub(crate) model: &'a Model,
-    /// The touch, which is compared with the nearest imprint.
     pub(crate) touch: &'a Imprint,
-    /// The answer, with the posterior.
     pub(crate) answer: &'a Answer,
     /// The number of shapes of the ranking to show; None for eight.
     pub(crate) top: Option<usize>,
-    /// The noise that was assumed.
     pub(crate) noise: Option<Noise>,
 }
 
 impl AnswerText<'_> {
-    /// Returns the whole text.
     pub(crate) fn text(&self, charset: Charset) -> String {
         let touches = [*self.touch];
         let evidence = Evidence::of(&touches).under(self.noise.as_ref());
@@ -148,7 +128,6 @@ impl AnswerText<'_> {
         charset.lines(&text)
     }
 
-    /// Returns the name of a shape of the model.
     fn name(&self, shape: usize) -> &str {
         &self.model.shapes()[shape].name
     }
@@ -177,7 +156,6 @@ impl AnswerText<'_> {
         }
     }
 
-    /// Returns the likeliest shapes, each with a bar and its probability, and the number of the others.
     fn ranking(&self, charset: Charset) -> String {
         let top = self.top.unwrap_or(SHOWN);
         let shown = self.answer.ranking.iter().take(top);
@@ -195,7 +173,6 @@ impl AnswerText<'_> {
         text
     }
 
-    /// Returns the nearest imprint of the model, with its differences from the touch; nothing if there are none.
     fn nearest(&self, nearest: Option<Nearest>) -> String {
         let Some(nearest) = nearest.filter(|nearest| nearest.distance > 0) else {
             return String::new();
@@ -212,7 +189,6 @@ impl AnswerText<'_> {
     }
 }
 
-/// Returns in words what the imprint was compared with.
 fn compared(method: SearchMethod) -> &'static str {
     match method {
         SearchMethod::Exact => "only the imprint itself is looked up",

@@ -12,12 +12,9 @@ use crate::quote::is_invisible;
 use crate::tui::widget::columns::width;
 use crate::tui::widget::theme::spelling;
 
-/// The characters that may be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Charset {
-    /// ASCII from space to `~`.
     Ascii,
-    /// Every visible character.
     Unicode,
 }
 
@@ -59,7 +56,6 @@ impl Charset {
         }
     }
 
-    /// Converts one line of text. Line ends are escaped like other control characters; see [`Self::lines`].
     pub(crate) fn line(self, text: &str) -> Cow<'_, str> {
         if text.chars().all(|character| self.has(character)) {
             return Cow::Borrowed(text);
@@ -77,7 +73,6 @@ impl Charset {
         Cow::Owned(line)
     }
 
-    /// Converts text of several lines, keeping its line ends.
     pub(crate) fn lines(self, text: &str) -> String {
         let lines: Vec<Cow<'_, str>> = text.split('\n').map(|line| self.line(line)).collect();
         lines.join("\n")
@@ -96,7 +91,6 @@ impl Charset {
         column
     }
 
-    /// Returns true if a character can be written as it is.
     fn has(self, character: char) -> bool {
         match self {
             Self::Ascii => matches!(character, ' '..='~'),

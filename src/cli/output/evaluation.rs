@@ -29,11 +29,8 @@ use crate::recognition::{
 };
 use crate::tui::widget::columns::width;
 
-/// An evaluation as a JSON object, with its keys in the order of the documentation.
 pub(crate) struct EvaluationJson<'a> {
-    /// The evaluation to show.
     pub(crate) evaluation: &'a Evaluation,
-    /// The classifier, if it is not the best one.
     pub(crate) classifier: Option<&'a ClassifierEvaluation>,
 }
 
@@ -73,7 +70,6 @@ impl Serialize for EvaluationJson<'_> {
     }
 }
 
-/// A confusion matrix as an array of its rows.
 struct MatrixRows<'a>(&'a ConfusionMatrix);
 
 impl Serialize for MatrixRows<'_> {
@@ -115,19 +111,14 @@ pub(crate) fn bar(share: f64, width: usize, charset: Charset) -> String {
     full.repeat((share * width as f64).round() as usize)
 }
 
-/// The method that an evaluation is about, which decides how its error is explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NamedBy {
-    /// The best method that sees the whole imprint.
     Imprint,
-    /// The best method that sees some descriptors.
     Descriptors,
-    /// Another method, which is not the best one.
     Classifier,
 }
 
 impl NamedBy {
-    /// Returns the remark after the error.
     fn remark(self) -> &'static str {
         match self {
             Self::Imprint => "  the limit: no method does better",
@@ -136,7 +127,6 @@ impl NamedBy {
         }
     }
 
-    /// Returns what makes a touch certain.
     fn certain(self) -> &'static str {
         match self {
             Self::Descriptors => "  no other shape has the same values",
@@ -144,7 +134,6 @@ impl NamedBy {
         }
     }
 
-    /// Returns what the method tells apart, with the number of it.
     fn distinct(self, number: u64) -> String {
         match self {
             Self::Imprint | Self::Classifier => {
@@ -155,10 +144,8 @@ impl NamedBy {
     }
 }
 
-/// The line about touches of shapes with weights.
 pub(crate) const WEIGHTED: &str = "each touch counts with the weight of its shape\n";
 
-/// Returns the summary of an evaluation in lines: touches, error, certain, top two, information.
 pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     let of_touches = |part: u128| percent(share(part, evaluation.touches));
     let Evaluation {
@@ -357,7 +344,6 @@ pub(crate) fn classifiers(
     charset.lines(&(text + &features(reached.first()) + &drawn))
 }
 
-/// Returns the table of all classifiers as comma-separated values, with a row of names; the limit is the last row.
 pub(crate) fn classifiers_csv(reached: &[ClassifierEvaluation], limit: &Evaluation) -> String {
     let mut text = String::from("classifier,error,right_in_top_two,information_bits\n");
     let classifiers = reached
@@ -376,7 +362,6 @@ pub(crate) fn classifiers_csv(reached: &[ClassifierEvaluation], limit: &Evaluati
     text
 }
 
-/// Returns what a classifier drew at random: another seed gives other numbers. Empty if it counts all touches.
 pub(crate) fn sampled(reached: &ClassifierEvaluation) -> String {
     let Some(sample) = reached.sample else {
         return String::new();

@@ -21,22 +21,16 @@ const PAUSE: Duration = Duration::from_millis(1);
 /// The time that a reader has, after a signal, to read what is waiting.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// A line with its end, and the imprint of its frame, if there is one.
 pub(crate) type PendingLine = (Vec<u8>, Option<Imprint>);
 
-/// Completes a line with what takes longer, on the thread that writes.
 pub(crate) type Finish<'a> = dyn FnMut(&mut Vec<u8>, Option<&Imprint>) + 'a;
 
-/// The sending end, with the thread that writes.
 #[derive(Debug)]
 pub(crate) struct LineWriter {
     /// The channel to the thread. Sending fails once the thread has ended because of an error.
     lines: SyncSender<PendingLine>,
-    /// The thread, which returns its error, if there was one.
     thread: JoinHandle<Result<(), CliError>>,
-    /// Disconnected once the thread has ended.
     ended: Receiver<()>,
-    /// Whether a signal asks the program to end.
     stopped: Arc<AtomicBool>,
     /// The number of lines dropped because too many were waiting.
     pub(crate) given_up: u64,
@@ -45,9 +39,6 @@ pub(crate) struct LineWriter {
 impl LineWriter {
     /// Starts the thread, which calls `run` once with the lines to write. Once `stopped` is set, a reader that does not
     /// read cannot keep the program from ending.
-    ///
-    /// # Errors
-    /// Returns an error if the system provides no thread.
     pub(crate) fn start(
         stopped: &Arc<AtomicBool>,
         run: impl FnOnce(&WaitingLines) -> Result<(), CliError> + Send + 'static,
@@ -68,7 +59,6 @@ impl LineWriter {
         })
     }
 
-    /// Returns true if nothing can be written any more.
     pub(crate) fn is_over(&self) -> bool {
         self.thread.is_finished()
     }
@@ -93,9 +83,6 @@ impl LineWriter {
 
     /// Waits until all lines are written; after a signal, for a second at most. Lines that nobody has read by then are
     /// lost.
-    ///
-    /// # Errors
-    /// Returns the errors of standard output, and of the thread's other work.
     pub(crate) fn finish(self) -> Result<(), CliError> {
         drop(self.lines);
         let mut stopped_at = None;
@@ -115,15 +102,10 @@ impl LineWriter {
     }
 }
 
-/// The receiving end.
 #[derive(Debug)]
 pub(crate) struct WaitingLines(Receiver<PendingLine>);
 
 impl WaitingLines {
-    /// Writes all lines that come, completed, and flushes them when no more are waiting.
-    ///
-    /// # Errors
-    /// Returns the errors of standard output.
     pub(crate) fn write(&self, finish: &mut Finish<'_>) -> Result<(), CliError> {
         self.write_to(io::stdout().lock(), finish)
             .map_err(CliError::Write)

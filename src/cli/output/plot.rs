@@ -12,7 +12,6 @@ use crate::formats::value::decimal;
 use crate::tui::widget::dots::{DOTS, DotCanvas, glyph};
 use crate::tui::widget::theme::Theme;
 
-/// The size of the drawing in characters, across and down.
 const SIZE: (u16, u16) = (60, 12);
 
 /// Draws the curve through points, with both axes named. The vertical axis begins at 0, the horizontal one at the
@@ -54,7 +53,6 @@ pub(crate) fn lines(y: &str, x: &str, points: &[(f64, f64)], charset: Charset) -
     text + &format!("{:>margin$}  {}\n", "", axis)
 }
 
-/// Returns the rows of a canvas, blank where it has no dots.
 fn drawn(canvas: &DotCanvas, charset: Charset) -> Vec<String> {
     let mut rows = vec![vec![' '; usize::from(SIZE.0)]; usize::from(SIZE.1)];
     for (column, row, dots) in canvas.characters() {
@@ -65,12 +63,10 @@ fn drawn(canvas: &DotCanvas, charset: Charset) -> Vec<String> {
         .collect()
 }
 
-/// Returns the character for some dots.
 pub(crate) fn character(dots: u8, charset: Charset) -> char {
     glyph(&Theme::plain(charset == Charset::Ascii), dots)
 }
 
-/// Creates a canvas on which a taxel is a square of four by four dots.
 pub(crate) fn canvas_of_taxels(columns: u8, rows: u8) -> DotCanvas {
     let across = u16::from(columns) * (4 / DOTS.0);
     let down = u16::from(rows) * (4 / DOTS.1);

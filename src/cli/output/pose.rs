@@ -21,32 +21,21 @@ use crate::recognition::{AngleEstimate, Model, PoseEstimate};
 use crate::sensor::Sensor;
 use crate::tui::widget::dots::DotCanvas;
 
-/// Dots of a taxel in each direction.
 const DOTS: f64 = 4.0;
 
-/// The number of straight pieces of an ellipse.
 const PIECES: u16 = 128;
 
-/// A pose as a JSON object, with its keys in the order of the documentation.
 #[derive(Serialize)]
 pub(crate) struct PoseJson<'a> {
-    /// The shape's name.
     name: &'a str,
-    /// The number of poses of the model that leave the imprint.
     poses: u64,
-    /// The mean x and y of the shape's centre, in cells of the touch.
     centre: [f64; 2],
-    /// `centre` relative to the top left corner of the imprint's box.
     centre_in_box: [f64; 2],
-    /// Standard deviations of x and y, in cells.
     centre_sd: [f64; 2],
-    /// `centre` times the pitch, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     centre_mm: Option<[f64; 2]>,
-    /// `centre_sd` times the pitch.
     #[serde(skip_serializing_if = "Option::is_none")]
     centre_sd_mm: Option<[f64; 2]>,
-    /// The angle; null for a shape that looks the same at every angle.
     angle: Option<AngleJson>,
 }
 
@@ -54,9 +43,7 @@ pub(crate) struct PoseJson<'a> {
 /// degrees that contain 95 % of the poses.
 #[derive(Serialize)]
 struct AngleJson {
-    /// The circular mean; null if the angles point equally in all directions.
     mean: Option<f64>,
-    /// The circular standard deviation; null if the mean is null.
     sd: Option<f64>,
     /// The degrees after which the shape looks the same; written without a point if whole.
     #[serde(serialize_with = "integer_if_whole")]
@@ -67,7 +54,6 @@ struct AngleJson {
     degrees: u32,
 }
 
-/// Writes a whole period as an integer.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
 #[expect(clippy::cast_possible_truncation, reason = "at most 360")]
 fn integer_if_whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
@@ -77,15 +63,10 @@ fn integer_if_whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok,
     }
 }
 
-/// A shape's pose, as far as one touch determines it.
 pub(crate) struct PoseReport {
-    /// The shape's name.
     name: String,
-    /// The poses that leave the imprint.
     estimate: PoseEstimate,
-    /// The top left corner of the imprint's box, in cells.
     corner: [f64; 2],
-    /// The shape in the mean pose.
     placed: Placed,
     /// The side of a cell in mm, if lengths are given in mm too.
     pitch_mm: Option<f64>,
@@ -132,7 +113,6 @@ impl PoseReport {
         })
     }
 
-    /// Returns the pose as a JSON object: lengths in cells, with a pitch also in mm; degrees as in flags.
     pub(crate) fn json(&self) -> PoseJson<'_> {
         let estimate = &self.estimate;
         let [x, y] = estimate.position;
@@ -155,7 +135,6 @@ impl PoseReport {
         }
     }
 
-    /// Returns the pose in words, and the outline of the shape over the touch.
     pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
         let estimate = &self.estimate;
         let mut text = format!("centre {} cells", pose_words::centre(estimate, 1.0));
@@ -169,7 +148,6 @@ impl PoseReport {
         charset.lines(&(text + &self.drawn(touch, charset)))
     }
 
-    /// Draws the touch with the outline over it, two characters per taxel.
     fn drawn(&self, touch: &Imprint, charset: Charset) -> String {
         let mut outline = Outline(canvas_of_taxels(touch.columns(), touch.rows()));
         self.placed.draw(&mut outline);
@@ -197,7 +175,6 @@ impl PoseReport {
     }
 }
 
-/// Returns the angle with its spread over a number of poses in words, or "any" if no angle is more likely than another.
 fn angle_in_words(angle: &AngleEstimate, poses: u64) -> String {
     let repeats = pose_words::repeats(angle);
     let Some((mean, spread)) = angle.known() else {
@@ -208,11 +185,9 @@ fn angle_in_words(angle: &AngleEstimate, poses: u64) -> String {
     format!("angle {mean}° ± {spread}°{repeats}; {arc}")
 }
 
-/// Draws a boundary as dots.
 struct Outline(DotCanvas);
 
 impl Outline {
-    /// Draws a line between two points given in cells.
     fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
         let place = |(x, y): (f64, f64)| (x * DOTS, y * DOTS);
         self.0.line(place(from), place(to));
@@ -224,7 +199,6 @@ impl Pen<f64> for Outline {
         self.line((from.x, from.y), (to.x, to.y));
     }
 
-    /// Draws [`PIECES`] chords, which differ from the ellipse by less than a dot.
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         let at = |piece: u16| {
             let turn = std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES);

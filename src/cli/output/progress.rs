@@ -20,38 +20,26 @@ use crate::formats::value::grouped;
 use crate::lock::try_locked;
 use crate::progress::Progress;
 
-/// The time between two lines, without a terminal.
 const PAUSE: Duration = Duration::from_secs(10);
 
-/// Shows how many poses of a sweep are done. It is shared by all threads of the sweep.
 pub(crate) struct ProgressDisplay {
-    /// The name of what is counted, in the plural.
     noun: &'static str,
-    /// The number of poses in all.
     all: u64,
-    /// The number of poses that are done.
     done: AtomicU64,
-    /// The way progress is shown.
     shown: Shown,
 }
 
-/// The way progress is shown.
 enum Shown {
-    /// No progress is shown.
     Nothing,
-    /// A bar on the terminal. It removes itself when it is dropped, so also when the work fails.
     Bar(ProgressBar),
-    /// Lines of text, with the times of the start and of the last line.
     Lines(Instant, Mutex<Instant>),
 }
 
 impl ProgressDisplay {
-    /// Starts to show the progress of `all` poses.
     pub(crate) fn new(all: u64, quiet: bool, charset: Charset) -> Self {
         Self::counting("poses", all, quiet, charset)
     }
 
-    /// Starts to show the progress of something else, named in the plural.
     pub(crate) fn counting(noun: &'static str, all: u64, quiet: bool, charset: Charset) -> Self {
         let shown = if quiet {
             Shown::Nothing
@@ -109,7 +97,6 @@ impl ProgressDisplay {
         }
     }
 
-    /// Returns a line of the log. The time left assumes that the remaining poses take as long as those that are done.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     fn line(&self, done: u64, elapsed: Duration) -> String {
         let share = done as f64 / self.all as f64;
@@ -123,7 +110,6 @@ impl ProgressDisplay {
         )
     }
 
-    /// Removes the bar, as dropping it does; lines stay. For a progress that another one follows in its scope.
     pub(crate) fn clear(&self) {
         if let Shown::Bar(bar) = &self.shown {
             bar.finish_and_clear();
@@ -132,7 +118,6 @@ impl ProgressDisplay {
 }
 
 impl Progress for ProgressDisplay {
-    /// Shows that more is done. Stops nothing.
     fn add(&self, done: u64) -> ControlFlow<()> {
         self.show(done);
         ControlFlow::Continue(())

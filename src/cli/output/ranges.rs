@@ -2,7 +2,6 @@
 
 use crate::pose::{Axis, Ranges};
 
-/// Returns the ranges of some axes with their units.
 pub(crate) fn ranges_in_words(axes: impl Iterator<Item = Axis>, ranges: &Ranges) -> String {
     let words = axes.map(|axis| {
         let unit = axis.parameter().row().unit;

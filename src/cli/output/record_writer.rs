@@ -10,34 +10,24 @@ use std::thread::Builder;
 use crate::storage::FileId;
 use crate::tui::runtime::work::threads::PATIENCE;
 
-/// Writes the file of `--record`. When dropped, as in a panic, it also waits for the last lines, which tell the most.
 pub(crate) struct RecordWriter(Option<RecordSink>);
 
-/// The way lines are written.
 enum RecordSink {
-    /// On a thread, which returns the first error.
     Thread(Sender<String>, Receiver<io::Result<()>>),
-    /// On the thread of the caller, if the system provides no other.
     Here(RecordFile),
 }
 
-/// The file of a record.
 struct RecordFile {
-    /// Its path.
     path: PathBuf,
-    /// The open file.
     file: Arc<File>,
-    /// Whether anything has been written.
     begun: bool,
     /// The length of the whole lines written, in bytes.
     length: u64,
     /// The function that is called with the first error, at once.
     on_failure: OnFailure,
-    /// The error that ended the record.
     failed: io::Result<()>,
 }
 
-/// Called with the error that ends a record, on the thread that writes it.
 pub(crate) type OnFailure = Arc<dyn Fn(&io::Error) + Send + Sync>;
 
 impl RecordFile {
@@ -83,7 +73,6 @@ impl RecordFile {
 }
 
 impl RecordWriter {
-    /// Starts to write to a file that is open and empty.
     pub(crate) fn start(path: PathBuf, file: File, on_failure: OnFailure) -> Self {
         let file = Arc::new(file);
         let (lines, given) = channel::<String>();
@@ -104,7 +93,6 @@ impl RecordWriter {
         }
     }
 
-    /// Appends lines, without waiting for the disk.
     pub(crate) fn write(&mut self, text: String) {
         match &mut self.0 {
             // The thread ends only after this end of the channel is dropped.
@@ -114,10 +102,6 @@ impl RecordWriter {
         }
     }
 
-    /// Waits, but not long, until everything is written.
-    ///
-    /// # Errors
-    /// Returns the error that ended the record early, or one that says that the disk does not answer.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         self.end()
     }

@@ -24,42 +24,32 @@ use crate::formats::value::{counted, decimal};
 use crate::frame::{Frame, FrameSize, Peak, View};
 use crate::parameter::number::short;
 
-/// A channel of a recording.
 #[derive(Debug, Default)]
 pub(crate) struct ListedChannel {
-    /// The properties of the channel that the recording states.
     pub(crate) info: ChannelInfo,
     /// The size of the visible part of its frames, after the crop.
     seen: Option<FrameSize>,
-    /// The number of frames.
     pub(crate) frames: u64,
-    /// The frame with the greatest sum of values.
     pub(crate) peak: Peak,
-    /// The number of values in a frame, including those of cells that do not exist.
     pub(crate) values: u64,
-    /// The largest number of cells with a value in a frame.
     cells: usize,
     /// The least and the greatest label of its frames; None if they have no labels.
     pub(crate) labels: Option<(i64, i64)>,
     /// The times of its frames; None if they have no times.
     times: Option<FrameTimes>,
-    /// The numbers of the marked frames. The recording knows them by their labels, the numbers of the source.
     marked: Vec<u64>,
 }
 
 /// The times at which frames were taken, in seconds.
 #[derive(Clone, Copy, Debug)]
 struct FrameTimes {
-    /// The time of the first frame.
     first: f64,
-    /// The time of the last frame so far.
     last: f64,
     /// The first frame that is earlier than the one before it: a clock was set back, or the column is not a time.
     backwards: Option<u64>,
 }
 
 impl FrameTimes {
-    /// Adds the time of another frame.
     fn with(self, number: u64, time: f64) -> Self {
         Self {
             last: time,
@@ -81,7 +71,6 @@ impl fmt::Display for FrameTimes {
 }
 
 impl ListedChannel {
-    /// Creates a channel without frames; their size is that of the part that the view shows.
     pub(crate) fn new(info: &ChannelInfo, view: &View) -> Self {
         Self {
             info: info.clone(),
@@ -90,7 +79,6 @@ impl ListedChannel {
         }
     }
 
-    /// Adds a frame: counts it, and compares the sum of its values.
     pub(crate) fn add(&mut self, frame: &Frame, values: &[f64]) {
         let present = values.iter().filter(|value| !value.is_nan());
         let cells = present.clone().count();
@@ -158,12 +146,10 @@ impl Serialize for ListedRecording<'_> {
     }
 }
 
-/// Returns the recording as a line of JSON.
 pub(crate) fn json(format: Option<RecordingFormat>, channels: &[ListedChannel]) -> String {
     json::ascii(&ListedRecording(format, channels)) + "\n"
 }
 
-/// Returns the recording as text: a heading, then a few lines for each channel.
 pub(crate) fn text(
     format: Option<RecordingFormat>,
     channels: &[ListedChannel],
@@ -182,7 +168,6 @@ pub(crate) fn text(
         .collect()
 }
 
-/// Returns rows, columns and cells; if only a part is visible, also the size of the whole.
 fn size(channel: &ListedChannel) -> String {
     let Some(seen) = channel.seen else {
         let values = counted(channel.values, "value");
@@ -200,7 +185,6 @@ fn size(channel: &ListedChannel) -> String {
     format!("{rows} × {columns}{whole}, {cells}")
 }
 
-/// Returns the lines of a channel: a name in ten columns, then the value. Lines without a value are left out.
 fn channel_lines(channel: &ListedChannel) -> Vec<String> {
     let info = &channel.info;
     let row = |name: &str, value: Option<String>| value.map(|value| format!("{name:<10}{value}"));

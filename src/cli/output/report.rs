@@ -30,14 +30,12 @@ use crate::touch::reaches_beyond;
 /// The width of a table, in characters. A single region is never split, even if it is wider.
 const WIDTH: usize = 80;
 
-/// Returns the answer of `--json`: one line with the imprint, its regions and their descriptors, and a line end.
 pub(crate) fn json(imprint: &Imprint) -> String {
     let mut line = json::text(&DescribedImprint(imprint));
     line.push('\n');
     line
 }
 
-/// Returns the line that the sensor cuts off a part of the source, if it does.
 pub(crate) fn beyond(source: &Source, sensor: &Sensor) -> Option<String> {
     let noun = source.noun();
     reaches_beyond(source, sensor).then(|| format!("the {noun} reaches beyond the sensor"))
@@ -80,7 +78,6 @@ pub(crate) fn table(
     )
 }
 
-/// Draws the matrix, two characters per taxel, with a ruler above and row numbers on the left.
 fn matrix(imprint: &Imprint, charset: Charset) -> String {
     let (active, inactive) = charset.taxels();
     let ruler: Vec<String> = (0..imprint.columns())
@@ -103,7 +100,6 @@ fn matrix(imprint: &Imprint, charset: Charset) -> String {
     text
 }
 
-/// Appends a line, without trailing spaces.
 fn line(text: &mut String, line: &str) {
     text.push_str(line.trim_end());
     text.push('\n');
@@ -112,11 +108,8 @@ fn line(text: &mut String, line: &str) {
 /// A row of the table: a descriptor, the factor that is applied to its values (the pitch, or 100 for percent), and
 /// the label on the left.
 struct TableRow {
-    /// The descriptor.
     descriptor: &'static Descriptor,
-    /// The factor from the descriptor's values to those shown.
     factor: f64,
-    /// The symbol, a few words, and the unit.
     label: String,
 }
 
@@ -156,14 +149,12 @@ fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
     all
 }
 
-/// Returns the left column of the table, padded to one width; the first cell, above the labels, is empty.
 fn labels(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<String> {
     let holes = descriptions.iter().any(|it| it.kind == RegionKind::Hole);
     let rows = table_rows(pitch, holes);
     charset.column(iter::once("").chain(rows.iter().map(|row| &*row.label)))
 }
 
-/// Returns the width of the widest cell, in characters.
 fn widest(cells: &[String]) -> usize {
     let widths = cells.iter().map(|cell| cell.chars().count());
     widths.fold(0, usize::max)

@@ -75,7 +75,6 @@ pub(crate) fn text(
     charset.lines(&text)
 }
 
-/// Returns the results of a search, in a sentence or more for each threshold.
 pub(crate) fn all_found(
     axis: SizeAxis,
     sizes: &DecimalRange,
@@ -174,50 +173,34 @@ pub(crate) fn json_text(axis: SizeAxis, curves: &[SeparationCurve], wanted: Opti
     json::text(&answer) + "\n"
 }
 
-/// All points, and with `--want` the results of its search.
 #[derive(Serialize)]
 struct CurvesJson {
-    /// `scale` or `pitch_mm`.
     axis: &'static str,
-    /// All points, threshold by threshold.
     points: Vec<PointJson>,
-    /// The results of `--want`.
     #[serde(skip_serializing_if = "Option::is_none")]
     want: Option<Vec<FoundJson>>,
 }
 
-/// A point as a JSON object, with its keys in the order of the documentation.
 #[derive(Serialize)]
 struct PointJson {
     /// The pitch in mm, if pitches were given; `scale` follows from it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pitch_mm: Option<f64>,
-    /// The factor of lengths.
     scale: f64,
-    /// The coverage from which a taxel is active.
     threshold: f64,
-    /// The share of touches that the best classifier names wrong.
     error: f64,
-    /// The number of touches: poses times shapes.
     touches: Value,
-    /// The number of touches that are named right.
     right: Value,
-    /// The number of touches that only one shape can leave.
     certain: Value,
-    /// The number of distinct imprints, wherever they lie.
     keys: usize,
-    /// Columns and rows of the sensor.
     side: u8,
 }
 
 /// The result of a search; `smallest`, `step` and `missed_again` are null if no size reaches the error.
 #[derive(Serialize)]
 struct FoundJson {
-    /// The threshold of the curve.
     threshold: f64,
-    /// The wanted error.
     error: f64,
-    /// The point with the smallest scale, that is, the coarsest pitch, that reaches it.
     smallest: Option<PointJson>,
     /// The step of the search; 0 if the smallest scale that was tried reaches the error, so that smaller ones may
     /// reach it too.

@@ -25,18 +25,13 @@ use crate::formats::value::{counted, grouped};
 use crate::pose::{Axis, PoseGrid};
 use crate::sweep::SweepResult;
 
-/// The result of a sweep, and the time that it took.
 pub(crate) struct SweepSummary<'a> {
-    /// The result.
     result: &'a SweepResult,
-    /// The numbers of distinct imprints if their images count as one.
     classes: DistinctClasses,
-    /// The time of the sweep, without that of writing files.
     took: Duration,
 }
 
 impl<'a> SweepSummary<'a> {
-    /// Summarises a result. This counts the classes of its imprints, which takes a moment for a large atlas.
     pub(crate) fn new(result: &'a SweepResult, took: Duration) -> Self {
         Self {
             result,
@@ -45,14 +40,12 @@ impl<'a> SweepSummary<'a> {
         }
     }
 
-    /// Returns the summary as one line of JSON, with its line end.
     pub(crate) fn json(&self) -> String {
         let mut line = json::text(self);
         line.push('\n');
         line
     }
 
-    /// Returns the summary as text: the counts and a table of the statistics.
     pub(crate) fn text(&self, charset: Charset) -> String {
         let SweepResult {
             grid,
@@ -132,7 +125,6 @@ impl Serialize for SweepSummary<'_> {
     }
 }
 
-/// The range of each axis that the shape has.
 struct GridRanges<'a>(&'a PoseGrid);
 
 impl Serialize for GridRanges<'_> {
@@ -142,7 +134,6 @@ impl Serialize for GridRanges<'_> {
     }
 }
 
-/// The statistics of all features, by key.
 struct Descriptors<'a>(&'a [Statistic]);
 
 impl Serialize for Descriptors<'_> {
@@ -152,7 +143,6 @@ impl Serialize for Descriptors<'_> {
     }
 }
 
-/// The statistics of one feature, by column.
 struct FeatureStatistics<'a>(&'a Statistic);
 
 impl Serialize for FeatureStatistics<'_> {

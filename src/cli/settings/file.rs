@@ -29,45 +29,31 @@ use crate::tui::keys::key::{Key, parse};
 use crate::tui::keys::keymap::{Change, Keymap, KeymapError, actions};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// The word that lets the program choose.
 pub(crate) const AUTO: &str = "auto";
 
-/// The keys at the top level of the file, in the order in which messages list them.
 const TOP: [&str; 9] = [
     "theme", "color", "charset", "mouse", "library", "sensor", "source", "frames", "keys",
 ];
 
-/// The names of the character sets, and whether each is ASCII only.
 pub(crate) const CHARSETS: [(&str, bool); 2] = [("ascii", true), ("unicode", false)];
 
 /// The largest settings file, in bytes. The parser may need seventy times the size of a hostile file.
 pub const MAX_BYTES: usize = 64 << 10;
 
-/// The content of the settings file. None means that the file does not set a value.
 #[derive(Clone, Debug, Default)]
 pub struct Config {
-    /// The palette of the screen.
     pub(crate) theme: Option<Choice<Palette>>,
-    /// The number of colours that the screen uses.
     pub(crate) color: Option<Choice<ColorDepth>>,
-    /// Whether characters are ASCII only.
     pub(crate) charset: Option<Choice<bool>>,
-    /// Whether the screen reacts to the mouse.
     pub(crate) mouse: Option<bool>,
-    /// The folder of the library: an absolute path, or one that starts with `~/`, below the user's home.
     pub(crate) library: Option<String>,
-    /// The default sensor with the values of the file.
     sensor: Sensor,
-    /// The parameters of the sensor that the file sets, with their lines.
     sensor_entries: Vec<Parameter>,
     sensors: SensorSettings,
-    /// The keys that the file binds or frees, in its order.
     changes: Vec<Change>,
-    /// The default keys with these changes.
     keymap: Keymap,
 }
 
-/// An error in the settings file, with its line and column.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}, column {column}: {wrong}")]
 pub struct ConfigError {
@@ -75,61 +61,39 @@ pub struct ConfigError {
     pub line: usize,
     /// The column in characters, from 1.
     pub column: usize,
-    /// The error.
     pub wrong: Wrong,
 }
 
-/// An error in the settings file, without its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Wrong {
-    /// The file is longer than [`MAX_BYTES`].
     #[error("larger than 64 KiB, the limit for a file of settings")]
     Large,
-    /// The file is not valid TOML.
     #[error("{0}")]
     Syntax(String),
-    /// An entry or a place for keys that does not exist.
     #[error(
         "unknown key {found:?}, expected one of {}{}",
         expected.join(", "),
         did_you_mean(found, expected.iter().copied())
     )]
     Unknown {
-        /// The key found.
         found: String,
-        /// The keys that are possible here.
         expected: Vec<&'static str>,
     },
-    /// A value of the wrong type, or not one of those that are possible.
     #[error("expected {expected}, found {found}")]
-    Value {
-        /// The values that are possible here.
-        expected: String,
-        /// The value found.
-        found: String,
-    },
-    /// A number that is out of range for a sensor.
+    Value { expected: String, found: String },
     #[error(transparent)]
     Sensor(#[from] ParameterError),
-    /// A text that does not denote one key.
     #[error("{0:?} is not a key that can be bound, expected one such as x, <Tab> or <C-x>")]
     Key(String),
-    /// A key that cannot be bound like this.
     #[error(transparent)]
     Keymap(#[from] KeymapError),
 }
 
-/// An entry of a table: its key, the byte at which it starts, and its value.
 type TomlEntry<'t, 'i> = (&'t str, usize, &'t Spanned<DeValue<'i>>);
 
-/// An error with the byte at which it occurs.
 type Refusal = (usize, Wrong);
 
 impl Config {
-    /// Reads the text of a settings file.
-    ///
-    /// # Errors
-    /// Returns the first error in the text.
     pub fn read(text: &str) -> Result<Self, ConfigError> {
         Self::of(text).map_err(|(byte, wrong)| {
             let (line, column) = line_and_column(text, byte);
@@ -141,27 +105,22 @@ impl Config {
         })
     }
 
-    /// Returns the default sensor with the values of the file.
     pub fn sensor(&self) -> &Sensor {
         &self.sensor
     }
 
-    /// Returns the parameters of the sensor that the file sets.
     pub fn sensor_entries(&self) -> &[Parameter] {
         &self.sensor_entries
     }
 
-    /// Returns the settings of real sensors.
     pub(crate) fn sensors(&self) -> &SensorSettings {
         &self.sensors
     }
 
-    /// Returns the key bindings that the file changes.
     pub fn changes(&self) -> &[Change] {
         &self.changes
     }
 
-    /// Returns all key bindings, with the changes of the file.
     pub fn keymap(&self) -> &Keymap {
         &self.keymap
     }
@@ -178,7 +137,6 @@ impl Config {
         Ok(config)
     }
 
-    /// Reads one entry of the top level.
     fn take(&mut self, text: &str, entry: TomlEntry<'_, '_>) -> Result<(), Refusal> {
         let (key, byte, value) = entry;
         match key {
@@ -220,7 +178,6 @@ impl Config {
         Ok(())
     }
 
-    /// Reads a table of settings of real sensors, `[source]` or `[frames]`.
     fn take_sensors(
         &mut self,
         text: &str,
@@ -249,7 +206,6 @@ impl Config {
         found.map_or(Ok(()), Err)
     }
 
-    /// Reads the table `[keys]`: for each place a table, in which each key has an action or `"none"`.
     fn bind_keys(&mut self, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
         let mut spans = Vec::new();
         for (name, byte, value) in entries(table(value)?) {
@@ -296,7 +252,6 @@ fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<TomlEntry<'t, 'i>> {
     entries
 }
 
-/// Returns the line and column of a byte, both from 1.
 fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line = before.split('\n').count();
@@ -304,7 +259,6 @@ fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     (line, column.chars().count() + 1)
 }
 
-/// Returns the key that a text denotes; None for several keys, or for text that denotes none.
 fn one_key(text: &str) -> Option<Key> {
     match parse(text).ok()?[..] {
         [key] => Some(key),
@@ -312,7 +266,6 @@ fn one_key(text: &str) -> Option<Key> {
     }
 }
 
-/// Reads a value that is one of some names, or `auto`, which gives None.
 fn choice<T: Copy, const N: usize>(
     names: &[(&'static str, T); N],
     value: &Spanned<DeValue<'_>>,
@@ -327,13 +280,11 @@ fn choice<T: Copy, const N: usize>(
     Ok(known.map_or(Choice::Auto, |(_, own)| Choice::Made(*own)))
 }
 
-/// Reads a value that must be text.
 fn string<'t>(value: &'t Spanned<DeValue<'_>>) -> Result<&'t str, Refusal> {
     let text = value.get_ref().as_str();
     text.ok_or_else(|| other_kind("text in quotes", value))
 }
 
-/// Reads a value that must be a table.
 fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Refusal> {
     let table = value.get_ref().as_table();
     table.ok_or_else(|| other_kind("a table", value))
@@ -360,7 +311,6 @@ fn fill_sensor(
     Err(unfit(row.kind.expected(), found, value))
 }
 
-/// Reads a number in decimal notation. NaN and infinities are accepted here; the parameter's range refuses them.
 fn number(text: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
     let (digits, decimal) = match value.get_ref() {
         DeValue::Integer(number) => (number.as_str(), number.radix() == 10),
@@ -371,24 +321,20 @@ fn number(text: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
     number.ok_or_else(|| unfit("a decimal number".to_owned(), written(text, value), value))
 }
 
-/// Returns a value as it is written in the text of the file.
 fn written<'t>(text: &'t str, value: &Spanned<DeValue<'_>>) -> &'t str {
     &text[value.span()]
 }
 
-/// Returns the error for an unknown key.
 fn unknown(found: &str, byte: usize, expected: &[&'static str]) -> Refusal {
     let (found, expected) = (shortened_message(found), expected.to_vec());
     (byte, Wrong::Unknown { found, expected })
 }
 
-/// Returns the error for a value of the right type that is not possible.
 fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let found = format!("{:?}", shortened_message(found));
     (value.span().start, Wrong::Value { expected, found })
 }
 
-/// Returns the error for a word that is not an action, with a similar action of the same place if there is one.
 fn no_action(context: Context, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let names = actions(context).into_iter().chain(["none"]);
     let near = did_you_mean(found, names);
@@ -397,7 +343,6 @@ fn no_action(context: Context, found: &str, value: &Spanned<DeValue<'_>>) -> Ref
     (value.span().start, Wrong::Value { expected, found })
 }
 
-/// Returns the error for a text that is not TOML, in one line. The parser does not name a key that is given twice.
 fn syntax(text: &str, error: &toml::de::Error) -> Refusal {
     let span = error.span().unwrap_or(0..0);
     let message = match (error.message(), text.get(span.clone())) {
@@ -409,7 +354,6 @@ fn syntax(text: &str, error: &toml::de::Error) -> Refusal {
     (span.start, Wrong::Syntax(shortened_message(&message)))
 }
 
-/// Returns the error for a value of the wrong type.
 fn other_kind(expected: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let found = value.get_ref().type_str();
     let (expected, found) = (expected.to_owned(), found.to_owned());

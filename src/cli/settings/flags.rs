@@ -8,17 +8,14 @@ use clap::ArgMatches;
 use crate::cli::arguments::parameters::Given;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// The value of a flag that takes one of several words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Choice<T> {
     /// `auto`: the program chooses, even if the file says otherwise.
     Auto,
-    /// Another word, which means this value.
     Made(T),
 }
 
 impl<T> Choice<T> {
-    /// Returns the value chosen, or None for `auto`.
     pub(crate) fn made(self) -> Option<T> {
         match self {
             Self::Auto => None,
@@ -27,25 +24,17 @@ impl<T> Choice<T> {
     }
 }
 
-/// The settings given by flags. None, false or empty means that the flag was not given.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chosen {
-    /// `--theme`.
     pub(crate) theme: Option<Choice<Palette>>,
-    /// `--color`.
     pub(crate) color: Option<Choice<ColorDepth>>,
-    /// `--ascii`.
     pub(crate) ascii: bool,
-    /// `--no-mouse`.
     pub(crate) no_mouse: bool,
-    /// `--library`.
     pub(crate) library: Option<PathBuf>,
-    /// `--columns`, `--rows`, `--threshold` and `--pitch`.
     pub(crate) sensor: Given,
 }
 
 impl Chosen {
-    /// Reads the flags of a command. A flag that the command does not have counts as not given.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let chosen = |name: &str| {
             let chosen = matches.try_get_one::<String>(name).ok().flatten();
@@ -66,7 +55,6 @@ impl Chosen {
     }
 }
 
-/// Returns the value of a word. Unknown words give `auto`, but clap has refused them already.
 fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Choice<T> {
     let found = names.iter().find(|(own, _)| *own == name);
     found.map_or(Choice::Auto, |(_, value)| Choice::Made(*value))

@@ -5,9 +5,7 @@ use crate::sensor::Sensor;
 /// The sources of the pitch in mm that are known before a stored shape is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pitch {
-    /// The pitch of `--pitch`.
     pub(crate) given: Option<f64>,
-    /// The pitch of the settings file.
     pub(crate) usual: Option<f64>,
 }
 

@@ -22,26 +22,19 @@ use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// The environment variable that names the settings file.
 pub(crate) const VARIABLE: &str = "TAXEL_CONFIG";
 
-/// The settings file, or an empty one if there is none.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Loaded {
     /// The path of the file, even if it does not exist; None if the user has no home.
     path: Option<PathBuf>,
-    /// Whether the file exists.
     there: bool,
-    /// The content; empty if there is no file.
     config: Config,
 }
 
 impl Loaded {
     /// Reads the settings file: that of `--config`, or else of `TAXEL_CONFIG`, or else the user's own. Only the
     /// user's own file may be missing.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Settings`] if the file cannot be read or has an error.
     pub(crate) fn find(asked: Option<PathBuf>) -> Result<Self, CliError> {
         let variable = std::env::var_os(VARIABLE).filter(|value| !value.is_empty());
         if let Some(path) = asked.or_else(|| variable.map(PathBuf::from)) {
@@ -54,7 +47,6 @@ impl Loaded {
         )
     }
 
-    /// Reads a settings file, but at most one byte more than [`MAX_BYTES`].
     fn read(path: PathBuf, may_be_missing: bool) -> Result<Self, CliError> {
         let name = path.display();
         let failure = |message: String| CliError::Settings {
@@ -104,29 +96,21 @@ fn open(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// All settings in effect. For a choice, None means `auto`.
 #[derive(Clone, Debug)]
 pub(crate) struct Effective {
     loaded: Loaded,
     pub(crate) theme: Option<Palette>,
-    /// The number of colours that the screen uses; `NO_COLOR` means none.
     pub(crate) color: Option<ColorDepth>,
-    /// Whether text is ASCII only; for `auto`, the locale decides.
     pub(crate) ascii: Option<bool>,
     pub(crate) mouse: bool,
     /// The folder of the library; None if the user has no home and nothing names another folder.
     pub(crate) library: Option<PathBuf>,
-    /// The sensor of figures that are given without one.
     pub(crate) sensor: Sensor,
     /// The pitch in mm, if the file or a flag sets it. With the default pitch, nothing is shown in mm.
     pub(crate) pitch: Option<f64>,
 }
 
 impl Effective {
-    /// Combines the settings: `loaded` is the file, `chosen` the flags, and `variable` reads the environment.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Range`] if a flag of the sensor is out of range.
     pub(crate) fn new(
         loaded: Loaded,
         chosen: Chosen,
@@ -160,7 +144,6 @@ impl Effective {
         })
     }
 
-    /// Returns the settings of real sensors in the file.
     pub(crate) fn sensors(&self) -> &SensorSettings {
         self.loaded.config.sensors()
     }
@@ -169,7 +152,6 @@ impl Effective {
         self.loaded.config.keymap()
     }
 
-    /// Returns the character set of the command line's output: that of the settings, or else of the locale.
     pub(crate) fn charset(&self, locale: Charset) -> Charset {
         match self.ascii {
             Some(true) => Charset::Ascii,
@@ -178,7 +160,6 @@ impl Effective {
         }
     }
 
-    /// Returns all settings as the text of a settings file, below a comment with the path of the file.
     pub(crate) fn text(&self, charset: Charset) -> String {
         let quoted = |text: &str| quoted(text, charset);
         let path = match &self.loaded.path {
@@ -218,7 +199,6 @@ impl Effective {
         )
     }
 
-    /// Returns the table `[sensor]`.
     fn sensor_text(&self) -> String {
         let entries = SENSOR_PARAMETERS.iter().map(|&parameter| {
             let value = match parameter {
@@ -231,7 +211,6 @@ impl Effective {
         "\n[sensor]\n".to_owned() + &entries.collect::<String>()
     }
 
-    /// Returns the tables `[source]` and `[frames]`.
     fn sensors_text(&self) -> String {
         let mut text = String::new();
         for table in TABLES {
@@ -245,7 +224,6 @@ impl Effective {
         text
     }
 
-    /// Returns the tables `[keys.…]`: every key with its action, and the keys that the file has freed.
     fn keys_text(&self, quoted: &impl Fn(&str) -> String) -> String {
         let mut text = String::new();
         for context in Context::ALL {
@@ -269,13 +247,11 @@ fn entry(name: &str, value: Option<impl std::fmt::Display>) -> String {
     }
 }
 
-/// Returns the name of a choice; `auto` for None.
 fn named<T: PartialEq>(names: &[(&'static str, T)], value: Option<&T>) -> &'static str {
     let found = names.iter().find(|(_, own)| Some(own) == value);
     found.map_or(AUTO, |(name, _)| name)
 }
 
-/// Quotes a text as a TOML string. Characters that are not in the character set, or are invisible, are escaped.
 fn quoted(text: &str, charset: Charset) -> String {
     let mut quoted = String::from("\"");
     for character in text.chars() {

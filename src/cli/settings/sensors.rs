@@ -11,13 +11,11 @@ use crate::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::live::request::WatchRequest;
 
-/// Puts a value into a field of its type. Returns false if it does not fit in.
 fn fill<T, U: TryFrom<T>>(value: T, field: &mut Option<U>) -> bool {
     *field = U::try_from(value).ok();
     field.is_some()
 }
 
-/// A setting of real sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SensorKey {
     Format,
@@ -33,60 +31,51 @@ pub(crate) enum SensorKey {
     HistoryBytes,
 }
 
-/// The format of a stream; None for `auto`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FormatSetting(pub(crate) Option<StreamFormat>);
 
 impl fmt::Display for FormatSetting {
-    /// Writes the name in quotes, as in the file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:?}", self.0.map_or("auto", StreamFormat::name))
     }
 }
 
-/// A function that puts a value into its field. It returns false if the value does not fit in.
 type Fill<T> = fn(&mut SensorSettings, T) -> bool;
 
-/// The values that a setting may have, and how one gets into its field.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SettingKind {
-    /// The name of a format of streams, or `auto`.
-    Format { fill: Fill<FormatSetting> },
-    /// A whole number in a range.
+    Format {
+        fill: Fill<FormatSetting>,
+    },
     Whole {
         least: u64,
         most: u64,
         fill: Fill<u64>,
     },
-    /// A number in a range.
     Number {
         least: f64,
         most: f64,
         fill: Fill<f64>,
     },
     /// A share above 0 %.
-    Percent { fill: Fill<f64> },
+    Percent {
+        fill: Fill<f64>,
+    },
 }
 
-/// A row of the table of settings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensorSetting {
     pub(crate) key: SensorKey,
-    /// The table that contains the setting: `source` or `frames`.
     pub(crate) table: &'static str,
     pub(crate) name: &'static str,
     pub(crate) kind: SettingKind,
-    /// Returns the value as the file has it; None if it does not set it.
     shown: fn(&SensorSettings) -> Option<String>,
 }
 
-/// The tables, in the order in which they are shown.
 pub(crate) const TABLES: [&str; 2] = ["source", "frames"];
 
-/// The number of taxels below which pieces may be dropped.
 pub(crate) const LEAST: RangeInclusive<u32> = 1..=4096;
 
-/// The most memory for the history of frames, in bytes.
 const MOST_HISTORY_BYTES: u64 = {
     let (most, addressable) = (1 << 40, usize::MAX as u64);
     if most < addressable {
@@ -96,7 +85,6 @@ const MOST_HISTORY_BYTES: u64 = {
     }
 };
 
-/// All settings of real sensors. Each has the name of its field.
 pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
     macro_rules! row {
         ($table:literal, $key:ident, $field:ident, $kind:ident $(, $least:expr, $most:expr)?) => {
@@ -149,7 +137,6 @@ pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
 };
 
 impl SettingKind {
-    /// Returns the possible values, for messages.
     pub(crate) fn expected(self) -> String {
         match self {
             Self::Format { .. } => {
@@ -163,7 +150,6 @@ impl SettingKind {
         }
     }
 
-    /// Puts a number into its field. Returns false if it is out of range, or if no number is expected.
     pub(crate) fn fill(self, settings: &mut SensorSettings, number: f64) -> bool {
         #[expect(
             clippy::cast_precision_loss,
@@ -185,7 +171,6 @@ impl SettingKind {
     }
 }
 
-/// The settings of real sensors that the file sets.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SensorSettings {
     format: Option<FormatSetting>,
@@ -202,13 +187,11 @@ pub(crate) struct SensorSettings {
 }
 
 impl SensorSettings {
-    /// Returns true if the file sets it.
     fn is_set(&self, key: SensorKey) -> bool {
         let mut rows = SENSOR_SETTINGS.iter();
         rows.any(|row| row.key == key && (row.shown)(self).is_some())
     }
 
-    /// Returns low and high, if both are set.
     fn low_and_high(&self) -> Option<(f64, f64)> {
         self.low.zip(self.high)
     }
@@ -240,7 +223,6 @@ impl SensorSettings {
         .or_else(|| order().then_some((SensorKey::Low, "a number at most that of high", None)))
     }
 
-    /// Returns the rule for imprints.
     pub(crate) fn rule(&self) -> Option<Rule> {
         let made = |value: Option<f64>, make: fn(f64) -> Result<Rule, _>| make(value?).ok();
         let both = || self.low_and_high();
@@ -249,22 +231,18 @@ impl SensorSettings {
             .or_else(|| both().and_then(|(low, high)| Rule::hysteresis(low, high).ok()))
     }
 
-    /// Returns the smallest piece that is kept, in taxels.
     pub(crate) fn least(&self) -> Option<u32> {
         self.least
     }
 
-    /// Returns the number of frames for a tare.
     pub(crate) fn tare(&self) -> Option<u64> {
         self.tare
     }
 
-    /// Returns the memory for the history of frames, in bytes.
     pub(crate) fn history_bytes(&self) -> usize {
         self.history_bytes.unwrap_or(HISTORY_BYTES)
     }
 
-    /// Sets how a source is read, for the settings that the file has.
     pub(crate) fn apply(&self, options: &mut AcquireOptions) {
         if let Some(FormatSetting(format)) = self.format {
             options.stream_format = format;
@@ -273,7 +251,6 @@ impl SensorSettings {
         options.stream_size = FrameSize::of_sides(self.columns, self.rows);
     }
 
-    /// Returns the request that `:watch` starts with; its source is still missing.
     pub(crate) fn request(&self) -> WatchRequest {
         let mut request = WatchRequest::new("");
         self.apply(&mut request.options);
@@ -287,7 +264,6 @@ impl SensorSettings {
         request
     }
 
-    /// Returns the value of a setting as it is written in the file.
     pub(crate) fn shown(&self, setting: &SensorSetting) -> Option<String> {
         (setting.shown)(self)
     }

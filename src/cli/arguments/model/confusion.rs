@@ -30,66 +30,42 @@ use crate::recognition::{Classifier, ClassifierSettings, GivenDescriptors, Noise
 use crate::sensor::MatrixSize;
 use crate::storage::Existing;
 
-/// The model to evaluate, the question about it, and how the answer is shown.
 #[derive(Clone, Debug)]
 pub(crate) struct ConfusionArguments {
-    /// Name or file of the model.
     pub(crate) model: OsString,
-    /// The question.
     pub(crate) of: Evaluated,
-    /// The steps to which descriptors are rounded, for `--given` and `--greedy`.
     pub(crate) roundings: Vec<Rounding>,
-    /// The settings of the other classifiers: neighbours, samples, templates and seed.
     pub(crate) classifiers: ClassifierSettings,
-    /// How the answer is printed.
     pub(crate) form: EvaluationForm,
-    /// The file for the matrix: `.csv`, `.svg` or `.png`.
     pub(crate) export: Option<PathBuf>,
-    /// Whether that file may exist already.
     pub(crate) existing: Existing,
-    /// Whether no progress is shown.
     pub(crate) quiet: bool,
 }
 
-/// The classifier that names the shapes, and what it knows of a touch.
 #[derive(Clone, Debug)]
 pub(crate) enum Evaluated {
-    /// The best classifier, from the whole imprint.
     Imprints,
-    /// The best classifier, from some descriptors.
     Given(GivenDescriptors),
-    /// The best classifier, from descriptors that are chosen one by one.
     Greedy,
-    /// The best classifier, for each pair of shapes alone.
     Pairs,
-    /// One of the usual classifiers, from its own features.
     Classifier(Classifier),
-    /// All usual classifiers, in a table.
     AllClassifiers,
-    /// The best classifier, from noisy touches.
     Noise(NoiseArguments),
-    /// The best classifier, from touches between the poses of the model.
     HalfStep,
 }
 
-/// Noisy touches to simulate.
 #[derive(Clone, Debug)]
 pub(crate) struct NoiseArguments {
-    /// The probabilities that a taxel flips, each 0 or more and below 0.5. Each has a row of the answer.
     pub(crate) noise: DecimalRange,
-    /// The numbers of dead taxels. The whole range of noise is simulated for each.
     pub(crate) dead: Vec<u32>,
     /// The descriptors that are known in place of the imprint.
     pub(crate) given: Option<GivenDescriptors>,
-    /// The number of touches of each shape.
     pub(crate) touches: u64,
-    /// The seed for drawing poses, flips and dead taxels.
     pub(crate) seed: u64,
     /// Columns and rows of the matrix; None for those of the model's sensor.
     pub(crate) size: Option<MatrixSize>,
 }
 
-/// Defines `taxel model confusion`.
 pub(super) fn command() -> Command {
     Command::new("confusion")
         .about("Show which shapes one touch confuses, and the limit of any method")
@@ -126,7 +102,6 @@ pub(super) fn command() -> Command {
         .arg(untrained())
 }
 
-/// Defines `--given`, `--greedy`, `--pairs` and `--classifier`: all questions except those about noise.
 fn questions() -> [Arg; 4] {
     let classifiers = Classifier::ALL.iter().map(|own| own.name()).chain(["all"]);
     [
@@ -148,7 +123,6 @@ fn questions() -> [Arg; 4] {
     ]
 }
 
-/// Defines `--neighbours`, `--sample` and `--templates`, which some classifiers need.
 fn of_classifiers() -> [Arg; 3] {
     [
         ("neighbours", "Neighbours that vote in knn; default 1"),
@@ -165,7 +139,6 @@ fn of_classifiers() -> [Arg; 3] {
     })
 }
 
-/// Defines `--export`, `--force`, `--json`, `--quiet` and `--csv`. Only a confusion matrix can be exported.
 fn output() -> [Arg; 5] {
     let export = option("export", "FILE", "Write the matrix as .csv, .svg or .png")
         .value_parser(report())
@@ -176,7 +149,6 @@ fn output() -> [Arg; 5] {
     [export, force, json(), quiet(), csv]
 }
 
-/// Defines the flags of noisy touches.
 fn noisy() -> [Arg; 4] {
     let noise = option(
         "noise",
@@ -203,7 +175,6 @@ fn noisy() -> [Arg; 4] {
     [noise, dead, touches, matrix].map(|arg| arg.help_heading("Noise"))
 }
 
-/// Defines `--test`.
 fn untrained() -> Arg {
     option(
         "test",
@@ -224,7 +195,6 @@ fn parse_noise_range(text: &str) -> Result<DecimalRange, String> {
     Ok(range)
 }
 
-/// Parses columns and rows, such as `16x16`.
 fn parse_matrix(text: &str) -> Result<MatrixSize, &'static str> {
     let expected = "expected columns and rows from 1 to 64, such as 16x16";
     let (columns, rows) = text.split_once('x').ok_or(expected)?;
@@ -233,11 +203,6 @@ fn parse_matrix(text: &str) -> Result<MatrixSize, &'static str> {
 }
 
 impl ConfusionArguments {
-    /// Reads the arguments of [`command`].
-    ///
-    /// # Errors
-    /// Returns [`CliError::Unused`] for a flag that has no effect with the others, and [`CliError::Ending`] for a
-    /// drawing of all classifiers.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         check_classifier(matches)?;
         check_roundings(matches)?;
@@ -265,7 +230,6 @@ impl ConfusionArguments {
     }
 }
 
-/// Refuses flags that have no effect with the given classifier.
 fn check_classifier(matches: &ArgMatches) -> Result<(), CliError> {
     let name = matches.get_one::<String>("classifier").map(String::as_str);
     let is = |one: &str| name.is_some_and(|name| name == one || name == "all");
@@ -289,7 +253,6 @@ fn check_classifier(matches: &ArgMatches) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Refuses a second step for a descriptor, and a step for a descriptor that `--given` does not name.
 fn check_roundings(matches: &ArgMatches) -> Result<(), CliError> {
     let roundings = matches.get_many::<Rounding>("round").into_iter().flatten();
     let keys: Vec<_> = roundings.map(Rounding::descriptor).collect();
@@ -334,7 +297,6 @@ impl Evaluated {
 }
 
 impl NoiseArguments {
-    /// Reads the flags of [`noisy`].
     fn of(matches: &ArgMatches, noise: DecimalRange) -> Self {
         let dead = matches.get_many::<u32>("dead");
         Self {
@@ -348,7 +310,6 @@ impl NoiseArguments {
     }
 }
 
-/// Returns the settings of the other classifiers, with defaults for those that are not given.
 fn classifiers(matches: &ArgMatches) -> ClassifierSettings {
     let mut classifiers = ClassifierSettings::default();
     let limit = |id: &str, usual: usize| {

@@ -36,30 +36,18 @@ pub(in crate::cli) mod touches;
 /// The model that is used if none is named: the seven figures at their default sizes.
 pub(crate) const DEFAULT_MODEL: &str = "figures";
 
-/// A subcommand of `taxel model` with its arguments.
 #[derive(Clone, Debug)]
 pub(crate) enum ModelRequest {
-    /// Train a model and write it.
     Train(Box<train::TrainArguments>),
-    /// Show what a model was trained on and how well it tells its shapes apart; true for JSON.
     Show(OsString, bool),
-    /// List the models beside the library; true for JSON.
     List(bool),
-    /// Delete a model beside the library.
     Delete(Name),
-    /// Evaluate which shapes one touch confuses.
     Confusion(Box<confusion::ConfusionArguments>),
-    /// Simulate how many touches it takes to name a shape.
     Touches(touches::TouchesArguments),
-    /// Compute how the error of a set depends on the size of its shapes and on the threshold of the sensor.
     Separate(Box<separate::SeparateArguments>),
 }
 
 impl ModelRequest {
-    /// Reads the arguments of [`command`].
-    ///
-    /// # Errors
-    /// Returns [`CliError::Range`] for a value out of range; [`CliError::Unused`] for a flag that has no effect.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let Some((command, own)) = matches.subcommand() else {
             // clap requires a subcommand, so there is always one.
@@ -78,7 +66,6 @@ impl ModelRequest {
     }
 }
 
-/// Defines `taxel model` with its subcommands.
 pub(super) fn command() -> Command {
     let show = Command::new("show")
         .about("Show what a model was trained on, and its error")

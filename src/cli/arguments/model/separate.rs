@@ -24,12 +24,9 @@ use crate::pose::{Axis, DecimalRange};
 use crate::recognition::{CellPositions, SizeAxis};
 use crate::storage::Existing;
 
-/// A set of shapes, and the sizes and thresholds to evaluate.
 #[derive(Clone, Debug)]
 pub(crate) struct SeparateArguments {
-    /// A model, or shapes as for training.
     pub(crate) set: SetArguments,
-    /// Whether `sizes` are scales or pitches.
     pub(crate) axis: SizeAxis,
     /// Scales, or pitches in mm; a scale of 1 if neither is given.
     pub(crate) sizes: DecimalRange,
@@ -40,21 +37,14 @@ pub(crate) struct SeparateArguments {
     pub(crate) angles: Option<DecimalRange>,
     /// Positions per cell along x and y; None for those of the model, or else 100.
     pub(crate) positions: Option<CellPositions>,
-    /// The error (0 to 1) for which the smallest sufficient scale, or coarsest pitch, is searched.
     pub(crate) wanted: Option<f64>,
-    /// The number of threads; 0 means the default.
     pub(crate) jobs: usize,
-    /// How the answer is printed.
     pub(crate) form: EvaluationForm,
-    /// The file for the numbers (`.csv`) or the curves (`.svg`, `.png`).
     pub(crate) export: Option<PathBuf>,
-    /// Whether that file may exist already.
     pub(crate) existing: Existing,
-    /// Whether no progress is shown.
     pub(crate) quiet: bool,
 }
 
-/// Defines `taxel model separate`.
 pub(super) fn command() -> Command {
     let want = option(
         "want",
@@ -133,10 +123,6 @@ fn sizes() -> [Arg; 3] {
 }
 
 impl SeparateArguments {
-    /// Reads the arguments of [`command`].
-    ///
-    /// # Errors
-    /// Returns [`CliError::Range`] for a size that is not above 0, or a threshold that is not above 0, up to 1.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let range = |id: &str| matches.get_one::<DecimalRange>(id).copied();
         for (id, flag, most, allowed) in [

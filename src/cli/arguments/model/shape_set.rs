@@ -15,19 +15,14 @@ use clap::{Arg, ArgAction, ArgGroup, ArgMatches};
 use crate::cli::arguments::flags::{name_or_path, option, switch};
 use crate::recognition::CellPositions;
 
-/// A set of shapes that is not read yet.
 #[derive(Clone, Debug)]
 pub(crate) struct SetArguments {
-    /// Files of JSON lines, or names of stored shapes.
     pub(crate) what: Vec<OsString>,
-    /// Shapes as text: `disc=ellipse radius_x=3`.
     pub(crate) shapes: Vec<String>,
-    /// Whether all shapes of the library belong to the set.
     pub(crate) library_all: bool,
 }
 
 impl SetArguments {
-    /// Reads the arguments of [`args`].
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let what = matches.get_many::<OsString>("set").into_iter().flatten();
         let shapes = matches.get_many::<String>("shape").into_iter().flatten();
@@ -39,8 +34,6 @@ impl SetArguments {
     }
 }
 
-/// Defines the arguments that give shapes: the positional ones, shown as `value` in the usage; `--shape` and
-/// `--library-all`.
 pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 3] {
     let what = Arg::new("set")
         .value_name(value)
@@ -56,7 +49,6 @@ pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 3] {
     [what, shape.action(ArgAction::Append), all]
 }
 
-/// Requires at least one of [`args`]: an empty set is a usage error.
 pub(super) fn group() -> ArgGroup {
     ArgGroup::new("shapes")
         .args(["set", "shape", "library-all"])
@@ -64,7 +56,6 @@ pub(super) fn group() -> ArgGroup {
         .required(true)
 }
 
-/// Defines `--positions`, for a coarser grid without giving ranges of x0 and y0.
 pub(super) fn positions() -> Arg {
     option(
         "positions",

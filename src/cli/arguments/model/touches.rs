@@ -9,24 +9,16 @@ use crate::cli::arguments::flags::{
 };
 use crate::cli::arguments::help::MODEL_TOUCHES_EXAMPLES;
 
-/// A simulation of how many touches it takes until a shape is probable enough.
 #[derive(Clone, Debug)]
 pub(crate) struct TouchesArguments {
-    /// Name or file of the model.
     pub(crate) model: OsString,
-    /// The probability (0 to 1) at which a run ends.
     pub(crate) until: f64,
-    /// The number of runs of each shape.
     pub(crate) runs: u64,
-    /// The seed for drawing poses.
     pub(crate) seed: u64,
-    /// Whether the answer is a line of JSON.
     pub(crate) json: bool,
-    /// Whether no progress is shown.
     pub(crate) quiet: bool,
 }
 
-/// Defines `taxel model touches`.
 pub(super) fn command() -> Command {
     let until = option(
         "until",
@@ -48,7 +40,6 @@ pub(super) fn command() -> Command {
 }
 
 impl TouchesArguments {
-    /// Reads the arguments of [`command`].
     pub(super) fn of(matches: &ArgMatches) -> Self {
         Self {
             model: flags::word(matches, "model"),

@@ -21,49 +21,35 @@ use crate::sensor::Sensor;
 use crate::storage::Existing;
 use crate::sweep::Shard;
 
-/// A set of shapes, the settings of its training, and where the model is written.
 #[derive(Clone, Debug)]
 pub(crate) struct TrainArguments {
-    /// The shapes to learn.
     pub(crate) set: SetArguments,
     /// The point of a shape that x0 and y0 place; None for the corner if x0 or y0 is given, else the centre.
     pub(crate) anchor: Option<Anchor>,
     /// The axes of the grid that are given. The others are chosen so that the sensor does not cut off any shape.
     pub(crate) ranges: GivenRanges,
-    /// Positions per cell along those of x and y whose range is not given.
     pub(crate) positions: Option<CellPositions>,
     /// The sides of the sensor that are given. The others are chosen so that it does not cut off any shape.
     pub(crate) sides: SensorSides,
-    /// The values of the sensor's flags.
     pub(crate) given: Given,
-    /// The part of the grid to train on; `taxel merge` merges the parts.
     pub(crate) shard: Shard,
-    /// The number of threads; 0 means the default.
     pub(crate) jobs: usize,
     /// The most memory that the training may use, if given.
     pub(crate) memory: Option<MemorySize>,
     /// Whether poses at which the sensor cuts a shape off are learned too; otherwise they are an error.
     pub(crate) allow_cut: bool,
-    /// Where the model is written.
     pub(crate) to: ModelTarget,
-    /// The action if a model of this name exists.
     pub(crate) existing: Existing,
-    /// Whether the answer is a line of JSON.
     pub(crate) json: bool,
-    /// Whether to leave out the chosen grid and the progress.
     pub(crate) quiet: bool,
 }
 
-/// The place where a model is written.
 #[derive(Clone, Debug)]
 pub(crate) enum ModelTarget {
-    /// A file: `--out FILE.npz`.
     File(PathBuf),
-    /// A name beside the library: `--name NAME`.
     Named(Name),
 }
 
-/// Defines `taxel model train`.
 pub(super) fn command() -> Command {
     let out = option("out", "FILE.npz", "Write the model to this file")
         .value_parser(value_parser!(PathBuf));
@@ -108,17 +94,11 @@ pub(super) fn command() -> Command {
         ])
 }
 
-/// Defines the flag of a side of the sensor.
 fn fitting(side: Parameter) -> Arg {
     parameters::arg_fitting(side).help_heading("Sensor")
 }
 
 impl TrainArguments {
-    /// Reads the arguments of [`command`].
-    ///
-    /// # Errors
-    /// Returns [`CliError::Range`] for a value of the sensor out of range; [`CliError::Ending`] for a file name
-    /// without the extension of a model; [`CliError::Unused`] for `--positions` if both x0 and y0 are given.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let given = Given::of(matches);
         let sensor = given.sensor(Sensor::default())?;
@@ -162,9 +142,6 @@ impl TrainArguments {
 
 /// Refuses a file name without the extension of a model: such a file would be taken for something else when it is
 /// read.
-///
-/// # Errors
-/// Returns [`CliError::Ending`].
 pub(crate) fn model_file(path: &Path) -> Result<(), CliError> {
     if has_ending(path, "npz") {
         return Ok(());

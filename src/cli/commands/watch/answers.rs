@@ -8,7 +8,6 @@ use crate::formats::recording::FrameAnswer;
 use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, Processing, SetRule, Tare};
 
-/// The answers, a line each.
 pub(super) struct Answers {
     output: Output,
     /// Whether frames are recorded: then the watch goes on if answers cannot be written, since frames do not come
@@ -16,24 +15,18 @@ pub(super) struct Answers {
     is_recorded: bool,
     /// Whether frames may be left unanswered if the reader is slow.
     may_give_up: bool,
-    /// The number of frames answered.
     answered: u64,
     /// The number of frames not answered because crop, tare, mask or gain do not fit their size.
     unfit: u64,
 }
 
-/// The state of standard output.
 enum Output {
-    /// It is written by a thread of its own.
     Open(LineWriter),
-    /// Its reader is gone, while frames are recorded.
     Closed,
-    /// It cannot be written any more for this reason, while frames are recorded.
     Failed(CliError),
 }
 
 impl Answers {
-    /// Begins the answers. They are given up only for a live source that is recorded.
     pub(super) fn new(lines: LineWriter, is_live: bool, is_recorded: bool) -> Self {
         Self {
             output: Output::Open(lines),
@@ -46,9 +39,6 @@ impl Answers {
 
     /// Processes a frame and sends its line, with the name of its channel. A frame whose size does not fit crop, tare,
     /// mask or gain is left out if others did fit: the sensor continues.
-    ///
-    /// # Errors
-    /// Returns an error if the first frame does not fit; [`CliError::Write`] once standard output is closed.
     pub(super) fn add(
         &mut self,
         (frame, channel): (&Frame, Option<&str>),
@@ -85,13 +75,11 @@ impl Answers {
         self.end(reports)
     }
 
-    /// Notes that frames are not recorded any more. Returns false if answers cannot be written either.
     pub(super) fn go_on_alone(&mut self) -> bool {
         (self.is_recorded, self.may_give_up) = (false, false);
         matches!(self.output, Output::Open(_))
     }
 
-    /// Leaves out the frame of this number, whose size does not fit, and reports the first one.
     pub(super) fn leave_out(
         &mut self,
         number: u64,
@@ -104,10 +92,6 @@ impl Answers {
         }
     }
 
-    /// Ends the answers if no more can be written: the reader is gone, or there is no model.
-    ///
-    /// # Errors
-    /// Returns the reason why no more can be written, without a recording.
     pub(super) fn tick(&mut self, reports: &mut SourceReports<'_>) -> Result<(), CliError> {
         match &self.output {
             Output::Open(lines) if lines.is_over() => self.end(reports),
@@ -115,10 +99,6 @@ impl Answers {
         }
     }
 
-    /// Ends the answers, once no more can be written. A recording continues.
-    ///
-    /// # Errors
-    /// Returns the reason why no more can be written, without a recording.
     fn end(&mut self, reports: &mut SourceReports<'_>) -> Result<(), CliError> {
         let Output::Open(lines) = std::mem::replace(&mut self.output, Output::Closed) else {
             return Ok(());
@@ -139,9 +119,6 @@ impl Answers {
 
     /// Waits until all answers are written, and reports the frames without one. A single frame of another size was
     /// reported already.
-    ///
-    /// # Errors
-    /// Returns the reason why answers could not be written. A recording does not need a reader of the answers.
     pub(super) fn finish(self, reports: &mut SourceReports<'_>) -> Result<(), CliError> {
         if self.unfit > 1 {
             let frames = counted(self.unfit, "frame");

@@ -17,21 +17,16 @@ pub(super) struct ChannelGate<'a> {
     asked: &'a WatchArguments,
     source: &'a FrameSource,
     choice: ChannelChoice,
-    /// All channels so far, in the order in which they came; none for a stream without channels.
     channels: Vec<ChannelInfo>,
     first: FirstFrame,
 }
 
-/// The state of the channel's first frame.
 enum FirstFrame {
-    /// It has not come.
     Missing,
-    /// It has come, and was held back with its time or has passed.
     Came { held: Option<(Frame, Option<f64>)> },
 }
 
 impl<'a> ChannelGate<'a> {
-    /// Begins before the first channel and frame.
     pub(super) fn new(source: &'a FrameSource, asked: &'a WatchArguments) -> Self {
         Self {
             asked,
@@ -42,27 +37,20 @@ impl<'a> ChannelGate<'a> {
         }
     }
 
-    /// Returns the name of the channel that is asked for.
     fn wanted(&self) -> Option<&'a str> {
         self.asked.processing.channel.as_deref()
     }
 
-    /// Returns true if the source names channels, as a recording does.
     pub(super) fn has_channels(&self) -> bool {
         !self.channels.is_empty()
     }
 
-    /// Returns the name of the channel with this index, if it has one.
     pub(super) fn name(&self, channel: usize) -> Option<&str> {
         self.channels.get(channel)?.name.as_deref()
     }
 
     /// Adds a channel. Returns true if it is the watched one. Other channels that appear once frames are answered are
     /// left out.
-    ///
-    /// # Errors
-    /// Returns an error if a second channel appears before a frame is answered, and none is chosen. It names all
-    /// channels of a file; a pipe cannot be read again.
     pub(super) fn add(
         &mut self,
         info: &ChannelInfo,
@@ -91,7 +79,6 @@ impl<'a> ChannelGate<'a> {
         Err(reports.refused(&message))
     }
 
-    /// Returns true if a frame passes. The frame that was held back has to be released before it.
     pub(super) fn admits(
         &mut self,
         frame: &Frame,
@@ -115,7 +102,6 @@ impl<'a> ChannelGate<'a> {
         passes
     }
 
-    /// Returns the frame that was held back, with its time, if there is one: it passes now.
     pub(super) fn release(&mut self) -> Option<(Frame, Option<f64>)> {
         match &mut self.first {
             FirstFrame::Missing => None,
@@ -123,7 +109,6 @@ impl<'a> ChannelGate<'a> {
         }
     }
 
-    /// Returns the reason why no frame of the channel has come; None if one has.
     pub(super) fn no_frame_reason(&self) -> Option<String> {
         let is_missing = matches!(self.first, FirstFrame::Missing);
         let reason = || {

@@ -55,10 +55,6 @@ fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), Cli
     })
 }
 
-/// Returns the names of a recording's channels, all or up to one of them; and whether it could be read that far.
-///
-/// # Errors
-/// Returns an error if it cannot be opened.
 pub(super) fn channels(
     path: &Path,
     asked: &WatchArguments,

@@ -60,34 +60,25 @@ use crate::formats::stream::StreamCounts;
 use crate::frame::{Frame, FrameSize, Processing, SetRule};
 use crate::tui::live::request::WatchRequest;
 
-/// The state of a watched source, which handles its frames as they come.
 struct Watcher<'a> {
-    /// The flags.
     asked: &'a WatchArguments,
     reports: SourceReports<'a>,
     gate: ChannelGate<'a>,
-    /// The processing from values to the imprint; tare and rule of the recording are set when they become known.
     processing: Processing,
     /// The threshold in use; None if neither a flag nor a recording has set one yet.
     rule: Option<SetRule>,
     /// The frames that wait for the tare; None if none is made any more.
     tare: Option<TareQueue>,
     recording: Option<WatchRecording<'a>>,
-    /// The error that ended the recording while the answers went on.
     unrecorded: Option<CliError>,
     answers: Answers,
-    /// The memory of a frame, reused for the next one.
     frame: Frame,
     /// Rows and columns of the last frame; None before the first.
     size: Option<FrameSize>,
-    /// The first error; it ends the reading and is returned at the end.
     failure: Option<CliError>,
 }
 
 /// Answers the frames of a source until it ends. Returns the exit status: 0, or that of the signal that stopped it.
-///
-/// # Errors
-/// Returns an error if the source, the recording or the answers fail.
 pub(crate) fn watch(
     asked: &WatchArguments,
     shelf: &Shelf,
@@ -149,11 +140,6 @@ fn line_writer(
     })
 }
 
-/// Returns the same request for the live page of the screen.
-///
-/// # Errors
-/// Returns an error if the file, the mask or the gain cannot be read, if there is no such model or channel, or if the
-/// recording cannot be started.
 pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
     let source = FrameSource::new(&asked.source);
     check_readable(&source)?;
@@ -182,7 +168,6 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
 }
 
 impl Watcher<'_> {
-    /// Sets the threshold for the next answers; None to answer without imprints.
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.rule = rule;
         SetRule::apply(rule, &mut self.processing);
@@ -236,7 +221,6 @@ impl Watcher<'_> {
         })
     }
 
-    /// Writes to the recording, if there is one. If that fails, it ends; the answers go on if they can be written.
     fn record(
         &mut self,
         write: impl FnOnce(&mut WatchRecording<'_>, &mut SourceReports<'_>) -> Result<(), CliError>,
@@ -257,7 +241,6 @@ impl Watcher<'_> {
         Ok(())
     }
 
-    /// Takes a frame if it is one of the watched channel.
     fn add_frame(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
         if !self.gate.admits(frame, time, &mut self.reports) {
             return Ok(());
@@ -266,7 +249,6 @@ impl Watcher<'_> {
         self.take(frame, time)
     }
 
-    /// Takes the frame that was held back, if there is one.
     fn release(&mut self) -> Result<(), CliError> {
         match self.gate.release() {
             Some((frame, time)) => self.take(&frame, time),
@@ -274,7 +256,6 @@ impl Watcher<'_> {
         }
     }
 
-    /// Takes a frame of the channel: records it, and answers it or keeps it for the tare.
     fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
         let size = frame.size();
         let before = self.size.replace(size);
@@ -306,7 +287,6 @@ impl Watcher<'_> {
         Ok(())
     }
 
-    /// Uses the complete tare, and answers the frames that waited for it.
     fn end_tare(&mut self) -> Result<(), CliError> {
         let Some(queue) = self.tare.take() else {
             return Ok(());
@@ -324,7 +304,6 @@ impl Watcher<'_> {
         waiting.iter().try_for_each(|frame| self.answer(frame))
     }
 
-    /// Answers a frame.
     fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
         let channel = self.gate.name(frame.channel);
         let (processing, reports) = (&mut self.processing, &mut self.reports);
@@ -332,7 +311,6 @@ impl Watcher<'_> {
             .add((frame, channel), processing, self.rule, reports)
     }
 
-    /// Handles a tick, ten times a second: flushes the recording, and reports dropped frames.
     fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
         self.record(|recording, _| recording.tick())?;
         self.reports.check_shape(counts)?;

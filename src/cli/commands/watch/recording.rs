@@ -14,15 +14,11 @@ use crate::frame::Frame;
 pub(super) struct WatchRecording<'a> {
     path: &'a Path,
     recorder: FrameRecorder,
-    /// The content of the `.json` file beside the recording.
     metadata: RecordingMetadata,
 }
 
 impl<'a> WatchRecording<'a> {
     /// Begins the recording that is asked for; None if none is. No file appears before the first frame.
-    ///
-    /// # Errors
-    /// Returns an error if the file is the source itself, or cannot be created.
     pub(super) fn create(
         source: &FrameSource,
         asked: &'a WatchArguments,
@@ -44,7 +40,6 @@ impl<'a> WatchRecording<'a> {
         }))
     }
 
-    /// Changes the metadata, and writes it.
     pub(super) fn describe(
         &mut self,
         change: impl FnOnce(&mut RecordingMetadata),
@@ -74,12 +69,10 @@ impl<'a> WatchRecording<'a> {
         Ok(())
     }
 
-    /// Writes out the frames that have waited for long enough.
     pub(super) fn tick(&mut self) -> Result<(), CliError> {
         self.recorder.tick().map_err(CliError::Recorder)
     }
 
-    /// Notes the error that ended the watch.
     pub(super) fn note_reason(&mut self, error: &CliError) {
         self.recorder.note_reason(&error.to_string());
     }

@@ -8,7 +8,6 @@ use crate::formats::recording::RecordingError;
 use crate::formats::stream::{NoFrameReason, StreamCounts, StreamFormat, StreamRefusal};
 use crate::formats::value::counted;
 
-/// The shortest time between two reports of dropped frames.
 const REPORT: Duration = Duration::from_secs(1);
 
 /// The reports about a source: lines that begin with its name, warnings with the word before it.
@@ -16,16 +15,12 @@ pub(super) struct SourceReports<'a> {
     source: &'a FrameSource,
     /// The format of streams that the settings name; None if a flag names one.
     format: Option<StreamFormat>,
-    /// The function that writes a line on standard error.
     note: &'a mut dyn FnMut(&str),
-    /// The number of dropped frames reported so far.
     dropped: u64,
-    /// The time of the last report of dropped frames.
     reported: Option<Instant>,
 }
 
 impl<'a> SourceReports<'a> {
-    /// Begins without a report.
     pub(super) fn new(
         source: &'a FrameSource,
         options: &AcquireOptions,
@@ -40,19 +35,16 @@ impl<'a> SourceReports<'a> {
         }
     }
 
-    /// Notes a line about the source.
     pub(super) fn say(&mut self, text: &str) {
         let line = format!("{}: {text}", self.source.name());
         (self.note)(&line);
     }
 
-    /// Notes a warning about the source, in the same form as `taxel frames`.
     pub(super) fn warn(&mut self, text: &str) {
         let line = format!("warning: {}: {text}", self.source.name());
         (self.note)(&line);
     }
 
-    /// Notes an oddity of the source; any other event is ignored.
     pub(super) fn remark(&mut self, event: AcquireEvent<'_>) {
         let text = match event {
             AcquireEvent::Silent(silence) => silence.reason(self.source.unused_baud().is_none()),
@@ -67,7 +59,6 @@ impl<'a> SourceReports<'a> {
         self.say(&text);
     }
 
-    /// Returns an error of the source with this reason.
     pub(super) fn refused(&self, reason: &impl ToString) -> CliError {
         CliError::Frames {
             name: self.source.name(),
@@ -75,7 +66,6 @@ impl<'a> SourceReports<'a> {
         }
     }
 
-    /// Returns the error of a source that cannot be read to its end.
     pub(super) fn damage(&self, error: AcquireError) -> CliError {
         match error {
             AcquireError::Recording(error) => self.damaged(error),
@@ -94,7 +84,6 @@ impl<'a> SourceReports<'a> {
         }
     }
 
-    /// Returns the error of a recording.
     fn damaged(&self, error: RecordingError) -> CliError {
         CliError::Recording {
             name: self.source.name(),
@@ -109,7 +98,6 @@ impl<'a> SourceReports<'a> {
         }
     }
 
-    /// Reports the number of dropped frames if it has grown, with the bytes of the last one.
     fn report_dropped(&mut self, counts: &StreamCounts) {
         if counts.dropped <= self.dropped {
             return;
@@ -127,7 +115,6 @@ impl<'a> SourceReports<'a> {
         self.warn(&text);
     }
 
-    /// Returns an error if the stream cannot be decoded without more flags.
     pub(super) fn check_shape(&self, counts: &StreamCounts) -> Result<(), CliError> {
         match counts.refusal() {
             // An echo that leaves out values of some messages is refused too, since the others are not all frames.
@@ -150,10 +137,6 @@ impl<'a> SourceReports<'a> {
         }
     }
 
-    /// Handles the end of a stream.
-    ///
-    /// # Errors
-    /// Returns an error if there was no frame at all: the format, or rows and columns, are wrong.
     pub(super) fn end(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
         self.check_shape(counts)?;
         self.report_dropped(counts);
@@ -171,7 +154,6 @@ impl<'a> SourceReports<'a> {
         }
     }
 
-    /// Returns the end of a message about a stream that is read in the format of the settings; otherwise empty.
     fn format_advice(&self) -> String {
         self.format.map_or_else(String::new, |format| {
             format!(

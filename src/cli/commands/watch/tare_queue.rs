@@ -2,20 +2,16 @@
 
 use crate::frame::{FirstFrames, Frame, FrameError, Tare, View};
 
-/// The frames that wait, and the tare as far as it is made. The whole frames wait, not only their visible parts.
 pub(super) struct TareQueue {
     tare: FirstFrames,
-    /// The frames of the tare.
     waiting: Vec<Frame>,
     /// The last frames, of one other size: the tare begins again with them if enough of them come.
     others: Vec<Frame>,
 }
 
-/// A frame that cannot be answered with the tare: its number, and the reason.
 pub(super) type LeftOut = (u64, FrameError);
 
 impl TareQueue {
-    /// Begins a tare of this many frames; None for a tare of 0 frames.
     pub(super) fn new(frames: u64) -> Option<Self> {
         (frames > 0).then(|| Self {
             tare: FirstFrames::new(frames),
@@ -24,16 +20,12 @@ impl TareQueue {
         })
     }
 
-    /// Returns true if no frame of the tare is missing.
     pub(super) fn is_complete(&self) -> bool {
         self.tare.missing() == 0
     }
 
     /// Adds a frame. Returns the frames, perhaps this one, of which it is certain now that they do not wait for the
     /// tare: their size is another one.
-    ///
-    /// # Errors
-    /// Returns an error if the first frame does not fit the view, or if the tare would take too much memory.
     pub(super) fn add(&mut self, frame: Frame, view: &View) -> Result<Vec<LeftOut>, FrameError> {
         let left_out = match self.tare.add(&frame, view) {
             Ok(goes_on) => {
@@ -63,17 +55,12 @@ impl TareQueue {
         Ok(left_out.into_iter().filter_map(with_reason).collect())
     }
 
-    /// Returns the error that the source has ended before the tare was complete.
     pub(super) fn incomplete(&self) -> FrameError {
         let wanted = self.tare.wanted();
         let frames = wanted - self.tare.missing();
         FrameError::Tare { frames, wanted }
     }
 
-    /// Returns the tare, and the frames that have waited for it.
-    ///
-    /// # Errors
-    /// Returns an error if the tare is not complete.
     pub(super) fn finish(self) -> Result<(Tare, Vec<Frame>), FrameError> {
         Ok((self.tare.finish()?, self.waiting))
     }

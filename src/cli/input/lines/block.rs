@@ -19,7 +19,6 @@ const LARGE_CHUNK: usize = 1 << 15;
 /// Blocks grow to at most this fraction of what has been read, 1/32, so that the threads end at about the same time.
 const PART: u64 = 32;
 
-/// Consecutive whole lines.
 #[derive(Debug)]
 pub(crate) struct Block {
     /// The lines. Only the last line of the input may lack its line end.
@@ -31,7 +30,6 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Returns each line with its number, without its line end; None in place of a line longer than [`MAX_LINE`].
     pub(crate) fn lines(&self) -> impl Iterator<Item = (u64, Option<&[u8]>)> {
         let text = self.text.strip_suffix(b"\n").unwrap_or(&self.text);
         let lines = text.split(|&byte| byte == b'\n');
@@ -39,7 +37,6 @@ impl Block {
         (self.first..).zip(lines)
     }
 
-    /// Returns the memory of the block, for a later one.
     pub(crate) fn into_buffer(self) -> Vec<u8> {
         self.text
     }
@@ -49,22 +46,17 @@ impl Block {
 /// not wait for those that have not.
 #[derive(Debug)]
 pub(crate) struct BlockReader<R> {
-    /// The input.
     input: R,
     /// The bytes of the next block that have been read.
     rest: Vec<u8>,
     /// The number of bytes read in all.
     total: u64,
-    /// The number of the next line.
     number: u64,
-    /// Whether the next line is longer than [`MAX_LINE`]; its bytes are not kept.
     is_long: bool,
-    /// The memory of blocks that have been answered.
     buffers: Arc<Buffers>,
 }
 
 impl<R: Read> BlockReader<R> {
-    /// Creates a reader, without reading yet.
     pub(crate) fn new(input: R, buffers: Arc<Buffers>) -> Self {
         Self {
             input,
@@ -76,10 +68,6 @@ impl<R: Read> BlockReader<R> {
         }
     }
 
-    /// Returns the next block; None at the end.
-    ///
-    /// # Errors
-    /// Returns the errors of the input.
     pub(crate) fn next_block(&mut self) -> Option<io::Result<Block>> {
         let mut searched = 0;
         loop {
@@ -108,7 +96,6 @@ impl<R: Read> BlockReader<R> {
         }
     }
 
-    /// Returns the first `length` bytes as a block.
     fn cut(&mut self, length: usize) -> Block {
         let mut rest = self.buffers.take();
         rest.extend_from_slice(&self.rest[length..]);
@@ -129,7 +116,6 @@ impl<R: Read> BlockReader<R> {
         }
     }
 
-    /// Reads the bytes that have arrived, or waits for some. Returns their number, 0 at the end.
     fn fill(&mut self) -> io::Result<usize> {
         let old = self.rest.len();
         let part = usize::try_from(self.total / PART).unwrap_or(LARGE_CHUNK);
@@ -153,7 +139,6 @@ mod tests {
 
     use super::*;
 
-    /// Returns all lines of input that arrives in pieces.
     fn lines(pieces: &[&[u8]]) -> Vec<(u64, Option<Vec<u8>>)> {
         struct Pieces(VecDeque<Vec<u8>>);
         impl Read for Pieces {

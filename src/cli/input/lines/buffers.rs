@@ -13,7 +13,6 @@ const LARGEST: usize = 1 << 20;
 pub(crate) struct Buffers(Mutex<Vec<Vec<u8>>>);
 
 impl Buffers {
-    /// Returns an empty buffer: the one given back last, which is most likely still in the processor's cache.
     pub(crate) fn take(&self) -> Vec<u8> {
         let Some(buffer) = self.unused().pop() else {
             return Vec::new();

@@ -17,15 +17,10 @@ use crate::lock::locked;
 /// The items under way per worker: one in work, the others so that it need not wait when another worker is slow.
 const UNDER_WAY: usize = 4;
 
-/// An event on another thread.
 enum Event<T, R> {
-    /// The source returned an item.
     Item(T),
-    /// The source has ended.
     End,
-    /// The item of this number is done.
     Done(usize, R),
-    /// A thread has panicked.
     Panicked,
 }
 
@@ -43,9 +38,6 @@ impl<T, R> Drop for PanicReport<T, R> {
 
 /// Passes each item of `source` to one of up to `jobs` workers, and the results to `sink`, in the order of the items.
 /// Each thread makes its worker with `worker`. With one job, all work is done on this thread.
-///
-/// # Errors
-/// Returns the first error of `sink`; no more items are started then.
 pub(crate) fn in_order<T, R, E, S, W>(
     jobs: usize,
     source: S,
@@ -82,7 +74,6 @@ where
     })
 }
 
-/// Processes items until there are no more, on a thread of its own.
 fn work_off<T, R>(
     given: &Mutex<Receiver<(usize, T)>>,
     mut worker: impl FnMut(T) -> R,
@@ -126,10 +117,6 @@ where
     next
 }
 
-/// Passes items to the workers as they come, and results to `sink` in order, until both have ended.
-///
-/// # Errors
-/// Returns the first error of `sink`.
 fn hand_over<T, R, E>(
     events: &Receiver<Event<T, R>>,
     work: &Sender<(usize, T)>,

@@ -27,19 +27,12 @@ pub(crate) mod in_order;
 
 pub(crate) use block::MAX_LINE;
 
-/// The lines to answer, and the name of their source.
 pub(crate) struct LineInput {
-    /// The name for messages.
     pub(crate) name: String,
-    /// The lines.
     pub(crate) read: Box<dyn Read + Send>,
 }
 
 impl LineInput {
-    /// Returns the lines of standard input.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Read`] if standard input was taken before.
     pub(crate) fn standard() -> Result<Self, CliError> {
         let name = InputSource::Standard.name();
         match content::standard() {
@@ -51,10 +44,6 @@ impl LineInput {
         }
     }
 
-    /// Returns the lines of a file.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Read`] if the file cannot be opened.
     pub(crate) fn at(path: PathBuf) -> Result<Self, CliError> {
         match File::open(&path) {
             Ok(file) => Ok(Self::of_file(path, file)),
@@ -65,7 +54,6 @@ impl LineInput {
         }
     }
 
-    /// Returns the lines of an open file.
     pub(crate) fn of_file(path: PathBuf, file: File) -> Self {
         Self {
             name: InputSource::File(path).name(),
@@ -78,9 +66,6 @@ impl LineInput {
 /// depend on their number. Each thread uses a closure of its own, made by `answerer`, which appends the answer without a
 /// line end, or returns what is wrong with the line. `noun` is what a line contains, for the message about a line that
 /// is too long.
-///
-/// # Errors
-/// Returns [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at once.
 pub(crate) fn answer_all<A>(
     jobs: usize,
     input: LineInput,
@@ -116,18 +101,13 @@ where
     output.finish()
 }
 
-/// The answers to the lines of a block.
 #[derive(Debug, Default)]
 struct BlockAnswers {
-    /// The answers, one line each.
     text: Vec<u8>,
-    /// The number of lines answered.
     answered: u64,
-    /// The number of these that were wrong.
     bad: u64,
 }
 
-/// Answers the lines of a block. `text` is an empty buffer for the answers.
 fn answer_block(
     block: &Block,
     noun: &str,
@@ -161,25 +141,18 @@ fn answer_block(
     answers
 }
 
-/// Writes the answer to a wrong line.
 fn refuse(answer: &mut Vec<u8>, message: &str) {
     json::extend_ascii(answer, &serde_json::json!({ "error": message }));
 }
 
-/// Writes answers, block by block, and counts them.
 struct AnswerWriter<W> {
-    /// The name of the input.
     input: String,
-    /// The output.
     output: W,
-    /// The number of lines answered so far.
     answered: u64,
-    /// The number of these that were wrong.
     bad: u64,
 }
 
 impl<W: Write> AnswerWriter<W> {
-    /// Creates a writer, without writing yet.
     fn new(output: W, input: String) -> Self {
         Self {
             input,
@@ -189,10 +162,6 @@ impl<W: Write> AnswerWriter<W> {
         }
     }
 
-    /// Writes the answers of a block and returns their buffer.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Read`] if the input failed in place of the block, or [`CliError::Write`].
     fn write(&mut self, answers: io::Result<BlockAnswers>) -> Result<Vec<u8>, CliError> {
         let answers = answers.map_err(|error| CliError::Read {
             name: self.input.clone(),
@@ -207,10 +176,6 @@ impl<W: Write> AnswerWriter<W> {
         Ok(answers.text)
     }
 
-    /// Ends the output.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Lines`] if some lines were wrong.
     fn finish(self) -> Result<(), CliError> {
         if self.bad > 0 {
             return Err(CliError::Lines {
