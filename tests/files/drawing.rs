@@ -1,4 +1,4 @@
-//! Drawings of touches: the SVG as a whole, the PNG at the pixels that matter.
+//! Drawings as SVG.
 //!
 //! `INSTA_UPDATE=always cargo test --test files drawing` rewrites the SVG files; then look at them.
 
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use taxel::description::regions;
 use taxel::figure::Figure;
-use taxel::formats::{ConfusionMap, Drawing, DrawingFormat, LinePlot, PointPlot, PoseMap};
+use taxel::formats::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;
 use taxel::sensor::Sensor;
@@ -98,123 +98,6 @@ fn every_size_and_title_has_a_page_of_bounded_size() {
             sides.iter().all(|side| (40.0..700.0).contains(side)),
             "{head}"
         );
-    }
-}
-
-mod pixels {
-    use super::*;
-
-    /// Decodes a file: its width, height and pixels.
-    fn decoded(file: &[u8]) -> (usize, usize, Vec<u8>) {
-        let decoder = png::Decoder::new(std::io::Cursor::new(file));
-        let mut reader = decoder.read_info().expect("a PNG");
-        let mut pixels = vec![0; reader.output_buffer_size().expect("it fits")];
-        let info = reader.next_frame(&mut pixels).expect("an image");
-        assert_eq!(
-            (info.color_type, info.bit_depth),
-            (png::ColorType::Grayscale, png::BitDepth::Eight)
-        );
-        let dots = reader.info().pixel_dims.expect("a resolution");
-        assert_eq!((dots.xppu, dots.unit), (11_339, png::Unit::Meter));
-        let (width, height) = (info.width as usize, info.height as usize);
-        assert_eq!(pixels.len(), width * height);
-        (width, height, pixels)
-    }
-
-    /// Returns the left and top edge of the plane and the side of a cell, in points, as in the SVG.
-    fn frame(svg: &str, columns: u8) -> (f64, f64, f64) {
-        let axes = svg.split("class=\"axes\"").nth(1).expect("axes");
-        let data = axes.split("d=\"M").nth(1).expect("a path");
-        let corners: Vec<f64> = data
-            .split(['L', ' ', 'Z'])
-            .take(4)
-            .map(|number| number.parse().expect("a number"))
-            .collect();
-        let cell = (corners[2] - corners[0]) / f64::from(columns);
-        (corners[0], corners[1], cell)
-    }
-
-    #[test]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "pixels of a page"
-    )]
-    fn the_png_has_taxels_lines_and_text_where_the_svg_has_them() {
-        let (figure, imprint) = ring();
-        let drawing = Drawing::new(&imprint).with_outline(&figure);
-        let (left, top, cell) = frame(&drawing.svg(), imprint.columns());
-        let (width, _, pixels) = decoded(&drawing.png().expect("it is encoded"));
-        let at = |x: f64, y: f64| {
-            let (x, y) = ((left + x * cell) * 4.0, (top + y * cell) * 4.0);
-            pixels[y as usize * width + x as usize]
-        };
-        // A quarter of a cell from the corner: in these taxels this is off the outline and off the lines of the cells.
-        let mut compared = 0;
-        for (column, row) in [
-            (4, 3),
-            (7, 3),
-            (3, 6),
-            (9, 6),
-            (5, 8),
-            (0, 0),
-            (15, 15),
-            (12, 4),
-            (5, 5),
-            (1, 2),
-        ] {
-            let expected = if imprint.get(column, row) { 168 } else { 255 };
-            let found = at(f64::from(column) + 0.25, f64::from(row) + 0.25);
-            assert_eq!(found, expected, "taxel {column}, {row}");
-            compared += usize::from(imprint.get(column, row));
-        }
-        assert!(compared >= 4);
-        // The outline is black: to the right of its centre, at the distance of its radius.
-        assert!(at(5.99 + 4.0, 5.47) < 30 && at(5.99 + 2.0, 5.47) < 30);
-        // CG and CD: the cross at (6, 5.5), in the middle of the circle.
-        assert!(at(6.0, 5.5) < 30 && at(6.0 + 3.5 / cell, 5.5) < 60);
-        assert_eq!(
-            at(6.0 + 1.5 / cell, 5.5 + 1.3 / cell),
-            255,
-            "between cross and circle"
-        );
-        // There is some ink above the plane, where the column numbers are.
-        let row = |y: f64| ((top + y) * 4.0) as usize;
-        let ink = pixels[row(-12.0) * width..row(-5.0) * width]
-            .iter()
-            .filter(|&&pixel| pixel < 100);
-        assert!(ink.count() > 200);
-    }
-
-    #[test]
-    fn an_outline_beyond_the_sensor_is_cut_off() {
-        let far = Figure::ellipse(4.0, 4.0)
-            .at(12.0, 4.0)
-            .on(&Sensor::default())
-            .expect("in range");
-        let imprint = Plane::new(Sensor::default()).touch(&far);
-        let drawing = Drawing::new(&imprint);
-        let (width, height, without) = decoded(&drawing.png().expect("it is encoded"));
-        let (left, top, cell) = frame(&drawing.svg(), 16);
-        let (_, _, with) = decoded(&drawing.with_outline(&far).png().expect("it is encoded"));
-        // The legend below has one line more, so the page is longer. Above it, only the plane may differ.
-        let side = 16.0 * cell;
-        let mut differing = 0;
-        for y in 0..height {
-            for x in 0..width {
-                let (from, to) = (x + y * width, x + y * width);
-                let inside = |pixel: usize, low: f64| {
-                    let point = (f64::from(u32::try_from(pixel).expect("small")) + 0.5) / 4.0 - low;
-                    (-0.3..side + 0.3).contains(&point)
-                };
-                let above = f64::from(u32::try_from(y).expect("small")) / 4.0 < top + side;
-                if above && without[from] != with[to] {
-                    differing += 1;
-                    assert!(inside(x, left) && inside(y, top), "pixel {x}, {y}");
-                }
-            }
-        }
-        assert!(differing > 1000);
     }
 }
 
@@ -353,68 +236,4 @@ fn a_map_of_poses_has_areas_with_borders() {
         assert!(PoseMap::new((0.0, 1.0), (0.0, 1.0), columns, &ids).is_none());
     }
     assert!(PoseMap::new((0.0, f64::NAN), (0.0, 1.0), 1, &[None]).is_none());
-}
-
-#[test]
-fn different_contents_give_different_pixels() {
-    let labels = ["a", "b"].map(str::to_owned);
-    let map = |row| {
-        let map = ConfusionMap::new(&labels, [row, vec![0, 10]]);
-        map.expect("few shapes").png()
-    };
-    let plot = |ends: [(f64, f64); 2]| LinePlot::new("x", "y").with_curve("c", &ends).png();
-    let points = |[one, other, third]: [(f64, f64); 3]| {
-        PointPlot::new("x", "y")
-            .with_points(&[one, other, third])
-            .png()
-    };
-    let areas = |values: [Option<u32>; 2]| {
-        let map = PoseMap::new((0.0, 1.0), (0.0, 1.0), 2, &values);
-        map.expect("a row").png()
-    };
-    // Two of each kind with the same axes: only the contents differ.
-    for pair in [
-        [map(vec![5, 5]), map(vec![9, 1])],
-        [
-            plot([(0.0, 0.0), (1.0, 1.0)]),
-            plot([(0.0, 1.0), (1.0, 0.0)]),
-        ],
-        [
-            points([(0.0, 3.0), (1.0, 4.0), (0.2, 3.2)]),
-            points([(0.0, 3.0), (1.0, 4.0), (0.2, 3.8)]),
-        ],
-        [areas([Some(1), Some(2)]), areas([Some(2), Some(1)])],
-    ] {
-        let [one, other] = pair.map(|png| {
-            let png = png.expect("in memory");
-            let decoder = png::Decoder::new(std::io::Cursor::new(&png));
-            let mut reader = decoder.read_info().expect("a PNG");
-            let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
-            reader.next_frame(&mut pixels).expect("pixels");
-            assert!(pixels.contains(&0) && pixels.contains(&255));
-            pixels
-        });
-        assert_eq!(one.len(), other.len());
-        let differing = one.iter().zip(&other).filter(|(one, other)| one != other);
-        assert!(differing.count() > 50);
-    }
-}
-
-#[test]
-fn content_in_a_format_equals_the_method_for_it() {
-    let plot = LinePlot::new("x", "y").with_curve("c", &[(0.0, 0.0), (1.0, 1.0)]);
-    for format in DrawingFormat::ALL {
-        assert_eq!(format.name().parse(), Ok(*format));
-        let content = plot.content(*format).expect("in memory");
-        assert_eq!(
-            content == plot.svg().into_bytes(),
-            *format == DrawingFormat::Svg
-        );
-        assert_eq!(
-            content == plot.png().expect("in memory"),
-            *format == DrawingFormat::Png
-        );
-    }
-    assert_eq!(DrawingFormat::of_path("a.SVG"), Some(DrawingFormat::Svg));
-    assert_eq!(DrawingFormat::of_path("a.csv"), None);
 }

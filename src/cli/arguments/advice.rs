@@ -11,7 +11,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 
 use crate::figure::FigureKind;
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::quote::{as_argument, joined};
 
 /// Extensions of files that contain frames. `.txt` and `.json` are left out: such files may be imprints and shapes.

@@ -11,7 +11,8 @@ use crate::cli::arguments::{form, parameters};
 use crate::cli::error::CliError;
 use crate::cli::settings::pitch::Pitch;
 use crate::cli::settings::resolved::Effective;
-use crate::formats::{DrawingFormat, ImprintFormat, Name};
+use crate::formats::file::has_ending;
+use crate::formats::{ImprintFormat, Name};
 use crate::parameter::Parameter;
 use crate::storage::Existing;
 
@@ -47,25 +48,26 @@ pub(super) fn format() -> Arg {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ExportFormat {
     Imprint(ImprintFormat),
-    Drawing(DrawingFormat),
+    Svg,
 }
 
 impl ExportFormat {
     fn of(name: &str) -> Option<Self> {
-        let format = name.parse().map(Self::Imprint);
-        format.or_else(|_| name.parse().map(Self::Drawing)).ok()
+        match name {
+            "svg" => Some(Self::Svg),
+            name => name.parse().ok().map(Self::Imprint),
+        }
     }
 
     fn of_ending(path: &Path) -> Option<Self> {
         let format = ImprintFormat::of_path(path).map(Self::Imprint);
-        format.or_else(|| DrawingFormat::of_path(path).map(Self::Drawing))
+        format.or_else(|| has_ending(path, "svg").then_some(Self::Svg))
     }
 }
 
 pub(crate) fn names() -> Vec<&'static str> {
     let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
-    let drawings = DrawingFormat::ALL.iter().map(|format| format.name());
-    imprints.chain(drawings).collect()
+    imprints.chain(["svg"]).collect()
 }
 
 #[derive(Clone, Debug)]
@@ -92,7 +94,7 @@ impl Export {
                 return "writing to standard output needs '--format'".to_owned();
             }
             format!(
-                "'{}': expected a name that ends in .txt, .pbm, .csv, .npy, .svg or .png, or a '--format'",
+                "'{}': expected a name that ends in .txt, .pbm, .csv, .npy or .svg, or a '--format'",
                 path.display()
             )
         })?;
@@ -139,6 +141,6 @@ impl Export {
     }
 
     pub(crate) fn is_drawing(&self) -> bool {
-        matches!(self.format, ExportFormat::Drawing(_))
+        self.format == ExportFormat::Svg
     }
 }

@@ -18,7 +18,7 @@ use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::formats::Name;
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::memory::MemorySize;
 use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
@@ -263,8 +263,8 @@ pub(super) fn parse_number(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn report() -> impl TypedValueParser<Value = PathBuf> {
-    let expected = "expected a name that ends in .csv, .svg or .png";
-    file_of(&["csv", "svg", "png"], expected)
+    let expected = "expected a name that ends in .csv or .svg";
+    file_of(&["csv", "svg"], expected)
 }
 
 pub(super) fn npy() -> impl TypedValueParser<Value = PathBuf> {

@@ -61,12 +61,12 @@ Examples:
 /// `taxel describe`: the formats that can be read.
 pub(crate) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text with one line per row, '#' for an active taxel and '.' for an
-inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image with two
-shades (PGM) or a numpy array (NPY). In a table or an array, inactive taxels are
-0, and active ones have one other value, such as 1 or 255. An imprint has at
-most 64 x 64 taxels. taxel recognises the format from the content, not from the
-extension. A stored shape is a JSON file. If a stored shape and a file have the
-same name, taxel uses the shape.
+inactive one; or a table of numbers (CSV), a bitmap (PBM) or a numpy array
+(NPY). In a table or an array, inactive taxels are 0, and active ones have one
+other value, such as 1 or 255. An imprint has at most 64 x 64 taxels. taxel
+recognises the format from the content, not from the extension. A stored shape
+is a JSON file. If a stored shape and a file have the same name, taxel uses the
+shape.
 
 Examples:
   taxel describe washer
@@ -79,7 +79,7 @@ pub(crate) const EXPORT_EXAMPLES: &str = "\
 The extension of TO decides the format:
   .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline (if known),
   .pbm  a bitmap, P4                      rectangle, CG, CD, axes, legend
-  .csv  a table of 0 and 1          .png  the same in pixels, 288 per inch
+  .csv  a table of 0 and 1
   .npy  a numpy array of bool
 Drawings are grey; with a pitch they are in mm. An existing file is replaced
 only with --force. To export a figure, use 'taxel figure ... --export'.
@@ -88,7 +88,7 @@ Examples:
   taxel export washer washer.svg --pitch 2.5
   taxel export imprint.txt imprint.npy --force
   taxel export key - --format pbm-plain
-  taxel figure hexagon --angle 17 --export hexagon.png";
+  taxel figure hexagon --angle 17 --export hexagon.svg";
 
 /// `taxel batch`: the format of a line, and what happens if one is wrong.
 pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:

@@ -20,8 +20,9 @@ use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::note::note;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
+use crate::formats::file::has_ending;
 use crate::formats::value::percent;
-use crate::formats::{ConfusionMap, DrawingFormat, json};
+use crate::formats::{ConfusionMap, json};
 use crate::parameter::number::share;
 use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model};
 use crate::storage::check_writable;
@@ -71,7 +72,7 @@ fn check(asked: &ConfusionArguments, model: &FoundModel) -> Result<(), CliError>
     let Some(path) = &asked.export else {
         return Ok(());
     };
-    if table.is_some() && DrawingFormat::of_path(path).is_some() {
+    if table.is_some() && has_ending(path, "svg") {
         let names = model.shapes().iter().map(|shape| shape.name.clone());
         drawing(path, &names.collect::<Vec<_>>(), iter::empty())?;
     }
@@ -178,7 +179,7 @@ fn shown(
     charset: Charset,
 ) -> Result<String, CliError> {
     if let Some(path) = &asked.export {
-        put(path, &file(path, own)?, asked.existing)?;
+        put(path, file(path, own)?.as_bytes(), asked.existing)?;
     }
     Ok(match asked.form {
         EvaluationForm::Json => {
@@ -225,19 +226,17 @@ fn advice(asked: &ConfusionArguments) -> String {
     })
 }
 
-fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
-    let Some(format) = DrawingFormat::of_path(path) else {
-        return Ok(evaluation::csv(own).into_bytes());
-    };
+fn file(path: &Path, own: &Evaluation) -> Result<String, CliError> {
+    if !has_ending(path, "svg") {
+        return Ok(evaluation::csv(own));
+    }
     let map = drawing(path, &own.labels, own.confusion.rows())?;
     let mut title = format!("error {}", percent(own.error()));
     if let Some(certainty) = own.certainty {
         let certain = share(certainty.touches, own.touches);
         title += &format!(", certain {}", percent(certain));
     }
-    let map = map.with_title(&title);
-    map.content(format)
-        .map_err(|error| CliError::of_file(path, error))
+    Ok(map.with_title(&title).svg())
 }
 
 fn drawing(

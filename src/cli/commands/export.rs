@@ -96,13 +96,7 @@ impl Export {
     fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
         let content = match self.format {
             ExportFormat::Imprint(format) => format.write(imprint),
-            ExportFormat::Drawing(format) => {
-                let drawn = draw().content(format);
-                drawn.map_err(|error| match &self.path {
-                    Some(path) => CliError::of_file(path, error),
-                    None => CliError::Write(error),
-                })?
-            }
+            ExportFormat::Svg => draw().svg().into_bytes(),
         };
         match &self.path {
             None => Ok(Begun::Content(content)),

@@ -33,8 +33,9 @@ use crate::cli::output::note::note;
 use crate::cli::output::plot;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
+use crate::formats::file::has_ending;
 use crate::formats::value::{counted, grouped, percent};
-use crate::formats::{DrawingFormat, LinePlot, json};
+use crate::formats::{LinePlot, json};
 use crate::index::narrow;
 use crate::memory::MemoryGuard;
 use crate::parameter::number::share;
@@ -129,13 +130,12 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
     let Some(path) = asked.export.as_deref() else {
         return Ok(());
     };
-    let content = match DrawingFormat::of_path(path) {
-        Some(format) => noise_plot(table)
-            .content(format)
-            .map_err(|error| CliError::of_file(path, error))?,
-        None => noise_csv(table).into_bytes(),
+    let content = if has_ending(path, "svg") {
+        noise_plot(table).svg()
+    } else {
+        noise_csv(table)
     };
-    put(path, &content, asked.existing)
+    put(path, content.as_bytes(), asked.existing)
 }
 
 pub(crate) fn sensor(asked: &NoiseArguments, of_model: &Sensor) -> Sensor {

@@ -29,11 +29,11 @@ use crate::cli::output::note::note;
 use crate::cli::output::pose::PoseReport;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::formats::Content;
-use crate::formats::byte_order_mark::without_mark;
+use crate::formats::file::without_mark;
 use crate::formats::framed::{FrameRows, RuleRecord};
+use crate::formats::json;
 use crate::formats::record::Text;
 use crate::formats::value::counted;
-use crate::formats::{json, json_object};
 use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
 use crate::progress::ToTheEnd;
@@ -384,7 +384,7 @@ impl RecogniseLine {
     fn read(line: &[u8]) -> Result<Self, String> {
         let without_nan = json::WithoutNan::new(line);
         let line = &*without_nan.line;
-        let keys: LineKeys<'_> = json_object::read(line).map_err(|error| {
+        let keys: LineKeys<'_> = json::object(line).map_err(|error| {
             format!(
                 "column {}: {}",
                 without_nan.column(error.column().max(1)),

@@ -19,7 +19,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::note::note;
 use crate::cli::output::record_writer::RecordWriter;
 use crate::cli::settings::resolved::Effective;
-use crate::formats::system_error::system_reason;
+use crate::formats::file::system_reason;
 use crate::storage::{Library, ModelCache, Orphan};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};

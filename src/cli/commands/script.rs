@@ -27,7 +27,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::resolved::Effective;
 use crate::formats::Name;
-use crate::formats::byte_order_mark::without_mark;
+use crate::formats::file::without_mark;
 use crate::formats::name::folded;
 use crate::storage;
 use crate::tui::app::state::Options;

@@ -22,9 +22,9 @@ use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::separation;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
-use crate::formats::ending::has_ending;
+use crate::formats::Name;
+use crate::formats::file::has_ending;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
-use crate::formats::{DrawingFormat, Name};
 use crate::memory::MemoryGuard;
 use crate::pose::{Axis, DecimalRange, Ranges};
 use crate::progress::Progress;
@@ -68,13 +68,12 @@ pub(crate) fn separate(
         .map_err(CliError::Memory)?
         .map_err(|error| signals.training_failure(error))?;
     if let Some(path) = &asked.export {
-        let content = match DrawingFormat::of_path(path) {
-            Some(format) => drawing(asked.axis, &curves, asked.wanted)
-                .content(format)
-                .map_err(|error| CliError::of_file(path, error))?,
-            None => csv(asked.axis, &curves).into_bytes(),
+        let content = if has_ending(path, "svg") {
+            drawing(asked.axis, &curves, asked.wanted).svg()
+        } else {
+            csv(asked.axis, &curves)
         };
-        put(path, &content, asked.existing)?;
+        put(path, content.as_bytes(), asked.existing)?;
         if !asked.quiet {
             note(&written(path), charset);
         }

@@ -11,10 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use crate::formats::byte_order_mark::without_mark;
+use crate::formats::file::system_reason;
+use crate::formats::file::without_mark;
 use crate::formats::recording::may_be_recording;
 use crate::formats::shape::MAX_BYTES;
-use crate::formats::system_error::system_reason;
 use crate::formats::{Content, ContentError, read_content};
 use crate::quote::shortened_message;
 

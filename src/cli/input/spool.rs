@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::fs::FileExt;
 
-use crate::formats::system_error::system_reason;
+use crate::formats::file::system_reason;
 
 /// The most that is copied, in bytes, so that an endless input does not fill the disk.
 const MOST: u64 = 4 << 30;

@@ -8,8 +8,7 @@
 //! ```
 
 use crate::cli::output::charset::Charset;
-use crate::formats::shade::{character, characters};
-use crate::formats::value::fitting;
+use crate::formats::value::{character, characters, fitting};
 use crate::matrix::Matrix;
 
 /// Draws the values of all cells, a line for each row, with numbers of columns and rows as beside imprints, and a

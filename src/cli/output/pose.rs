@@ -12,7 +12,7 @@ use serde::{Serialize, Serializer};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::{canvas_of_taxels, character};
-use crate::formats::pose_words;
+use crate::formats::value;
 use crate::formats::value::{decimal, deviation};
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::imprint::Imprint;
@@ -137,9 +137,9 @@ impl PoseReport {
 
     pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
         let estimate = &self.estimate;
-        let mut text = format!("centre {} cells", pose_words::centre(estimate, 1.0));
+        let mut text = format!("centre {} cells", value::pose_centre(estimate, 1.0));
         if let Some(pitch) = self.pitch_mm {
-            text += &format!(" ({} mm)", pose_words::centre(estimate, pitch));
+            text += &format!(" ({} mm)", value::pose_centre(estimate, pitch));
         }
         text += &match &estimate.angle {
             None => "; it looks the same at every angle\n".to_owned(),
@@ -176,12 +176,12 @@ impl PoseReport {
 }
 
 fn angle_in_words(angle: &AngleEstimate, poses: u64) -> String {
-    let repeats = pose_words::repeats(angle);
+    let repeats = value::pose_repeats(angle);
     let Some((mean, spread)) = angle.known() else {
         return format!("angle any{repeats}");
     };
     let (mean, spread) = (decimal(mean, 1), deviation(spread, 1));
-    let arc = pose_words::arc(angle, poses);
+    let arc = value::pose_arc(angle, poses);
     format!("angle {mean}° ± {spread}°{repeats}; {arc}")
 }
 

@@ -14,7 +14,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, Wrong};
 use crate::cli::settings::flags::{Choice, Chosen};
 use crate::cli::settings::sensors::{SENSOR_SETTINGS, SensorSettings, TABLES};
-use crate::formats::system_error::{is_missing, system_reason};
+use crate::formats::file::{is_missing, system_reason};
 use crate::parameter::Parameter;
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::storage::location;

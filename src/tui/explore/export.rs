@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::formats::DrawingFormat;
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::quote::{joined, shortened};
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::line_prompt::LinePrompt;
@@ -48,10 +47,10 @@ impl ExportKind {
         match self {
             Self::Sweep { poses, drawing, .. } => {
                 let poses: &[&str] = if poses { &[".npy"] } else { &[] };
-                let drawings: &[&str] = if drawing { &[".svg", ".png"] } else { &[] };
+                let drawings: &[&str] = if drawing { &[".svg"] } else { &[] };
                 [&[".csv", ".jsonl", ".npz"], poses, drawings].concat()
             }
-            Self::Curve => vec![".csv", ".svg", ".png"],
+            Self::Curve => vec![".csv", ".svg"],
         }
     }
 
@@ -59,11 +58,9 @@ impl ExportKind {
     fn takes(self, name: &str) -> bool {
         match self {
             Self::Sweep { .. } => {
-                is_poses(name)
-                    || DrawingFormat::of_path(name).is_some()
-                    || AtlasFile::new(name).is_ok()
+                is_poses(name) || has_ending(name, "svg") || AtlasFile::new(name).is_ok()
             }
-            Self::Curve => has_ending(name, "csv") || DrawingFormat::of_path(name).is_some(),
+            Self::Curve => has_ending(name, "csv") || has_ending(name, "svg"),
         }
     }
 }

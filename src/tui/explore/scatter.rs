@@ -15,7 +15,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::atlas::{AtlasEntry, features};
 use crate::formats::value::counted;
-use crate::formats::{DrawingFormat, PointPlot, axis_ends};
+use crate::formats::{PointPlot, axis_ends};
 use crate::index::wide;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
@@ -167,7 +167,7 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
 }
 
 /// Returns the drawing of the tab for a file.
-fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
+fn drawing(results: &Results) -> Result<String, String> {
     let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
     if points.is_empty() {
         return Err(NOTHING_TO_DRAW.to_owned());
@@ -180,5 +180,5 @@ fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> 
     if let Some((x, y)) = selected.and_then(|(_, entry)| point(results, &entry)) {
         plot = plot.with_chosen(x, y);
     }
-    plot.content(format).map_err(|error| error.to_string())
+    Ok(plot.svg())
 }

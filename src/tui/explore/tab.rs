@@ -6,7 +6,6 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::DrawingFormat;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::results::Results;
@@ -14,8 +13,8 @@ use crate::tui::keys::binding::Context;
 use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::Theme;
 
-/// Draws a tab as the content of a file; a sentence says why there is no drawing.
-type TabDrawing = fn(&Results, DrawingFormat) -> Result<Vec<u8>, String>;
+/// Draws a tab as SVG; a sentence says why there is no drawing.
+type TabDrawing = fn(&Results) -> Result<String, String>;
 
 /// The reason why a tab without any value has no drawing.
 pub(super) const NOTHING_TO_DRAW: &str = "there is nothing to draw";

@@ -2,8 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use crate::formats::DrawingFormat;
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::tui::explore::message::ExploreTab;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::tab::ResultsTab;
@@ -28,10 +27,10 @@ pub fn row(tab: ExploreTab) -> &'static ResultsTab {
 /// Returns why the tab cannot be drawn.
 pub(super) fn file(results: &Results, name: &str, area: Rect) -> Option<Result<Vec<u8>, String>> {
     let tab = row(results.tab());
-    if let Some(format) = DrawingFormat::of_path(name) {
+    if has_ending(name, "svg") {
         return Some(match tab.drawing {
-            Some(drawing) => drawing(results, format),
-            None => Err(no_drawing(format)),
+            Some(drawing) => drawing(results).map(String::into_bytes),
+            None => Err(no_drawing()),
         });
     }
     let table = tab.table.filter(|_| has_ending(name, "csv"))?;
@@ -39,10 +38,10 @@ pub(super) fn file(results: &Results, name: &str, area: Rect) -> Option<Result<V
 }
 
 /// Returns the reason why a tab that is a table is not drawn, with the tabs that are.
-fn no_drawing(format: DrawingFormat) -> String {
+fn no_drawing() -> String {
     let rows = ExploreTab::ALL.into_iter().map(row);
     let drawn = rows.filter(|row| row.drawing.is_some());
     let titles: Vec<&str> = drawn.map(|row| row.title).collect();
     let titles = titles.join(", ");
-    format!("this page has no drawing for .{format}; {titles} have one")
+    format!("this page has no drawing for .svg; {titles} have one")
 }

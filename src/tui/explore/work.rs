@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use ratatui::layout::Rect;
 
-use crate::formats::DrawingFormat;
+use crate::formats::file::has_ending;
 use crate::formats::value::{counted, grouped};
 use crate::picture::Picture;
 use crate::pose::{PoseGrid, PoseIndex};
@@ -263,9 +263,7 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
 /// a drawing, which shows what its tab shows.
 fn filter_remark(app: &App, name: &str) -> String {
     match app.results_below() {
-        Some(results)
-            if !results.list.filter().is_empty() && DrawingFormat::of_path(name).is_none() =>
-        {
+        Some(results) if !results.list.filter().is_empty() && !has_ending(name, "svg") => {
             let imprints = counted(results.sweep().atlas.len() as u64, "imprint");
             format!(", all {imprints} (the filter does not apply)")
         }

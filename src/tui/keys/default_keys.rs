@@ -348,7 +348,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "first, last size";
         [Char('+') => HIGHER_ERROR, Char('=') => HIGHER_ERROR, Char('-') => LOWER_ERROR]
             "error" "raise, lower the wanted error";
-        [Char('x') => EXPORT] "export" "write a file: .csv numbers, .svg or .png curve";
+        [Char('x') => EXPORT] "export" "write a file: .csv numbers, .svg curve";
         [Enter => ACCEPT] "to matrix" "put the confused imprint onto the matrix";
         [Char('V') => SEPARATE] "" "resume after a stop";
         [Char('?') => HELP] "help" "these keys";

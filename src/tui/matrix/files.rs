@@ -1,12 +1,12 @@
 //! Reading the matrix from a file, and writing it to one: `:open`, `:write` and `:export`.
 //!
 //! The content of a file decides how it is read, its extension how it is written: an imprint as text, table, bitmap
-//! or array, a shape with its source as JSON, a drawing as SVG or PNG.
+//! or array, a shape with its source as JSON, a drawing as SVG.
 
 use std::path::Path;
 
-use crate::formats::ending::has_ending;
-use crate::formats::{Drawing, DrawingFormat, ImprintFormat, Name};
+use crate::formats::file::has_ending;
+use crate::formats::{Drawing, ImprintFormat, Name};
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::quote::shortened;
@@ -20,7 +20,7 @@ use crate::tui::app::state::App;
 use crate::tui::runtime::effect::{Effect, FileRequest};
 
 /// The extensions that the name of a file to write can have.
-const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg .png";
+const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg";
 
 /// Returns the request to write a file. Shows a notice and returns None if there is nothing to write, or if no format
 /// has that extension.
@@ -44,9 +44,8 @@ fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     if let Some(format) = ImprintFormat::of_path(name) {
         return Ok(format.write(&reading.imprint));
     }
-    if let Some(format) = DrawingFormat::of_path(name) {
-        let content = drawing(app).content(format);
-        return content.map_err(|error| error.to_string());
+    if has_ending(name, "svg") {
+        return Ok(drawing(app).svg().into_bytes());
     }
     if !has_ending(name, "json") {
         return Err(format!(

@@ -19,7 +19,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::pose_words;
+use crate::formats::value;
 use crate::formats::value::{counted, decimal, grouped, percent};
 use crate::imprint::Imprint;
 use crate::parameter::number::{differing, share, short};
@@ -409,7 +409,7 @@ const MARKS: [char; 2] = ['+', '-'];
 /// Returns the line about the position of a shape: mean and spread over the poses that leave the imprint. `whose` is the
 /// name of the shape if the answer does not name it, otherwise empty. `unit` is what follows the numbers.
 fn position_line(whose: &str, pose: &PoseEstimate, unit: &str) -> String {
-    let line = format!("{whose} centre {}{unit}", pose_words::centre(pose, 1.0));
+    let line = format!("{whose} centre {}{unit}", value::pose_centre(pose, 1.0));
     line.trim_start().to_owned()
 }
 
@@ -421,10 +421,10 @@ fn angle_lines(pose: &PoseEstimate) -> [String; 2] {
         let Some((mean, spread)) = angle.known() else {
             return any();
         };
-        let (mean, spread) = (decimal(half_up(mean), 0), pose_words::spread(spread, 1));
+        let (mean, spread) = (decimal(half_up(mean), 0), value::pose_spread(spread, 1));
         (
-            format!("angle {mean}° ± {spread}°{}", pose_words::repeats(angle)),
-            pose_words::arc(angle, pose.poses),
+            format!("angle {mean}° ± {spread}°{}", value::pose_repeats(angle)),
+            value::pose_arc(angle, pose.poses),
         )
     });
     [angle, poses]

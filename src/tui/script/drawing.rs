@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
-use crate::formats::xml::escaped;
+use crate::formats::value::escaped;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Palette, Theme};
 use crate::tui::widget::write;

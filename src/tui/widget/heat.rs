@@ -5,7 +5,7 @@
 
 use ratatui::style::{Color, Style};
 
-use crate::formats::shade;
+use crate::formats::value;
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme, Tone};
 
 /// Colours from dark to light.
@@ -23,12 +23,12 @@ const TONES: [Tone; 9] = [
 
 /// Returns the characters of the shades; the first one is for zero.
 pub(in crate::tui) fn shades(theme: &Theme) -> &'static [char] {
-    shade::characters(theme.ascii)
+    value::characters(theme.ascii)
 }
 
 /// Returns the character for a share of the range; a blank for NaN, a cell that does not exist.
 pub(in crate::tui) fn shade(theme: &Theme, share: f64) -> char {
-    shade::character(share, theme.ascii)
+    value::character(share, theme.ascii)
 }
 
 /// Returns true if the two halves of a character can have different colours.
@@ -39,7 +39,7 @@ pub(in crate::tui) fn has_halves(theme: &Theme) -> bool {
 
 /// Returns the colour for a share of the range; None for shares up to 0, and if there are no colours.
 pub(in crate::tui) fn color(theme: &Theme, share: f64) -> Option<Color> {
-    let step = shade::shade(share, TONES.len() + 1).checked_sub(1)?;
+    let step = value::shade(share, TONES.len() + 1).checked_sub(1)?;
     match theme.palette {
         Palette::Dark => theme.color(TONES[step]),
         Palette::Light => theme.color(TONES[TONES.len() - 1 - step]),

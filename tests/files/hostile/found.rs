@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use taxel::atlas::features;
-use taxel::formats::archive::read as read_atlas;
+use taxel::formats::atlas::read as read_atlas;
 use taxel::formats::read_model;
 use taxel::pose::DecimalRange;
 

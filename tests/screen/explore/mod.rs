@@ -258,7 +258,7 @@ fn a_stored_shape_is_explored_under_its_name() {
         "x",
         &["Export all imprints to: cross.csv   (.csv .jsonl .npz .npy)"],
     );
-    page.then("<Esc>4x", &["Export to: cross-map.svg", ".npy .svg .png)"]);
+    page.then("<Esc>4x", &["Export to: cross-map.svg", ".npy .svg)"]);
     // No imprint has a thousand taxels, so there is none to compare, to follow or to put on the matrix.
     page.press("<Esc>1/na>=1000<Enter>");
     for key in ["=", "g", "<Enter>"] {
@@ -445,8 +445,8 @@ fn every_ending_of_an_export_is_visible_on_sixty_columns() {
     for (page, endings) in [
         ("1", "ellipse.csv   csv jsonl npz npy\n"),
         ("2", "ellipse-statistics.csv   csv jsonl npz npy\n"),
-        ("4", "ellipse-map.svg   csv jsonl npz npy svg png\n"),
-        ("5", "ellipse-scatter.svg   csv jsonl npz npy svg png\n"),
+        ("4", "ellipse-map.svg   csv jsonl npz npy svg\n"),
+        ("5", "ellipse-scatter.svg   csv jsonl npz npy svg\n"),
     ] {
         let keys = format!("f<Enter>{SHORT}{page}x");
         shows(&sized((60, 20), false, &keys), &[endings]);

@@ -6,9 +6,9 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use crate::acquire::growing_file::ReadAnew;
+use crate::formats::file::system_reason;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingFormat, RecordingNote};
 use crate::formats::stream::{Silence, StreamCounts, StreamFormat, StreamOptions};
-use crate::formats::system_error::system_reason;
 use crate::formats::value::decimal;
 use crate::frame::{Frame, FrameSize};
 

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use crate::acquire::event::{AcquireError, AcquireOptions, Playback};
 use crate::acquire::recorder::RecorderError;
 use crate::acquire::source_name::SourceName;
+use crate::formats::file::{system_reason, unshared};
 use crate::formats::recording::{ReadOptions, RecordingError, RecordingFormat, format_of};
-use crate::formats::system_error::{system_reason, unshared};
 use crate::storage::FileId;
 
 /// A file that is played as a recording.

@@ -4,82 +4,13 @@
 //! read, in either byte order and in C or Fortran order, if their values are 0 and one other number. The format's
 //! versions 1 to 3 are read. For the source, see [`crate::formats::npy`].
 
-use std::fmt;
-
-use crate::formats::mask::Mask;
+use crate::formats::imprint_file::Mask;
 use crate::formats::npy;
 use crate::formats::npy::{Dtype, NumberType};
 use crate::imprint::Imprint;
 use crate::parameter::number::counted;
 use crate::quote::shortened;
 use crate::sensor::MatrixSize;
-
-/// The error for bytes that are not an imprint as an array.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ArrayError {
-    /// Not the start of an array's file, or a broken header.
-    Header,
-    /// Numbers of another type.
-    Type {
-        /// The type as numpy writes it.
-        found: String,
-    },
-    /// Another number of axes, or an axis too long.
-    Shape {
-        /// The lengths of the first axes, at most eight.
-        found: Vec<u64>,
-    },
-    /// More or fewer bytes than the header says.
-    Length {
-        /// The number of bytes that were found.
-        found: usize,
-        /// The number of bytes that were expected.
-        expected: usize,
-    },
-    /// A third value, or one that is not a finite number.
-    Value {
-        /// The row, from 1.
-        row: u8,
-        /// The column, from 1.
-        column: u8,
-    },
-    /// All values are equal, and neither 0, 1 nor 255.
-    Unclear,
-}
-
-impl fmt::Display for ArrayError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Header => f.write_str("not a numpy array: expected a header of version 1 to 3"),
-            Self::Type { found } => {
-                write!(f, "type {found:?}, expected bool, whole numbers or floats")
-            }
-            Self::Shape { found } => write!(
-                f,
-                "shape ({}), expected rows and columns, 1 to 64 each",
-                sides(found)
-            ),
-            Self::Length { found, expected } => {
-                let found = counted(*found as u64, "byte");
-                write!(f, "found {found} of numbers, expected {expected}")
-            }
-            Self::Value { row, column } => write!(
-                f,
-                "row {row}, column {column}: expected 0, or the one other value of active taxels"
-            ),
-            Self::Unclear => {
-                f.write_str("one value everywhere, expected 0, 1 or 255, or two of which one is 0")
-            }
-        }
-    }
-}
-
-impl std::error::Error for ArrayError {}
-
-fn sides(found: &[u64]) -> String {
-    let sides: Vec<String> = found.iter().map(ToString::to_string).collect();
-    sides.join(", ")
-}
 
 /// The meaning of an array's numbers in an imprint, by their bits: no value has to be computed.
 #[derive(Clone, Copy, Debug)]
@@ -128,36 +59,27 @@ impl TaxelType {
     }
 }
 
-/// Reads an imprint.
-///
-/// # Errors
-/// Returns the first error and its place; the input may be any bytes.
-///
-/// ```
-/// use taxel_files::formats::array::{read, write};
-/// use taxel_core::prelude::*;
-/// let cup: Imprint = "#.#\n###".parse().unwrap();
-/// let file = write(&cup);
-/// assert!(file[10..].starts_with(b"{'descr': '|b1', 'fortran_order': False, 'shape': (2, 3), }"));
-/// assert_eq!(read(&file), Ok(cup));
-/// ```
-pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
-    let (header, numbers) = npy::parse(bytes).ok_or(ArrayError::Header)?;
-    let kind = TaxelType::of(&header.code).ok_or_else(|| ArrayError::Type {
-        found: shortened(&header.code),
+pub(super) fn read(bytes: &[u8]) -> Result<Imprint, String> {
+    let header = "not a numpy array: expected a header of version 1 to 3";
+    let (header, numbers) = npy::parse(bytes).ok_or(header)?;
+    let kind = TaxelType::of(&header.code).ok_or_else(|| {
+        let found = shortened(&header.code);
+        format!("type {found:?}, expected bool, whole numbers or floats")
     })?;
     let size = match &header.shape[..] {
         [rows, columns] => MatrixSize::of_sides(*columns, *rows),
         _ => None,
     };
-    let size = size.ok_or_else(|| ArrayError::Shape {
-        found: header.shape.iter().copied().take(8).collect(),
+    let size = size.ok_or_else(|| {
+        let sides = header.shape.iter().take(8).map(ToString::to_string);
+        let sides = sides.collect::<Vec<_>>().join(", ");
+        format!("shape ({sides}), expected rows and columns, 1 to 64 each")
     })?;
     let width = kind.number.size();
     let expected = size.cells() * width;
     if numbers.len() != expected {
-        let found = numbers.len();
-        return Err(ArrayError::Length { found, expected });
+        let found = counted(numbers.len() as u64, "byte");
+        return Err(format!("found {found} of numbers, expected {expected}"));
     }
     let mut imprint = Imprint::empty(size);
     let mut mask = Mask::new();
@@ -173,23 +95,23 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
         } else {
             (inner, outer)
         };
-        let value = ArrayError::Value {
-            row: row + 1,
-            column: column + 1,
-        };
         let Ok(Ok(active)) = kind.value(bytes).map(|number| mask.take(number)) else {
-            return Err(value);
+            return Err(format!(
+                "row {}, column {}: expected 0, or the one other value of active taxels",
+                row + 1,
+                column + 1
+            ));
         };
         imprint.set(column, row, active);
     }
     if mask.unclear(&kind.active).is_some() {
-        return Err(ArrayError::Unclear);
+        let message = "one value everywhere, expected 0, 1 or 255, or two of which one is 0";
+        return Err(message.to_owned());
     }
     Ok(imprint)
 }
 
-/// Returns the content of the file.
-pub fn write(imprint: &Imprint) -> Vec<u8> {
+pub(super) fn write(imprint: &Imprint) -> Vec<u8> {
     let shape = [imprint.rows(), imprint.columns()].map(u64::from);
     let mut file = npy::header(Dtype::Bool, &shape);
     for row in 0..imprint.rows() {
@@ -273,8 +195,7 @@ mod tests {
     #[test]
     fn errors_say_what_is_wrong() {
         let wrong = |bytes: &[u8], message: &str| {
-            let outcome = read(bytes).map_err(|error| error.to_string());
-            assert_eq!(outcome, Err(message.to_owned()));
+            assert_eq!(read(bytes), Err(message.to_owned()));
         };
         let small =
             |code: &str, shape: &str, numbers: &[u8]| file(1, &header(code, false, shape), numbers);

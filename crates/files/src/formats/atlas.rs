@@ -1,18 +1,35 @@
-//! An atlas as a table: CSV, a line per imprint, or JSON lines.
+//! An atlas as a table (CSV, a line per imprint), as JSON lines, and as an archive of numpy arrays (`numpy.load`), which
+//! can be read back and merged.
 //!
 //! Columns of the CSV: `id`, `count`, `share` of all poses, the first pose (`first_x0` and so on, zooms for pictures
 //! only), `pieces`, `holes`, each feature of [`crate::atlas::features`] (empty where it does not exist), and
 //! `imprint`, its rows of `#` and `.` from the top with `/` between them.
+//!
+//! In the archive, per imprint, in order: `rows` (a word per row of the sensor, bit `i` for column `i`; shaped imprints
+//! × rows), `count`, `first_pose` (its number in the grid), `first` (its values; imprints × parameters), `pieces`,
+//! `holes` and an array for each feature, with NaN where the feature does not exist, since arrays have no other way to
+//! say this. Before them comes `header`, JSON as bytes: format, source, sensor, anchor, ranges, shard and the number of
+//! poses; and at the end `spread`, the sums by which shards are merged. The archive is a zip without compression and
+//! without dates, so equal atlases are equal files.
 
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, Write};
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::ser::{SerializeMap, Serializer};
+use serde::{Deserialize, Serialize};
 
-use crate::atlas::{AtlasEntry, feature_values, features};
+use crate::atlas::{Atlas, AtlasEntry, ImprintSummary, feature_values, features};
 use crate::formats::described::RegionRecord;
+use crate::formats::json;
+use crate::formats::npy::Dtype;
+use crate::formats::npz::{
+    ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
+};
+use crate::formats::record::{Record, Values, no_names};
 use crate::parameter::number::share;
-use crate::pose::PoseGrid;
-use crate::sweep::SweepResult;
+use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
+use crate::quote::shortened;
+use crate::sensor::Sensor;
+use crate::sweep::{Parts, Shard, SweepResult};
 
 /// Returns the share of all poses that leave this imprint: above 0, up to 1.
 pub fn pose_share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
@@ -101,4 +118,173 @@ impl Serialize for First<'_> {
         }
         map.end()
     }
+}
+
+/// The required value of the header's key `format`.
+pub const FORMAT: &str = "taxel-atlas/1";
+
+/// The header of an atlas: written from a source and a sensor, read as records that are then checked.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ArchiveHeader<Shape, Size> {
+    /// [`FORMAT`].
+    format: String,
+    /// The shape that was swept.
+    source: Shape,
+    /// The sensor.
+    sensor: Size,
+    /// The point that x0 and y0 place: `corner` or `centre`.
+    anchor: String,
+    /// Each axis is a range, `START:END:STEP`, or a single number.
+    x0: String,
+    y0: String,
+    angle: String,
+    zoom_x: String,
+    zoom_y: String,
+    /// The shard of the grid: `1/1` for the whole grid.
+    shard: String,
+    /// The number of poses of this shard.
+    poses: u64,
+    /// The number of poses in which the shape reaches beyond the sensor.
+    partly_off: u64,
+}
+
+/// Writes the archive.
+///
+/// # Errors
+/// Returns the errors of the writer.
+pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
+    let mut archive = ArrayWriter::new(&mut output);
+    let (grid, parts) = (result.grid(), result.parts());
+    let header = header(result, &parts);
+    archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
+    let count = parts.counts.len() as u64;
+    let height = u64::from(grid.sensor().rows());
+    archive.add(
+        "rows",
+        Dtype::U64,
+        &[count, height],
+        &little_endian(&parts.rows),
+    )?;
+    archive.add("count", Dtype::U64, &[count], &little_endian(&parts.counts))?;
+    let first_poses = little_endian(&parts.first_poses);
+    archive.add("first_pose", Dtype::U64, &[count], &first_poses)?;
+    let axes: Vec<_> = grid.axes().collect();
+    let mut first = Vec::new();
+    for &number in &parts.first_poses {
+        let pose = grid.pose(number);
+        let values = axes.iter().map(|&axis| pose[axis]);
+        first.extend(values.flat_map(f64::to_le_bytes));
+    }
+    archive.add("first", Dtype::F64, &[count, axes.len() as u64], &first)?;
+    let pieces = regions_of_each(result.atlas(), |summary| summary.pieces);
+    archive.add("pieces", Dtype::U16, &[count], &pieces)?;
+    let holes = regions_of_each(result.atlas(), |summary| summary.holes);
+    archive.add("holes", Dtype::U16, &[count], &holes)?;
+    for (feature, column) in features().iter().zip(feature_columns(result.atlas())) {
+        archive.add(&feature.key, Dtype::F64, &[count], &column)?;
+    }
+    let length = parts.variance_words.len() as u64;
+    archive.add(
+        "spread",
+        Dtype::U64,
+        &[length],
+        &little_endian(&parts.variance_words),
+    )?;
+    archive.finish()
+}
+
+/// Returns the header as JSON: what was swept, over which ranges, and the counts of the whole result.
+fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
+    let (grid, ranges) = (result.grid(), result.grid().ranges());
+    json::written(serde_json::to_vec(&ArchiveHeader {
+        format: FORMAT.to_owned(),
+        source: grid.source(),
+        sensor: grid.sensor(),
+        anchor: grid.anchor().name().to_owned(),
+        x0: ranges[Axis::X0].to_string(),
+        y0: ranges[Axis::Y0].to_string(),
+        angle: ranges[Axis::Angle].to_string(),
+        zoom_x: ranges[Axis::ZoomX].to_string(),
+        zoom_y: ranges[Axis::ZoomY].to_string(),
+        shard: result.shard().to_string(),
+        poses: parts.poses,
+        partly_off: parts.partly_off,
+    }))
+}
+
+/// Returns the number of pieces, or of holes, of each imprint, as the bytes of an array.
+fn regions_of_each(atlas: &Atlas, number: fn(&ImprintSummary) -> u16) -> Vec<u8> {
+    let summaries = atlas.entries().map(|entry| entry.summary);
+    summaries
+        .flat_map(|summary| number(&summary).to_le_bytes())
+        .collect()
+}
+
+/// Returns an array for each feature, as bytes: its value for each imprint, NaN where it does not exist.
+fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
+    let mut columns = vec![Vec::with_capacity(atlas.len() * 8); features().len()];
+    for entry in atlas.entries() {
+        let mut row = vec![f64::NAN; columns.len()];
+        if let Some(description) = &entry.summary.description {
+            feature_values(description, |index, value| row[index] = value);
+        }
+        for (column, value) in columns.iter_mut().zip(row) {
+            column.extend(value.to_le_bytes());
+        }
+    }
+    columns
+}
+
+/// Reads an archive.
+///
+/// # Errors
+/// Returns an error if it is not an atlas; the input may be any bytes.
+pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
+    let mut archive = ArrayReader::new(input)?;
+    let header = archive.header()?;
+    let header: ArchiveHeader<Record<'_>, Values> = header_of(&header, FORMAT)?;
+    let sensor = header.sensor.sensor(Sensor::default())?;
+    header.source.no_sensor("source")?;
+    let source = header.source.source(&sensor, &no_names)?;
+    let anchor = anchor(&header.anchor)?;
+    let ranges = ranges([
+        &header.x0,
+        &header.y0,
+        &header.angle,
+        &header.zoom_x,
+        &header.zoom_y,
+    ])?;
+    let shard: Shard = header.shard.parse()?;
+    let grid = PoseGrid::new(source, sensor, anchor, ranges)?;
+    let parts = Parts {
+        poses: header.poses,
+        partly_off: header.partly_off,
+        rows: archive.words("rows")?,
+        counts: archive.words("count")?,
+        first_poses: archive.words("first_pose")?,
+        variance_words: archive.words("spread")?,
+    };
+    archive.finish()?;
+    Ok(SweepResult::from_parts(grid, shard, &parts)?)
+}
+
+/// Returns the anchor of that name.
+pub(super) fn anchor(name: &str) -> Result<Anchor, ArchiveError> {
+    name.parse().map_err(|_| {
+        ArchiveError::Header(format!(
+            "anchor {:?} is unknown, expected {}",
+            shortened(name),
+            Anchor::NAMES.join(" or ")
+        ))
+    })
+}
+
+/// Parses the ranges, in the order of [`Axis::ALL`].
+pub(super) fn ranges(texts: [&str; 5]) -> Result<Ranges, ArchiveError> {
+    let mut ranges = Ranges::default();
+    for (axis, text) in Axis::ALL.into_iter().zip(texts) {
+        ranges[axis] = text.parse()?;
+    }
+    Ok(ranges)
 }

@@ -1,4 +1,4 @@
-//! The formats in which a plain imprint is exchanged with other programs.
+//! The formats in which a plain imprint is exchanged with other programs: text, PBM, CSV and NPY.
 //!
 //! When a file is read, its content decides the format; when it is written, the ending of its name does.
 //!
@@ -13,18 +13,15 @@
 //! # Ok::<(), taxel_files::formats::ImprintFormatError>(())
 //! ```
 
-use std::fmt;
 use std::path::Path;
 
-use crate::formats::array::ArrayError;
-use crate::formats::byte_order_mark::without_mark;
-use crate::formats::ending::has_ending;
-use crate::formats::pbm::PbmError;
-use crate::formats::table::TableError;
-use crate::formats::text::TextError;
-use crate::formats::{array, foreign, pbm, table, text};
-use crate::imprint::Imprint;
+use crate::formats::file::{has_ending, without_mark};
+use crate::formats::shape::{ShapeError, StoredShape};
+use crate::formats::{array, pbm, table};
+use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::named;
+use crate::parameter::number::counted;
+use crate::quote::quoted_character;
 
 /// The size limit of an imprint's file in bytes, 1 MiB; a larger file is refused unread.
 pub const MAX_BYTES: usize = 1 << 20;
@@ -32,7 +29,7 @@ pub const MAX_BYTES: usize = 1 << 20;
 /// A format in which an imprint is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ImprintFormat {
-    /// Rows of `#` and `.`.
+    /// A line per row, `#` for an active taxel, `.` for an inactive one.
     Text,
     /// A raw portable bitmap, `P4`.
     Pbm,
@@ -40,7 +37,7 @@ pub enum ImprintFormat {
     PlainPbm,
     /// A table of 0 and 1.
     Csv,
-    /// A numpy array.
+    /// A numpy array of `bool`, rows × columns.
     Npy,
 }
 
@@ -48,7 +45,7 @@ impl ImprintFormat {
     /// All formats.
     pub const ALL: &'static [Self] = &[Self::Text, Self::Pbm, Self::PlainPbm, Self::Csv, Self::Npy];
 
-    /// Returns the name of the format on the command line.
+    /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Text => "txt",
@@ -59,7 +56,7 @@ impl ImprintFormat {
         }
     }
 
-    /// Returns the format for the extension of a file's name, in upper or lower case; None if no format has it.
+    /// The format for the extension of a file's name, in upper or lower case; None if no format has it.
     pub fn of_path(path: impl AsRef<Path>) -> Option<Self> {
         // The plain bitmap has no ending of its own.
         let formats = Self::ALL.iter().copied();
@@ -68,10 +65,10 @@ impl ImprintFormat {
             .find(|format| has_ending(&path, format.name()))
     }
 
-    /// Returns the content of a file in this format.
+    /// The content of a file in this format.
     pub fn write(self, imprint: &Imprint) -> Vec<u8> {
         match self {
-            Self::Text => text::write(imprint).into_bytes(),
+            Self::Text => format!("{imprint}\n").into_bytes(),
             Self::Pbm => pbm::raw(imprint),
             Self::PlainPbm => pbm::plain(imprint).into_bytes(),
             Self::Csv => table::write(imprint).into_bytes(),
@@ -83,51 +80,23 @@ impl ImprintFormat {
 named!(ImprintFormat, "format", ImprintFormat::ALL);
 
 /// The error for bytes that are not an imprint.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ImprintFormatError {
     /// More than [`MAX_BYTES`] bytes.
+    #[error("larger than 1 MiB, the limit for an imprint")]
     Large,
     /// A file of another kind.
-    Foreign {
-        /// The kind of file, with its article: "a PNG image".
-        kind: &'static str,
-    },
-    /// Not a valid text of `#` and `.`.
-    Text(TextError),
-    /// Not a valid bitmap.
-    Pbm(PbmError),
-    /// Not a valid greymap of two shades.
-    Pgm(PbmError),
-    /// Not a valid table.
-    Table(TableError),
-    /// Not a valid array.
-    Array(ArrayError),
+    #[error("not an imprint: expected rows of '#' and '.', a table (CSV), PBM or NPY")]
+    Unknown,
+    /// A mistake in a file of one of the formats: where, what was found, what was expected.
+    #[error("{0}")]
+    Invalid(String),
 }
-
-impl fmt::Display for ImprintFormatError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Large => f.write_str("larger than 1 MiB, the limit for an imprint"),
-            Self::Foreign { kind } => write!(
-                f,
-                "{kind}, expected rows of '#' and '.', a table (CSV), PBM, PGM of two shades or NPY"
-            ),
-            Self::Text(error) => error.fmt(f),
-            Self::Pbm(error) => write!(f, "PBM: {error}"),
-            Self::Pgm(error) => write!(f, "PGM: {error}"),
-            Self::Table(error) => write!(f, "CSV: {error}"),
-            Self::Array(error) => write!(f, "NPY: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for ImprintFormatError {}
 
 /// Reads an imprint from any bytes, in any of the formats.
 ///
-/// A bitmap or greymap begins with `P` and a digit, an array with its magic bytes. Images and archives of other kinds
-/// are refused by name. Everything else is a text of `#` and `.` or a table of numbers; a byte order mark before it
-/// is skipped, and line ends may be those of any system.
+/// A bitmap begins with `P1` or `P4`, an array with its magic bytes. Everything else is a text of `#` and `.` or a table
+/// of numbers; a byte order mark before it is skipped. In errors, lines and columns count from 1.
 ///
 /// # Errors
 /// Returns the first error and its place.
@@ -135,33 +104,24 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
     if bytes.len() > MAX_BYTES {
         return Err(ImprintFormatError::Large);
     }
-    if let Some(kind) = foreign::kind(bytes) {
-        return Err(ImprintFormatError::Foreign { kind });
-    }
+    let named = |format: &'static str| {
+        move |message: String| ImprintFormatError::Invalid(format!("{format}: {message}"))
+    };
     match bytes {
-        [0x93, ..] => return array::read(bytes).map_err(ImprintFormatError::Array),
+        [0x93, ..] => return array::read(bytes).map_err(named("NPY")),
         // Tables may name their columns P1, P2.
         [b'P', b'0'..=b'9', b',' | b';' | b'\t', ..] => {}
-        [b'P', b'2' | b'5', ..] => return pbm::read(bytes).map_err(ImprintFormatError::Pgm),
-        [b'P', b'0'..=b'9', ..] => return pbm::read(bytes).map_err(ImprintFormatError::Pbm),
+        [b'P', b'1' | b'4', ..] => return pbm::read(bytes).map_err(named("PBM")),
+        [b'P', b'0'..=b'9', ..] => return Err(ImprintFormatError::Unknown),
         _ => {}
     }
-    let text = without_mark(bytes);
-    // Files of the classic Mac OS have lines that end in CR alone.
-    let lines;
-    let text = if text.contains(&b'\r') && !text.contains(&b'\n') {
-        let unix = |&byte: &u8| if byte == b'\r' { b'\n' } else { byte };
-        lines = text.iter().map(unix).collect::<Vec<u8>>();
-        &lines
+    let text = str::from_utf8(without_mark(bytes)).ok();
+    let text = text.filter(|text| !text.contains('\0'));
+    let text = text.ok_or(ImprintFormatError::Unknown)?;
+    if is_table(text.as_bytes()) {
+        table::read(text).map_err(named("CSV"))
     } else {
-        text
-    };
-    if let Some(imprint) = text::of_other_signs(text) {
-        Ok(imprint)
-    } else if is_table(text) {
-        table::read(text).map_err(ImprintFormatError::Table)
-    } else {
-        text::read(text).map_err(ImprintFormatError::Text)
+        of_text(text).map_err(ImprintFormatError::Invalid)
     }
 }
 
@@ -183,4 +143,123 @@ fn is_table(text: &[u8]) -> bool {
         let sign = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b',' | b';' | b'\t' | b'"');
         !taxels(line) && (begins("true") || begins("false") || text.iter().any(sign))
     })
+}
+
+/// Reads rows of `#` and `.`. Lines may end in blanks and in CRLF, and blank lines may follow the last row.
+fn of_text(text: &str) -> Result<Imprint, String> {
+    let lines = text.split('\n').map(|line| {
+        let line = line.strip_suffix('\r').unwrap_or(line);
+        line.trim_end_matches([' ', '\t'])
+    });
+    let mut rows: Vec<&str> = lines.collect();
+    while rows.last().is_some_and(|row| row.trim_end().is_empty()) {
+        rows.pop();
+    }
+    // In a line of another length, the column of the first taxel too many, or after the end of a shorter line.
+    let behind = |found: usize, most: usize| found.min(most) + 1;
+    Imprint::from_rows(rows.iter().copied()).map_err(|error| {
+        let (line, column, message) = match error {
+            ImprintError::Rows => {
+                let lines = counted(rows.len() as u64, "line");
+                return format!("found {lines}, expected 1 to 64");
+            }
+            ImprintError::Character { row, column, found } => {
+                let found = quoted_character(found);
+                (row, column, format!("found {found}, expected '#' or '.'"))
+            }
+            ImprintError::Ragged {
+                row,
+                found,
+                expected,
+            } => {
+                let taxels = counted(found as u64, "taxel");
+                let message = format!("found {taxels}, expected {expected} as in line 1");
+                (row, behind(found, expected.into()), message)
+            }
+            ImprintError::Columns { row, found } => {
+                let message = format!("found {found} taxels, expected 1 to 64");
+                (row, behind(found, 64), message)
+            }
+        };
+        format!("line {line}, column {column}: {message}")
+    })
+}
+
+/// Decides which of two values is active: masks of other programs consist of 0 and 1, 0 and 255, or 0 and any other
+/// number.
+pub(crate) struct Mask<T> {
+    /// The value other than 0, once it has been seen.
+    other: Option<T>,
+    zero: bool,
+}
+
+impl<T: Copy + PartialEq> Mask<T> {
+    pub(crate) fn new() -> Self {
+        Self {
+            other: None,
+            zero: false,
+        }
+    }
+
+    /// Takes the next value, `None` for 0, and returns true if its taxel is active. The error for a third value is the
+    /// second one, which is not 0.
+    pub(crate) fn take(&mut self, value: Option<T>) -> Result<bool, T> {
+        let Some(value) = value else {
+            self.zero = true;
+            return Ok(false);
+        };
+        let other = *self.other.get_or_insert(value);
+        if value == other { Ok(true) } else { Err(other) }
+    }
+
+    /// The mask's only value, if it is not 0 and not among `active`, the values that are known to mean active.
+    pub(crate) fn unclear(&self, active: &[T]) -> Option<T> {
+        self.other
+            .filter(|other| !self.zero && !active.contains(other))
+    }
+}
+
+/// The content of a file that may be an imprint or a stored shape.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
+pub enum Content {
+    /// An imprint: a matrix without a sensor or a name.
+    Imprint(Imprint),
+    /// A stored shape: an imprint with its name, sensor and source.
+    Shape(StoredShape),
+}
+
+impl Content {
+    /// The imprint, or that of the stored shape.
+    pub fn imprint(&self) -> &Imprint {
+        match self {
+            Self::Imprint(imprint) => imprint,
+            Self::Shape(shape) => &shape.imprint,
+        }
+    }
+}
+
+/// The error for bytes that are neither an imprint nor a stored shape.
+#[derive(Debug, thiserror::Error)]
+pub enum ContentError {
+    /// Not an imprint in any known format.
+    #[error(transparent)]
+    Imprint(#[from] ImprintFormatError),
+    /// Text that starts like JSON, but is not a stored shape.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+}
+
+/// Reads any bytes: a stored shape if the first character is `{`, otherwise an imprint as text, PBM, CSV or NPY. A
+/// byte order mark, which some editors put before every text, is skipped.
+///
+/// # Errors
+/// Returns the first error and its place.
+pub fn read_content(bytes: &[u8]) -> Result<Content, ContentError> {
+    let bytes = without_mark(bytes);
+    if bytes.trim_ascii_start().starts_with(b"{") {
+        Ok(Content::Shape(StoredShape::read(bytes)?))
+    } else {
+        Ok(Content::Imprint(read(bytes)?))
+    }
 }

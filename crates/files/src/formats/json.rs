@@ -2,9 +2,11 @@
 //! themselves.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::io::{self, Write};
 
-use serde::Serialize;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
 
 use crate::quote::shortened_message;
 
@@ -62,12 +64,12 @@ impl serde_json::ser::Formatter for AsciiFormatter {
 }
 
 /// Returns a value as JSON over several lines.
-pub(crate) fn pretty(value: &(impl Serialize + ?Sized)) -> String {
+pub fn pretty(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| failure(&error))
 }
 
 /// Returns what was written as JSON in memory, for a file. It cannot fail: the keys of all values of this crate are texts.
-pub(crate) fn written(text: serde_json::Result<Vec<u8>>) -> Vec<u8> {
+pub fn written(text: serde_json::Result<Vec<u8>>) -> Vec<u8> {
     text.expect("keys are texts, and memory takes every byte")
 }
 
@@ -131,7 +133,7 @@ pub fn message(error: &serde_json::Error) -> String {
 
 /// Returns what is wrong with a line that should be a JSON object: its [`message`], or that it is not JSON at all.
 /// `expected` describes the object.
-pub(crate) fn message_of_line(line: &[u8], error: &serde_json::Error, expected: &str) -> String {
+pub fn message_of_line(line: &[u8], error: &serde_json::Error, expected: &str) -> String {
     match message(error) {
         text if text == VALUE && !line.trim_ascii_start().starts_with(b"{") => {
             format!("not JSON, expected {expected}")
@@ -141,7 +143,7 @@ pub(crate) fn message_of_line(line: &[u8], error: &serde_json::Error, expected: 
 }
 
 /// Rewrites a message of the parser in our words. Messages that are ours already are returned as they are.
-pub(crate) fn plain(text: &str) -> String {
+pub fn plain(text: &str) -> String {
     let text = text.rfind(" at line ").map_or(text, |end| &text[..end]);
     let known = PARSER.iter().find(|(theirs, _)| *theirs == text);
     if let Some((_, ours)) = known {
@@ -263,6 +265,45 @@ fn kind(expected: &str) -> &str {
     }
 }
 
+/// Reads an object. A type that serde derives would take a list, too, as its keys in the order of the source code.
+///
+/// # Errors
+/// Returns the error of the parser if the text is not one object of this type.
+pub fn object<'a, T: Deserialize<'a>>(text: &'a [u8]) -> serde_json::Result<T> {
+    let mut parser = serde_json::Deserializer::from_slice(text);
+    let object = T::deserialize(ObjectOnly(&mut parser))?;
+    parser.end()?;
+    Ok(object)
+}
+
+/// A parser, or the visitor of a type, for objects only.
+struct ObjectOnly<T>(T);
+
+impl<'de, D: Deserializer<'de>> Deserializer<'de> for ObjectOnly<D> {
+    type Error = D::Error;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
+        self.0.deserialize_map(ObjectOnly(visitor))
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
+        newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
+    }
+}
+
+impl<'de, V: Visitor<'de>> Visitor<'de> for ObjectOnly<V> {
+    type Value = V::Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.expecting(f)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<V::Value, A::Error> {
+        self.0.visit_map(map)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -324,5 +365,28 @@ mod tests {
         let no_text_key = BTreeMap::from([((1, 2), 3)]);
         assert_eq!(text(&no_text_key), r#"{"error":"key must be a string"}"#);
         assert_eq!(text(&[1, 2]), "[1,2]");
+    }
+
+    #[test]
+    fn a_list_is_not_an_object() {
+        #[derive(Debug, PartialEq, Deserialize)]
+        struct Keys {
+            name: String,
+        }
+        let keys = |text: &str| object::<Keys>(text.as_bytes()).map_err(|error| message(&error));
+        let name = "a".to_owned();
+        assert_eq!(keys("{\"name\":\"a\"} "), Ok(Keys { name }));
+        for (text, expected) in [
+            ("[\"a\"]", "found a list, expected an object"),
+            ("[]", "found a list, expected an object"),
+            ("3", "found the number 3, expected an object"),
+            ("{}", "name: missing"),
+            (
+                "{\"name\":\"a\"}]",
+                "more text after the end, expected one object",
+            ),
+        ] {
+            assert_eq!(keys(text), Err(expected.to_owned()), "{text}");
+        }
     }
 }

@@ -8,79 +8,37 @@
 //! keys, such as the sensor, so files and lines are read as a whole, by `StoredShape::read`, `Job::read` and
 //! `named_shape`. Their errors name the line, the column or the key.
 
-pub mod value;
-
-pub mod byte_order_mark;
-
-pub mod ending;
-
-pub mod system_error;
-
-pub(crate) mod described;
-
-pub mod json;
-
-pub mod json_object;
-
-pub mod record;
-
-pub mod framed;
-
-mod job;
-
-pub mod name;
-
-pub mod shape;
-
-pub mod npy;
-
-mod foreign;
-
-mod mask;
-
-pub mod text;
-
-pub mod pbm;
-
-pub mod table;
-
-pub mod array;
-
-pub mod imprint_file;
-
-mod content;
-
-pub(crate) mod seconds;
-
-pub mod recording;
-
-pub mod stream;
-
-pub mod xml;
-
-pub mod shade;
-
-mod drawing;
-
+mod array;
 pub mod atlas;
-
-pub mod archive;
-
-mod npz;
-
+pub(crate) mod described;
+mod drawing;
+pub mod file;
+pub mod framed;
+pub mod imprint_file;
+mod job;
+pub mod json;
 mod model;
-
+pub mod name;
 mod named_shape;
-
+pub mod npy;
+mod npz;
+mod pbm;
+pub mod record;
+pub mod recording;
+pub(crate) mod seconds;
 pub mod separation;
-
-pub mod pose_words;
+pub mod shape;
+pub mod stream;
+pub(crate) mod table;
+pub mod value;
 
 pub use described::DescribedImprint;
 pub use drawing::{axis_ends, axis_marks};
 
-pub use drawing::{ConfusionMap, Drawing, DrawingFormat, LinePlot, PointPlot, PoseMap};
-pub use imprint_file::{ImprintFormat, ImprintFormatError, read as read_imprint};
+pub use drawing::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
+pub use imprint_file::{
+    Content, ContentError, ImprintFormat, ImprintFormatError, read as read_imprint, read_content,
+};
 pub use name::{Name, NameError};
 
 pub use job::{Job, JobError};
@@ -88,8 +46,6 @@ pub use job::{Job, JobError};
 pub use record::RecordError;
 
 pub use shape::{ShapeError, StoredShape};
-
-pub use content::{Content, ContentError, read_content};
 
 pub use npz::{ArchiveError, ArchiveKind, kind_of as archive_kind};
 

@@ -4,7 +4,7 @@ use std::io::{Read, Seek, Write};
 
 use serde::{Deserialize, Serialize};
 
-use crate::formats::archive::{anchor, ranges};
+use crate::formats::atlas::{anchor, ranges};
 use crate::formats::json;
 use crate::formats::npy::Dtype;
 use crate::formats::npz::{

@@ -9,12 +9,12 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
+use crate::formats::file::system_reason;
+use crate::formats::json;
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::RecordError;
-use crate::formats::system_error::system_reason;
 use crate::formats::value::{counted, grouped};
-use crate::formats::{json, json_object};
 use crate::pose::{GridError, RangeError};
 use crate::quote::shortened;
 use crate::sweep::{PartsError, Shard, ShardError};
@@ -232,7 +232,7 @@ fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
 
 /// Parses a header.
 fn parsed<'a, T: Deserialize<'a>>(header: &'a [u8]) -> Result<T, ArchiveError> {
-    json_object::read(header).map_err(|error| ArchiveError::Header(json::message(&error)))
+    json::object(header).map_err(|error| ArchiveError::Header(json::message(&error)))
 }
 
 /// Parses a header of the format `expected`.

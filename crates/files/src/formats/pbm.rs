@@ -2,56 +2,21 @@
 //!
 //! Source: <https://netpbm.sourceforge.net/doc/pbm.html>. A comment runs from `#` to the end of its line; the digits
 //! of a plain bitmap need no spaces between them. A file holds one bitmap, of at most 64 × 64. Padding bits in the
-//! last byte of a row do not count. In errors, lines and columns count from 1; a column is a byte.
-//!
-//! Grey images of two shades (`P2`, `P5`) are read, too: [`read`] says which shade is active.
+//! last byte of a row do not count. In errors, a column is a byte.
 
-mod cursor;
-
-mod error;
-
-mod pgm;
-
-use crate::formats::pbm::cursor::Cursor;
 use crate::imprint::Imprint;
+use crate::parameter::number::counted;
 use crate::sensor::MatrixSize;
 
-pub use crate::formats::pbm::error::PbmError;
-
-/// Reads a bitmap, or a grey image of two shades, from any bytes.
-///
-/// In a bitmap, black is active. In a grey image, the brighter of the two shades is active, as in the masks of other
-/// programs; an image that is all black is empty, and one that is all of the brightest shade is full.
-///
-/// # Errors
-/// Returns the first error and its place.
-///
-/// ```
-/// use taxel_files::formats::pbm::{plain, raw, read};
-/// let cup = read(b"P1 # a cup\n3 2\n101\n1 1 1\n")?;
-/// assert_eq!(cup.to_string(), "#.#\n###");
-/// assert_eq!(plain(&cup), "P1\n3 2\n101\n111\n");
-/// assert_eq!(raw(&cup), b"P4\n3 2\n\xa0\xe0");
-/// assert_eq!(read(&raw(&cup))?, cup);
-/// assert_eq!(read(b"P2 3 2 255  255 0 255  255 255 255")?, cup);
-/// # Ok::<(), taxel_files::formats::pbm::PbmError>(())
-/// ```
-pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
-    let raw = match bytes.get(..2) {
-        Some(b"P1" | b"P2") => false,
-        Some(b"P4" | b"P5") => true,
-        _ => return Err(PbmError::Magic),
-    };
-    let grey = matches!(bytes.get(1), Some(b'2' | b'5'));
+pub(super) fn read(bytes: &[u8]) -> Result<Imprint, String> {
+    let raw = bytes.get(1) == Some(&b'4');
     let mut cursor = Cursor { bytes, at: 2 };
     let one_row = cursor.side("width", |columns| MatrixSize::of_sides(columns, 1))?;
     let size = cursor.side("height", |rows| {
         MatrixSize::of_sides(one_row.columns(), rows)
     })?;
     let mut imprint = Imprint::empty(size);
-    let end = if grey {
-        pgm::shades(&mut cursor, raw, &mut imprint)?
-    } else if raw {
+    let end = if raw {
         cursor.bits(&mut imprint)?
     } else {
         cursor.digits(&mut imprint)?
@@ -59,12 +24,14 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
     // A line end after the last row is not a second bitmap.
     match bytes[end..].trim_ascii().len() {
         0 => Ok(imprint),
-        found => Err(PbmError::Long { found }),
+        found => Err(format!(
+            "found {} after the image, expected one image and no more",
+            counted(found as u64, "byte")
+        )),
     }
 }
 
-/// Returns the plain bitmap, one line per row.
-pub fn plain(imprint: &Imprint) -> String {
+pub(super) fn plain(imprint: &Imprint) -> String {
     let mut text = format!("P1\n{} {}\n", imprint.columns(), imprint.rows());
     for row in 0..imprint.rows() {
         let digit = |column| if imprint.get(column, row) { '1' } else { '0' };
@@ -74,8 +41,7 @@ pub fn plain(imprint: &Imprint) -> String {
     text
 }
 
-/// Returns the raw bitmap.
-pub fn raw(imprint: &Imprint) -> Vec<u8> {
+pub(super) fn raw(imprint: &Imprint) -> Vec<u8> {
     let mut bytes = format!("P4\n{} {}\n", imprint.columns(), imprint.rows()).into_bytes();
     let width = usize::from(imprint.columns()).div_ceil(8);
     for word in imprint.words() {
@@ -85,61 +51,156 @@ pub fn raw(imprint: &Imprint) -> Vec<u8> {
     bytes
 }
 
+/// A position in the bytes of a file.
+struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Cursor<'_> {
+    /// The message about what is at an offset.
+    fn wrong(&self, offset: usize, message: &str) -> String {
+        let before = &self.bytes[..offset];
+        let start = before.iter().rposition(|&byte| byte == b'\n');
+        let line = before.split(|&byte| byte == b'\n').count();
+        let column = offset - start.map_or(0, |start| start + 1) + 1;
+        format!("line {line}, column {column}: {message}")
+    }
+
+    /// Skips spaces and comments, and returns the next byte.
+    fn next(&mut self) -> Option<u8> {
+        loop {
+            match *self.bytes.get(self.at)? {
+                b'#' => {
+                    let rest = &self.bytes[self.at..];
+                    let comment = rest.iter().position(|&byte| matches!(byte, b'\n' | b'\r'));
+                    self.at += comment.unwrap_or(rest.len());
+                }
+                byte if byte.is_ascii_whitespace() => self.at += 1,
+                byte => return Some(byte),
+            }
+        }
+    }
+
+    /// Reads a side, a number that is separated from what is before and after it; `size` makes the size of a matrix
+    /// from it.
+    fn side(
+        &mut self,
+        what: &str,
+        size: impl Fn(u32) -> Option<MatrixSize>,
+    ) -> Result<MatrixSize, String> {
+        let before = self.at;
+        let _ = self.next();
+        let start = self.at;
+        let digits = self.bytes[start..]
+            .iter()
+            .take_while(|byte| byte.is_ascii_digit())
+            .count();
+        let text = str::from_utf8(&self.bytes[start..start + digits]).ok();
+        let number = text.and_then(|text| text.parse().ok());
+        self.at += digits;
+        let ends = match self.bytes.get(self.at) {
+            Some(byte) => byte.is_ascii_whitespace() || *byte == b'#',
+            None => true,
+        };
+        number
+            .filter(|_| start > before && ends)
+            .and_then(size)
+            .ok_or_else(|| self.wrong(start, &format!("expected the {what}, 1 to 64")))
+    }
+
+    /// Reads a digit for each taxel; returns the offset after the last.
+    fn digits(&mut self, imprint: &mut Imprint) -> Result<usize, String> {
+        let expected = imprint.size().cells();
+        let mut found = 0;
+        for row in 0..imprint.rows() {
+            for column in 0..imprint.columns() {
+                let short = || format!("taxels: found {found}, expected {expected}");
+                let active = match self.next().ok_or_else(short)? {
+                    b'0' => false,
+                    b'1' => true,
+                    byte => {
+                        let message = format!("found byte 0x{byte:02x}, expected 0 or 1");
+                        return Err(self.wrong(self.at, &message));
+                    }
+                };
+                imprint.set(column, row, active);
+                found += 1;
+                self.at += 1;
+            }
+        }
+        // Comments after the last digit do not begin a second bitmap.
+        let _ = self.next();
+        Ok(self.at)
+    }
+
+    /// Reads bytes of eight taxels, where each row begins a new byte; returns the offset after the last.
+    fn bits(&mut self, imprint: &mut Imprint) -> Result<usize, String> {
+        // Exactly one space separates the height from the bits, which may look like spaces.
+        if self.bytes.get(self.at) == Some(&b'#') {
+            return Err(self.wrong(self.at, "expected one space or line end before the bits"));
+        }
+        let start = (self.at + 1).min(self.bytes.len());
+        let width = usize::from(imprint.columns()).div_ceil(8);
+        let expected = width * usize::from(imprint.rows());
+        let bits = &self.bytes[start..];
+        let bits = bits
+            .get(..expected)
+            .ok_or_else(|| format!("bytes of taxels: found {}, expected {expected}", bits.len()))?;
+        for (row, bytes) in bits.chunks(width).enumerate() {
+            // The leftmost taxel is a byte's highest bit, and a word's lowest.
+            let word = bytes.iter().rev().fold(0, |word: u64, byte| {
+                word << 8 | u64::from(byte.reverse_bits())
+            });
+            imprint.set_word(row, word);
+        }
+        Ok(start + expected)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn errors_name_their_place() {
-        let outcome = |bytes: &[u8]| read(bytes).map_err(|error| error.to_string());
-        let wrong =
-            |bytes: &[u8], message: &str| assert_eq!(outcome(bytes), Err(message.to_owned()));
-        wrong(b"", "expected P1, P4, P2 or P5 at the start");
-        wrong(
-            b"P6\n1 1\n255\n\0\0\0",
-            "expected P1, P4, P2 or P5 at the start",
-        );
-        wrong(b"P1", "line 1, column 3: expected the width, 1 to 64");
-        // Not "P1" and 11 columns: the number is not separated from the "P1".
-        wrong(b"P111 1 1", "line 1, column 3: expected the width, 1 to 64");
-        wrong(
-            b"P1\n65 1\n",
-            "line 2, column 1: expected the width, 1 to 64",
-        );
-        wrong(
-            b"P1\n1 # no height\n",
-            "line 3, column 1: expected the height, 1 to 64",
-        );
-        wrong(
-            b"P4\n1 0\n",
-            "line 2, column 3: expected the height, 1 to 64",
-        );
-        wrong(
-            b"P1\n2 2\n1\n0 2",
-            "line 4, column 3: found byte 0x32, expected 0 or 1",
-        );
-        wrong(
-            b"P4\n8 1X\xff",
-            "line 2, column 3: expected the height, 1 to 64",
-        );
-        wrong(
-            b"P4\n8 1#\xff",
-            "line 2, column 4: expected one space or line end before the bits",
-        );
-        wrong(b"P1\n2 2\n111", "taxels: found 3, expected 4");
-        wrong(
-            b"P4\n9 2\n\xff\xff\xff",
-            "bytes of taxels: found 3, expected 4",
-        );
-        wrong(b"P4\n9 2", "bytes of taxels: found 0, expected 4");
-        wrong(
-            b"P4\n8 1\n\xffP4",
-            "found 2 bytes after the image, expected one image and no more",
-        );
-        wrong(
-            b"P1\n1 1\n1 # one\n1",
-            "found 1 byte after the image, expected one image and no more",
-        );
+        for (bytes, message) in [
+            (&b"P1"[..], "line 1, column 3: expected the width, 1 to 64"),
+            // Not "P1" and 11 columns: the number is not separated from the "P1".
+            (b"P111 1 1", "line 1, column 3: expected the width, 1 to 64"),
+            (
+                b"P1\n65 1\n",
+                "line 2, column 1: expected the width, 1 to 64",
+            ),
+            (
+                b"P1\n1 # no height\n",
+                "line 3, column 1: expected the height, 1 to 64",
+            ),
+            (
+                b"P1\n2 2\n1\n0 2",
+                "line 4, column 3: found byte 0x32, expected 0 or 1",
+            ),
+            (
+                b"P4\n8 1X\xff",
+                "line 2, column 3: expected the height, 1 to 64",
+            ),
+            (
+                b"P4\n8 1#\xff",
+                "line 2, column 4: expected one space or line end before the bits",
+            ),
+            (b"P1\n2 2\n111", "taxels: found 3, expected 4"),
+            (
+                b"P4\n9 2\n\xff\xff\xff",
+                "bytes of taxels: found 3, expected 4",
+            ),
+            (b"P4\n9 2", "bytes of taxels: found 0, expected 4"),
+            (
+                b"P1\n1 1\n1 # one\n1",
+                "found 1 byte after the image, expected one image and no more",
+            ),
+        ] {
+            assert_eq!(read(bytes), Err(message.to_owned()));
+        }
     }
 
     #[test]

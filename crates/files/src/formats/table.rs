@@ -2,181 +2,42 @@
 //!
 //! Tables are written with commas and without a heading. They are read as other programs write them: separated by
 //! commas, semicolons, tabs or spaces, with or without quotes, with values such as `1`, `1.0`, `1.000e+00` or `true`;
-//! any one value besides 0 may mean active. Around the values there may be the additions of these programs: a line
-//! `sep=;`, comment lines that begin with `#`, a row of names, a first column of row numbers or names (with the name
-//! of that column empty or missing), and a separator after the last value of every row. In errors, lines and columns
-//! count from 1; a column is one of the table.
+//! any one value besides 0 may mean active. Around the values there may be a line `sep=;`, comment lines that begin
+//! with `#`, a row of names, below it a first column without a name, and a separator after the last value of every
+//! row. In errors, a column is one of the table.
 
-use std::fmt;
-
-use crate::formats::byte_order_mark::without_mark;
-use crate::formats::mask::Mask;
+use crate::formats::imprint_file::Mask;
 use crate::imprint::Imprint;
 use crate::parameter::number::counted;
 use crate::quote::shortened;
 use crate::sensor::{MAX_SIDE, MatrixSize};
 
-/// The error for bytes that are not a table of an imprint.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum TableError {
-    /// A line that is not UTF-8.
-    Text {
-        /// The line number.
-        line: usize,
-    },
-    /// A field that is not a number.
-    Value {
-        /// The line number.
-        line: usize,
-        /// The column number.
-        column: usize,
-        /// The text of the field.
-        found: String,
-    },
-    /// A third number, besides 0 and the number of active taxels.
-    Third {
-        /// The line number.
-        line: usize,
-        /// The column number.
-        column: usize,
-        /// The text of the field.
-        found: String,
-        /// The number of active taxels.
-        active: String,
-    },
-    /// All numbers are equal, and neither 0, 1 nor 255.
-    Unclear {
-        /// The number.
-        found: String,
-    },
-    /// A line with another number of values than the first.
-    Ragged {
-        /// The line number.
-        line: usize,
-        /// The number of values in this line.
-        found: usize,
-        /// The line number of the first row.
-        first: usize,
-        /// The number of values in the first row.
-        expected: usize,
-    },
-    /// A line with too many values.
-    Columns {
-        /// The line number.
-        line: usize,
-        /// The number of values in this line.
-        found: usize,
-    },
-    /// No lines, or too many.
-    Lines {
-        /// The number of lines.
-        found: usize,
-    },
-}
-
-impl fmt::Display for TableError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Text { line } => write!(f, "line {line}: not UTF-8, expected numbers 0 and 1"),
-            Self::Value {
-                line,
-                column,
-                found,
-            } => write!(
-                f,
-                "line {line}, column {column}: found {found:?}, expected 0 or 1"
-            ),
-            Self::Third {
-                line,
-                column,
-                found,
-                active,
-            } => write!(
-                f,
-                "line {line}, column {column}: found {found:?}, expected 0 or {active} as before"
-            ),
-            Self::Unclear { found } => write!(
-                f,
-                "{found:?} everywhere, expected 0, 1 or 255, or two values of which one is 0"
-            ),
-            Self::Ragged {
-                line,
-                found,
-                first,
-                expected,
-            } => {
-                let found = counted(*found as u64, "value");
-                write!(
-                    f,
-                    "line {line}: found {found}, expected {expected} as in line {first}"
-                )
-            }
-            Self::Columns { line, found } => {
-                let found = counted(*found as u64, "value");
-                write!(f, "line {line}: found {found}, expected 1 to 64")
-            }
-            Self::Lines { found } => {
-                write!(
-                    f,
-                    "found {}, expected 1 to 64",
-                    counted(*found as u64, "line")
-                )
-            }
-        }
-    }
-}
-
-impl std::error::Error for TableError {}
-
-/// Reads a table from any bytes.
-///
-/// # Errors
-/// Returns the first error and its place.
-///
-/// ```
-/// use taxel_files::formats::table::{read, write};
-/// let cup = read(b"1;0;1\r\n\"1\";1.0;true\r\n")?;
-/// assert_eq!(cup.to_string(), "#.#\n###");
-/// assert_eq!(write(&cup), "1,0,1\n1,1,1\n");
-/// // A mask as pandas writes it: names of columns, numbers of rows.
-/// assert_eq!(read(b",a,b,c\n0,255,0,255\n1,255,255,255\n")?, cup);
-/// # Ok::<(), taxel_files::formats::table::TableError>(())
-/// ```
-pub fn read(bytes: &[u8]) -> Result<Imprint, TableError> {
-    let bytes = without_mark(bytes);
-    let text = str::from_utf8(bytes).map_err(|error| {
-        let valid = &bytes[..error.valid_up_to()];
-        let line = valid.split(|&byte| byte == b'\n').count();
-        TableError::Text { line }
-    })?;
+pub(super) fn read(text: &str) -> Result<Imprint, String> {
     let table = Table::of(text)?;
     let size = table.size()?;
     let mut imprint = Imprint::empty(size);
     let mut mask = Mask::new();
     for (row, cells) in (0..size.rows()).zip(&table.rows) {
         for (column, field) in (0..size.columns()).zip(&cells.fields) {
-            let (line, place) = (cells.line, table.skipped + usize::from(column) + 1);
-            let found = || shortened(field);
-            let value = table.value(field).ok_or_else(|| TableError::Value {
-                line,
-                column: place,
-                found: found(),
-            })?;
+            let wrong = |expected: String| {
+                let place = table.skipped + usize::from(column) + 1;
+                format!(
+                    "line {}, column {place}: found {:?}, expected 0 or {expected}",
+                    cells.line,
+                    shortened(field)
+                )
+            };
+            let value = table.value(field).ok_or_else(|| wrong("1".to_owned()))?;
             let active = mask.take((value != 0.0).then_some(value));
-            let active = active.map_err(|active| TableError::Third {
-                line,
-                column: place,
-                found: found(),
-                active: active.to_string(),
-            })?;
+            let active = active.map_err(|active| wrong(format!("{active} as before")))?;
             imprint.set(column, row, active);
         }
     }
     match mask.unclear(&[1.0, 255.0]) {
         None => Ok(imprint),
-        Some(value) => Err(TableError::Unclear {
-            found: value.to_string(),
-        }),
+        Some(value) => Err(format!(
+            "\"{value}\" everywhere, expected 0, 1 or 255, or two values of which one is 0"
+        )),
     }
 }
 
@@ -187,7 +48,7 @@ struct LineFields<'a> {
     fields: Vec<&'a str>,
 }
 
-/// The rows of a table, without comments, names and row numbers: 1 to 64 rows with equally many fields each.
+/// The rows of a table, without comments, names and row numbers.
 struct Table<'a> {
     /// The separator between the fields of a line; None for spaces.
     mark: Option<char>,
@@ -200,7 +61,7 @@ struct Table<'a> {
 const MOST: usize = MAX_SIDE as usize + 2;
 
 impl<'a> Table<'a> {
-    fn of(text: &'a str) -> Result<Self, TableError> {
+    fn of(text: &'a str) -> Result<Self, String> {
         // Leave out the blank lines at the end; the last line may end in a separator.
         let end = text.trim_end().len();
         let end = text[end..].find('\n').map_or(text.len(), |rest| end + rest);
@@ -217,7 +78,7 @@ impl<'a> Table<'a> {
         }
         let found = found - usize::from(given.is_some());
         let Some((_, last)) = lines.last().filter(|_| found <= MOST) else {
-            return Err(TableError::Lines { found });
+            return Err(wrong_lines(found));
         };
         // The last line holds numbers; names may contain any character. Tabs come first: a comma
         // beside a tab or a semicolon is a decimal sign. Recordings, which are read line by line, have an order of
@@ -237,7 +98,7 @@ impl<'a> Table<'a> {
         for (line, text) in lines {
             let found = split(text, mark).count();
             if found > MOST {
-                return Err(TableError::Columns { line, found });
+                return Err(wrong_columns(line, found));
             }
             let fields = split(text, mark).map(bare).collect();
             table.rows.push(LineFields { line, fields });
@@ -246,13 +107,13 @@ impl<'a> Table<'a> {
         Ok(table)
     }
 
-    /// Removes the row of names, the column of row numbers, and the empty field behind a separator at the end of
-    /// every row.
+    /// Removes the row of names, the column without a name, and the empty field behind a separator at the end of every
+    /// row.
     fn drop_names(&mut self) {
         let Some(first) = self.rows.first() else {
             return;
         };
-        let named = self.rows.len() > 1 && (self.are_names(&first.fields) || counts(&first.fields));
+        let named = self.rows.len() > 1 && self.are_names(&first.fields);
         let names = named.then(|| self.rows.remove(0));
         if self
             .rows
@@ -264,12 +125,10 @@ impl<'a> Table<'a> {
             }
         }
         let values = self.rows.first().map_or(0, |row| row.fields.len());
+        // R writes one name fewer than there are columns.
         let numbered = names.is_some_and(|names| {
             names.fields.len() + 1 == values || names.fields.first() == Some(&"")
         });
-        let first_column = self.rows.iter().map(|row| row.fields.first().copied());
-        let first_column: Option<Vec<&str>> = first_column.collect();
-        let numbered = numbered || first_column.is_some_and(|column| counts(&column));
         if numbered && self.rows.iter().all(|row| row.fields.len() > 1) {
             for row in &mut self.rows {
                 row.fields.remove(0);
@@ -278,56 +137,54 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Returns true if the fields of the first row are names: none of them is a number, or they count from 0 after an
-    /// empty one.
+    /// Returns true if the fields of the first row are names: the first one has none, or none is a number.
     fn are_names(&self, fields: &[&str]) -> bool {
-        let words = fields
-            .iter()
-            .all(|field| self.value(field).is_none() && !is_number(field));
-        let words = words && fields.iter().any(|field| !field.is_empty());
-        let numbered = match fields {
-            ["", numbers @ ..] => !numbers.is_empty() && counts_from(numbers, 0),
-            _ => false,
-        };
-        words || numbered
+        match fields {
+            ["", rest @ ..] => rest.iter().any(|field| !field.is_empty()),
+            fields => fields
+                .iter()
+                .all(|field| self.value(field).is_none() && field.parse::<f64>().is_err()),
+        }
     }
 
     /// Returns the size of the table. Returns an error if no imprint has this size, or if rows differ in length.
-    fn size(&self) -> Result<MatrixSize, TableError> {
+    fn size(&self) -> Result<MatrixSize, String> {
         let most = usize::from(MAX_SIDE);
         let found = self.rows.len();
         let one_column = MatrixSize::of_sides(1, found);
         let Some((first, one_column)) = self.rows.first().zip(one_column) else {
-            return Err(TableError::Lines { found });
+            return Err(wrong_lines(found));
         };
         let expected = first.fields.len();
         for row in &self.rows {
-            let (line, found) = (row.line, row.fields.len());
+            let found = row.fields.len();
             if found > most {
-                return Err(TableError::Columns { line, found });
+                return Err(wrong_columns(row.line, found));
             }
             if found != expected {
-                return Err(TableError::Ragged {
-                    line,
-                    found,
-                    first: first.line,
-                    expected,
-                });
+                return Err(format!(
+                    "line {}: found {}, expected {expected} as in line {}",
+                    row.line,
+                    counted(found as u64, "value"),
+                    first.line
+                ));
             }
         }
-        MatrixSize::of_sides(expected, one_column.rows()).ok_or(TableError::Columns {
-            line: first.line,
-            found: expected,
-        })
+        MatrixSize::of_sides(expected, one_column.rows())
+            .ok_or_else(|| wrong_columns(first.line, expected))
     }
 
-    /// Returns the number in a field; None if it is not a number, or not finite.
+    /// Returns the number in a field; None if it is not a number, or not finite. Rows of digits without separators are
+    /// not numbers.
     fn value(&self, field: &str) -> Option<f64> {
         if field.eq_ignore_ascii_case("true") {
             return Some(1.0);
         }
         if field.eq_ignore_ascii_case("false") {
             return Some(0.0);
+        }
+        if matches!(field.as_bytes(), [b'0', b'0'..=b'9', ..]) {
+            return None;
         }
         let number: Option<f64> = field.parse().ok();
         // Where the comma is not the separator, it is the decimal sign.
@@ -339,6 +196,16 @@ impl<'a> Table<'a> {
         };
         number.filter(|number| number.is_finite())
     }
+}
+
+fn wrong_lines(found: usize) -> String {
+    let found = counted(found as u64, "line");
+    format!("found {found}, expected 1 to 64")
+}
+
+fn wrong_columns(line: usize, found: usize) -> String {
+    let found = counted(found as u64, "value");
+    format!("line {line}: found {found}, expected 1 to 64")
 }
 
 /// Returns the separator that a line `sep=;` names, as spreadsheet programs write it, also in quotes, or with the
@@ -379,24 +246,7 @@ fn bare(field: &str) -> &str {
     inner.unwrap_or(field).trim()
 }
 
-/// Returns true if a field is a number of any kind, even one that is not finite.
-fn is_number(field: &str) -> bool {
-    field.parse::<f64>().is_ok()
-}
-
-/// Returns true if the fields count up from 0 or 1. There must be at least three of them, since 0 and 1 may be
-/// values.
-fn counts(fields: &[&str]) -> bool {
-    fields.len() > 2 && (counts_from(fields, 0) || counts_from(fields, 1))
-}
-
-fn counts_from(fields: &[&str], start: usize) -> bool {
-    let mut numbered = (start..).zip(fields);
-    numbered.all(|(number, field)| field.parse() == Ok(number))
-}
-
-/// Returns the table, with a line end after each row.
-pub fn write(imprint: &Imprint) -> String {
+pub(super) fn write(imprint: &Imprint) -> String {
     let mut text = String::new();
     for row in 0..imprint.rows() {
         for column in 0..imprint.columns() {
@@ -421,14 +271,13 @@ mod tests {
             // numpy.savetxt, and with its delimiter set.
             "1.000000000000000000e+00,0.000000000000000000e+00,1.000000000000000000e+00\n1e0,1e0,1e0\n",
             "True,False,True\nTRUE,true,True",
-            "\u{feff}1\t0\t1\r\n1\t1\t1\r\n\r\n",
+            "1\t0\t1\r\n1\t1\t1\r\n\r\n",
             " 1 ; 0 ; 1 \n1;1;1",
             // numpy.savetxt by itself, and with a header.
             "1.000e+00 0.000e+00 1.000e+00\n1.000e+00 1.000e+00 1.000e+00\n",
             "# a cup\n# of six\n1 0 1\n1 1 1\n# end\n",
             // pandas, with row numbers and without, with names and without.
             ",0,1,2\n0,1,0,1\n1,1,1,1\n",
-            "0,1,2\n1,0,1\n1,1,1\n",
             ",x,y,z\ntop,True,False,True\nbottom,True,True,True\n",
             "x,y,z\n1,0,1\n1,1,1\n",
             // R writes one name fewer than there are columns.
@@ -442,7 +291,6 @@ mod tests {
             "sep=\t\n1\t0\t1\n1\t1\t1\n",
             "1,0;0,0;1,0\n1,0;1,0;1,0\n",
             "1,0,1,\n1,1,1,\n",
-            "1;0;1;\n1;1;1;\n",
             "a;b;c;\n1;0;1;\n1;1;1;\n",
             "a;b;c\n1;0;1;\n1;1;1;\n",
             // Masks.
@@ -451,75 +299,62 @@ mod tests {
             "-1 0 -1\n-1 -1 -1",
             "\n\n1,0,1\n1,1,1\n",
         ] {
-            assert_eq!(
-                read(text.as_bytes()).map(|cup| cup.to_string()),
-                cup,
-                "{text:?}"
-            );
+            assert_eq!(read(text).map(|cup| cup.to_string()), cup, "{text:?}");
         }
         assert_eq!(
-            read(b"1\n0\n").map(|bar| bar.to_string()),
+            read("1\n0\n").map(|bar| bar.to_string()),
             Ok("#\n.".to_owned())
         );
-        // The first column counts up, so it is not part of the mask.
-        let bars = read(b"0,1,0\n1,0,1\n2,1,0\n").map(|bars| bars.to_string());
-        assert_eq!(bars, Ok("#.\n.#\n#.".to_owned()));
-        // 0 and 1 are taken as values wherever possible.
-        let step = read(b"0,1\n1,1\n").map(|step| step.to_string());
-        assert_eq!(step, Ok(".#\n##".to_owned()));
-        let full = |text: &[u8]| read(text).map(|full| full.count());
+        let full = |text: &str| read(text).map(|full| full.count());
         assert_eq!(
-            (full(b"255 255"), full(b"1"), full(b"0 0")),
+            (full("255 255"), full("1"), full("0 0")),
             (Ok(2), Ok(1), Ok(0))
         );
     }
 
     #[test]
     fn errors_name_their_place() {
-        let wrong = |bytes: &[u8], message: &str| {
-            let outcome = read(bytes).map_err(|error| error.to_string());
-            assert_eq!(outcome, Err(message.to_owned()));
-        };
-        wrong(b"", "found 0 lines, expected 1 to 64");
-        wrong(b"# only\n", "found 0 lines, expected 1 to 64");
-        wrong(&b"1\n".repeat(65), "found 65 lines, expected 1 to 64");
-        wrong(&b"1\n".repeat(9999), "found 9,999 lines, expected 1 to 64");
+        let wrong =
+            |text: &str, message: &str| assert_eq!(read(text), Err(message.to_owned()), "{text}");
+        wrong("# only\n", "found 0 lines, expected 1 to 64");
+        wrong(&"1\n".repeat(9999), "found 9,999 lines, expected 1 to 64");
         wrong(
-            &b"1,".repeat(65),
+            &"1,".repeat(65),
             "line 1: found 65 values, expected 1 to 64",
         );
         wrong(
-            &b"1,".repeat(999),
+            &"1,".repeat(999),
             "line 1: found 1,000 values, expected 1 to 64",
         );
-        wrong(b"1,0\n1", "line 2: found 1 value, expected 2 as in line 1");
         wrong(
-            b"1,0\n1,2",
-            "line 2, column 2: found \"2\", expected 0 or 1 as before",
-        );
-        wrong(
-            b",a,b\n0,7,0\n1,8,7\n",
-            "line 3, column 2: found \"8\", expected 0 or 7 as before",
-        );
-        wrong(b"1,NaN", "line 1, column 2: found \"NaN\", expected 0 or 1");
-        wrong(b"1,inf", "line 1, column 2: found \"inf\", expected 0 or 1");
-        wrong(
-            b"1,a\n1,0",
-            "line 1, column 2: found \"a\", expected 0 or 1",
-        );
-        wrong(b"a,b", "line 1, column 1: found \"a\", expected 0 or 1");
-        wrong(
-            b"a,b\n1,c",
-            "line 2, column 2: found \"c\", expected 0 or 1",
-        );
-        wrong(
-            b"1,0\n\n1,0",
+            "1,0\n\n1,0",
             "line 2: found 1 value, expected 2 as in line 1",
         );
         wrong(
-            b"7 7\n7 7",
+            "1,0\n1,2",
+            "line 2, column 2: found \"2\", expected 0 or 1 as before",
+        );
+        wrong(
+            ",a,b\n0,7,0\n1,8,7\n",
+            "line 3, column 2: found \"8\", expected 0 or 7 as before",
+        );
+        // Neither a row of numbers nor a column of them is told from values by counting up.
+        wrong(
+            "0,1,2\n1,0,1\n1,1,1\n",
+            "line 1, column 3: found \"2\", expected 0 or 1 as before",
+        );
+        wrong(
+            "0,1,0\n1,0,1\n2,1,0\n",
+            "line 3, column 1: found \"2\", expected 0 or 1 as before",
+        );
+        wrong("11\n01", "line 2, column 1: found \"01\", expected 0 or 1");
+        wrong("1,NaN", "line 1, column 2: found \"NaN\", expected 0 or 1");
+        wrong("1,inf", "line 1, column 2: found \"inf\", expected 0 or 1");
+        wrong("a,b", "line 1, column 1: found \"a\", expected 0 or 1");
+        wrong("a,b\n1,c", "line 2, column 2: found \"c\", expected 0 or 1");
+        wrong(
+            "7 7\n7 7",
             "\"7\" everywhere, expected 0, 1 or 255, or two values of which one is 0",
         );
-        wrong(b"1\n\xff", "line 2: not UTF-8, expected numbers 0 and 1");
     }
 }

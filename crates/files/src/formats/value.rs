@@ -1,6 +1,7 @@
 //! Descriptor values as people read them: at most four decimals, shares in percent, directions in degrees.
 
 use crate::description::{Dimension, Value};
+use crate::recognition::{AngleEstimate, PoseEstimate};
 
 pub use crate::parameter::number::{counted, grouped, time_in_words};
 
@@ -177,8 +178,103 @@ pub fn deviation(number: f64, decimals: usize) -> String {
     }
 }
 
+/// Returns the shade of a share of the largest value, from 0 to `shades` - 1: 0 for shares up to 0 and for NaN, the
+/// last one for shares of 1 and more. Upper bounds are included.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "a share above 0, up to 1, and few shades"
+)]
+pub fn shade(share: f64, shades: usize) -> usize {
+    if share > 0.0 {
+        let last = shades - 1;
+        ((share.min(1.0) * last as f64).ceil() as usize).clamp(1, last)
+    } else {
+        0
+    }
+}
+
+/// Returns the characters of the shades.
+pub fn characters(ascii: bool) -> &'static [char] {
+    if ascii {
+        &['.', ':', '-', '=', '+', '*', '#', '%', '@']
+    } else {
+        &['·', '░', '▒', '▓', '█']
+    }
+}
+
+/// Returns the character of a share of the largest value; a blank for NaN, a cell that does not exist.
+pub fn character(share: f64, ascii: bool) -> char {
+    let characters = characters(ascii);
+    if share.is_nan() {
+        ' '
+    } else {
+        characters[shade(share, characters.len())]
+    }
+}
+
+/// Escapes the characters that have a meaning in XML, and replaces control characters and those that XML does not
+/// allow. For the content of an element and for values in double quotes.
+pub fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
+            control if control.is_control() => safe.push('\u{fffd}'),
+            other => safe.push(other),
+        }
+    }
+    safe
+}
+
+/// Returns x and y of the centre, each with its standard deviation, multiplied by `factor`: 1 for cells, the pitch
+/// for mm. Decimals are never dropped, so that lines keep their width while a shape is moved.
+pub fn pose_centre(pose: &PoseEstimate, factor: f64) -> String {
+    let ([x, y], [dx, dy]) = (pose.position, pose.standard_deviation);
+    format!(
+        "{:.2} ± {}, {:.2} ± {}",
+        x * factor,
+        pose_spread(dx * factor, 2),
+        y * factor,
+        pose_spread(dy * factor, 2)
+    )
+}
+
+/// Formats a standard deviation with all its decimals.
+pub fn pose_spread(number: f64, decimals: usize) -> String {
+    match deviation(number, decimals) {
+        little if little.starts_with('<') => little,
+        _ => format!("{number:.decimals$}"),
+    }
+}
+
+/// Returns after how many degrees the shape looks the same, in brackets after a space; empty for a full turn.
+pub fn pose_repeats(angle: &AngleEstimate) -> String {
+    match decimal(angle.period, 2) {
+        turn if turn == "360" => String::new(),
+        period => format!(" (repeats every {period}°)"),
+    }
+}
+
+/// Returns the fewest whole degrees that hold 95 % of the poses, as in `95 % of 66 poses: 27°..32°`: the first and the
+/// last degree, or the only one.
+pub fn pose_arc(angle: &AngleEstimate, poses: u64) -> String {
+    let poses = counted(poses, "pose");
+    match angle.ends() {
+        (first, last) if first == last => format!("95 % of {poses}: {first}°"),
+        (first, last) => format!("95 % of {poses}: {first}°..{last}°"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::escaped;
+    use super::*;
     use super::{decimal, deviation, percentage};
 
     #[test]
@@ -207,5 +303,68 @@ mod tests {
             [0.0, -0.000_01, 10.0, 23.656_854, -0.5, 1234.0].map(|number| decimal(number, 4));
         assert_eq!(shown, ["0", "0", "10", "23.6569", "-0.5", "1234"]);
         assert_eq!(decimal(100.0, 0), "100");
+    }
+
+    #[test]
+    fn shades_divide_the_range_evenly() {
+        let shares = [f64::NAN, -1.0, 0.0, 0.01, 0.25, 0.26, 0.75, 0.76, 1.0, 9.0];
+        let found = shares.map(|share| shade(share, 5));
+        assert_eq!(found, [0, 0, 0, 1, 1, 2, 3, 4, 4, 4]);
+    }
+
+    #[test]
+    fn each_shade_has_a_character() {
+        let shown = |ascii| {
+            let shares = [f64::NAN, -1.0, 0.0, 0.01, 0.25, 0.26, 0.75, 0.76, 1.0, 9.0];
+            shares
+                .map(|share| character(share, ascii))
+                .iter()
+                .collect::<String>()
+        };
+        assert_eq!(shown(false), " ··░░▒▓███");
+        assert_eq!(shown(true), " ..:-=#%@@");
+    }
+
+    #[test]
+    fn text_does_not_become_markup() {
+        let text = "a<b> & \"c\" \u{1b}\u{ffff}é";
+        assert_eq!(
+            escaped(text),
+            "a&lt;b&gt; &amp; &quot;c&quot; \u{fffd}\u{fffd}é"
+        );
+    }
+
+    fn angle(shortest_arc: (u32, u32)) -> AngleEstimate {
+        AngleEstimate {
+            period: 180.0,
+            mean: Some(27.0),
+            standard_deviation: Some(0.0),
+            shortest_arc,
+        }
+    }
+
+    #[test]
+    fn a_single_degree_is_written_once() {
+        let arcs = [(27, 1), (27, 6), (178, 5)].map(|degrees| pose_arc(&angle(degrees), 66));
+        assert_eq!(
+            arcs,
+            [
+                "95 % of 66 poses: 27°",
+                "95 % of 66 poses: 27°..32°",
+                "95 % of 66 poses: -2°..2°"
+            ]
+        );
+    }
+
+    #[test]
+    fn each_coordinate_has_its_deviation() {
+        let pose = PoseEstimate {
+            poses: 2,
+            position: [3.0, 2.5],
+            standard_deviation: [0.125, 0.001],
+            angle: None,
+        };
+        assert_eq!(pose_centre(&pose, 1.0), "3.00 ± 0.12, 2.50 ± <0.01");
+        assert_eq!(pose_centre(&pose, 2.0), "6.00 ± 0.25, 5.00 ± <0.01");
     }
 }

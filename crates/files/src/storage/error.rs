@@ -4,10 +4,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::formats::ArchiveError;
+use crate::formats::file::write_reason;
+use crate::formats::file::{is_missing, system_reason};
 use crate::formats::name::NameError;
 use crate::formats::shape::ShapeError;
-use crate::formats::system_error::write_reason;
-use crate::formats::system_error::{is_missing, system_reason};
 
 /// The error for an operation on a file that the system refused.
 #[derive(Debug, thiserror::Error)]

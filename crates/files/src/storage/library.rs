@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::formats::file::is_missing;
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
-use crate::formats::system_error::is_missing;
 use crate::quote::did_you_mean;
 use crate::storage::atomic_file::{self, sync_folder};
 use crate::storage::error::{FileError, LibraryError};

@@ -15,7 +15,7 @@ use std::time::SystemTime;
 
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::formats::byte_order_mark::without_mark;
+use crate::formats::file::without_mark;
 use crate::formats::name::folded;
 use crate::formats::{ArchiveError, Name, model_header, read_model, write_model};
 use crate::recognition::{Model, Training};

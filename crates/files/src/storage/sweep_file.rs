@@ -9,10 +9,11 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use crate::formats::atlas;
 use crate::formats::atlas::{write_csv, write_jsonl};
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::formats::npy::Dtype;
-use crate::formats::{ArchiveError, archive, npy};
+use crate::formats::{ArchiveError, npy};
 use crate::pose::PoseGrid;
 use crate::progress::stop_if;
 use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile, check_writable};
@@ -103,7 +104,7 @@ impl AtlasFile {
         let written = match self.format {
             AtlasFormat::Csv => write_csv(result, &mut output).map_err(ArchiveError::from),
             AtlasFormat::JsonLines => write_jsonl(result, &mut output).map_err(ArchiveError::from),
-            AtlasFormat::Archive => archive::write(result, &mut output),
+            AtlasFormat::Archive => atlas::write(result, &mut output),
         };
         let written = output.finish(written);
         written.map_err(|error| ArchiveFileError::new(&self.path, error))?;
@@ -117,7 +118,7 @@ impl AtlasFile {
 /// Returns an error with the file's name if the file cannot be read or is not an atlas.
 pub fn load_atlas(path: &Path) -> Result<SweepResult, ArchiveFileError> {
     let file = open_archive(path)?;
-    archive::read(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
+    atlas::read(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
 }
 
 /// Opens the file of an atlas or of a model. Refuses anything except a regular file, because opening a pipe waits for

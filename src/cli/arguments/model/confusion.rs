@@ -23,7 +23,7 @@ use crate::cli::arguments::flags::{
 };
 use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
 use crate::cli::error::CliError;
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::index::wide;
 use crate::pose::DecimalRange;
 use crate::recognition::{Classifier, ClassifierSettings, GivenDescriptors, Noise, Rounding};
@@ -140,7 +140,7 @@ fn of_classifiers() -> [Arg; 3] {
 }
 
 fn output() -> [Arg; 5] {
-    let export = option("export", "FILE", "Write the matrix as .csv, .svg or .png")
+    let export = option("export", "FILE", "Write the matrix as .csv or .svg")
         .value_parser(report())
         .conflicts_with_all(["greedy", "pairs", "test"]);
     let csv = switch("csv", "Print comma-separated values")

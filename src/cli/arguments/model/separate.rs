@@ -55,7 +55,7 @@ pub(super) fn command() -> Command {
     let export = option(
         "export",
         "FILE",
-        "Write the numbers (.csv) or the curves\n(.svg, .png)",
+        "Write the numbers (.csv) or the curves\n(.svg)",
     )
     .value_parser(report());
     let csv = switch("csv", "Print comma-separated values").conflicts_with("json");

@@ -12,7 +12,7 @@ use crate::cli::arguments::model::shape_set::{self, SetArguments};
 use crate::cli::arguments::parameters::{self, Given};
 use crate::cli::error::CliError;
 use crate::formats::Name;
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::memory::MemorySize;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, GivenRanges, SensorSides};

@@ -18,7 +18,7 @@ use crate::cli::input::content::{self, InputSource};
 use crate::cli::input::lines::block::{Block, BlockReader};
 use crate::cli::input::lines::buffers::Buffers;
 use crate::cli::threads;
-use crate::formats::byte_order_mark::without_mark;
+use crate::formats::file::without_mark;
 use crate::formats::json;
 
 pub(crate) mod block;

@@ -15,7 +15,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::fitting;
-use crate::formats::{DrawingFormat, PointPlot, axis_ends};
+use crate::formats::{PointPlot, axis_ends};
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
@@ -239,7 +239,7 @@ fn detail(at: &AngleSpread) -> String {
 }
 
 /// Returns the drawing of the tab for a file.
-fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
+fn drawing(results: &Results) -> Result<String, String> {
     let spread = spread(results);
     if spread.is_empty() {
         return Err(NOTHING_TO_DRAW.to_owned());
@@ -259,5 +259,5 @@ fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> 
             (false, false) => plot.with_curve(name, &points),
         };
     }
-    plot.content(format).map_err(|error| error.to_string())
+    Ok(plot.svg())
 }

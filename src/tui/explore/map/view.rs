@@ -19,8 +19,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 
+use crate::formats::PoseMap;
 use crate::formats::value::{counted, grouped};
-use crate::formats::{DrawingFormat, PoseMap};
 use crate::index::index;
 use crate::parameter::Parameter;
 use crate::pose::{Axis, PoseGrid};
@@ -94,7 +94,7 @@ pub(in crate::tui) fn draw(
 }
 
 /// Returns the drawing of the tab for a file: the whole range at the present angle and zooms of the shape.
-pub(in crate::tui) fn drawing(results: &Results, format: DrawingFormat) -> Result<Vec<u8>, String> {
+pub(in crate::tui) fn drawing(results: &Results) -> Result<String, String> {
     let grid = &results.sweep().grid;
     let [width, height, ..] = grid.counts().into_array();
     let stride = width.max(height).div_ceil(DRAWN).max(1);
@@ -107,8 +107,7 @@ pub(in crate::tui) fn drawing(results: &Results, format: DrawingFormat) -> Resul
     let (x0, y0) = (ends(Axis::X0, across), ends(Axis::Y0, down));
     let map = PoseMap::new(x0, y0, index(across), &ids).ok_or(NOTHING_TO_DRAW)?;
     let title = format!("{}; {}", results.summary(false), heading(results));
-    let content = map.with_title(&title).content(format);
-    content.map_err(|error| error.to_string())
+    Ok(map.with_title(&title).svg())
 }
 
 /// Returns the angle and the zooms, each with its number and how many there are.

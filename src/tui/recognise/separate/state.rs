@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::formats::DrawingFormat;
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::recognition::{SeparationPoint, SmallestSize};
 use crate::tui::app::message::Message;
@@ -256,10 +255,11 @@ impl Separate {
         if has_ending(name, "csv") {
             return Ok(csv(request.axis, &curves).into_bytes());
         }
-        let format = DrawingFormat::of_path(name)
-            .ok_or("expected a name that ends in .csv, .svg or .png")?;
+        if !has_ending(name, "svg") {
+            return Err("expected a name that ends in .csv or .svg".to_owned());
+        }
         let plot = drawing(request.axis, &curves, Some(request.wanted));
-        plot.content(format).map_err(|error| error.to_string())
+        Ok(plot.svg().into_bytes())
     }
 }
 

@@ -7,8 +7,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::acquire::FrameSource;
+use crate::formats::file::system_reason;
 use crate::formats::recording::may_be_recording;
-use crate::formats::system_error::system_reason;
 use crate::formats::{Content, imprint_file, read_content};
 use crate::storage::{Existing, FinishedFile, ModelChoice, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};

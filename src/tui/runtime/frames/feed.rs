@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
+use crate::formats::file::system_reason;
 use crate::formats::recording::RecordingMetadata;
-use crate::formats::system_error::system_reason;
 use crate::frame::Frame;
 use crate::lock::locked;
 use crate::storage::Existing;

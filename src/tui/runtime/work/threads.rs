@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
 
-use crate::formats::system_error::system_reason;
+use crate::formats::file::system_reason;
 
 /// The longest time that the end of the program waits for the disk.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(1500);

@@ -4,8 +4,7 @@ use std::cell::LazyCell;
 use std::io::{Cursor, Read, Write};
 
 use taxel::figure::{Figure, FigureKind};
-use taxel::formats::archive::{read, write};
-use taxel::formats::atlas::{write_csv, write_jsonl};
+use taxel::formats::atlas::{read, write, write_csv, write_jsonl};
 use taxel::formats::npy;
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;

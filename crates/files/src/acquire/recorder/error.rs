@@ -4,8 +4,8 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::formats::file::{system_reason, write_reason};
 use crate::formats::recording::MetadataError;
-use crate::formats::system_error::{system_reason, write_reason};
 use crate::storage::FileError;
 
 /// The error for frames that cannot be recorded.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::acquire::recorder::error::{MetadataFileError, RecorderError, refused};
 use crate::acquire::recorder::record_array::{HEADER, is_own};
-use crate::formats::ending::has_ending;
+use crate::formats::file::has_ending;
 use crate::formats::recording::RecordingMetadata;
 use crate::storage::{Existing, FileId, FinishedFile, persist_beside};
 

@@ -3,9 +3,9 @@
 
 use crate::acquire::frame_rate::FrameRate;
 use crate::acquire::recorder::error::RecorderError;
+use crate::formats::file::system_reason;
 use crate::formats::recording::RecordedView;
 use crate::formats::recording::RecordingMetadata;
-use crate::formats::system_error::system_reason;
 use crate::frame::Frame;
 
 /// The largest number of bursts over which the rate is measured: several minutes.

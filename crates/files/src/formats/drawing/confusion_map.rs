@@ -3,7 +3,8 @@
 //! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. The numbers
 //! are there for readers who cannot tell the shades apart.
 
-use crate::formats::drawing::scene::{
+use crate::formats::drawing::svg;
+use crate::formats::drawing::svg::{
     CELLS, DrawingPage, Element, MARGIN, Position, Stroke, TEXT, TextAnchor, cut, label, path_of,
     rectangle, upright_title, width,
 };
@@ -64,8 +65,13 @@ impl ConfusionMap {
         cell.copied().unwrap_or_default()
     }
 
+    /// The matrix as SVG 1.1.
+    pub fn svg(&self) -> String {
+        svg::write(&self.page())
+    }
+
     /// Lays the matrix out, with the names above and on the left.
-    pub(super) fn page(&self) -> DrawingPage {
+    fn page(&self) -> DrawingPage {
         let longest = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or_default();
         let names = longest(&mut self.labels.iter().map(|label| label.chars().count()));
         let shapes = 0..self.labels.len();

@@ -2,9 +2,10 @@
 //!
 //! Borders separate the areas; greys only help the eye, and a bad printer may lose them.
 
-use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::plane::{AxisMarks, axes, left_of};
-use crate::formats::drawing::scene::{
+use crate::formats::drawing::plots::Ticks;
+use crate::formats::drawing::plots::{AxisMarks, axes, left_of};
+use crate::formats::drawing::svg;
+use crate::formats::drawing::svg::{
     DrawingPage, Element, MARGIN, Position, ROW, Segment, Stroke, TEXT, TextAnchor, cut, label,
     path_of, rectangle, width,
 };
@@ -93,8 +94,13 @@ impl PoseMap {
         self.ids.get(index).copied().flatten()
     }
 
+    /// The map as SVG 1.1.
+    pub fn svg(&self) -> String {
+        svg::write(&self.page())
+    }
+
     /// Lays out areas, borders and axes.
-    pub(super) fn page(&self) -> DrawingPage {
+    fn page(&self) -> DrawingPage {
         let side = PLANE / count(self.columns.max(self.rows()));
         let [x0, y0] = self.ends;
         let across = ticks(x0, self.columns);

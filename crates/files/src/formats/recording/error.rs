@@ -3,8 +3,8 @@
 use std::io;
 use std::sync::Arc;
 
+use crate::formats::file::system_reason;
 use crate::formats::recording::format::RecordingFormat;
-use crate::formats::system_error::system_reason;
 use crate::frame::FrameSize;
 use crate::frame::MAX_FRAME_SIDE;
 use crate::parameter::number::counted;

@@ -5,9 +5,9 @@ use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
 use crate::formats::framed::{FrameRows, LeastTaxels, RuleRecord, matrix};
+use crate::formats::json;
 use crate::formats::recording::length::{LengthUnit, pitches_in_mm};
 use crate::formats::recording::time::unit::TimeUnit;
-use crate::formats::{json, json_object};
 use crate::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
 use crate::matrix::Matrix;
 use crate::quote::shortened_message;
@@ -174,7 +174,7 @@ impl RecordingMetadata {
         struct Format {
             format: String,
         }
-        let is_own = match json_object::read::<Format>(bytes) {
+        let is_own = match json::object::<Format>(bytes) {
             Ok(own) if own.format != FORMAT && own.format.starts_with(FAMILY) => {
                 let found = shortened_message(&own.format);
                 return Some(Err(MetadataError::Value {
@@ -190,7 +190,7 @@ impl RecordingMetadata {
                 .any(|text| text == FAMILY.as_bytes()),
         };
         is_own.then(|| {
-            let described = json_object::read::<Described>(bytes);
+            let described = json::object::<Described>(bytes);
             described
                 .map_err(|error| MetadataError::json(&error))
                 .and_then(Self::of)

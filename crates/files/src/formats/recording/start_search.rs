@@ -5,7 +5,7 @@
 //! - The words of vendors decide at the end of the line that completes them.
 //! - Anything else is decided at the end of the bytes that are looked at, or of the stream, as for a file.
 
-use crate::formats::byte_order_mark::without_mark;
+use crate::formats::file::without_mark;
 use crate::formats::recording::detect::{LOOKED_AT, is_bitmap, recognised};
 use crate::formats::recording::format::RecordingFormat;
 use crate::formats::recording::signs::{LONGEST_MAGIC, VendorSigns, by_magic};

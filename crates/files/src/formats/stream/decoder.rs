@@ -10,7 +10,7 @@ use std::mem::take;
 
 use serde::de::IgnoredAny;
 
-use crate::formats::byte_order_mark::without_mark;
+use crate::formats::file::without_mark;
 use crate::formats::json::WithoutNan;
 use crate::formats::recording::text::lines::LONGEST_LINE;
 use crate::formats::recording::text::row::is_parted_by_cr;
@@ -311,7 +311,7 @@ fn is_object(line: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
+    use crate::formats::file::BYTE_ORDER_MARK;
     use crate::formats::stream::StreamEvent;
     use crate::frame::FrameSize;
 

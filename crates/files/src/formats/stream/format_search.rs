@@ -11,7 +11,7 @@
 //! A stream that shows none of this is taken for numbers if it is text, and otherwise for `MatSense`, whose decoder
 //! counts what it drops.
 
-use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
+use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::recording::ros::echo;
 use crate::formats::recording::time::moment;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamFormat};

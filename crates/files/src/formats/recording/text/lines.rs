@@ -5,7 +5,7 @@
 
 use std::io::{self, BufRead};
 
-use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
+use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::recording::error::RecordingError;
 
 /// The size limit of a line in bytes, more than a frame of 512 × 512 values takes; thus one line cannot fill all

@@ -1,6 +1,7 @@
-//! Puts errors of the system in the words of messages.
+//! What all files have in common: the system's errors in words, the byte order mark, the ending of a name.
 
 use std::io::{Error, ErrorKind};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Returns the reason of the system for refusing something, without the number of the error. Files and folders are
@@ -39,6 +40,20 @@ pub fn write_reason(error: &Error) -> String {
     }
 }
 
+/// The bytes of the mark.
+pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Returns a text without the mark at its start, if it has one.
+pub fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
+}
+
+/// Returns true if a file's name has this extension, in upper or lower case. The rest of the name need not be UTF-8.
+pub fn has_ending(path: impl AsRef<Path>, ending: &str) -> bool {
+    let own = path.as_ref().extension();
+    own.is_some_and(|own| own.eq_ignore_ascii_case(ending))
+}
+
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
@@ -63,5 +78,27 @@ mod tests {
         assert_eq!(other.kind(), ErrorKind::IsADirectory);
         assert_eq!(system_reason(&other), "it is a folder");
         assert_eq!(unshared(error).raw_os_error(), Some(21));
+    }
+
+    #[test]
+    fn only_a_whole_mark_at_the_start_is_left_out() {
+        for (text, expected) in [
+            ("\u{feff}1 2", &b"1 2"[..]),
+            ("1\u{feff}", b"1\xef\xbb\xbf"),
+            ("\u{feff}\u{feff}", b"\xef\xbb\xbf"),
+        ] {
+            assert_eq!(without_mark(text.as_bytes()), expected, "{text:?}");
+        }
+        assert_eq!(without_mark(b"\xef\xbb"), b"\xef\xbb");
+    }
+
+    #[test]
+    fn an_ending_is_found_in_upper_and_lower_case() {
+        assert!(has_ending("a.csv", "csv") && has_ending("a/b.c.CSV", "csv"));
+        assert!(
+            !has_ending("csv", "csv")
+                && !has_ending(".csv", "csv")
+                && !has_ending("a.csv.gz", "csv")
+        );
     }
 }
