@@ -4,8 +4,7 @@
     python3 examples/classifiers.py [SET.jsonl]       # taxel on the PATH, or: TAXEL=target/release/taxel
 
 Each row is a classifier that names the shape of all touches of the model: each key once, weighted by the number of
-poses that leave it. The row says what scikit-learn learns from: its Gaussians with common and own covariance accept no
-weights, so they get a sample.
+poses that leave it. The row says how many poses scikit-learn learns from.
 """
 
 import json
@@ -16,8 +15,6 @@ import tempfile
 import time
 
 import numpy as np
-from sklearn.discriminant_analysis import LinearDiscriminantAnalysis, QuadraticDiscriminantAnalysis
-from sklearn.naive_bayes import GaussianNB
 from sklearn.neighbors import KNeighborsClassifier
 from sklearn.tree import DecisionTreeClassifier
 
@@ -75,9 +72,6 @@ def main():
 
     few, many = sample(2000), sample(50000)
     rows = [
-        ("diagonal", "GaussianNB", GaussianNB(), None),
-        ("lda", "LinearDiscriminantAnalysis", LinearDiscriminantAnalysis(), many),
-        ("qda", "QuadraticDiscriminantAnalysis", QuadraticDiscriminantAnalysis(reg_param=0.001), many),
         ("knn", "KNeighborsClassifier(1)", KNeighborsClassifier(1), few),
         ("", "DecisionTreeClassifier", DecisionTreeClassifier(random_state=0), many),
     ]
@@ -90,12 +84,8 @@ def main():
             answer = taxel("model", "confusion", "model.npz", "--classifier", peer, "--json")
             own = [f"{json.loads(answer)['error']:.3f}", f"{time.perf_counter() - start:.2f}"]
         start = time.perf_counter()
-        if drawn is None:
-            classifier.fit(table[key], shape, sample_weight=count)
-            learnt = "all touches"
-        else:
-            classifier.fit(table[key[drawn]], shape[drawn])
-            learnt = f"{len(drawn) // len(labels['labels']):,} poses a shape"
+        classifier.fit(table[key[drawn]], shape[drawn])
+        learnt = f"{len(drawn) // len(labels['labels']):,} poses a shape"
         wrong = count[classifier.predict(table)[key] != shape].sum() / count.sum()
         seconds = time.perf_counter() - start
         print(f"| {peer} | {own[0]} | {own[1]} | {name} | {learnt} | {wrong:.3f} | {seconds:.2f} |")

@@ -183,7 +183,7 @@ fn confusion_is_evaluated_for_descriptors_pairs_and_classifiers() {
     assert_eq!(pairs["errors"][0][3].as_f64(), Some(0.0));
     assert_eq!(pairs["errors"][0][2], pairs["errors"][2][0]);
     let table = place.json("model confusion m.npz --classifier all --json");
-    for name in ["z", "diagonal", "lda", "qda", "knn", "template"] {
+    for name in ["z", "knn", "template"] {
         let peer = place.json(&format!("model confusion m.npz --classifier {name} --json"));
         assert_eq!(peer["classifier"], name);
         assert_eq!(peer["error"], table[name], "{name}");
@@ -229,7 +229,7 @@ fn messages_and_files_match_the_request() {
     assert!(wrong("").ends_with("the limit: no method does better"));
     let given = wrong("--given na,p");
     assert!(given.ends_with("no method that sees only these descriptors does better"));
-    assert!(wrong("--classifier lda").ends_with('%'), "not the limit");
+    assert!(wrong("--classifier z").ends_with('%'), "not the limit");
     place.done("model confusion m.npz --classifier all --export all.csv");
     let table = String::from_utf8(place.read("all.csv")).expect("text");
     assert!(table.starts_with("classifier,error,right_in_top_two,information_bits\nz,"));
@@ -409,10 +409,8 @@ fn an_evaluation_says_if_touches_count_with_weights() {
             assert_eq!(output.contains(said), counted, "{weights:?}: {output}");
         }
         let noise = "model confusion m.npz --noise 0:0.2:0.1 --touches 20";
-        for of in [noise, "model confusion m.npz --test half-step"] {
-            let output = place.done(of);
-            assert_eq!(output.contains(said), counted, "{weights:?}: {output}");
-        }
+        let output = place.done(noise);
+        assert_eq!(output.contains(said), counted, "{weights:?}: {output}");
         for row in place.json(&format!("{noise} --json"))["degradation"]
             .as_array()
             .expect("rows")
@@ -981,10 +979,6 @@ fn files_that_cannot_be_used_are_refused_before_any_work() {
     assert_eq!(run.status, Some(1));
     let kinds = "part-2.npz: a model, but atlas.npz is an atlas";
     assert!(run.stderr.contains(kinds), "{}", run.stderr);
-    misused(
-        "model confusion figures --test half-step --csv",
-        "the argument '--test <half-step>' cannot be used with '--csv'",
-    );
 }
 
 /// `.` has no name of its own to derive another from: the models are placed beside the folder that it stands for.
@@ -1036,8 +1030,8 @@ fn flags_that_would_be_ignored_are_refused() {
             "--seed has no effect without --noise or --classifier knn, which draw touches",
         ),
         (
-            "model confusion figures --classifier lda --neighbours 3",
-            "--neighbours has no effect with --classifier lda",
+            "model confusion figures --classifier z --neighbours 3",
+            "--neighbours has no effect with --classifier z",
         ),
         (
             "model confusion figures --classifier knn --templates 3",
@@ -1066,7 +1060,6 @@ fn flags_that_would_be_ignored_are_refused() {
         "model confusion figures --force",
         "model confusion figures --touches 10",
         "model separate figures --scale 1 --force",
-        "model confusion figures --dead 4 --test half-step",
         "model confusion figures --dead 4 --matrix 16x16 --touches 50 --pairs",
         "model confusion figures --dead 4 --classifier knn",
         "model confusion figures --neighbours 3 --greedy",
@@ -1081,7 +1074,7 @@ fn a_classifier_can_be_given_descriptors() {
     let place = Place::new();
     place.done(&format!("model train parts.jsonl {COARSE} --out m.npz"));
     let error = |more: &str| {
-        let line = format!("model confusion m.npz --classifier lda {more} --json");
+        let line = format!("model confusion m.npz --classifier z {more} --json");
         place.json(&line)["error"].as_f64().expect("a number")
     };
     assert!(error("--given na") > error(""), "less is known");

@@ -81,15 +81,6 @@ impl MatrixSize {
         }
     }
 
-    /// Returns the size with `by` more columns and rows, but at most [`MAX_SIDE`] of each.
-    pub(crate) fn enlarged(self, by: u8) -> Self {
-        let side = |side: u8| side.saturating_add(by).min(MAX_SIDE);
-        Self {
-            columns: side(self.columns),
-            rows: side(self.rows),
-        }
-    }
-
     /// Returns the size with columns and rows swapped.
     pub(crate) fn transposed(self) -> Self {
         Self {

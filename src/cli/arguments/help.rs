@@ -306,9 +306,8 @@ measured to a hundredth of a cell.
 on a smaller --matrix are left out, and standard error says how many.
 
 Classifiers: z takes the shape whose mean is nearest, in standard deviations;
-diagonal, lda and qda fit a Gaussian to each shape, with independent features
-(diagonal), one covariance for all shapes (lda) or one for each (qda); knn takes
-the shape of the nearest touches, template that of the nearest imprint.
+knn takes the shape of the nearest touches, template that of the nearest
+imprint.
 
 Examples:
   taxel model confusion parts
@@ -316,7 +315,6 @@ Examples:
   taxel model confusion parts --greedy --round cg_cd=0.01
   taxel model confusion parts --classifier all
   taxel model confusion parts --noise 0:0.1:0.01 --dead 0,4 --touches 200
-  taxel model confusion parts --test half-step
   taxel model confusion parts --export parts.svg";
 
 /// `taxel model separate`: what it answers.

@@ -51,7 +51,6 @@ pub(crate) fn confusion(
         Evaluated::Pairs => Ok(pairs(&model, as_json, charset)),
         Evaluated::AllClassifiers => all_classifiers(&model, asked, charset),
         Evaluated::Noise(noise) => noise::degradation(&model, noise, asked, charset),
-        Evaluated::HalfStep => noise::half_step(&model, asked, charset),
     }?;
     if let Some(path) = asked.export.as_ref().filter(|_| !asked.quiet) {
         note(&written(path), charset);
@@ -87,10 +86,7 @@ fn table_of_pairs(of: &Evaluated) -> Option<&'static str> {
             Some("confusion matrix")
         }
         Evaluated::Pairs => Some("--pairs"),
-        Evaluated::Greedy
-        | Evaluated::AllClassifiers
-        | Evaluated::Noise(_)
-        | Evaluated::HalfStep => None,
+        Evaluated::Greedy | Evaluated::AllClassifiers | Evaluated::Noise(_) => None,
     }
 }
 

@@ -1,4 +1,4 @@
-//! The cost of noise: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
+//! The cost of noise: `taxel model confusion --noise` and `taxel model touches`.
 //!
 //! Noise flips each taxel independently with the same probability. Dead taxels are inactive; they are drawn anew for
 //! each touch. The tables look like this:
@@ -16,7 +16,6 @@
 
 use std::fmt::Write;
 use std::iter;
-use std::sync::OnceLock;
 
 use serde_json::json;
 
@@ -28,7 +27,7 @@ use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{self, bar, percent_fine};
+use crate::cli::output::evaluation::{self, bar};
 use crate::cli::output::note::note;
 use crate::cli::output::plot;
 use crate::cli::output::progress::ProgressDisplay;
@@ -37,12 +36,9 @@ use crate::formats::file::has_ending;
 use crate::formats::value::{counted, grouped, percent};
 use crate::formats::{LinePlot, json};
 use crate::index::narrow;
-use crate::memory::MemoryGuard;
 use crate::parameter::number::share;
-use crate::progress::Progress;
 use crate::recognition::{
-    GivenDescriptors, HalfStepWork, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate,
-    TouchesUntil,
+    GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
 };
 use crate::sensor::Sensor;
 
@@ -288,62 +284,6 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
         }
     );
     text
-}
-
-/// Evaluates touches halfway between the learned poses. They leave other imprints; how many, and what they cost,
-/// tells whether the grid of the model is fine enough. Nothing is drawn at random: all such touches are counted.
-/// ```text
-/// touches half a step off the grid, in x0, y0 and angle
-/// not in the model                            36.741 %
-/// error, counting these as wrong              48.000 %
-/// error, naming these by the nearest imprint  12.148 %
-/// ```
-pub(crate) fn half_step(
-    model: &Model,
-    asked: &ConfusionArguments,
-    charset: Charset,
-) -> Result<String, CliError> {
-    let signals = Signals::catch()?;
-    let memory = MemoryGuard::new(None, "test a model of fewer shapes or coarser steps");
-    let poses = model.poses() * model.shapes().len() as u64;
-    let touching = ProgressDisplay::new(poses, asked.quiet, charset);
-    let search = OnceLock::new();
-    let display = |work| match work {
-        HalfStepWork::Poses(poses) => touching.add(poses),
-        HalfStepWork::Search { of } => {
-            let begun = || {
-                touching.clear();
-                ProgressDisplay::counting("imprints", of, asked.quiet, charset)
-            };
-            search.get_or_init(begun).add(1)
-        }
-    };
-    let result = memory.limit(&signals.progress(&display), |progress| {
-        model.half_step(progress)
-    });
-    let result = result
-        .map_err(CliError::Memory)?
-        .map_err(|error| signals.training_failure(error))?;
-    if asked.form == EvaluationForm::Json {
-        let answer = json!({
-            "touches": evaluation::number(result.touches),
-            "missing": result.missing(),
-            "error": result.error(),
-            "error_with_nearest": result.error_with_nearest(),
-        });
-        return Ok(answer.to_string() + "\n");
-    }
-    let text = format!(
-        "touches half a step off the grid, in x0, y0 and angle\n\
-         not in the model                            {:>8}\n\
-         error, counting these as wrong              {:>8}\n\
-         error, naming these by the nearest imprint  {:>8}\n{}",
-        percent_fine(result.missing()),
-        percent_fine(result.error()),
-        percent_fine(result.error_with_nearest()),
-        weighted(model)
-    );
-    Ok(charset.lines(&text))
 }
 
 pub(crate) fn touches(

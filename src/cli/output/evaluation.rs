@@ -22,7 +22,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::json;
 
 use crate::cli::output::charset::Charset;
-use crate::formats::value::{counted, decimal, grouped, percent, percentage};
+use crate::formats::value::{counted, grouped, percent, percentage};
 use crate::parameter::number::share;
 use crate::recognition::{
     ChosenDescriptor, Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation,
@@ -85,14 +85,6 @@ pub(crate) fn number(count: u128) -> serde_json::Value {
     match u64::try_from(count) {
         Ok(count) => json!(count),
         Err(_) => json!(count.to_string()),
-    }
-}
-
-/// Formats a share in percent, to three decimals. A share that is not exactly 0 or 1 is not shown as 0 or 100 %.
-pub(crate) fn percent_fine(share: f64) -> String {
-    match percentage(share, 3) {
-        bound if bound.starts_with(['<', '>']) => format!("{bound} %"),
-        _ => format!("{} %", decimal(100.0 * share, 3)),
     }
 }
 
@@ -318,7 +310,7 @@ pub(crate) fn greedy(chosen: &[ChosenDescriptor], limit: &Evaluation, charset: C
 /// Returns the table of all classifiers, with the limit in the last row:
 /// ```text
 /// classifier             error  top two  information
-/// lda                    8.4 %   99.9 %   1.179 bits
+/// knn                    8.4 %   99.9 %   1.179 bits
 /// limit of one touch     1.6 %  100.0 %   1.538 bits
 /// ```
 pub(crate) fn classifiers(
@@ -498,7 +490,5 @@ mod tests {
             Charset::Unicode,
         );
         assert_eq!(table.matches("<0.01").count(), 2, "{table}");
-        let fine = [0.0, 1e-6, 0.2488, 0.999_999, 1.0].map(percent_fine);
-        assert_eq!(fine, ["0 %", "<0.001 %", "24.88 %", ">99.999 %", "100 %"]);
     }
 }

@@ -109,12 +109,6 @@ impl ProgressDisplay {
             share * 100.0
         )
     }
-
-    pub(crate) fn clear(&self) {
-        if let Shown::Bar(bar) = &self.shown {
-            bar.finish_and_clear();
-        }
-    }
 }
 
 impl Progress for ProgressDisplay {

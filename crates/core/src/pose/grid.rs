@@ -55,32 +55,6 @@ impl PoseGrid {
         anchor: Anchor,
         ranges: Ranges,
     ) -> Result<Self, GridError> {
-        Self::checked(source, sensor, anchor, ranges, true)
-    }
-
-    /// Creates a grid as [`Self::new`] does, but x0, y0 and the angle need only begin within their range. An angle of
-    /// 360° or more is a further turn; and a shape may lie anywhere, though forms and files do not allow it.
-    ///
-    /// # Errors
-    /// Returns an error if the first value of a range exceeds that of its parameter, and the errors of [`Self::new`]
-    /// for zooms and the number of poses.
-    pub(crate) fn going_beyond(
-        source: Source,
-        sensor: Sensor,
-        anchor: Anchor,
-        ranges: Ranges,
-    ) -> Result<Self, GridError> {
-        Self::checked(source, sensor, anchor, ranges, false)
-    }
-
-    /// Creates a grid, and checks the ends of the ranges of x0, y0 and the angle if `to_the_end` is true.
-    fn checked(
-        source: Source,
-        sensor: Sensor,
-        anchor: Anchor,
-        ranges: Ranges,
-        to_the_end: bool,
-    ) -> Result<Self, GridError> {
         let (mut source, mut poses) = (source, 1_u128);
         for (axis, &range) in ranges.iter() {
             if axis.is_zoom() && source.kind().is_some() {
@@ -91,9 +65,7 @@ impl PoseGrid {
                 }
                 continue;
             }
-            if to_the_end || axis.is_zoom() {
-                sensor.check(axis.parameter(), range.last())?;
-            }
+            sensor.check(axis.parameter(), range.last())?;
             source = source.with(axis.parameter(), range.value(0), &sensor)?;
             poses *= u128::from(range.count());
         }

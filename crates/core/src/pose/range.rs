@@ -150,32 +150,6 @@ impl DecimalRange {
         ))
     }
 
-    /// Returns the range shifted by half a step; the range of a single value stays as it is. None if the shifted values
-    /// need more decimals than a range can have.
-    ///
-    /// ```
-    /// use taxel_core::pose::DecimalRange;
-    /// let range: DecimalRange = "5:5.99:0.01".parse()?;
-    /// assert_eq!(range.shifted_by_half_a_step().map(|range| range.to_string()).as_deref(), Some("5.005:5.995:0.01"));
-    /// # Ok::<(), taxel_core::pose::RangeError>(())
-    /// ```
-    pub fn shifted_by_half_a_step(&self) -> Option<Self> {
-        if self.count == 1 {
-            return Some(*self);
-        }
-        let start = self
-            .start
-            .checked_mul(10)?
-            .checked_add(self.step.checked_mul(5)?)?;
-        let (step, places) = (self.step.checked_mul(10)?, self.places + 1);
-        let last = i64::try_from(self.count - 1)
-            .ok()?
-            .checked_mul(step)?
-            .checked_add(start)?;
-        let fits = places as usize <= MAX_PLACES && start.abs().max(last.abs()) <= MAX_UNITS;
-        fits.then(|| Self::from_units(start, step, places, self.count))
-    }
-
     /// Iterates over all values in order.
     ///
     /// ```
@@ -470,23 +444,5 @@ mod tests {
         for odd in [f64::NAN, f64::INFINITY, 1e6] {
             assert_eq!(DecimalRange::rounded(odd, 9), None, "{odd}");
         }
-    }
-
-    #[test]
-    fn half_a_step_needs_one_more_decimal_if_a_range_can_have_it() {
-        let half = |text: &str| {
-            let range: DecimalRange = text.parse().expect("a range");
-            range.shifted_by_half_a_step().map(|half| half.to_string())
-        };
-        assert_eq!(half("5:5.9:0.1").as_deref(), Some("5.05:5.95:0.1"));
-        assert_eq!(half("5").as_deref(), Some("5"));
-        let finest = "0:0.00000000002:0.00000000001";
-        let expected = "0.000000000005:0.000000000025:0.00000000001";
-        let parsed = |text: &str| text.parse::<DecimalRange>().ok();
-        let range = parsed(finest).expect("a range");
-        assert_eq!(range.shifted_by_half_a_step(), parsed(expected));
-        // They would need thirteen decimals, and sixteen digits.
-        assert_eq!(half("0:0.000000000002:0.000000000001"), None);
-        assert_eq!(half("0:999999999999999:111111111111111"), None);
     }
 }

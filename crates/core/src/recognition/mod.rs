@@ -61,8 +61,6 @@ mod simulation;
 
 mod touches_until;
 
-mod half_step;
-
 mod scan;
 
 pub use answer::{Answer, AnswerState, Evidence};
@@ -70,7 +68,6 @@ pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, Pose
 pub use confusion::ConfusionMatrix;
 pub use evaluation::{Certainty, Evaluation, PairConfusion};
 pub use given::{ChosenDescriptor, GivenDescriptors, GivenError, Rounding, ShapeDescriptor};
-pub use half_step::{HalfStep, HalfStepWork};
 pub use key::{ImprintKey, KeyTable};
 pub use likelihood::{Distances, SearchMethod};
 pub use merge::ModelMerge;

@@ -12,7 +12,6 @@ use crate::recognition::model::{
     Gathered, Model, ModelError, ModelHead, NamedShape, ShapeCount, check_shapes,
 };
 use crate::sensor::Sensor;
-use crate::source::Source;
 use crate::sweep::{CountedImprints, Shard, Sweep};
 
 /// The smallest side of a sensor that a training chooses by itself: the side of the paper's sensor.
@@ -95,9 +94,6 @@ pub enum TrainingError {
     /// Shapes that no sensor holds in every angle.
     #[error("the shapes do not fit on 64 × 64 taxels in every angle")]
     Large,
-    /// A grid of which half a step has too many decimals.
-    #[error("half a step of this grid has more decimals than a range can have")]
-    Steps,
     /// The training was stopped.
     #[error("stopped before the end")]
     Stopped,
@@ -115,22 +111,11 @@ impl<'a> Training<'a> {
         anchor: Anchor,
         ranges: Ranges,
     ) -> Result<Self, TrainingError> {
-        Self::of_poses(shapes.into_iter().collect(), |source| {
-            PoseGrid::new(source, sensor, anchor, ranges)
-        })
-    }
-
-    /// Creates a training of shapes, each over the grid that `grid_of` returns for it; all have the same poses.
-    ///
-    /// # Errors
-    /// Returns [`TrainingError::Set`] for an invalid set, or [`TrainingError::Grid`] with the first error of a grid.
-    pub(super) fn of_poses(
-        shapes: Vec<NamedShape>,
-        grid_of: impl Fn(Source) -> Result<PoseGrid, GridError>,
-    ) -> Result<Self, TrainingError> {
+        let shapes: Vec<NamedShape> = shapes.into_iter().collect();
         check_shapes(&shapes)?;
         let grid = |shape: &NamedShape| {
-            grid_of(shape.source.clone()).map_err(|error| TrainingError::Grid {
+            let grid = PoseGrid::new(shape.source.clone(), sensor, anchor, ranges);
+            grid.map_err(|error| TrainingError::Grid {
                 name: shape.name.clone(),
                 error,
             })

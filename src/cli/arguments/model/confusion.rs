@@ -7,7 +7,6 @@
 //! taxel model confusion figures --greedy | --pairs     which descriptors; which two shapes
 //! taxel model confusion figures --classifier knn       by another method
 //! taxel model confusion figures --noise 0:0.1:0.02     from touches whose taxels flip; with --given from descriptors
-//! taxel model confusion figures --test half-step       from touches between the learned poses
 //! ```
 
 use std::ffi::OsString;
@@ -51,7 +50,6 @@ pub(crate) enum Evaluated {
     Classifier(Classifier),
     AllClassifiers,
     Noise(NoiseArguments),
-    HalfStep,
 }
 
 #[derive(Clone, Debug)]
@@ -73,7 +71,7 @@ pub(super) fn command() -> Command {
         .arg(which_model())
         .args(questions())
         .group(ArgGroup::new("descriptors").args(["given", "greedy"]))
-        .group(ArgGroup::new("of").args(["greedy", "pairs", "classifier", "noise", "test"]))
+        .group(ArgGroup::new("of").args(["greedy", "pairs", "classifier", "noise"]))
         .groups([
             flags::alone("with_classifier", "classifier"),
             flags::alone("with_noise", "noise"),
@@ -81,7 +79,7 @@ pub(super) fn command() -> Command {
         ])
         .group(
             ArgGroup::new("not_given")
-                .args(["greedy", "pairs", "test"])
+                .args(["greedy", "pairs"])
                 .conflicts_with("given"),
         )
         .arg(
@@ -99,7 +97,6 @@ pub(super) fn command() -> Command {
         .arg(seed())
         .args(output())
         .args(noisy())
-        .arg(untrained())
 }
 
 fn questions() -> [Arg; 4] {
@@ -112,11 +109,14 @@ fn questions() -> [Arg; 4] {
         )
         .value_parser(str::parse::<GivenDescriptors>),
         switch("greedy", "Choose descriptors one by one until none helps"),
-        switch("pairs", "Print the error for each pair of shapes, by itself"),
+        switch(
+            "pairs",
+            "Print the error for each pair of shapes, by itself",
+        ),
         option(
             "classifier",
             "NAME",
-            "Another way to name shapes: z, diagonal, lda, qda,\nknn, template, or all of them in a table",
+            "Another way to name shapes: z, knn, template, or\nall of them in a table",
         )
         .value_parser(PossibleValuesParser::new(classifiers))
         .hide_possible_values(true),
@@ -142,9 +142,9 @@ fn of_classifiers() -> [Arg; 3] {
 fn output() -> [Arg; 5] {
     let export = option("export", "FILE", "Write the matrix as .csv or .svg")
         .value_parser(report())
-        .conflicts_with_all(["greedy", "pairs", "test"]);
+        .conflicts_with_all(["greedy", "pairs"]);
     let csv = switch("csv", "Print comma-separated values")
-        .conflicts_with_all(["json", "greedy", "pairs", "test"]);
+        .conflicts_with_all(["json", "greedy", "pairs"]);
     let force = replace().requires("with_export");
     [export, force, json(), quiet(), csv]
 }
@@ -173,17 +173,6 @@ fn noisy() -> [Arg; 4] {
     .value_parser(parse_matrix);
     let [dead, touches, matrix] = [dead, touches, matrix].map(|arg| arg.requires("with_noise"));
     [noise, dead, touches, matrix].map(|arg| arg.help_heading("Noise"))
-}
-
-fn untrained() -> Arg {
-    option(
-        "test",
-        "half-step",
-        "Touch the shapes half a step off the model's\nposes, in x0, y0 and angle",
-    )
-    .value_parser(["half-step"])
-    .hide_possible_values(true)
-    .help_heading("Untrained poses")
 }
 
 /// Parses probabilities that a taxel flips, such as `0:0.1:0.02`. Both ends must be valid for [`Noise::new`].
@@ -276,9 +265,6 @@ impl Evaluated {
     /// Returns the question of the flags; without one, it is about whole imprints. clap makes sure that there is at
     /// most one.
     fn of(matches: &ArgMatches) -> Self {
-        if matches.contains_id("test") {
-            return Self::HalfStep;
-        }
         if let Some(name) = matches.get_one::<String>("classifier") {
             return name.parse().map_or(Self::AllClassifiers, Self::Classifier);
         }

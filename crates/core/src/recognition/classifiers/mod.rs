@@ -3,8 +3,6 @@
 
 mod features;
 
-mod gaussian;
-
 mod knn;
 
 use rayon::prelude::*;
@@ -12,8 +10,7 @@ use rayon::prelude::*;
 use crate::parameter::named;
 use crate::parameter::number::share;
 use crate::progress::Progress;
-use crate::recognition::classifiers::features::FeatureTable;
-use crate::recognition::classifiers::gaussian::Gaussian;
+use crate::recognition::classifiers::features::{FeatureTable, LEAST_VARIANCE};
 use crate::recognition::classifiers::knn::Sample;
 use crate::recognition::confusion::ConfusionMatrix;
 use crate::recognition::evaluation::Evaluation;
@@ -27,10 +24,9 @@ pub use knn::PoseSample;
 ///
 /// All of them name the same touches as the [`Evaluation`] of the model counts, in which a pose counts with the weight
 /// of its shape. They learn from poses, of which each shape has equally many: a weight does not change the mean, the
-/// covariance, the sample or the templates of a shape. It is the prior of a Gaussian, and weights the mean of all
-/// covariances; [`Self::Z`], [`Self::Knn`] and [`Self::Template`] name the nearest shape, however likely it is.
+/// sample or the templates of a shape. They name the nearest shape, however likely it is.
 ///
-/// Means, deviations and covariances are those of all poses, exact except for rounding; samples are drawn with a seed.
+/// Means and deviations are those of all poses, exact except for rounding; samples are drawn with a seed.
 /// Features are numbers of the main region that do not change under shifts, each in units of its deviation over all
 /// touches. A direction counts as its cosine and its sine, both 0 if it does not exist. Other features that do not
 /// exist for some imprint, constants, and copies of others (NA and NAE of solid shapes) are left out.
@@ -40,12 +36,6 @@ pub use knn::PoseSample;
 pub enum Classifier {
     /// The nearest class mean, in units of each class's standard deviation.
     Z,
-    /// A Gaussian for each class, with independent features.
-    Diagonal,
-    /// Gaussians with a common covariance.
-    Lda,
-    /// A Gaussian for each class, with its own covariance.
-    Qda,
     /// The nearest touches of a sample.
     Knn,
     /// The nearest of the most frequent imprints, by the number of taxels that differ.
@@ -54,22 +44,12 @@ pub enum Classifier {
 
 impl Classifier {
     /// All classifiers.
-    pub const ALL: &'static [Self] = &[
-        Self::Z,
-        Self::Diagonal,
-        Self::Lda,
-        Self::Qda,
-        Self::Knn,
-        Self::Template,
-    ];
+    pub const ALL: &'static [Self] = &[Self::Z, Self::Knn, Self::Template];
 
     /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Z => "z",
-            Self::Diagonal => "diagonal",
-            Self::Lda => "lda",
-            Self::Qda => "qda",
             Self::Knn => "knn",
             Self::Template => "template",
         }
@@ -140,7 +120,7 @@ impl Classifier {
     ///
     /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
     /// let settings = ClassifierSettings::default();
-    /// let result = Classifier::Lda.evaluate(&model, &settings, &ToTheEnd).expect("not stopped");
+    /// let result = Classifier::Knn.evaluate(&model, &settings, &ToTheEnd).expect("not stopped");
     /// // No classifier of one touch is better than the model.
     /// assert!(result.evaluation.right <= Evaluation::of(&model).right);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -159,26 +139,12 @@ impl Classifier {
             seed: settings.seed,
         };
         let (evaluation, table) = match self {
-            Self::Z | Self::Diagonal => {
+            Self::Z => {
                 let table = features();
-                let classes = Gaussian::diagonal(model, &table);
-                let value = if self == Self::Z {
-                    Gaussian::distance
-                } else {
-                    Gaussian::score
-                };
+                let classes = ClassMean::all(model, &table);
                 let scores = |key| {
                     let row = table.row(key);
-                    classes.iter().map(|class| value(class, row)).collect()
-                };
-                (evaluate(&scores)?, Some(table))
-            }
-            Self::Lda | Self::Qda => {
-                let table = features();
-                let classes = Gaussian::full(model, &table, self == Self::Lda);
-                let scores = |key| {
-                    let row = table.row(key);
-                    classes.iter().map(|class| class.score(row)).collect()
+                    classes.iter().map(|class| class.distance(row)).collect()
                 };
                 (evaluate(&scores)?, Some(table))
             }
@@ -204,6 +170,40 @@ impl Classifier {
             dropped,
             sample: (self == Self::Knn && sample.is_drawn(model)).then_some(sample),
         })
+    }
+}
+
+/// The mean of each feature over the poses of a class, and its variance.
+struct ClassMean(Vec<(f64, f64)>);
+
+impl ClassMean {
+    fn all(model: &Model, table: &FeatureTable) -> Vec<Self> {
+        let poses = u128::from(model.poses());
+        let mut classes: Vec<_> = (model.shapes().iter())
+            .map(|_| Self(vec![(0.0, LEAST_VARIANCE); table.names.len()]))
+            .collect();
+        let mut each = |add: fn(&mut (f64, f64), f64, f64)| {
+            for key in 0..model.keys().len() {
+                for count in model.counts(key) {
+                    let part = share(count.poses.into(), poses);
+                    let class = &mut classes[usize::from(count.shape)].0;
+                    for (own, &value) in class.iter_mut().zip(table.row(key)) {
+                        add(own, part, value);
+                    }
+                }
+            }
+        };
+        each(|(mean, _), part, value| *mean += part * value);
+        each(|(mean, variance), part, value| *variance += part * (value - *mean) * (value - *mean));
+        classes
+    }
+
+    /// Returns the square of the distance of a key's features from the mean, in standard deviations.
+    fn distance(&self, row: &[f64]) -> f64 {
+        let parts = row.iter().zip(&self.0);
+        parts
+            .map(|(value, (mean, variance))| (value - mean) * (value - mean) / variance)
+            .sum()
     }
 }
 
