@@ -278,20 +278,6 @@ impl Figure {
 
     /// Returns the same figure with one parameter changed to `value`, in the parameter's unit.
     ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// let sensor = Sensor::default();
-    /// let hexagon = Figure::default_of(FigureKind::Hexagon, &sensor);
-    /// assert_eq!(hexagon.with(Parameter::Side, 2.5, &sensor)?, Figure::hexagon(2.5).at(4.0, 4.0).on(&sensor)?);
-    ///
-    /// let error = hexagon.with(Parameter::RadiusX, 2.5, &sensor).unwrap_err();
-    /// assert_eq!(
-    ///     error.to_string(),
-    ///     "radius_x: a parameter that the hexagon does not have, expected side, x0, y0, angle or thickness"
-    /// );
-    /// # Ok::<(), ParameterError>(())
-    /// ```
-    ///
     /// # Errors
     /// Returns an error if the value is out of range on the sensor, or the figure does not have the parameter.
     pub fn with(
@@ -304,7 +290,6 @@ impl Figure {
         Ok(self)
     }
 
-    /// Changes one value; after an error, nothing is changed.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,
@@ -356,15 +341,6 @@ impl Figure {
     }
 
     /// Returns true if the figure has a hole, that is, a thickness that leaves room for one.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// let (square, sensor) = (Figure::rectangle(6.0, 6.0), Sensor::default());
-    /// assert!(!square.on(&sensor)?.has_hole());
-    /// assert!(square.thickness(2.99).on(&sensor)?.has_hole());
-    /// assert!(!square.thickness(3.0).on(&sensor)?.has_hole());
-    /// # Ok::<(), ParameterError>(())
-    /// ```
     pub fn has_hole(&self) -> bool {
         let mut pen = HolePen(false);
         self.draw(&mut pen);
@@ -490,7 +466,6 @@ impl Figure {
 }
 
 impl fmt::Debug for Figure {
-    /// Writes only the sizes that the kind has.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             kind,
@@ -512,7 +487,6 @@ impl fmt::Debug for Figure {
 }
 
 impl fmt::Display for Figure {
-    /// Writes a summary in one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.kind_and_sizes())?;
         let (x0, y0) = (Parameter::X0.format(self.x0), Parameter::Y0.format(self.y0));
@@ -566,5 +540,26 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let sensor = Sensor::default();
+        let hexagon = Figure::default_of(FigureKind::Hexagon, &sensor);
+        assert_eq!(
+            hexagon.with(Parameter::Side, 2.5, &sensor)?,
+            Figure::hexagon(2.5).at(4.0, 4.0).on(&sensor)?
+        );
+        let error = hexagon.with(Parameter::RadiusX, 2.5, &sensor).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "radius_x: a parameter that the hexagon does not have, expected side, x0, y0, angle or thickness"
+        );
+        let (square, sensor) = (Figure::rectangle(6.0, 6.0), Sensor::default());
+        assert!(!square.on(&sensor)?.has_hole());
+        assert!(square.thickness(2.99).on(&sensor)?.has_hole());
+        assert!(!square.thickness(3.0).on(&sensor)?.has_hole());
+        Ok(())
     }
 }

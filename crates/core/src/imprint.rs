@@ -11,13 +11,6 @@ use crate::quote::quoted_character;
 use crate::sensor::{MAX_SIDE, MatrixSize};
 
 /// A binary matrix of 1 × 1 to 64 × 64 taxels.
-///
-/// ```
-/// use taxel_core::imprint::Imprint;
-/// let imprint: Imprint = ".##.\n#..#\n.##.".parse().unwrap();
-/// assert_eq!((imprint.columns(), imprint.rows(), imprint.count()), (4, 3, 6));
-/// assert!(imprint.get(1, 0) && !imprint.get(1, 1) && !imprint.get(9, 9));
-/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Imprint {
     size: MatrixSize,
@@ -146,14 +139,6 @@ impl Imprint {
     }
 
     /// Returns the taxels that are active in this imprint, in the other, or in both, on the matrix of this one.
-    ///
-    /// ```
-    /// use taxel_core::imprint::Imprint;
-    /// let [one, other] = ["##.\n...", ".###\n#..."].map(|text| text.parse::<Imprint>().expect("an imprint"));
-    /// assert_eq!(one.union(&other).to_string(), "###\n#..");
-    /// assert_eq!(one.intersection(&other).to_string(), ".#.\n...");
-    /// assert_eq!(one.without(&other).to_string(), "#..\n...");
-    /// ```
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         let (mut all, mask) = (*self, self.mask());
@@ -299,17 +284,12 @@ impl Imprint {
 /// Reads an imprint row by row.
 #[derive(Debug, Default)]
 pub struct ImprintRows {
-    /// The rows so far, in a matrix of [`MAX_SIDE`] rows; None before the first row.
     imprint: Option<Imprint>,
-    /// The number of rows so far.
     count: u8,
 }
 
 impl ImprintRows {
-    /// Adds the next row.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Imprint::from_rows`].
+    /// Adds the next row, with the errors of [`Imprint::from_rows`].
     pub fn push(&mut self, text: &str) -> Result<(), ImprintError> {
         if self.count == MAX_SIDE {
             return Err(ImprintError::Rows);
@@ -339,10 +319,7 @@ impl ImprintRows {
         Ok(())
     }
 
-    /// Returns the imprint of all rows.
-    ///
-    /// # Errors
-    /// Returns an error if there are no rows.
+    /// The imprint of all rows; an error if there are none.
     pub fn imprint(self) -> Result<Imprint, ImprintError> {
         let Self { imprint, count } = self;
         let imprint = imprint.ok_or(ImprintError::Rows)?;
@@ -435,5 +412,21 @@ mod tests {
         };
         assert_eq!((bounds.area(), Bounds::of_taxel(255, 0).area()), (0, 0));
         assert_eq!(Bounds::of_taxel(254, 0).area(), 1);
+    }
+
+    #[test]
+    fn examples() {
+        use crate::imprint::Imprint;
+        let imprint: Imprint = ".##.\n#..#\n.##.".parse().unwrap();
+        assert_eq!(
+            (imprint.columns(), imprint.rows(), imprint.count()),
+            (4, 3, 6)
+        );
+        assert!(imprint.get(1, 0) && !imprint.get(1, 1) && !imprint.get(9, 9));
+        let [one, other] =
+            ["##.\n...", ".###\n#..."].map(|text| text.parse::<Imprint>().expect("an imprint"));
+        assert_eq!(one.union(&other).to_string(), "###\n#..");
+        assert_eq!(one.intersection(&other).to_string(), ".#.\n...");
+        assert_eq!(one.without(&other).to_string(), "#..\n...");
     }
 }

@@ -26,20 +26,9 @@ pub const PICTURE_PARAMETERS: &[Parameter] = &[
 ///
 /// A picture may carry the name under which its imprint is stored. The name is displayed, but neither compared nor
 /// written to files.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// let sensor = Sensor::default();
-/// let bar: Imprint = "###".parse().expect("a row of taxels");
-/// let turned = Picture::of(bar).at(5.0, 5.0).angle(90.0).on(&sensor)?;
-/// let bounds = Plane::new(sensor).touch(&turned).bounds().expect("some are active");
-/// assert_eq!((bounds.columns(), bounds.rows()), (6..7, 4..7));
-/// # Ok::<(), ParameterError>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Picture {
     imprint: Imprint,
-    /// The values of [`PICTURE_PARAMETERS`].
     values: [f64; PICTURE_PARAMETERS.len()],
     /// The name of the stored imprint; shared, so that moving a picture does not allocate.
     name: Option<Arc<str>>,
@@ -51,9 +40,8 @@ impl PartialEq for Picture {
     }
 }
 
-/// A picture whose values are not checked yet; [`Self::on`] checks them all.
-///
-/// Without any of its methods the imprint stays where it is: at its own corner, with angle 0 and zoom 1.
+/// A picture whose values are not checked yet; [`Self::on`] checks them all. Without any of its methods the imprint
+/// stays where it is: at its own corner, with angle 0 and zoom 1.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "only `on` makes a picture of it"]
 pub struct PictureBuilder(Picture);
@@ -152,7 +140,6 @@ impl Picture {
         Ok(self)
     }
 
-    /// Changes one value; after an error, nothing is changed.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,
@@ -253,7 +240,6 @@ fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
 }
 
 impl std::fmt::Display for Picture {
-    /// Writes a summary in one line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let text = |index: usize| PICTURE_PARAMETERS[index].format(self.values[index]);
         f.write_str("picture")?;
@@ -269,5 +255,22 @@ impl std::fmt::Display for Picture {
             text(3),
             text(4)
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let sensor = Sensor::default();
+        let bar: Imprint = "###".parse().expect("a row of taxels");
+        let turned = Picture::of(bar).at(5.0, 5.0).angle(90.0).on(&sensor)?;
+        let bounds = Plane::new(sensor)
+            .touch(&turned)
+            .bounds()
+            .expect("some are active");
+        assert_eq!((bounds.columns(), bounds.rows()), (6..7, 4..7));
+        Ok(())
     }
 }

@@ -1,7 +1,6 @@
 //! Shortens untrusted text for messages, and suggests the name that was meant. Text from files and arguments may be
 //! megabytes long.
 
-/// Shortens text that a message quotes, to at most 40 characters and `…`.
 pub fn shortened(text: &str) -> String {
     cut(text, 40)
 }
@@ -76,10 +75,8 @@ pub fn joined(names: impl IntoIterator<Item: Into<String>>, word: &str) -> Strin
     }
 }
 
-/// The length, in characters, above which a name is not compared with others.
 const LONGEST_NAME: usize = 64;
 
-/// Returns the first `longest` characters of a text, followed by `…` if there are more.
 fn cut(text: &str, longest: usize) -> String {
     match text.char_indices().nth(longest) {
         Some((end, _)) => format!("{}…", &text[..end]),

@@ -13,15 +13,6 @@ use crate::quote::shortened;
 pub const MAX_SIDE: u8 = 64;
 
 /// The columns and rows of a sensor, its imprints and its matrices of values: each from 1 to [`MAX_SIDE`].
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// let size = MatrixSize::new(12, 8)?;
-/// assert_eq!((size.columns(), size.rows(), size.cells()), (12, 8, 96));
-/// assert_eq!(size, Imprint::empty(size).size());
-/// assert_eq!(MatrixSize::new(65, 8).unwrap_err().to_string(), "columns: 65 is above 64 (allowed: 1 to 64)");
-/// # Ok::<(), ParameterError>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MatrixSize {
     columns: u8,
@@ -29,7 +20,6 @@ pub struct MatrixSize {
 }
 
 impl MatrixSize {
-    /// The smallest size: one cell.
     pub const SMALLEST: Self = Self {
         columns: 1,
         rows: 1,
@@ -81,7 +71,6 @@ impl MatrixSize {
         }
     }
 
-    /// Returns the size with columns and rows swapped.
     pub(crate) fn transposed(self) -> Self {
         Self {
             columns: self.rows,
@@ -89,7 +78,6 @@ impl MatrixSize {
         }
     }
 
-    /// Returns a size for a test. Panics if it is not allowed.
     #[cfg(test)]
     pub(crate) fn of(columns: u8, rows: u8) -> Self {
         Self::new(columns, rows).expect("1 to 64")
@@ -97,7 +85,6 @@ impl MatrixSize {
 }
 
 impl fmt::Display for MatrixSize {
-    /// Writes the size, columns first: `12 × 8`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} × {}", self.columns, self.rows)
     }
@@ -113,16 +100,6 @@ pub const SENSOR_PARAMETERS: &[Parameter] = &[
 
 /// A sensor whose values are always in range: 1 to 64 columns and rows, a threshold above 0 and up to 1, a pitch
 /// above 0 and up to 1000 mm.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// let sensor = Sensor::new(12, 8)?.with_threshold(0.7)?;
-/// assert_eq!((sensor.columns(), sensor.rows(), sensor.threshold()), (12, 8, 0.7));
-/// assert_eq!(sensor.to_string(), "12 × 8 with threshold 0.7 and pitch 1 mm");
-/// let error = sensor.check(Parameter::X0, 12.5).unwrap_err();
-/// assert_eq!(error.to_string(), "x0: 12.5 is above 12 (allowed: -12 to 12)");
-/// # Ok::<(), ParameterError>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     size: MatrixSize,
@@ -131,7 +108,6 @@ pub struct Sensor {
 }
 
 impl Default for Sensor {
-    /// Returns the paper's sensor: 16 × 16 taxels, a threshold of one half, cells of 1 mm.
     fn default() -> Self {
         Self::of_size(MatrixSize {
             columns: 16,
@@ -205,14 +181,6 @@ impl Sensor {
 
     /// Returns the same sensor with another threshold: the share of a cell that must be covered to activate its taxel.
     ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// let sensor = Sensor::new(10, 8)?.with_threshold(0.3)?.with_pitch_mm(1.27)?;
-    /// assert_eq!((sensor.threshold(), sensor.pitch_mm()), (0.3, 1.27));
-    /// assert_eq!(sensor.with_threshold(0.0).unwrap_err().parameter(), Parameter::Threshold);
-    /// # Ok::<(), ParameterError>(())
-    /// ```
-    ///
     /// # Errors
     /// Returns an error if the threshold is not above 0 and at most 1.
     pub fn with_threshold(self, threshold: f64) -> Result<Self, ParameterError> {
@@ -269,7 +237,6 @@ impl Sensor {
     }
 }
 
-/// The values that a sensor allows for each parameter.
 impl Sensor {
     /// Returns the range of a parameter on this sensor. It is the same in forms, flags, files and commands.
     pub fn range(&self, parameter: Parameter) -> Range {
@@ -424,5 +391,40 @@ mod tests {
             "x0: a parameter that the sensor does not have, \
              expected columns, rows, threshold or pitch_mm"
         );
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let size = MatrixSize::new(12, 8)?;
+        assert_eq!((size.columns(), size.rows(), size.cells()), (12, 8, 96));
+        assert_eq!(size, Imprint::empty(size).size());
+        assert_eq!(
+            MatrixSize::new(65, 8).unwrap_err().to_string(),
+            "columns: 65 is above 64 (allowed: 1 to 64)"
+        );
+        let sensor = Sensor::new(12, 8)?.with_threshold(0.7)?;
+        assert_eq!(
+            (sensor.columns(), sensor.rows(), sensor.threshold()),
+            (12, 8, 0.7)
+        );
+        assert_eq!(
+            sensor.to_string(),
+            "12 × 8 with threshold 0.7 and pitch 1 mm"
+        );
+        let error = sensor.check(Parameter::X0, 12.5).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "x0: 12.5 is above 12 (allowed: -12 to 12)"
+        );
+        let sensor = Sensor::new(10, 8)?
+            .with_threshold(0.3)?
+            .with_pitch_mm(1.27)?;
+        assert_eq!((sensor.threshold(), sensor.pitch_mm()), (0.3, 1.27));
+        assert_eq!(
+            sensor.with_threshold(0.0).unwrap_err().parameter(),
+            Parameter::Threshold
+        );
+        Ok(())
     }
 }

@@ -60,7 +60,6 @@ impl Source {
         Ok(self)
     }
 
-    /// Changes one value; after an error, nothing is changed.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,

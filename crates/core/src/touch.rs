@@ -4,16 +4,16 @@
 //! threshold. Parts of the shape beyond the sensor are cut off.
 //!
 //! **A coverage of exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote.
-//! Coverages are first computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]) for every shape of
-//! the program ([`Plane::coverages`] says how errors grow). If one lies within 1e-10 of the threshold, it is computed
-//! again with 32 digits ([`Double`]). The taxel is then active unless the coverage falls short of the threshold by more
-//! than 1e-20 ([`Real::TIE`]).
+//! Coverages are first computed in `f64`, with an error below 1e-11 for every shape of the program
+//! ([`Plane::coverages`] says how errors grow). If one lies within 1e-10 of the threshold, it is computed again with 32
+//! digits ([`Double`]). The taxel is then active unless the coverage falls short of the threshold by more than 1e-20
+//! ([`Real::TIE`]).
 //!
-//! No number of digits can decide whether two algebraic expressions of the input are *equal*, so a coverage that
-//! falls short by less than 1e-20 counts as a tie. This is exact for an upright rectangle whose numbers have at most
-//! nine decimals, since its coverages are multiples of 1e-18. With more decimals, a coverage can come nearer than
-//! 1e-20 without a tie (0.9999999999 × 0.50000000005). Coverages of turned figures given in hundredths come within
-//! 3e-11 of the threshold.
+//! No number of digits can decide whether two algebraic expressions of the input are *equal*, so a coverage that falls
+//! short by less than 1e-20 counts as a tie. This is exact for an upright rectangle whose numbers have at most nine
+//! decimals, since its coverages are multiples of 1e-18. With more decimals, a coverage can come nearer than 1e-20
+//! without a tie (0.9999999999 × 0.50000000005). Coverages of turned figures given in hundredths come within 3e-11 of
+//! the threshold.
 
 use crate::geometry::{
     Double, Drawn, Ellipse, Extent, Overlap, Pen, Point, Real, Side, Solid, cell_area, row_areas,
@@ -22,13 +22,12 @@ use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::sensor::Sensor;
 
-/// Coverages this near to the threshold are computed again with more digits; a share of a cell. It holds for every
-/// shape of the program.
+/// Coverages this near to the threshold are computed again with more digits; a share of a cell.
 pub(crate) const DOUBTFUL: f64 = 1e-10;
 /// The limit of the coordinates of ellipses: products of four coordinates must be finite.
 const ELLIPSE_LIMIT: f64 = 1e70;
-/// A bound of the rounding error of a coverage, per unit of the magnitudes that are added up. Outlines defined by
-/// users may reach farther than the shapes of the program, and rounding errors grow with coordinates.
+/// A bound of the rounding error of a coverage, per unit of the magnitudes that are added up. Outlines of users may
+/// reach farther than the shapes of the program, and rounding errors grow with coordinates.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 /// The sensory plane: a sensor that can be touched repeatedly. A touch allocates only if a coverage is in doubt.
@@ -45,13 +44,11 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 #[derive(Clone, Debug)]
 pub struct Plane {
     sensor: Sensor,
-    /// Adds up the areas of a touch. Empty between touches.
     overlap: Overlap<f64>,
     /// The areas of the last touch in pairs of rows, starting with the first pair of `drawn`.
     areas: Vec<[f64; 2]>,
     /// The cells of the last touch that may have an area.
     drawn: Drawn,
-    /// The imprint of the last touch.
     imprint: Imprint,
 }
 
@@ -86,16 +83,6 @@ impl Plane {
 
     /// Returns the imprint of [`Self::touch`], which stays in the plane until the next touch. Copying half a kilobyte
     /// takes a noticeable part of the time of a touch.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// let mut plane = Plane::new(Sensor::default());
-    /// let ring = Figure::ellipse(4.0, 4.0).thickness(2.0).at(4.0, 4.0).on(plane.sensor())?;
-    /// let mut counts = Vec::new();
-    /// each_region(plane.touched(&ring), |region| counts.push(Description::of(region).nae));
-    /// assert_eq!(counts, [52, 12]);
-    /// # Ok::<(), ParameterError>(())
-    /// ```
     pub fn touched(&mut self, solid: &impl Solid) -> &Imprint {
         self.imprint.words_mut().fill(0);
         self.activate(solid);
@@ -118,7 +105,6 @@ impl Plane {
         }
     }
 
-    /// Activates the taxels that are covered enough. The covered areas decide.
     fn activate_by_areas(&mut self, solid: &impl Solid) {
         let grid = self.overlap.grid_mut();
         let drawn = grid.drawn();
@@ -149,7 +135,7 @@ impl Plane {
         }
     }
 
-    /// Iterates over the columns of a row whose areas were computed: the number of the column, and the area.
+    /// The number of each column of a row whose areas were computed, and the area.
     fn computed(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
         let Drawn { rows, columns } = &self.drawn;
         let (pair, lane) = ((row - rows.start) / 2, (row - rows.start) % 2);
@@ -157,7 +143,6 @@ impl Plane {
         columns.clone().zip(areas.map(move |pair| pair[lane]))
     }
 
-    /// Computes the areas near the threshold again, with more digits.
     #[cold]
     fn decide_doubtful(&mut self, solid: &impl Solid, doubt: f64) {
         let threshold = self.sensor.threshold();
@@ -231,11 +216,9 @@ fn compare(
     (short, Real::min(nearest[0], nearest[1]))
 }
 
-/// A pen that also notes whether areas can be computed.
 struct TouchPen<'a> {
     overlap: &'a mut Overlap<f64>,
-    /// Whether areas can be computed with all coordinates of the shape: they are finite, and small enough for
-    /// ellipses.
+    /// Whether all coordinates are finite, and those of ellipses within the limit.
     finite: bool,
 }
 
@@ -244,7 +227,6 @@ fn is_within_limit(point: Point<f64>) -> bool {
     point.x.abs() < ELLIPSE_LIMIT && point.y.abs() < ELLIPSE_LIMIT
 }
 
-/// Returns true if all coordinates are finite.
 fn are_finite(points: &[Point<f64>]) -> bool {
     // 0 times infinity is NaN, as is everything added to NaN. Adding is faster than comparing each coordinate.
     let sum = |sum: [f64; 2], point: &Point<f64>| [sum[0] + 0.0 * point.x, sum[1] + 0.0 * point.y];
@@ -304,4 +286,23 @@ pub fn reaches_beyond(solid: &impl Solid, sensor: &Sensor) -> bool {
         beyond(extent.left, extent.right, sensor.columns())
             || beyond(extent.top, extent.bottom, sensor.rows())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let mut plane = Plane::new(Sensor::default());
+        let ring = Figure::ellipse(4.0, 4.0)
+            .thickness(2.0)
+            .at(4.0, 4.0)
+            .on(plane.sensor())?;
+        let mut counts = Vec::new();
+        each_region(plane.touched(&ring), |region| {
+            counts.push(Description::of(region).nae)
+        });
+        assert_eq!(counts, [52, 12]);
+        Ok(())
+    }
 }

@@ -33,19 +33,14 @@ fn windows(upper_left: u64, upper_right: u64, lower_left: u64, lower_right: u64)
     [three | across | upper & lower, three, across]
 }
 
-/// The counts of a filled region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OutlineCounts {
-    /// The number of its taxels.
     pub(super) taxels: u32,
-    /// The number of its taxels with at least one of their four neighbours outside the region.
     pub(super) rim: u32,
-    /// The steps of the chain around it.
     pub(super) steps: ChainSteps,
 }
 
 impl OutlineCounts {
-    /// Counts a region without holes; `bounds` are its bounds.
     pub(super) fn of(filled: &Imprint, bounds: Bounds) -> Self {
         let words = bounds.words(filled);
         let (mut taxels, mut inner, mut many, mut three, mut diagonals) = (0, 0, 0, 0, 0);

@@ -33,11 +33,6 @@ pub enum Value {
 
 impl Value {
     /// Returns the number, if the value is a count or a single number.
-    ///
-    /// ```
-    /// use taxel_core::description::Value;
-    /// assert_eq!((Value::Count(3).number(), Value::None.number()), (Some(3.0), None));
-    /// ```
     pub fn number(self) -> Option<f64> {
         match self {
             Self::Count(count) => Some(count.into()),
@@ -117,13 +112,6 @@ pub struct Descriptor {
     pub dimension: Dimension,
     /// The numbers of a value, in its order, as suffixes of the key; a single empty one for a count or a number. A
     /// value that exists has exactly these numbers.
-    ///
-    /// ```
-    /// use taxel_core::description::Descriptor;
-    /// let parts = |key| Descriptor::from_key(key).expect("in the table").parts;
-    /// assert_eq!(parts("cg"), ["_x", "_y"]);
-    /// assert_eq!(parts("cg_cd_direction"), [""]);
-    /// ```
     pub parts: &'static [&'static str],
     /// Whether it is part of the JSON answers. Their form is fixed; the other descriptors can be computed from those in
     /// them.
@@ -132,13 +120,6 @@ pub struct Descriptor {
     /// lies, not which shape it has.
     pub changes_under: ChangesUnder,
     /// The value if there is no region: 0 for counts and sums of taxels, and [`Value::None`] for the others.
-    ///
-    /// ```
-    /// use taxel_core::description::{DESCRIPTORS, Value};
-    /// let zeros = DESCRIPTORS.iter().filter(|descriptor| descriptor.of_nothing != Value::None);
-    /// let zeros: Vec<&str> = zeros.map(|descriptor| descriptor.key).collect();
-    /// assert_eq!(zeros, ["na", "nae", "ce", "num_x", "num_y", "area"]);
-    /// ```
     pub of_nothing: Value,
     /// Computes the value from the counts and sums.
     pub measure: fn(&Description) -> Value,
@@ -171,7 +152,6 @@ impl Descriptor {
         }
     }
 
-    /// Gives a descriptor another description for holes.
     const fn named_in_hole(self, name_in_hole: &'static str) -> Self {
         Self {
             name_in_hole,
@@ -179,7 +159,6 @@ impl Descriptor {
         }
     }
 
-    /// Gives a descriptor the parts of its values: points, pairs and rectangles have several numbers.
     const fn with_parts(self, parts: &'static [&'static str]) -> Self {
         Self { parts, ..self }
     }
@@ -192,7 +171,6 @@ impl Descriptor {
         }
     }
 
-    /// Marks a count or sum of taxels, whose value is `zero` without a region.
     const fn zero_of_nothing(self, zero: Value) -> Self {
         Self {
             of_nothing: zero,
@@ -200,7 +178,6 @@ impl Descriptor {
         }
     }
 
-    /// Marks a descriptor that depends on the orientation of the imprint, and so changes under these changes.
     const fn of_orientation(self, changes_under: ChangesUnder) -> Self {
         Self {
             changes_under,
@@ -208,7 +185,6 @@ impl Descriptor {
         }
     }
 
-    /// Marks a descriptor that JSON answers leave out.
     const fn not_in_answers(self) -> Self {
         Self {
             in_answer: false,
@@ -217,13 +193,6 @@ impl Descriptor {
     }
 
     /// Returns the description for a region of a kind, in a few words.
-    ///
-    /// ```
-    /// use taxel_core::description::{Descriptor, RegionKind};
-    /// let na = Descriptor::from_key("na").expect("in the table");
-    /// assert_eq!(na.name_of(RegionKind::Exterior), "active taxels");
-    /// assert_eq!(na.name_of(RegionKind::Hole), "inactive taxels");
-    /// ```
     pub fn name_of(&self, kind: RegionKind) -> &'static str {
         match kind {
             RegionKind::Exterior => self.name,
@@ -232,13 +201,6 @@ impl Descriptor {
     }
 
     /// Returns the descriptor with a key, such as `"na"`; None if there is none.
-    ///
-    /// ```
-    /// use taxel_core::description::Descriptor;
-    /// let direction = Descriptor::from_key("cg_cd_direction").expect("in the table");
-    /// assert!(direction.changes_under.mirror && !direction.changes_under.shift);
-    /// assert!(Descriptor::from_key("colour").is_none());
-    /// ```
     pub fn from_key(key: &str) -> Option<&'static Self> {
         DESCRIPTORS.iter().find(|descriptor| descriptor.key == key)
     }
@@ -457,5 +419,28 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn examples() {
+        use crate::description::{DESCRIPTORS, Descriptor, RegionKind, Value};
+        assert_eq!(
+            (Value::Count(3).number(), Value::None.number()),
+            (Some(3.0), None)
+        );
+        let parts = |key| Descriptor::from_key(key).expect("in the table").parts;
+        assert_eq!(parts("cg"), ["_x", "_y"]);
+        assert_eq!(parts("cg_cd_direction"), [""]);
+        let zeros = DESCRIPTORS
+            .iter()
+            .filter(|descriptor| descriptor.of_nothing != Value::None);
+        let zeros: Vec<&str> = zeros.map(|descriptor| descriptor.key).collect();
+        assert_eq!(zeros, ["na", "nae", "ce", "num_x", "num_y", "area"]);
+        let na = Descriptor::from_key("na").expect("in the table");
+        assert_eq!(na.name_of(RegionKind::Exterior), "active taxels");
+        assert_eq!(na.name_of(RegionKind::Hole), "inactive taxels");
+        let direction = Descriptor::from_key("cg_cd_direction").expect("in the table");
+        assert!(direction.changes_under.mirror && !direction.changes_under.shift);
+        assert!(Descriptor::from_key("colour").is_none());
     }
 }

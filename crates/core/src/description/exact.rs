@@ -4,7 +4,6 @@
 /// as numbers of steps. None if the value does not exist.
 pub type ExactValue = Option<[i64; 4]>;
 
-/// Returns counts as an exact value.
 pub(super) fn whole<const N: usize>(numbers: [u32; N]) -> [i64; 4] {
     let mut exact = [0; 4];
     for (slot, number) in exact.iter_mut().zip(numbers) {

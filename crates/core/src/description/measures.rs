@@ -116,7 +116,6 @@ impl Description {
         [rising, 180.0 - rising]
     }
 
-    /// Returns the width and the height of the upright rectangle.
     pub(super) fn whole_sides(&self) -> [i32; 2] {
         let rect = self.rect;
         [(rect.left, rect.right), (rect.top, rect.bottom)]

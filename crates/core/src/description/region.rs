@@ -27,7 +27,6 @@ impl RegionKind {
         }
     }
 
-    /// Returns which taxels of such a region are neighbours.
     fn connectivity(self) -> Connectivity {
         match self {
             Self::Exterior => Connectivity::Eight,
@@ -36,7 +35,6 @@ impl RegionKind {
     }
 }
 
-/// The taxels that count as neighbours.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Connectivity {
     /// The four taxels that share a side.
@@ -56,7 +54,6 @@ named!(
 pub struct Region<'a> {
     kind: RegionKind,
     taxels: Cow<'a, Imprint>,
-    /// The taxels and everything they enclose; None if they enclose nothing, so that `taxels` are all.
     filled: Option<Cow<'a, Imprint>>,
     bounds: Bounds,
 }
@@ -102,7 +99,6 @@ impl<'a> Region<'a> {
         self.filled.as_deref().unwrap_or(&self.taxels)
     }
 
-    /// Returns the number of taxels of [`Self::filled`].
     pub(crate) fn area(&self) -> u32 {
         let words = self.bounds.words(self.filled()).iter();
         words.map(|word| word.count_ones()).sum()
@@ -134,14 +130,6 @@ pub fn regions(imprint: &Imprint) -> Vec<Region<'static>> {
 }
 
 /// Calls `visit` with each region of an imprint, in the order of [`regions`], without allocating.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// let two: Imprint = "##.#".parse().unwrap();
-/// let mut counts = Vec::new();
-/// each_region(&two, |region| counts.push(Description::of(region).na));
-/// assert_eq!(counts, [2, 1]);
-/// ```
 pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     let Some(bounds) = imprint.bounds() else {
         return;
@@ -191,7 +179,6 @@ pub(crate) fn is_main(area: u32, best: Option<u32>) -> bool {
     best.is_none_or(|best| area > best)
 }
 
-/// Returns the rows within the bounds for writing.
 fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
     &mut matrix.words_mut()[usize::from(bounds.top)..usize::from(bounds.bottom)]
 }
@@ -279,7 +266,6 @@ fn near(word: u64, connectivity: Connectivity) -> u64 {
     }
 }
 
-/// Returns the set bits behind the first run of set bits: adding the lowest bit carries out of that run.
 fn behind_gap(word: u64) -> u64 {
     word & word.wrapping_add(word & word.wrapping_neg())
 }
@@ -358,7 +344,6 @@ impl Wave {
         }
     }
 
-    /// Continues with the next row.
     fn enter(&mut self, seeds: &mut u64, open: u64) {
         let entered = (*seeds | near(self.seeds, self.connectivity)) & open;
         if entered != *seeds {
@@ -414,4 +399,16 @@ fn span(word: u64) -> u64 {
         return 0;
     }
     u64::MAX << word.trailing_zeros() & u64::MAX >> word.leading_zeros()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() {
+        use crate::prelude::*;
+        let two: Imprint = "##.#".parse().unwrap();
+        let mut counts = Vec::new();
+        each_region(&two, |region| counts.push(Description::of(region).na));
+        assert_eq!(counts, [2, 1]);
+    }
 }

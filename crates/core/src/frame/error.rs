@@ -1,5 +1,3 @@
-//! The error for a frame that cannot be processed, or for settings that do not fit it.
-
 use std::fmt;
 
 use crate::frame::size::{FrameSize, FrameSizeError};
@@ -78,7 +76,6 @@ pub enum FrameError {
 }
 
 impl FrameError {
-    /// Returns true if a frame of another size could be processed.
     pub fn is_of_size(&self) -> bool {
         matches!(
             self,
@@ -149,7 +146,6 @@ impl fmt::Display for FrameError {
     }
 }
 
-/// Returns the message that a tare needs more frames than there are.
 fn too_few(frames: u64, wanted: u64) -> String {
     let wanted = counted(wanted, "frame");
     let verb = if frames == 1 { "is" } else { "are" };
@@ -164,7 +160,6 @@ impl From<FrameSizeError> for FrameError {
     }
 }
 
-/// Returns an error if a matrix differs in size from the values.
 pub(super) fn check_size(
     what: &'static str,
     found: &Matrix<f64>,

@@ -1,5 +1,3 @@
-//! The first frames of a source, of which its tare is made.
-
 use crate::frame::error::FrameError;
 use crate::frame::recorded::Frame;
 use crate::frame::tare::{Tare, TareFrames};
@@ -11,12 +9,10 @@ use crate::frame::view::View;
 #[derive(Clone, Debug)]
 pub struct FirstFrames {
     frames: TareFrames,
-    /// The last frames, if they have one size and none of them fits the others.
     other: Option<TareFrames>,
 }
 
 impl FirstFrames {
-    /// Begins a tare of `wanted` frames, at least one.
     pub fn new(wanted: u64) -> Self {
         Self {
             frames: TareFrames::new(wanted),
@@ -24,20 +20,15 @@ impl FirstFrames {
         }
     }
 
-    /// Returns the number of frames that the tare needs.
     pub fn wanted(&self) -> u64 {
         self.frames.wanted()
     }
 
-    /// Returns the number of frames that are still missing.
     pub fn missing(&self) -> u64 {
         self.frames.missing()
     }
 
-    /// Checks that the needed number of frames fits into memory if each has this number of values.
-    ///
-    /// # Errors
-    /// Returns [`FrameError::TareSize`] if they take too much memory.
+    /// Checks that the needed number of frames of this size fits into memory.
     pub fn check_memory(&self, values: usize) -> Result<(), FrameError> {
         self.frames.check_memory(values)
     }
@@ -53,10 +44,8 @@ impl FirstFrames {
     }
 
     /// Adds the part of a frame that a view shows. Returns false if the tare begins again with it and the frames of its
-    /// size just before it: those that were added before are not in the tare.
-    ///
-    /// # Errors
-    /// Returns the errors of [`TareFrames::add_frame`]. After an error of its size, the frame is left out.
+    /// size just before it: those that were added before are not in the tare. After an error of its size, the frame is
+    /// left out.
     pub fn add(&mut self, frame: &Frame, view: &View) -> Result<bool, FrameError> {
         let added = self.frames.add_frame(frame, view);
         let other = self.other.take();
@@ -80,10 +69,6 @@ impl FirstFrames {
         }
     }
 
-    /// Computes the tare.
-    ///
-    /// # Errors
-    /// Returns an error if frames are missing.
     pub fn finish(self) -> Result<Tare, FrameError> {
         self.frames.finish()
     }

@@ -5,7 +5,6 @@ use crate::imprint::Imprint;
 /// The number of frames needed to call a taxel stuck.
 const ENOUGH: u64 = 10;
 
-/// The counts of a taxel's states.
 #[derive(Clone, Copy, Debug, Default)]
 struct TaxelCounts {
     /// The number of frames in which no neighbour was active, and in how many of them the taxel was active.
@@ -30,10 +29,8 @@ struct TaxelCounts {
 /// cover all of them. On a sensor of one row or one column two neighbours suffice, one on either side.
 #[derive(Clone, Debug)]
 pub struct FlipCounter {
-    /// The taxels that exist.
     cells: Imprint,
     frames: u64,
-    /// The last two imprints, the latest first.
     before: [Option<Imprint>; 2],
     repeated: u64,
     flips: u64,
@@ -203,7 +200,6 @@ mod tests {
     use super::*;
     use crate::sensor::MatrixSize;
 
-    /// Returns the next pseudo-random number; the sequence is the same each time.
     fn next(state: &mut u64) -> u64 {
         *state ^= *state << 13;
         *state ^= *state >> 7;
@@ -293,7 +289,6 @@ mod tests {
         assert_eq!(report.mask().count(), 0);
     }
 
-    /// Returns the report on these frames, each with the number of times it occurs.
     fn shown<const N: usize>(frames: [([&str; 3], usize); N]) -> FlipReport {
         let cells = Imprint::from_rows(["###"; 3].iter().copied()).expect("rows");
         let mut counter = FlipCounter::new(cells);

@@ -1,5 +1,3 @@
-//! The peak of a recording: the frame with the greatest pressure.
-
 /// The frame with the greatest sum of values so far; the first of several equal ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {

@@ -1,5 +1,3 @@
-//! The processing of frames: from the values that a sensor sends to the imprint, without allocating anything per frame.
-
 use crate::frame::error::{FrameError, check_size};
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
 use crate::frame::rule::{Rule, without_small};
@@ -26,7 +24,6 @@ pub struct Processing {
 }
 
 impl Default for Processing {
-    /// Returns settings that change nothing and make no imprint.
     fn default() -> Self {
         Self {
             view: View::default(),
@@ -115,7 +112,6 @@ impl Processing {
     }
 }
 
-/// Returns the sum, the maximum and the number of the values that are not NaN.
 fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
     let (mut sum, mut max, mut cells) = (0.0, f64::NEG_INFINITY, 0);
     for &value in values {
@@ -128,8 +124,7 @@ fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
     (sum, (cells > 0).then_some(max), cells)
 }
 
-/// Multiplies each value by the gain of its cell. A product that is too large is an error, because as a missing value it
-/// would make the strongest cells inactive.
+/// A product that is too large is an error, because as a missing value it would make the strongest cells inactive.
 fn multiply(values: &mut Matrix<f64>, gain: &Matrix<f64>) -> Result<(), FrameError> {
     check_size("gain", gain, values)?;
     for (value, &gain) in values.values_mut().iter_mut().zip(gain.values()) {

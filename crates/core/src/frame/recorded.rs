@@ -1,5 +1,3 @@
-//! A raw frame: the values of all cells at one moment, before any processing.
-
 use crate::frame::error::FrameError;
 use crate::frame::size::FrameSize;
 
@@ -24,7 +22,6 @@ pub struct Frame {
 }
 
 impl Default for Frame {
-    /// Creates a frame of one cell without a value, whose memory a reader can reuse.
     fn default() -> Self {
         Self::new(FrameSize::SMALLEST)
     }
@@ -45,17 +42,6 @@ impl Frame {
 
     /// Creates a frame from the values of its cells, row by row; NaN stands for no cell. A value that is infinite or
     /// beyond ±[`LARGEST_VALUE`] counts as no value.
-    ///
-    /// ```
-    /// use taxel_core::frame::{Frame, FrameSize};
-    /// let size = FrameSize::new(3, 2)?;
-    /// let mut frame = Frame::from_values(size, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
-    /// assert_eq!((frame.columns(), frame.rows(), frame.cells()), (3, 2, 5));
-    /// // The next frame, in the same memory.
-    /// frame.set_values(&[0.0, 11.0, f64::NAN, 4.0, 10.0, 0.0])?;
-    /// assert_eq!(frame.set_values(&[0.0]).unwrap_err().to_string(), "found 1 value, expected 6 for a frame of 3 × 2");
-    /// # Ok::<(), taxel_core::frame::FrameError>(())
-    /// ```
     ///
     /// # Errors
     /// Returns an error if the number of values is not the number of cells.
@@ -148,5 +134,20 @@ mod tests {
         let mut copy = Frame::new(FrameSize::of(5, 5));
         copy.copy_from(&frame);
         assert_eq!(format!("{copy:?}"), format!("{frame:?}"));
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::frame::{Frame, FrameSize};
+        let size = FrameSize::new(3, 2)?;
+        let mut frame = Frame::from_values(size, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
+        assert_eq!((frame.columns(), frame.rows(), frame.cells()), (3, 2, 5));
+        // The next frame, in the same memory.
+        frame.set_values(&[0.0, 11.0, f64::NAN, 4.0, 10.0, 0.0])?;
+        assert_eq!(
+            frame.set_values(&[0.0]).unwrap_err().to_string(),
+            "found 1 value, expected 6 for a frame of 3 × 2"
+        );
+        Ok(())
     }
 }

@@ -1,5 +1,3 @@
-//! The rules that decide which values make a taxel active.
-
 use crate::description::{RegionKind, each_region};
 use crate::frame::error::{FrameError, check_size};
 use crate::frame::recorded::LARGEST_VALUE;
@@ -34,10 +32,6 @@ pub enum Rule {
     Noise(f64),
 }
 
-/// Returns a threshold in the sensor's unit.
-///
-/// # Errors
-/// Returns an error if the threshold is not finite, or beyond ±[`LARGEST_VALUE`].
 fn pressure(what: &'static str, value: f64) -> Result<f64, FrameError> {
     checked(what, value, value.abs() <= LARGEST_VALUE, "-1e300 to 1e300")
 }
@@ -157,7 +151,6 @@ impl Rule {
     }
 }
 
-/// Returns the cells at a threshold or above.
 fn at_or_above(values: &Matrix<f64>, threshold: f64) -> Imprint {
     active(values, |_, value| value >= threshold)
 }

@@ -1,5 +1,3 @@
-//! The size of a frame.
-
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -13,15 +11,6 @@ pub const MAX_FRAME_SIDE: u16 = 512;
 pub const MAX_FRAME_CELLS: usize = MAX_FRAME_SIDE as usize * MAX_FRAME_SIDE as usize;
 
 /// The columns and rows of a frame before it is cropped: each from 1 to [`MAX_FRAME_SIDE`].
-///
-/// ```
-/// use taxel_core::frame::FrameSize;
-/// let size = FrameSize::new(28, 64)?;
-/// assert_eq!((size.columns(), size.rows(), size.cells()), (28, 64, 1792));
-/// assert_eq!(size.to_string(), "28 × 64");
-/// assert_eq!(FrameSize::new(28, 0).unwrap_err().to_string(), "a frame of 28 × 0, expected 1 to 512 columns and rows");
-/// # Ok::<(), taxel_core::frame::FrameSizeError>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FrameSize {
     columns: u16,
@@ -29,10 +18,8 @@ pub struct FrameSize {
 }
 
 impl FrameSize {
-    /// The allowed numbers of columns, and of rows.
     pub const SIDES: RangeInclusive<u16> = 1..=MAX_FRAME_SIDE;
 
-    /// One cell.
     pub const SMALLEST: Self = Self {
         columns: 1,
         rows: 1,
@@ -75,7 +62,6 @@ impl FrameSize {
         format!("{} of {}", counted(self.rows, "row"), self.columns)
     }
 
-    /// Returns a size for a test. Panics if it is not allowed.
     #[cfg(test)]
     pub(crate) fn of(columns: u16, rows: u16) -> Self {
         Self::new(columns, rows).expect("1 to 512")
@@ -92,7 +78,6 @@ impl From<MatrixSize> for FrameSize {
 }
 
 impl fmt::Display for FrameSize {
-    /// Writes the size, columns first: `28 × 64`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} × {}", self.columns, self.rows)
     }
@@ -118,3 +103,19 @@ impl fmt::Display for FrameSizeError {
 }
 
 impl std::error::Error for FrameSizeError {}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::frame::FrameSize;
+        let size = FrameSize::new(28, 64)?;
+        assert_eq!((size.columns(), size.rows(), size.cells()), (28, 64, 1792));
+        assert_eq!(size.to_string(), "28 × 64");
+        assert_eq!(
+            FrameSize::new(28, 0).unwrap_err().to_string(),
+            "a frame of 28 × 0, expected 1 to 512 columns and rows"
+        );
+        Ok(())
+    }
+}

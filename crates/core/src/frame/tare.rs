@@ -1,12 +1,9 @@
-//! The tare: the value of each cell when nothing touches it (the median over some frames), and how much it varies.
-
 use crate::frame::error::{FrameError, check_size};
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
 use crate::frame::view::View;
 use crate::matrix::Matrix;
 use crate::sensor::MatrixSize;
 
-/// The largest number of values that a tare stores until it is finished: 256 MiB.
 const MAX_VALUES: u64 = 1 << 25;
 
 /// The standard deviation of the normal distribution divided by its median absolute deviation.
@@ -17,10 +14,8 @@ const MAD_TO_DEVIATION: f64 = 1.4826;
 pub struct TareFrames {
     wanted: u64,
     size: Option<MatrixSize>,
-    /// All values, frame by frame.
     values: Vec<f64>,
     frames: u64,
-    /// The visible part of the last frame, kept for its memory.
     visible: Matrix<f64>,
 }
 
@@ -78,10 +73,7 @@ impl TareFrames {
         Ok(())
     }
 
-    /// Checks that a frame can be added.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Self::add`].
+    /// Checks that a frame can be added, with the errors of [`Self::add`].
     fn check(&self, frame: &Matrix<f64>) -> Result<(), FrameError> {
         let size = frame.size();
         if let Some(found) = self.size.filter(|&found| found != size) {
@@ -102,15 +94,11 @@ impl TareFrames {
         self.with_visible(frame, view, Self::add)
     }
 
-    /// Checks that a frame can be added by [`Self::add_frame`].
-    ///
-    /// # Errors
-    /// Returns the errors of [`Self::add_frame`].
+    /// Checks that a frame can be added, with the errors of [`Self::add_frame`].
     pub(super) fn check_frame(&mut self, frame: &Frame, view: &View) -> Result<(), FrameError> {
         self.with_visible(frame, view, |tare, visible| tare.check(visible))
     }
 
-    /// Does something with the part of a frame that a view shows.
     fn with_visible(
         &mut self,
         frame: &Frame,
@@ -125,7 +113,6 @@ impl TareFrames {
         done
     }
 
-    /// Returns the number of frames so far.
     pub(super) fn frames(&self) -> u64 {
         self.frames
     }
@@ -194,9 +181,7 @@ fn step(mut values: Vec<f64>) -> Option<f64> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tare {
     baseline: Matrix<f64>,
-    /// The median absolute deviation of each cell.
     deviation: Matrix<f64>,
-    /// The smallest difference between two values; None if all are equal.
     step: Option<f64>,
     frames: u64,
 }
@@ -253,22 +238,6 @@ impl Tare {
 
     /// Returns the step of the values, in the sensor's unit: the smallest difference between two of them. None if all
     /// are equal, so that nothing shows it; then it counts as 1, which is too coarse if the sensor sends fractions.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// use taxel_core::frame::TareFrames;
-    /// use taxel_core::matrix::Matrix;
-    ///
-    /// let step = |frames: [f64; 2]| {
-    ///     let mut tare = TareFrames::new(2);
-    ///     for value in frames {
-    ///         tare.add(&Matrix::filled(MatrixSize::new(2, 1)?, value))?;
-    ///     }
-    ///     Ok::<_, Box<dyn std::error::Error>>(tare.finish()?.step())
-    /// };
-    /// assert_eq!((step([7.0, 7.25])?, step([7.0, 7.0])?), (Some(0.25), None));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn step(&self) -> Option<f64> {
         self.step
     }
@@ -404,5 +373,21 @@ mod tests {
     fn one_step_of_equal_values_is_1() {
         let tare = tare(&[[7.0, f64::NAN], [7.0, 7.0]]).expect("two frames");
         assert_eq!((tare.step(), tare.margin(0, 3.0)), (None, 1.0));
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::frame::TareFrames;
+        use crate::matrix::Matrix;
+        use crate::prelude::*;
+        let step = |frames: [f64; 2]| {
+            let mut tare = TareFrames::new(2);
+            for value in frames {
+                tare.add(&Matrix::filled(MatrixSize::new(2, 1)?, value))?;
+            }
+            Ok::<_, Box<dyn std::error::Error>>(tare.finish()?.step())
+        };
+        assert_eq!((step([7.0, 7.25])?, step([7.0, 7.0])?), (Some(0.25), None));
+        Ok(())
     }
 }

@@ -1,5 +1,3 @@
-//! The view of a frame: which part is used, and how it is oriented (crop, flip, turn, mask).
-
 use crate::frame::error::FrameError;
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
 use crate::frame::size::FrameSize;
@@ -69,12 +67,11 @@ impl View {
         }
     }
 
-    /// Returns true if columns stay columns when the frame is turned.
     fn keeps_sides(&self) -> bool {
         self.quarter_turns.is_multiple_of(2)
     }
 
-    /// Returns the part of a frame that is kept. Returns an error if it has no cells or reaches beyond the frame.
+    /// The part of a frame that is kept; an error if it has no cells or reaches beyond the frame.
     fn part(&self, frame: FrameSize) -> Result<Crop, FrameError> {
         let whole = Crop {
             left: 0,
@@ -155,7 +152,7 @@ impl View {
     }
 }
 
-/// Converts the size of the visible part of a frame to that of a matrix. Returns an error if it is too large.
+/// The size of the visible part of a frame as that of a matrix; an error if it is too large.
 fn matrix_size(left: FrameSize) -> Result<MatrixSize, FrameError> {
     MatrixSize::of_sides(left.columns(), left.rows()).ok_or(FrameError::Large { size: left })
 }
@@ -164,7 +161,6 @@ fn matrix_size(left: FrameSize) -> Result<MatrixSize, FrameError> {
 mod tests {
     use super::*;
 
-    /// Returns the view of the frame `1 2 3 / 4 5 6`, with rows separated by `/`.
     fn seen(view: &View) -> Result<String, FrameError> {
         let mut frame = Frame::new(FrameSize::of(3, 2));
         frame

@@ -30,11 +30,9 @@ struct Way<T> {
     sums: Sums<T>,
     /// The index of the column's entry in a row of the grid, which is also the number of the line on its right.
     slot: usize,
-    /// The x of that line.
     right: T,
 }
 
-/// A row of the grid in which a half is followed.
 struct RowPass<T> {
     start: usize,
     /// +1 or −1: whether the descent adds or subtracts.
@@ -43,7 +41,6 @@ struct RowPass<T> {
 }
 
 impl<T: Real> Arcs<T> {
-    /// Creates the memory for grids of this size.
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         let sums = Sums {
             height: T::ZERO,
@@ -60,7 +57,6 @@ impl<T: Real> Arcs<T> {
         }
     }
 
-    /// Draws an ellipse on a grid of the size given to [`Self::new`].
     pub(crate) fn draw(&mut self, grid: &mut CellGrid<T>, curve: &EllipseCuts<T>, material: Side) {
         let (top, end) = (curve.top.y.max(T::ZERO), curve.bottom.y.min(grid.bottom()));
         if top >= end {
@@ -169,7 +165,6 @@ impl<T: Real> Arcs<T> {
 }
 
 impl<T: Real> RowPass<T> {
-    /// Adds to the grid the piece from `from` to `to`.
     fn add(&self, grid: &mut CellGrid<T>, from: &Way<T>, to: Sums<T>) {
         let height = self.sign * (to.height - from.sums.height);
         let moment = self.sign * (to.moment - from.sums.moment);

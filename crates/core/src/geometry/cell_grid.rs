@@ -17,7 +17,6 @@ use crate::geometry::outline::Point;
 use crate::geometry::real::Real;
 use crate::index::from_first;
 
-/// A grid of `columns × rows` unit cells with its top left corner at the origin.
 #[derive(Clone, Debug)]
 pub(crate) struct CellGrid<T> {
     columns: i32,
@@ -30,7 +29,6 @@ pub(crate) struct CellGrid<T> {
     /// The extent of everything drawn: the smallest x and y, and the largest ones.
     low: Point<T>,
     high: Point<T>,
-    /// The largest moment of an ellipse that was drawn.
     moment: T,
 }
 
@@ -42,7 +40,6 @@ pub(crate) struct Drawn {
 }
 
 impl Drawn {
-    /// Returns true if nothing lies on the grid.
     pub(crate) fn is_empty(&self) -> bool {
         self.rows.is_empty() || self.columns.is_empty()
     }
@@ -63,7 +60,6 @@ impl<T: Real> CellSums<T> {
 }
 
 impl<T: Real> CellGrid<T> {
-    /// Creates an empty grid.
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         let stride = usize::from(columns) + 2;
         let mut grid = Self {
@@ -79,7 +75,6 @@ impl<T: Real> CellGrid<T> {
         grid
     }
 
-    /// Clears the grid.
     pub(crate) fn clear(&mut self) {
         let (rows, drawn) = (self.rows_drawn(), self.entries_drawn());
         if !drawn.is_empty() {
@@ -103,17 +98,14 @@ impl<T: Real> CellGrid<T> {
         self.clear();
     }
 
-    /// Returns the y of the grid's lower end.
     pub(crate) fn bottom(&self) -> T {
         T::whole(self.rows)
     }
 
-    /// Returns the x of the grid's right end.
     pub(crate) fn right(&self) -> T {
         T::whole(self.columns)
     }
 
-    /// Returns true if a rectangle lies on the grid.
     pub(crate) fn encloses(&self, low: Point<T>, high: Point<T>) -> bool {
         low.x >= T::ZERO && low.y >= T::ZERO && high.x <= self.right() && high.y <= self.bottom()
     }
@@ -184,7 +176,6 @@ impl<T: Real> CellGrid<T> {
         })
     }
 
-    /// Returns the area in the top left cell, which is the only cell of a grid of 1 × 1.
     pub(crate) fn first(&self) -> T {
         let Drawn { rows, columns } = self.drawn();
         if !rows.contains(&0) || !columns.contains(&0) {
@@ -228,12 +219,10 @@ impl<T: Real> CellGrid<T> {
             .fold(self.moment, |most, end| most.max(end.abs()))
     }
 
-    /// Notes that an ellipse with this moment is drawn.
     pub(crate) fn include_moment(&mut self, moment: T) {
         self.moment = self.moment.max(moment);
     }
 
-    /// Notes that something is drawn within a rectangle.
     pub(crate) fn include_extent(&mut self, low: Point<T>, high: Point<T>) {
         self.low = Point::new(self.low.x.min(low.x), self.low.y.min(low.y));
         self.high = Point::new(self.high.x.max(high.x), self.high.y.max(high.y));

@@ -11,7 +11,6 @@
 use crate::geometry::outline::{Ellipse, Point};
 use crate::geometry::real::Real;
 
-/// An ellipse: its extreme points, and where it meets horizontal and vertical lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EllipseCuts<T> {
     centre: Point<T>,
@@ -23,19 +22,14 @@ pub(crate) struct EllipseCuts<T> {
     half_area: T,
     /// The angle by which the rightmost point lies below the middle between the topmost and the bottommost one.
     tilt: T,
-    /// The leftmost point.
     pub(crate) left: Point<T>,
-    /// The topmost point.
     pub(crate) top: Point<T>,
-    /// The rightmost point.
     pub(crate) right: Point<T>,
-    /// The bottommost point.
     pub(crate) bottom: Point<T>,
 }
 
-/// The running sums of a descent along a half of an ellipse, at one of its points.
-///
-/// A piece between two points contributes the difference of their sums.
+/// The running sums of a descent along a half of an ellipse, at one of its points. A piece between two points
+/// contributes the difference of their sums.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sums<T> {
     /// `∫ dy`: the height below the centre.
@@ -44,7 +38,6 @@ pub(crate) struct Sums<T> {
     pub moment: T,
 }
 
-/// A point at which a line meets an ellipse: its x, and the sums of the descent along that half of the ellipse.
 pub(crate) type Crossing<T> = (T, Sums<T>);
 
 impl<T: Real> EllipseCuts<T> {

@@ -58,7 +58,6 @@ impl<T: Real> Turn<T> {
         )
     }
 
-    /// Returns two rotated vectors: (`x`, 0) and (0, `y`).
     pub(crate) fn of_axes(&self, Point { x, y }: Point<T>) -> [Point<T>; 2] {
         [
             Point::new(x * self.cos, x * self.sin),
@@ -184,27 +183,6 @@ pub trait Solid {
 }
 
 /// A reference to a shape is a shape, so that a shape made of others may borrow them.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// use taxel_core::geometry::{Pen, Real};
-///
-/// /// Shapes that do not overlap, such as the two jaws of a gripper.
-/// struct Both<A, B>(A, B);
-///
-/// impl<A: Solid, B: Solid> Solid for Both<A, B> {
-///     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
-///         self.0.draw(pen);
-///         self.1.draw(pen);
-///     }
-/// }
-///
-/// let sensor = Sensor::default();
-/// let left = Figure::rectangle(2.0, 5.0).on(&sensor)?;
-/// let right = Figure::rectangle(2.0, 5.0).at(6.0, 0.0).on(&sensor)?;
-/// assert_eq!(Plane::new(sensor).touch(&Both(&left, &right)).count(), 2 * 10);
-/// # Ok::<(), ParameterError>(())
-/// ```
 impl<S: Solid> Solid for &S {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
         (**self).draw(pen);
@@ -236,11 +214,6 @@ pub struct Polygon {
 impl Polygon {
     /// Creates the polygon through the vertices, in order. If a coordinate is not finite, the polygon bounds nothing:
     /// any other number in its place would make a wrong imprint that looks right.
-    ///
-    /// ```
-    /// use taxel_core::geometry::{Extent, Polygon};
-    /// assert_eq!(Extent::of(&Polygon::new([(1.0, 1.0), (f64::NAN, 4.0), (5.0, 4.0)])), None);
-    /// ```
     pub fn new(vertices: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut vertices: Vec<_> = vertices.into_iter().collect();
         if !vertices.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
@@ -253,7 +226,6 @@ impl Polygon {
     }
 }
 
-/// Returns true if a ring of vertices runs counter-clockwise as seen, so that its area is negative.
 fn turns_left(vertices: &[(f64, f64)]) -> bool {
     let Some(&first) = vertices.first() else {
         return false;
@@ -303,7 +275,6 @@ impl Extent {
         Self::drawn(|pen| solid.draw(pen))
     }
 
-    /// Returns the extent of everything that is drawn with the pen.
     pub(crate) fn drawn(draw: impl FnOnce(&mut ExtentPen)) -> Option<Self> {
         let mut pen = ExtentPen(None);
         draw(&mut pen);
@@ -341,6 +312,18 @@ impl Pen<f64> for ExtentPen {
         self.cover(
             Point::new(centre.x - reach.x, centre.y - reach.y),
             Point::new(centre.x + reach.x, centre.y + reach.y),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() {
+        use crate::geometry::{Extent, Polygon};
+        assert_eq!(
+            Extent::of(&Polygon::new([(1.0, 1.0), (f64::NAN, 4.0), (5.0, 4.0)])),
+            None
         );
     }
 }

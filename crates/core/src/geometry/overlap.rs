@@ -15,7 +15,6 @@ use crate::geometry::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
 use crate::geometry::real::Real;
 use crate::index::from_first;
 
-/// A grid of `columns × rows` unit cells with its top left corner at the origin, and a pen that draws on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Overlap<T> {
     grid: CellGrid<T>,
@@ -23,7 +22,6 @@ pub(crate) struct Overlap<T> {
 }
 
 impl<T: Real> Overlap<T> {
-    /// Creates an empty grid.
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         Self {
             grid: CellGrid::new(columns, rows),
@@ -31,7 +29,6 @@ impl<T: Real> Overlap<T> {
         }
     }
 
-    /// Clears the grid.
     pub(crate) fn clear(&mut self) {
         self.grid.clear();
     }
@@ -41,12 +38,10 @@ impl<T: Real> Overlap<T> {
         self.grid.wipe();
     }
 
-    /// Returns the grid with everything drawn since it was cleared.
     pub(crate) fn grid(&self) -> &CellGrid<T> {
         &self.grid
     }
 
-    /// Returns the grid for taking areas from it.
     pub(crate) fn grid_mut(&mut self) -> &mut CellGrid<T> {
         &mut self.grid
     }
@@ -77,7 +72,6 @@ impl<T: Real> Overlap<T> {
         }
     }
 
-    /// Draws a part of an edge that lies on the grid or at its rim.
     #[expect(
         clippy::inline_always,
         reason = "called for every edge: a call passes the edge through memory, an eighth more instructions"
@@ -175,7 +169,6 @@ impl<T: Real> Overlap<T> {
         (T::ZERO <= from.x && from.x <= to.x).then_some([from, to])
     }
 
-    /// Draws the part of an edge left of the grid, between two heights.
     fn aside(&mut self, edge: &SlopedEdge<T>, from: T, to: T) {
         let (top, end) = (from.min(to), from.max(to));
         let sign = if from < to { edge.sign } else { -edge.sign };
@@ -205,7 +198,6 @@ struct SlopedEdge<T> {
 }
 
 impl<T: Real> SlopedEdge<T> {
-    /// Creates the edge between two points, with the material on its right for a sign of +1; None if it is horizontal.
     fn between(from: Point<T>, to: Point<T>, sign: T) -> Option<Self> {
         let (left, right, sign) = if from.x < to.x {
             (from, to, -sign)
@@ -252,7 +244,6 @@ impl<T: Real> Pen<T> for Overlap<T> {
         }
     }
 
-    /// Compares the whole ring with the grid, instead of each edge.
     fn ring(&mut self, points: &[Point<T>], material: Side) {
         let Some(&last) = points.last() else { return };
         let (mut low, mut high) = (last, last);

@@ -26,9 +26,8 @@ impl sealed::Sealed for f64 {}
 
 impl sealed::Sealed for Double {}
 
-/// The operations that geometry needs. None of them panics; callers keep divisors away from zero.
-///
-/// This trait is sealed: only [`f64`] and [`Double`] implement it.
+/// The operations that geometry needs, of [`f64`] and [`Double`] only (the trait is sealed). None of them panics;
+/// callers keep divisors away from zero.
 pub trait Real:
     sealed::Sealed
     + Copy
@@ -103,7 +102,6 @@ pub(crate) fn nearest(number: f64) -> i32 {
     (number + WHOLE).to_bits() as i32
 }
 
-/// Returns the nearest number of right angles, and the degrees left over, exactly.
 fn from_right_angle(degrees: f64) -> (i32, f64) {
     // A full turn more or less makes no difference.
     let degrees = degrees % 360.0;
@@ -187,7 +185,6 @@ const HALF_PI: Double = Double {
     low: 0.5 * PI.low,
 };
 
-/// Returns a sum and its rounding error.
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let part = high - a;
@@ -206,7 +203,6 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
     }
 }
 
-/// Returns a product and its rounding error.
 fn two_product(a: f64, b: f64) -> Double {
     let high = a * b;
     Double {
@@ -365,7 +361,6 @@ impl Real for Double {
 }
 
 impl Double {
-    /// Returns sine and cosine of an angle in radians, up to a right angle.
     fn sin_cos(self) -> (Self, Self) {
         // Taylor's series; the terms fall below 1e-33 before the 36th power.
         let (mut sin, mut cos, mut term) = (Self::ZERO, Self::ZERO, Self::ONE);

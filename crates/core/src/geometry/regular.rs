@@ -5,14 +5,12 @@ use std::sync::LazyLock;
 use crate::geometry::outline::Point;
 use crate::geometry::real::{Double, Real};
 
-/// The most corners of a [`RegularPolygon`].
 pub(crate) const MOST_CORNERS: usize = 8;
 
 /// A regular polygon of side 2 about its centre, standing on a side. Its numbers have 32 digits.
 pub(crate) struct RegularPolygon {
     /// The corners, clockwise from the left end of the bottom side. A polygon with fewer repeats its first ones.
     pub(crate) corners: [Point<Double>; MOST_CORNERS],
-    /// The top left corner of the upright rectangle around it.
     pub(crate) top_left: Point<Double>,
     /// The distance from the centre to each side.
     pub(crate) inradius: Double,

@@ -56,7 +56,6 @@ pub enum ParameterError {
 impl std::error::Error for ParameterError {}
 
 impl fmt::Display for ParameterError {
-    /// Names the parameter by its key, as in files and flags.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.about(self.parameter().row().key))
     }
@@ -75,13 +74,6 @@ impl ParameterError {
     }
 
     /// Returns the message with the parameter's label, for a screen that shows no key.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// let error = Sensor::default().read(Parameter::ZoomX, "65").unwrap_err();
-    /// assert_eq!(error.to_string(), "zoom_x: 65 is above 64 (allowed: above 0, up to 64)");
-    /// assert_eq!(error.labelled(), "Zoom x: 65 is above 64 (allowed: above 0, up to 64)");
-    /// ```
     pub fn labelled(&self) -> String {
         self.about(self.parameter().row().label)
     }
@@ -105,14 +97,6 @@ impl ParameterError {
     }
 
     /// Returns the part of the message that says what is wrong with the value, to be put after the value.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// let complaint = |parameter, text| Sensor::default().read(parameter, text).unwrap_err().complaint();
-    /// assert_eq!(complaint(Parameter::Angle, "360"), "is not below 360 (allowed: 0 to below 360)");
-    /// assert_eq!(complaint(Parameter::Rows, "2.5"), "is not a whole number (allowed: 1 to 64)");
-    /// assert_eq!(complaint(Parameter::X0, "left"), "is not a number");
-    /// ```
     pub fn complaint(&self) -> String {
         match self {
             Self::Number { text, .. } => format!("is {}", complaint(text)),
@@ -151,4 +135,36 @@ fn whole(parameter: Parameter) -> &'static str {
 
 fn keys(parameters: &[Parameter]) -> String {
     joined(parameters.iter().map(|own| own.row().key), "or")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() {
+        use crate::prelude::*;
+        let error = Sensor::default().read(Parameter::ZoomX, "65").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "zoom_x: 65 is above 64 (allowed: above 0, up to 64)"
+        );
+        assert_eq!(
+            error.labelled(),
+            "Zoom x: 65 is above 64 (allowed: above 0, up to 64)"
+        );
+        let complaint = |parameter, text| {
+            Sensor::default()
+                .read(parameter, text)
+                .unwrap_err()
+                .complaint()
+        };
+        assert_eq!(
+            complaint(Parameter::Angle, "360"),
+            "is not below 360 (allowed: 0 to below 360)"
+        );
+        assert_eq!(
+            complaint(Parameter::Rows, "2.5"),
+            "is not a whole number (allowed: 1 to 64)"
+        );
+        assert_eq!(complaint(Parameter::X0, "left"), "is not a number");
+    }
 }

@@ -2,10 +2,8 @@
 
 use std::fmt;
 
-/// One bound of a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Bound {
-    /// The bound itself is allowed.
     At(f64),
     /// Only numbers beyond the bound are allowed.
     Beyond(f64),
@@ -59,7 +57,6 @@ impl Range {
         }
     }
 
-    /// Returns the allowed number nearest to `value`. At a bound that is not allowed itself, that is one `step` inside.
     pub(crate) fn nearest(&self, value: f64, step: f64) -> f64 {
         let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
         let low = if with_low { low } else { low + step };

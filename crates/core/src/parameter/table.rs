@@ -40,7 +40,6 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// Returns the name: the key, as in files.
     fn name(self) -> &'static str {
         self.row().key
     }
@@ -55,32 +54,18 @@ impl Parameter {
         self.key_without_unit().replace('_', "-")
     }
 
-    /// Returns the key without a unit, as in the settings file.
     pub fn key_without_unit(self) -> &'static str {
         let key = self.row().key;
         key.strip_suffix("_mm").unwrap_or(key)
     }
 
     /// Returns the parameter with a flag, given without dashes in front; None if there is none.
-    ///
-    /// ```
-    /// use taxel_core::parameter::Parameter;
-    /// assert_eq!(Parameter::from_flag("radius-x"), Some(Parameter::RadiusX));
-    /// assert_eq!(Parameter::from_flag("radius_x"), None);
-    /// ```
     pub fn from_flag(flag: &str) -> Option<Self> {
         let mut parameters = PARAMETERS.iter().map(|row| row.parameter);
         parameters.find(|own| own.flag() == flag)
     }
 
     /// Formats a value as a form shows it: with the form's decimals, or with all of its own if it has more.
-    ///
-    /// ```
-    /// use taxel_core::parameter::Parameter;
-    /// assert_eq!(Parameter::X0.format(1.5), "1.50");
-    /// assert_eq!(Parameter::X0.format(10.0), "10.0");
-    /// assert_eq!(Parameter::X0.format(1.2345), "1.2345");
-    /// ```
     pub fn format(self, value: f64) -> String {
         let usual = format!("{value:.*}", usize::from(self.decimals_at(value)));
         let exact = usual.parse::<f64>().is_ok_and(|read| read == value);
@@ -125,13 +110,6 @@ impl Unit {
     }
 
     /// Returns a number, or a range of numbers, followed by the unit.
-    ///
-    /// ```
-    /// use taxel_core::parameter::Unit;
-    /// assert_eq!(Unit::Cells.after("-16 to 16"), "-16 to 16 cells");
-    /// assert_eq!(Unit::Degrees.after("0 to below 360"), "0 to below 360°");
-    /// assert_eq!(Unit::Ratio.after("0.5"), "0.5");
-    /// ```
     pub fn after(self, number: &str) -> String {
         match self {
             Self::Degrees => format!("{number}°"),
@@ -141,12 +119,9 @@ impl Unit {
     }
 }
 
-/// The number of decimals that a form shows and steps by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Decimals {
-    /// Two decimals below ten, one from ten on.
     Paper,
-    /// This number of decimals.
     Fixed(u8),
 }
 
@@ -380,5 +355,18 @@ mod tests {
             assert_eq!(Parameter::from_flag(&flag), Some(row.parameter), "{flag}");
         }
         assert_eq!(Parameter::Pitch.flag(), "pitch");
+    }
+
+    #[test]
+    fn examples() {
+        use crate::parameter::{Parameter, Unit};
+        assert_eq!(Parameter::from_flag("radius-x"), Some(Parameter::RadiusX));
+        assert_eq!(Parameter::from_flag("radius_x"), None);
+        assert_eq!(Parameter::X0.format(1.5), "1.50");
+        assert_eq!(Parameter::X0.format(10.0), "10.0");
+        assert_eq!(Parameter::X0.format(1.2345), "1.2345");
+        assert_eq!(Unit::Cells.after("-16 to 16"), "-16 to 16 cells");
+        assert_eq!(Unit::Degrees.after("0 to below 360"), "0 to below 360°");
+        assert_eq!(Unit::Ratio.after("0.5"), "0.5");
     }
 }

@@ -5,13 +5,6 @@ use std::fmt;
 use crate::quote::shortened;
 
 /// The error for text that is not one of the expected names.
-///
-/// ```
-/// use taxel_core::figure::FigureKind;
-/// let error = "hexagn".parse::<FigureKind>().unwrap_err();
-/// let expected = "ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon";
-/// assert_eq!(error.to_string(), format!("figure \"hexagn\" is unknown, expected one of {expected}"));
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownName {
     /// The kind of thing that was to be named, such as "figure".
@@ -23,10 +16,7 @@ pub struct UnknownName {
 }
 
 impl UnknownName {
-    /// Returns the value with a name.
-    ///
-    /// # Errors
-    /// Returns an error if no value has this name.
+    /// Returns the value with a name, or the error for it.
     pub fn unless_found<T: Copy>(
         what: &'static str,
         found: &str,
@@ -109,5 +99,16 @@ mod tests {
         let parameters = PARAMETERS.iter().map(|row| row.parameter);
         are_read_as_written(&parameters.collect::<Vec<_>>());
         assert_eq!(format!("{:>8}", FigureKind::Hexagon), " hexagon");
+    }
+
+    #[test]
+    fn examples() {
+        use crate::figure::FigureKind;
+        let error = "hexagn".parse::<FigureKind>().unwrap_err();
+        let expected = "ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon";
+        assert_eq!(
+            error.to_string(),
+            format!("figure \"hexagn\" is unknown, expected one of {expected}")
+        );
     }
 }

@@ -1,5 +1,3 @@
-//! The axes of a pose, and types with one value per axis: ranges, indices, poses.
-
 use std::ops::{Index, IndexMut};
 
 use crate::parameter::{Parameter, named};
@@ -9,15 +7,6 @@ use crate::source::Source;
 /// An axis of a pose. In a grid, the first axis runs fastest and the last one slowest.
 ///
 /// Figures have the first three; their zooms are 1. Pictures have all five.
-///
-/// ```
-/// use taxel_core::pose::{Axis, Ranges};
-///
-/// let ranges = Ranges::default().with(Axis::X0, "5:6:0.5".parse()?);
-/// assert_eq!(ranges[Axis::X0].count(), 3);
-/// assert_eq!(Axis::ALL.map(Axis::name), ["x0", "y0", "angle", "zoom_x", "zoom_y"]);
-/// # Ok::<(), taxel_core::pose::RangeError>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Axis {
     /// The position to the right, in cells.
@@ -68,17 +57,6 @@ impl Axis {
 named!(Axis, "axis", &Axis::ALL);
 
 /// A value for each axis, indexed by [`Axis`].
-///
-/// ```
-/// use std::collections::HashMap;
-/// use taxel_core::pose::{Axis, PoseIndex, Ranges};
-///
-/// let corner = PoseIndex::new([0; 5]).with(Axis::Angle, 90);
-/// assert_eq!(corner[Axis::Angle], 90);
-/// // Ranges and indices are keys of maps.
-/// let done = HashMap::from([(Ranges::default(), corner)]);
-/// assert_eq!(done.get(&Ranges::default()), Some(&corner));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PerAxis<T>([T; 5]);
 
@@ -136,7 +114,6 @@ impl<T> IndexMut<Axis> for PerAxis<T> {
 }
 
 impl Default for Ranges {
-    /// Returns the ranges of the paper: x0 and y0 over one cell from 5 on in hundredths, every whole degree, no zoom.
     fn default() -> Self {
         Self([
             DecimalRange::from_units(500, 1, 2, 100),
@@ -149,7 +126,6 @@ impl Default for Ranges {
 }
 
 impl<T> Default for PerAxis<Option<T>> {
-    /// Returns None for every axis.
     fn default() -> Self {
         Self([const { None }; 5])
     }
@@ -173,16 +149,33 @@ impl Anchor {
     pub const NAMES: [&'static str; 2] = ["corner", "centre"];
 
     /// Returns the name in files and on the command line; [`str::parse`] reads it.
-    ///
-    /// ```
-    /// use taxel_core::pose::Anchor;
-    /// assert_eq!(Anchor::Centre.name(), "centre");
-    /// assert_eq!("centre".parse(), Ok(Anchor::Centre));
-    /// assert!("middle".parse::<Anchor>().is_err());
-    /// ```
     pub const fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }
 }
 
 named!(Anchor, "anchor", &Anchor::ALL);
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::pose::{Anchor, Axis, PoseIndex, Ranges};
+        use std::collections::HashMap;
+        let ranges = Ranges::default().with(Axis::X0, "5:6:0.5".parse()?);
+        assert_eq!(ranges[Axis::X0].count(), 3);
+        assert_eq!(
+            Axis::ALL.map(Axis::name),
+            ["x0", "y0", "angle", "zoom_x", "zoom_y"]
+        );
+        let corner = PoseIndex::new([0; 5]).with(Axis::Angle, 90);
+        assert_eq!(corner[Axis::Angle], 90);
+        // Ranges and indices are keys of maps.
+        let done = HashMap::from([(Ranges::default(), corner)]);
+        assert_eq!(done.get(&Ranges::default()), Some(&corner));
+        assert_eq!(Anchor::Centre.name(), "centre");
+        assert_eq!("centre".parse(), Ok(Anchor::Centre));
+        assert!("middle".parse::<Anchor>().is_err());
+        Ok(())
+    }
+}

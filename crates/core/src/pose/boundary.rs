@@ -65,7 +65,6 @@ impl<T: Real> Boundary<T> {
 }
 
 impl Boundary<f64> {
-    /// Returns the extent; None for a shape without a boundary.
     pub(crate) fn extent(&self) -> Option<Extent> {
         Extent::drawn(|pen| self.draw(Point::new(0.0, 0.0), pen))
     }

@@ -37,28 +37,6 @@ const FINE: u32 = 1;
 ///
 /// # Errors
 /// Returns an error if a given range exceeds that of its parameter, or a figure has zooms other than 1.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// use taxel_core::pose::{GivenRanges, default_ranges};
-///
-/// let sensor = Sensor::default();
-/// let given = GivenRanges::default();
-/// let washer = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).on(&sensor)?;
-/// let ranges = default_ranges(&washer.into(), &sensor, Anchor::Corner, &given)?;
-/// assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
-///
-/// // A picture keeps its zooms.
-/// let bar = Picture::of("###".parse().unwrap()).zoom(0.5, 2.0).on(&sensor)?;
-/// let ranges = default_ranges(&bar.into(), &sensor, Anchor::Centre, &given)?;
-/// assert_eq!((ranges[Axis::ZoomX].to_string(), ranges[Axis::ZoomY].to_string()), ("0.5".into(), "2".into()));
-///
-/// // A square of 10 that lies there is cut off when it turns.
-/// let square = Figure::rectangle(10.0, 10.0).at(1.99, 1.47).on(&sensor)?;
-/// let ranges = default_ranges(&square.into(), &sensor, Anchor::Corner, &given)?;
-/// assert_eq!(ranges[Axis::X0].to_string(), "2.5:3.49:0.01");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn default_ranges(
     source: &Source,
     sensor: &Sensor,
@@ -98,23 +76,6 @@ pub fn default_ranges(
 ///
 /// # Errors
 /// Returns an error if a given range exceeds that of its parameter, or zooms other than 1 are given.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// use taxel_core::pose::{GivenRanges, figure_ranges};
-///
-/// let given = GivenRanges::default();
-/// let bar = Figure::rectangle(6.0, 3.0).on(&Sensor::default())?;
-/// let ranges = figure_ranges(&bar.into(), &Sensor::default(), Anchor::Corner, &given)?;
-/// assert_eq!(ranges[Axis::X0].to_string(), "5:5.99:0.01");
-///
-/// // A smaller sensor would cut it off there.
-/// let sensor = Sensor::new(10, 10)?;
-/// let bar = Figure::rectangle(6.0, 3.0).on(&sensor)?;
-/// let ranges = figure_ranges(&bar.into(), &sensor, Anchor::Corner, &given)?;
-/// assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn figure_ranges(
     figure: &Source,
     sensor: &Sensor,
@@ -156,23 +117,6 @@ pub fn common_ranges<'a>(
 /// # Errors
 /// Returns an error if a given range exceeds that of its parameter on the largest sensor, or a figure has zooms
 /// other than 1.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// use taxel_core::pose::{GivenRanges, smallest_sensor};
-///
-/// let triangle = Source::from(Figure::triangle(11.77).on(&Sensor::default())?);
-/// let disc = Source::from(Figure::ellipse(3.09, 3.09).on(&Sensor::default())?);
-/// let all_angles = GivenRanges::default();
-/// let fit = smallest_sensor([&triangle, &disc], Anchor::Centre, &all_angles, 16)?;
-/// let (sensor, ranges) = fit.expect("it fits on 64 × 64");
-/// // Its corners move on a circle of radius 6.8, and its centre moves within one cell.
-/// assert_eq!((sensor.columns(), sensor.rows()), (16, 16));
-/// assert_eq!(ranges[Axis::X0].to_string(), "7:7.99:0.01");
-/// let grid = PoseGrid::new(triangle, sensor, Anchor::Centre, ranges)?;
-/// assert_eq!(grid.poses_beyond_sensor(), 0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn smallest_sensor<'a>(
     sources: impl IntoIterator<Item = &'a Source>,
     anchor: Anchor,
@@ -195,7 +139,6 @@ pub struct SensorSides {
 }
 
 impl SensorSides {
-    /// Creates sides of which none is given.
     pub fn at_least(least: u8) -> Self {
         Self {
             columns: None,
@@ -213,7 +156,6 @@ impl SensorSides {
         }
     }
 
-    /// Returns the largest sensor with these sides.
     pub fn largest(self) -> Sensor {
         self.sensors().last().unwrap_or(Sensor::LARGEST)
     }
@@ -226,7 +168,6 @@ impl SensorSides {
         })
     }
 
-    /// Returns the side along an axis, if it is given.
     fn given(self, axis: Axis) -> Option<u8> {
         match axis {
             Axis::Y0 => self.rows,
@@ -256,7 +197,6 @@ fn is_allowed(source: &Source, sensor: &Sensor) -> bool {
     })
 }
 
-/// Returns an error if a given range exceeds that of its parameter.
 pub fn check_given(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError> {
     for (axis, range) in given.iter() {
         if let Some(range) = range {
@@ -317,7 +257,6 @@ impl Reach {
         Ok(all)
     }
 
-    /// Adds the reach of another shape.
     pub(crate) fn add(&mut self, mut other: Self) {
         self.0.append(&mut other.0);
     }
@@ -468,13 +407,11 @@ fn own_zoom(source: &Source, axis: Axis) -> Option<DecimalRange> {
     DecimalRange::rounded(zoom?, 12)
 }
 
-/// Returns the given ranges, with default ranges for the axes that have none.
 fn filled(given: &GivenRanges) -> Ranges {
     let default = Ranges::default();
     Ranges::from_fn(|axis| given[axis].unwrap_or(default[axis]))
 }
 
-/// Returns a multiple of the step, in hundredths.
 fn multiple(count: f64, step: u32) -> i64 {
     hundredths(count).saturating_mul(step.into())
 }
@@ -502,4 +439,54 @@ fn limit(sensor: &Sensor) -> i64 {
 )]
 fn hundredths(value: f64) -> i64 {
     value as i64
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::pose::{GivenRanges, default_ranges, figure_ranges, smallest_sensor};
+        use crate::prelude::*;
+        let sensor = Sensor::default();
+        let given = GivenRanges::default();
+        let washer = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).on(&sensor)?;
+        let ranges = default_ranges(&washer.into(), &sensor, Anchor::Corner, &given)?;
+        assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
+        // A picture keeps its zooms.
+        let bar = Picture::of("###".parse().unwrap())
+            .zoom(0.5, 2.0)
+            .on(&sensor)?;
+        let ranges = default_ranges(&bar.into(), &sensor, Anchor::Centre, &given)?;
+        assert_eq!(
+            (
+                ranges[Axis::ZoomX].to_string(),
+                ranges[Axis::ZoomY].to_string()
+            ),
+            ("0.5".into(), "2".into())
+        );
+        // A square of 10 that lies there is cut off when it turns.
+        let square = Figure::rectangle(10.0, 10.0).at(1.99, 1.47).on(&sensor)?;
+        let ranges = default_ranges(&square.into(), &sensor, Anchor::Corner, &given)?;
+        assert_eq!(ranges[Axis::X0].to_string(), "2.5:3.49:0.01");
+        let given = GivenRanges::default();
+        let bar = Figure::rectangle(6.0, 3.0).on(&Sensor::default())?;
+        let ranges = figure_ranges(&bar.into(), &Sensor::default(), Anchor::Corner, &given)?;
+        assert_eq!(ranges[Axis::X0].to_string(), "5:5.99:0.01");
+        // A smaller sensor would cut it off there.
+        let sensor = Sensor::new(10, 10)?;
+        let bar = Figure::rectangle(6.0, 3.0).on(&sensor)?;
+        let ranges = figure_ranges(&bar.into(), &sensor, Anchor::Corner, &given)?;
+        assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
+        let triangle = Source::from(Figure::triangle(11.77).on(&Sensor::default())?);
+        let disc = Source::from(Figure::ellipse(3.09, 3.09).on(&Sensor::default())?);
+        let all_angles = GivenRanges::default();
+        let fit = smallest_sensor([&triangle, &disc], Anchor::Centre, &all_angles, 16)?;
+        let (sensor, ranges) = fit.expect("it fits on 64 × 64");
+        // Its corners move on a circle of radius 6.8, and its centre moves within one cell.
+        assert_eq!((sensor.columns(), sensor.rows()), (16, 16));
+        assert_eq!(ranges[Axis::X0].to_string(), "7:7.99:0.01");
+        let grid = PoseGrid::new(triangle, sensor, Anchor::Centre, ranges)?;
+        assert_eq!(grid.poses_beyond_sensor(), 0);
+        Ok(())
+    }
 }

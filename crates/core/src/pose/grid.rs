@@ -1,5 +1,3 @@
-//! A grid of poses: a figure or a picture, a sensor, and a range for each axis.
-
 use crate::geometry::{Point, Real};
 use crate::parameter::number::{grouped, to_decimals};
 use crate::parameter::{Parameter, ParameterError};
@@ -125,7 +123,6 @@ impl PoseGrid {
         self.ranges[Axis::Y0].count()
     }
 
-    /// Returns the number of orientations: angles times zooms.
     pub(super) fn orientations(&self) -> u64 {
         let [_, _, angles, zooms_x, zooms_y] = self.counts().into_array();
         angles * zooms_x * zooms_y
@@ -207,16 +204,6 @@ impl PoseGrid {
 
     /// Returns the point about which the shape turns, in pose `number` and for any anchor: x and y in cells. Numbers
     /// beyond the last pose start again at the first.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    ///
-    /// // 6 × 3, with its corner at 5, 5 before it is turned.
-    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
-    /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
-    /// assert_eq!(grid.centre(0), [8.0, 6.5]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn centre(&self, number: u64) -> [f64; 2] {
         self.centre_in(self.pose(number))
     }
@@ -237,17 +224,6 @@ impl PoseGrid {
     ///
     /// # Errors
     /// Returns an error if the corner lies outside of the range of x0 or y0, or a value of the pose is out of range.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    ///
-    /// // 6 × 3, with its centre at 5, 5.
-    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
-    /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Centre, Ranges::default())?;
-    /// let first = grid.source_at(grid.pose(0))?;
-    /// assert_eq!((first.get(Parameter::X0), first.get(Parameter::Y0)), (Some(2.0), Some(3.5)));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn source_at(&self, pose: Pose) -> Result<Source, ParameterError> {
         let with = |source: Source, axes: &[Axis], pose: Pose| {
             let mut own = self.axes().filter(|axis| axes.contains(axis));
@@ -289,7 +265,6 @@ impl PoseGrid {
             && matches!((posed(&self.source), posed(source)), (Ok(one), Ok(other)) if one == other)
     }
 
-    /// Returns the first pose of an orientation.
     pub(super) fn first_pose(&self, orientation: u64) -> Pose {
         self.pose(orientation * self.rows_per_orientation() * self.row_length())
     }
@@ -420,7 +395,6 @@ mod tests {
         assert_eq!(cut([u64::MAX; 5], [1; 5]), None);
     }
 
-    /// For any anchor, the shape by itself leaves the imprint of its pose.
     #[test]
     fn a_pose_can_be_touched_by_itself() {
         let triangle = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
@@ -464,5 +438,39 @@ mod tests {
             grid.is_of(grid.source(), &pitch),
             "the imprints are the same"
         );
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        // 6 × 3, with its corner at 5, 5 before it is turned.
+        let rectangle = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
+        let grid = PoseGrid::new(
+            rectangle,
+            Sensor::default(),
+            Anchor::Corner,
+            Ranges::default(),
+        )?;
+        assert_eq!(grid.centre(0), [8.0, 6.5]);
+        // 6 × 3, with its centre at 5, 5.
+        let rectangle = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
+        let grid = PoseGrid::new(
+            rectangle,
+            Sensor::default(),
+            Anchor::Centre,
+            Ranges::default(),
+        )?;
+        let first = grid.source_at(grid.pose(0))?;
+        assert_eq!(
+            (first.get(Parameter::X0), first.get(Parameter::Y0)),
+            (Some(2.0), Some(3.5))
+        );
+        Ok(())
     }
 }

@@ -1,5 +1,3 @@
-//! A shape in one pose, with its anchor at the position of the pose.
-
 use crate::geometry::{Moving, Pen, Point, Real, Solid};
 use crate::pose::boundary::Boundary;
 use crate::source::Source;
@@ -14,7 +12,6 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Creates a placed shape from one whose corner already is at its position.
     pub(crate) fn at_corner(rotated: Source) -> Self {
         Self {
             rotated,

@@ -28,18 +28,8 @@ const MAX_UNITS: i64 = 999_999_999_999_999;
 ///
 /// The numbers are exact decimals, and value `i` is the `f64` nearest to `start + i·step`. If the steps do not reach
 /// the end exactly, the last value is the largest one below the end. Units are those of the parameter.
-///
-/// ```
-/// use taxel_core::pose::DecimalRange;
-/// let range: DecimalRange = "5:5.99:0.01".parse()?;
-/// assert_eq!((range.count(), range.value(0), range.value(37), range.last()), (100, 5.0, 5.37, 5.99));
-/// assert_eq!(range.to_string(), "5:5.99:0.01");
-/// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0 is not above 0");
-/// # Ok::<(), taxel_core::pose::RangeError>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DecimalRange {
-    /// The first value and the step, in units of `10^-places`.
     start: i64,
     step: i64,
     places: u32,
@@ -49,14 +39,6 @@ pub struct DecimalRange {
 impl DecimalRange {
     /// Creates the range from `start` to `end`, which is included, in steps of `step`: as text, `start:end:step`. Each
     /// number counts as the shortest decimal that reads back as the same number, so 0.1 is one tenth.
-    ///
-    /// ```
-    /// use taxel_core::pose::DecimalRange;
-    /// assert_eq!(DecimalRange::new(5.0, 5.99, 0.01)?, "5:5.99:0.01".parse()?);
-    /// assert_eq!(DecimalRange::try_from(0.3)?, "0.3".parse()?);
-    /// assert!(DecimalRange::new(0.0, 1.0, f64::NAN).is_err());
-    /// # Ok::<(), taxel_core::pose::RangeError>(())
-    /// ```
     ///
     /// # Errors
     /// Returns an error if a number is not finite, or has more than 15 digits or 12 decimals (such as `0.1 + 0.2`); if
@@ -128,14 +110,6 @@ impl DecimalRange {
     }
 
     /// Returns the values with these indices as a range of their own; None if `indices` is empty or leaves the range.
-    ///
-    /// ```
-    /// use taxel_core::pose::DecimalRange;
-    /// let range: DecimalRange = "5:5.99:0.01".parse()?;
-    /// assert_eq!(range.part(10..20).map(|part| part.to_string()).as_deref(), Some("5.1:5.19:0.01"));
-    /// assert_eq!(range.part(90..101), None);
-    /// # Ok::<(), taxel_core::pose::RangeError>(())
-    /// ```
     pub fn part(&self, indices: std::ops::Range<u64>) -> Option<Self> {
         if indices.is_empty() || indices.end > self.count {
             return None;
@@ -151,14 +125,6 @@ impl DecimalRange {
     }
 
     /// Iterates over all values in order.
-    ///
-    /// ```
-    /// use taxel_core::pose::DecimalRange;
-    /// let values = DecimalRange::new(0.0, 0.3, 0.1)?;
-    /// assert_eq!(values.values().len(), 4);
-    /// assert!(values.values().rev().eq([0.3, 0.2, 0.1, 0.0]));
-    /// # Ok::<(), taxel_core::pose::RangeError>(())
-    /// ```
     pub fn values(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
         (0..narrow(self.count)).map(|index| self.value(index.into()))
     }
@@ -168,7 +134,6 @@ impl DecimalRange {
         [i128::from(self.start), i128::from(self.step)]
     }
 
-    /// Returns one, in units of the last decimal.
     pub(crate) fn one(&self) -> i128 {
         10_i128.pow(self.places)
     }
@@ -239,16 +204,12 @@ impl FromStr for DecimalRange {
 impl TryFrom<f64> for DecimalRange {
     type Error = RangeError;
 
-    /// Creates the range of a single number.
-    ///
-    /// # Errors
-    /// Returns an error if the number is not finite, or has more than 15 digits or 12 decimals, such as `0.1 + 0.2`.
+    /// Returns an error for a number with more than 15 digits or 12 decimals, such as `0.1 + 0.2`.
     fn try_from(value: f64) -> Result<Self, RangeError> {
         value.to_string().parse()
     }
 }
 
-/// The largest exponent that is written out, in size. Beyond it, any number has too many digits.
 const LARGEST_EXPONENT: i32 = 30;
 
 /// Writes a number with an exponent as a plain decimal: `1e-3` as `0.001`. Other text stays as it is.
@@ -277,13 +238,11 @@ fn without_exponent(text: &str) -> Cow<'_, str> {
     written_out().map_or(Cow::Borrowed(text), Cow::Owned)
 }
 
-/// Returns the number of decimals with which a number is written, without trailing zeros.
 fn places(text: &str) -> usize {
     let fraction = text.split_once('.').map_or("", |(_, after)| after);
     fraction.trim_end_matches('0').len()
 }
 
-/// Returns the digits before and after the decimal point, without the sign.
 fn parts(text: &str) -> (&str, &str) {
     let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
     digits.split_once('.').unwrap_or((digits, ""))
@@ -317,7 +276,6 @@ fn units(text: &str, places: usize) -> Option<i64> {
 }
 
 impl fmt::Display for DecimalRange {
-    /// Writes the range in the form in which it is read.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // The shortest decimal that reads back as the nearest `f64` is the exact decimal itself.
         write!(f, "{}", self.value(0))?;
@@ -444,5 +402,33 @@ mod tests {
         for odd in [f64::NAN, f64::INFINITY, 1e6] {
             assert_eq!(DecimalRange::rounded(odd, 9), None, "{odd}");
         }
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::pose::DecimalRange;
+        let range: DecimalRange = "5:5.99:0.01".parse()?;
+        assert_eq!(
+            (range.count(), range.value(0), range.value(37), range.last()),
+            (100, 5.0, 5.37, 5.99)
+        );
+        assert_eq!(range.to_string(), "5:5.99:0.01");
+        assert_eq!(
+            "1:2:0".parse::<DecimalRange>().unwrap_err().to_string(),
+            "step 0 is not above 0"
+        );
+        assert_eq!(DecimalRange::new(5.0, 5.99, 0.01)?, "5:5.99:0.01".parse()?);
+        assert_eq!(DecimalRange::try_from(0.3)?, "0.3".parse()?);
+        assert!(DecimalRange::new(0.0, 1.0, f64::NAN).is_err());
+        let range: DecimalRange = "5:5.99:0.01".parse()?;
+        assert_eq!(
+            range.part(10..20).map(|part| part.to_string()).as_deref(),
+            Some("5.1:5.19:0.01")
+        );
+        assert_eq!(range.part(90..101), None);
+        let values = DecimalRange::new(0.0, 0.3, 0.1)?;
+        assert_eq!(values.values().len(), 4);
+        assert!(values.values().rev().eq([0.3, 0.2, 0.1, 0.0]));
+        Ok(())
     }
 }

@@ -18,19 +18,6 @@ impl PoseGrid {
     /// moved by `zoom_x · x0`, `zoom_y · y0`.
     ///
     /// Takes time in proportion to the number of orientations.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    ///
-    /// let sensor = Sensor::default();
-    /// let bar = Figure::rectangle(6.0, 2.0).on(&sensor)?;
-    /// let ranges = Ranges::default().with(Axis::Angle, "0:90:90".parse()?);
-    /// let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, ranges)?;
-    /// let reach = grid.reach().expect("it has a boundary");
-    /// // Upright it reaches from (0, 0) to (6, 2); turned about (3, 1), from (2, −2) to (4, 4).
-    /// assert_eq!((reach.left, reach.top, reach.right, reach.bottom), (0.0, -2.0, 6.0, 4.0));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn reach(&self) -> Option<Extent> {
         self.extents().flatten().reduce(union)
     }
@@ -39,21 +26,6 @@ impl PoseGrid {
     /// reports the same number.
     ///
     /// Takes time in proportion to the number of orientations.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    ///
-    /// let sensor = Sensor::new(8, 8)?;
-    /// let square = Figure::rectangle(6.0, 6.0).on(&sensor)?;
-    /// let ranges = Ranges::default()
-    ///     .with(Axis::X0, "0:3:0.5".parse()?)
-    ///     .with(Axis::Y0, "1:2:1".parse()?)
-    ///     .with(Axis::Angle, "0".parse()?);
-    /// let grid = PoseGrid::new(square.into(), sensor, Anchor::Corner, ranges)?;
-    /// // x0 of 2.5 and 3, at both values of y0.
-    /// assert_eq!(grid.poses_beyond_sensor(), 4);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn poses_beyond_sensor(&self) -> u64 {
         let extents = (0..).zip(self.extents());
         let inside = extents.map(|(orientation, extent)| match extent {
@@ -67,7 +39,6 @@ impl PoseGrid {
         self.poses() - inside.sum::<u64>()
     }
 
-    /// Iterates over the extents of the shape in each orientation, with its anchor at the origin.
     pub(super) fn extents(&self) -> impl Iterator<Item = Option<Extent>> + '_ {
         (0..self.orientations()).map(|orientation| self.boundary::<f64>(orientation).extent())
     }
@@ -83,7 +54,7 @@ impl PoseGrid {
         )
     }
 
-    /// Returns the indices of y0 at which the shape reaches beyond neither the upper nor the lower side of the sensor.
+    /// The same for y0, the upper and the lower side.
     pub(crate) fn rows_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
         let at = |index| self.offset::<f64>(orientation, 0, index).y;
         inside(
@@ -120,12 +91,39 @@ fn first(range: Range<u64>, is_true: impl Fn(u64) -> bool) -> u64 {
     start
 }
 
-/// Returns the smallest rectangle around both.
 pub(super) fn union(one: Extent, other: Extent) -> Extent {
     Extent {
         left: one.left.min(other.left),
         top: one.top.min(other.top),
         right: one.right.max(other.right),
         bottom: one.bottom.max(other.bottom),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(6.0, 2.0).on(&sensor)?;
+        let ranges = Ranges::default().with(Axis::Angle, "0:90:90".parse()?);
+        let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, ranges)?;
+        let reach = grid.reach().expect("it has a boundary");
+        // Upright it reaches from (0, 0) to (6, 2); turned about (3, 1), from (2, −2) to (4, 4).
+        assert_eq!(
+            (reach.left, reach.top, reach.right, reach.bottom),
+            (0.0, -2.0, 6.0, 4.0)
+        );
+        let sensor = Sensor::new(8, 8)?;
+        let square = Figure::rectangle(6.0, 6.0).on(&sensor)?;
+        let ranges = Ranges::default()
+            .with(Axis::X0, "0:3:0.5".parse()?)
+            .with(Axis::Y0, "1:2:1".parse()?)
+            .with(Axis::Angle, "0".parse()?);
+        let grid = PoseGrid::new(square.into(), sensor, Anchor::Corner, ranges)?;
+        // x0 of 2.5 and 3, at both values of y0.
+        assert_eq!(grid.poses_beyond_sensor(), 4);
+        Ok(())
     }
 }

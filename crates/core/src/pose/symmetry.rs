@@ -66,7 +66,6 @@ pub(crate) fn exact_period(source: &Source, ranges: &Ranges) -> Option<f64> {
     Some(360.0 / f64::from(order))
 }
 
-/// Returns true if a quarter turn maps an imprint onto itself.
 fn quarter_turned(imprint: &Imprint) -> bool {
     let turned = |bounds: &Bounds, column, row| {
         (
@@ -121,7 +120,6 @@ pub(crate) struct AngleClasses {
 }
 
 impl AngleClasses {
-    /// Creates the classes of angles for a shape.
     pub(crate) fn of(source: &Source, angles: DecimalRange) -> Self {
         Self {
             angles,
@@ -130,7 +128,6 @@ impl AngleClasses {
         }
     }
 
-    /// Returns the class of an angle, which is given by its index.
     pub(crate) fn class(&self, index: u64) -> i128 {
         self.period
             .map_or(0, |period| self.angles.residue(index, period))

@@ -21,7 +21,6 @@ pub struct CountedImprints {
 }
 
 impl PartialEq for CountedImprints {
-    /// Returns true if both have the same imprints in the same order, left equally often.
     fn eq(&self, other: &Self) -> bool {
         (self.poses, self.partly_off) == (other.poses, other.partly_off)
             && self.iter().eq(other.iter())
@@ -39,7 +38,7 @@ impl CountedImprints {
         self.len() == 0
     }
 
-    /// Returns an imprint, counted from 0, and the number of poses in which it occurs.
+    /// An imprint, counted from 0, and the number of poses in which it occurs.
     ///
     /// # Panics
     /// Panics if there are not that many imprints.
@@ -68,17 +67,6 @@ pub struct PoseRun {
 
 impl Sweep<'_> {
     /// Counts the imprints without describing them. Returns None if the sweep was stopped.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
-    /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
-    /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
-    /// let counted = Sweep::new(&grid).count().expect("not stopped");
-    /// let counts: Vec<u64> = counted.iter().map(|(_, poses)| poses).collect();
-    /// assert_eq!((counted.poses, counts.iter().sum::<u64>()), (10_000, 10_000));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn count(self) -> Option<CountedImprints> {
         let sensor = *self.grid.sensor();
         let layout = Layout::new(sensor.size());
@@ -218,5 +206,23 @@ mod tests {
         };
         assert!(Sweep::new(&grid).with_progress(&progress).count().is_none());
         assert_eq!(done.into_inner(), 0);
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let square = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
+        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
+        let counted = Sweep::new(&grid).count().expect("not stopped");
+        let counts: Vec<u64> = counted.iter().map(|(_, poses)| poses).collect();
+        assert_eq!(
+            (counted.poses, counts.iter().sum::<u64>()),
+            (10_000, 10_000)
+        );
+        Ok(())
     }
 }

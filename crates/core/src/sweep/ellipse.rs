@@ -16,20 +16,16 @@ use crate::sweep::isolate::HollowEllipse;
 use crate::sweep::span::{DOUBT, Level, NEAR, Spans};
 use crate::sweep::track::{Passage, Track};
 
-/// The passages of one row of the sensor: outer rising and falling, inner rising and falling.
 type Tracks = [Track; 4];
 
-/// An ellipse, perhaps with a hole.
 #[derive(Clone, Debug)]
 pub(crate) struct Elliptic {
-    /// The ellipses, cut to the band at hand.
     ellipse: HollowEllipse,
     /// For each row of the sensor, where the passages were in the previous rows of the grid.
     tracks: Box<[Tracks]>,
 }
 
 impl Elliptic {
-    /// Prepares a shape; None unless it is one ellipse with at most one hole.
     pub(crate) fn new(ellipses: &[(Ellipse<f64>, Side)]) -> Option<Self> {
         let (outer, inner) = match ellipses {
             [(outer, Side::Inside)] => (outer, None),
@@ -77,17 +73,13 @@ impl Elliptic {
     }
 }
 
-/// A span of activity, and the gap that the hole makes in it.
 struct Passages {
     /// The beginning of the span: the column of the cell relative to the shape's anchor, in cell sides.
     from: f64,
-    /// The end of the span.
     to: f64,
-    /// The places between which the hole makes the taxel inactive.
     hole: Option<(f64, f64)>,
 }
 
-/// Follows the passages from the previous rows; None if something is not certain.
 fn follow(ellipse: &HollowEllipse, tracks: &mut Tracks) -> Option<Passages> {
     let [from, to, hole, end] = tracks;
     let (outer, threshold) = (&ellipse.outer, ellipse.threshold);
@@ -130,7 +122,6 @@ fn follow(ellipse: &HollowEllipse, tracks: &mut Tracks) -> Option<Passages> {
     })
 }
 
-/// Notes the passages that the spans show.
 fn learn(spans: &Spans, tracks: &mut Tracks) {
     let all = spans.all();
     match (spans.sharp(), all) {

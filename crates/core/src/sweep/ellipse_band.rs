@@ -13,9 +13,7 @@ const SLACK: f64 = 1e-12;
 /// An ellipse prepared for bands; see `geometry::ellipse_cuts` for the formulas.
 #[derive(Clone, Debug)]
 pub(crate) struct EllipseBand {
-    /// x of the centre.
     pub(crate) x: f64,
-    /// y of the centre.
     y: f64,
     /// Half of the extent along x.
     pub(crate) reach_x: f64,
@@ -27,11 +25,8 @@ pub(crate) struct EllipseBand {
     middle_x: f64,
     /// Half of the vertical section at distance d from the centre is this times the root of `reach_x`² − d².
     scale_y: f64,
-    /// The corresponding factor for horizontal sections.
     scale_x: f64,
-    /// The top of the band, relative to the centre.
     top: f64,
-    /// The closed forms from left to right, of which `count` are in use.
     stretches: [EllipseStretch; 5],
     /// The number of stretches in use, at most five: the band's lines cross the ellipse at up to four places.
     count: usize,
@@ -45,9 +40,7 @@ pub(crate) struct EllipseBand {
 /// A closed form `W = area + linear·d + square·d² + round·Φ(d)` between two places, relative to the centre.
 #[derive(Clone, Copy, Debug, Default)]
 struct EllipseStretch {
-    /// The position of its left end.
     left: f64,
-    /// The position of its right end.
     right: f64,
     area: f64,
     linear: f64,
@@ -68,7 +61,6 @@ pub(crate) struct Section {
 }
 
 impl EllipseBand {
-    /// Prepares an ellipse; no band is chosen yet.
     pub(crate) fn new(ellipse: &Ellipse<f64>) -> Self {
         let (centre, reach) = (ellipse.centre, ellipse.reach());
         let (x_square, y_square) = (reach.x * reach.x, reach.y * reach.y);
@@ -146,7 +138,6 @@ impl EllipseBand {
         self.count > 0
     }
 
-    /// Adds the stretch between two places, given with their [`Self::round`], unless the band is empty there.
     fn stretch(&mut self, (left, right): (f64, f64), (round, next): (f64, f64)) {
         let (top, bottom) = (self.top, self.top + 1.0);
         let middle = f64::midpoint(left, right);
@@ -208,7 +199,6 @@ impl EllipseBand {
         ((middle + half).min(self.top + 1.0) - (middle - half).max(self.top)).max(0.0)
     }
 
-    /// Returns the height of the section at a place.
     pub(crate) fn height(&self, x: f64) -> f64 {
         let d = x - self.x;
         if d.abs() >= self.reach_x {
@@ -217,7 +207,6 @@ impl EllipseBand {
         self.clipped(d, self.half(d))
     }
 
-    /// Returns the section at a place: its height, the area on its left, and the values that go with them.
     pub(crate) fn at(&self, x: f64) -> Section {
         let d = x - self.x;
         let stretches = &self.stretches[..self.count];
@@ -249,7 +238,6 @@ impl EllipseBand {
         }
     }
 
-    /// Returns the area inside the cell between two sections that are a cell apart.
     pub(crate) fn coverage(&self, left: &Section, right: &Section) -> f64 {
         match (left.stretch, right.stretch) {
             // Between the lines all along: full, without any rounding.
@@ -291,12 +279,10 @@ impl EllipseBand {
         (least.max(0.0), most.min(1.0))
     }
 
-    /// Returns true if the ellipse reaches the band.
     pub(crate) fn is_here(&self) -> bool {
         self.count > 0
     }
 
-    /// Returns the places between which the ellipse reaches in the band.
     pub(crate) fn reach(&self) -> (f64, f64) {
         let stretches = &self.stretches[..self.count];
         match (stretches.first(), stretches.last()) {
@@ -305,7 +291,6 @@ impl EllipseBand {
         }
     }
 
-    /// Returns the height of the highest section.
     pub(crate) fn highest(&self) -> f64 {
         self.highest
     }

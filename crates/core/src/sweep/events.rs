@@ -6,13 +6,10 @@
 use crate::atlas::Layout;
 use crate::index::{index, narrow, wide};
 
-/// The events of a row: which taxels are active at first, and which switch at which step.
 #[derive(Clone, Debug)]
 pub(crate) struct Events<'a> {
     pub(crate) layout: &'a Layout,
-    /// The number of steps in the row.
     count: u64,
-    /// The imprint at the first step, packed.
     key: Vec<u64>,
     /// The hash of that imprint.
     hash: u64,
@@ -23,20 +20,16 @@ pub(crate) struct Events<'a> {
     list: Vec<Event>,
 }
 
-/// A taxel that switches between active and inactive.
 #[derive(Clone, Copy, Debug)]
 struct Event {
-    /// The bit of the taxel in its word.
     mask: u64,
     /// The hash of this taxel alone. The hash of an imprint joins the hashes of its taxels by exclusive or.
     number: u64,
-    /// The word of the key that the bit is in.
     word: u32,
     /// The event before it at the same step, or `NONE`.
     before: u32,
 }
 
-/// The index that means no event.
 const NONE: u32 = u32::MAX;
 
 impl<'a> Events<'a> {
@@ -61,7 +54,6 @@ impl<'a> Events<'a> {
         self.list.clear();
     }
 
-    /// Gives access to the events of one row of the sensor.
     pub(crate) fn row(&mut self, row: usize) -> RowEvents<'_, 'a> {
         let (word, shift) = self.layout.slot(row);
         RowEvents {
@@ -96,19 +88,15 @@ impl<'a> Events<'a> {
     }
 }
 
-/// The events of one row of the sensor.
 pub(crate) struct RowEvents<'e, 'a> {
     row: usize,
-    /// The index of the key's word that holds the row; `shift` is the row's first bit in it.
     word: u32,
     shift: usize,
-    /// The hash of each taxel of the row alone.
     numbers: &'a [u64],
     events: &'e mut Events<'a>,
 }
 
 impl RowEvents<'_, '_> {
-    /// Returns the number of taxels in the row.
     pub(crate) fn columns(&self) -> usize {
         self.numbers.len()
     }

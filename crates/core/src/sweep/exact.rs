@@ -60,7 +60,6 @@ impl<'a> Exact<'a> {
         }
     }
 
-    /// Returns true if the sweep is to stop. The row is then of no use, and the rest of it need not be decided.
     pub(crate) fn stopped(&self) -> bool {
         self.stopped
     }

@@ -12,11 +12,8 @@ use crate::sweep::span::{NEAR, Span, Spans};
 /// The values of x0 as places in the plane: `first + k / per_cell`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Steps {
-    /// The place of the first value, in cell sides.
     pub(crate) first: f64,
-    /// The number of steps per cell.
     pub(crate) per_cell: f64,
-    /// The number of values.
     pub(crate) count: i32,
 }
 
@@ -25,22 +22,16 @@ fn floor(place: f64) -> i32 {
     Real::floor(place.clamp(-1e9, 1e9))
 }
 
-/// Turns the spans of one row of the sensor into events.
 pub(crate) struct FlipWriter<'s, 'e, 'a> {
-    /// The values of x0.
     pub(crate) steps: Steps,
-    /// The row of the sensor.
     pub(crate) row: usize,
-    /// The index of the value of y0.
     pub(crate) y: u64,
     /// The events that are written.
     pub(crate) events: RowEvents<'s, 'e>,
-    /// Decides for taxels in doubt.
     pub(crate) exact: &'s mut Exact<'a>,
 }
 
 impl FlipWriter<'_, '_, '_> {
-    /// Marks all spans of a row of the sensor.
     pub(crate) fn spans(&mut self, spans: &Spans) {
         // The fast path needs span ends that are known more precisely than the grid step.
         if spans.sharp() && NEAR * self.steps.per_cell < 0.25 {
@@ -104,7 +95,6 @@ impl FlipWriter<'_, '_, '_> {
         nearest + i32::from(active != (end == SpanEnd::Right))
     }
 
-    /// Returns true if a taxel is active at a step, which is not negative; computed exactly.
     fn active(&mut self, column: usize, step: i32) -> bool {
         let x = step.unsigned_abs().into();
         self.exact.active(column, self.row, x, self.y)
@@ -160,15 +150,12 @@ impl FlipWriter<'_, '_, '_> {
 /// An end of a span. The taxels of a row pass it from right to left.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum SpanEnd {
-    /// The left end, at which a taxel leaves the span.
     Left,
-    /// The right end, at which a taxel enters the span.
     Right,
 }
 
 /// A taxel that moves along the range of x0.
 struct Taxel {
-    /// The column of the taxel.
     column: usize,
     /// Whether it is active after the steps that are done.
     active: bool,

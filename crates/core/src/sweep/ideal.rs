@@ -9,7 +9,6 @@ use std::f64::consts::PI;
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::source::Source;
 
-/// Area and outline of the continuous figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Ideal {
     area: f64,
@@ -28,7 +27,6 @@ impl Ideal {
         Some(ideal)
     }
 
-    /// Returns the value of the feature of that name, if it has one.
     pub(crate) fn get(&self, key: &str) -> Option<f64> {
         match key {
             "na" => Some(self.area),

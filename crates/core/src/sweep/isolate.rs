@@ -19,11 +19,8 @@ const NARROW: f64 = 1e-6;
 /// An ellipse and perhaps a hole, both cut to the band.
 #[derive(Clone, Debug)]
 pub(crate) struct HollowEllipse {
-    /// The coverage from which on a taxel is active, above 0, up to 1.
     pub(crate) threshold: f64,
-    /// The ellipse.
     pub(crate) outer: EllipseBand,
-    /// The hole, if there is one.
     pub(crate) inner: Option<EllipseBand>,
 }
 
@@ -31,7 +28,6 @@ pub(crate) struct HollowEllipse {
 type Sample = (f64, f64);
 
 impl HollowEllipse {
-    /// Notes the levels of the whole band.
     pub(crate) fn isolate_all(&self, spans: &mut Spans) {
         let (left, right) = self.outer.reach();
         let ends = ((left - 1.0, -self.threshold), (right, -self.threshold));
@@ -39,7 +35,6 @@ impl HollowEllipse {
         spans.set_level(right, Level::Below);
     }
 
-    /// Returns the coverage at a place, minus the threshold.
     fn excess(&self, u: f64) -> f64 {
         let covered = |band: &EllipseBand| band.coverage(&band.at(u), &band.at(u + 1.0));
         let outer = covered(&self.outer);
@@ -51,7 +46,6 @@ impl HollowEllipse {
         outer - inner - self.threshold
     }
 
-    /// Returns bounds of the coverage's slope between two places.
     fn slopes(&self, from: f64, to: f64) -> (f64, f64) {
         let (low, high) = self.outer.bounds(from, to);
         let (low_ahead, high_ahead) = self.outer.bounds(from + 1.0, to + 1.0);
@@ -64,7 +58,6 @@ impl HollowEllipse {
         (least - high_ahead + low, most - low_ahead + high)
     }
 
-    /// Notes the levels between two places.
     fn isolate(&self, from: Sample, to: Sample, spans: &mut Spans) {
         let (before, after) = (Level::of(from.1), Level::of(to.1));
         let (least, most) = self.slopes(from.0, to.0);
@@ -95,7 +88,6 @@ impl HollowEllipse {
         self.isolate(middle, to, spans);
     }
 
-    /// Notes the levels between two places where the slope keeps its sign.
     fn passage(&self, from: Sample, to: Sample, spans: &mut Spans) {
         let (before, after) = (Level::of(from.1), Level::of(to.1));
         spans.set_level(from.0, before);

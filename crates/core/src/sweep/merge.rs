@@ -9,29 +9,12 @@ use crate::sweep::plan::{Shard, ShardOrderError};
 use crate::sweep::result::SweepResult;
 
 /// The shards of a sweep that were added so far.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// use taxel_core::sweep::{Shard, SweepMerge};
-///
-/// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
-/// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
-/// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
-/// let mut merge = SweepMerge::default();
-/// for number in 1..=2 {
-///     merge.add(Sweep::new(&grid).with_shard(Shard::new(number, 2).unwrap()).run())?;
-/// }
-/// assert_eq!(merge.finish()?, Sweep::new(&grid).run());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Default)]
 pub struct SweepMerge(Option<Merged>);
 
-/// The merged result of the first shards.
 #[derive(Debug)]
 struct Merged {
     grid: PoseGrid,
-    /// The last shard that was added.
     last: Shard,
     atlas: Atlas,
     variance_parts: VarianceParts,
@@ -40,7 +23,6 @@ struct Merged {
 }
 
 impl Merged {
-    /// Creates an empty merge for the sweep that this shard belongs to.
     fn of(first: &SweepResult) -> Self {
         let (grid, sensor) = (first.grid.clone(), first.grid.sensor());
         Self {
@@ -148,4 +130,29 @@ pub enum MergeError {
         /// The shard.
         shard: Shard,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        use crate::sweep::{Shard, SweepMerge};
+        let square = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
+        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
+        let mut merge = SweepMerge::default();
+        for number in 1..=2 {
+            merge.add(
+                Sweep::new(&grid)
+                    .with_shard(Shard::new(number, 2).unwrap())
+                    .run(),
+            )?;
+        }
+        assert_eq!(merge.finish()?, Sweep::new(&grid).run());
+        Ok(())
+    }
 }

@@ -16,13 +16,6 @@ use crate::quote::shortened;
 use crate::sweep::point_symmetry::PointSymmetry;
 
 /// A shard of a grid: piece `number` of `of` nearly equal pieces, counted from 1; as text, `2/3`.
-///
-/// ```
-/// use taxel_core::sweep::Shard;
-/// let shard: Shard = "2/3".parse().unwrap();
-/// assert_eq!(shard.rows(10), 3..6);
-/// assert!("4/3".parse::<Shard>().is_err());
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Shard {
     number: u32,
@@ -68,9 +61,6 @@ impl Shard {
     }
 
     /// Checks that a merge can take this shard after the one that it took last: the first, then the second, and so on.
-    ///
-    /// # Errors
-    /// Returns an error if the shard is not the next one.
     pub(crate) fn check_after(self, last: Option<Self>) -> Result<(), ShardOrderError> {
         let (number, of) = (last.map_or(1, |last| last.number + 1), self.of);
         match self.number.cmp(&number) {
@@ -80,10 +70,6 @@ impl Shard {
         }
     }
 
-    /// Checks that a merge that took this shard last is complete.
-    ///
-    /// # Errors
-    /// Returns an error if there are more shards.
     pub(crate) fn check_last(self) -> Result<(), ShardOrderError> {
         if self.number == self.of {
             return Ok(());
@@ -159,7 +145,6 @@ pub enum ShardOrderError {
 /// The detail in which a sweep reports each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SweepDetail {
-    /// The imprints, with the number of their poses.
     Counts,
     /// The runs of poses with the same imprint, too.
     Runs,
@@ -170,14 +155,11 @@ pub(crate) enum SweepDetail {
 pub(crate) struct Task {
     /// One group, or two groups that are mirror images of each other, with right and left exchanged.
     pub(crate) groups: Arc<[Arc<[u64]>]>,
-    /// The indices of the values of y0.
     pub(crate) rows: Range<u64>,
-    /// The detail of the result.
     pub(crate) detail: SweepDetail,
 }
 
 impl Task {
-    /// Returns the number of orientations.
     pub(crate) fn orientations(&self) -> u64 {
         self.groups.iter().map(|group| group.len() as u64).sum()
     }
@@ -274,7 +256,6 @@ fn pieces(grid: &PoseGrid, rows: Range<u64>, detail: SweepDetail) -> Vec<Piece> 
     pieces
 }
 
-/// Returns the number of rows in a task of a block with `count` pieces.
 fn task_rows(grid: &PoseGrid, count: u64) -> u64 {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     // Rows can be images of each other only within a task.
@@ -285,4 +266,15 @@ fn task_rows(grid: &PoseGrid, count: u64) -> u64 {
         TASK_POSES
     };
     (most / width).min(height * count / TASKS).max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() {
+        use crate::sweep::Shard;
+        let shard: Shard = "2/3".parse().unwrap();
+        assert_eq!(shard.rows(10), 3..6);
+        assert!("4/3".parse::<Shard>().is_err());
+    }
 }

@@ -18,15 +18,11 @@ use crate::sweep::span::{DOUBT, Level, STEEP, Spans};
 struct Edge {
     /// y of the upper end. All lengths are cell sides, y down, the anchor at the origin.
     top: f64,
-    /// y of the lower end.
     bottom: f64,
-    /// x of the upper end.
     x: f64,
     /// The growth of x per cell downwards.
     slope: f64,
-    /// The smaller x of both ends.
     low: f64,
-    /// The larger x.
     high: f64,
     /// +1 for an edge that goes upwards, −1 downwards.
     sign: f64,
@@ -40,12 +36,9 @@ impl Edge {
     }
 }
 
-/// A part of an edge inside the band.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
-    /// The position of its left end.
     left: f64,
-    /// The position of its right end; `left` for an upright piece.
     right: f64,
     /// The height that it climbs, −1 to 1; positive where the material is on its right.
     rise: f64,
@@ -56,9 +49,7 @@ struct Piece {
 /// The section's height between two corners of `w`, and its integral.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
-    /// The position of its left end.
     left: f64,
-    /// The position of its right end.
     right: f64,
     /// `w` at the left end.
     from: f64,
@@ -84,7 +75,6 @@ impl Stretch {
         }
     }
 
-    /// Returns `w` and `W` at a place inside.
     fn at(&self, x: f64) -> (f64, f64) {
         let way = within(x - self.left, 0.0, self.right - self.left);
         let height = self.from + self.slope * way;
@@ -99,11 +89,9 @@ pub(crate) struct Polygonal {
     edges: Vec<Edge>,
     /// The heights of the level edges, which have no pieces.
     levels: Vec<f64>,
-    /// The pieces of this band.
     pieces: Vec<Piece>,
     /// Where `w` has a corner, from left to right.
     corners: Vec<f64>,
-    /// The stretches between the corners.
     stretches: Vec<Stretch>,
 }
 
@@ -152,7 +140,6 @@ impl Polygonal {
         self.walk(threshold, certain, spans);
     }
 
-    /// Cuts the edges to the band.
     fn cut(&mut self, top: f64) {
         self.pieces.clear();
         self.corners.clear();
@@ -295,14 +282,10 @@ fn sort<T: Copy>(list: &mut [T], place: impl Fn(&T) -> f64) {
     }
 }
 
-/// A point of a quadratic.
 #[derive(Clone, Copy)]
 struct CurvePoint {
-    /// The place.
     at: f64,
-    /// The value there.
     value: f64,
-    /// The slope there.
     slope: f64,
 }
 

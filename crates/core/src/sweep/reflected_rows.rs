@@ -17,7 +17,6 @@ pub(crate) struct Runs {
 }
 
 impl Runs {
-    /// Begins the next row.
     pub(crate) fn begin(&mut self) {
         self.starts.push(self.list.len());
     }

@@ -47,7 +47,6 @@ pub struct SweepResult {
 }
 
 impl PartialEq for SweepResult {
-    /// Returns true if both have the same grid, shard, atlas and statistics.
     fn eq(&self, other: &Self) -> bool {
         // Statistics follow from the atlas and the parts of the variance.
         (&self.grid, self.shard, self.poses, self.partly_off)
@@ -120,17 +119,6 @@ impl SweepResult {
     ///
     /// A number is None if the atlas does not have the imprint, because the sweep was stopped before. The result is
     /// empty if a range leaves the grid. It takes as long as sweeping these poses.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
-    /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
-    /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
-    /// let result = Sweep::new(&grid).run();
-    /// // At x0 5.5 the columns at both ends are covered by half, and active.
-    /// assert_eq!(result.ids(PoseIndex::new([0; 5]), 49..52, 0..1), [Some(0), Some(1), Some(2)]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn ids(&self, orientation: PoseIndex, x0: Range<u64>, y0: Range<u64>) -> Vec<Option<u32>> {
         let rows = y0.end.saturating_sub(y0.start);
         let from = orientation
@@ -165,7 +153,6 @@ impl SweepResult {
         runs.collect()
     }
 
-    /// Returns the numbers that the result consists of.
     pub fn parts(&self) -> Parts {
         let mut parts = Parts {
             poses: self.poses,
@@ -181,11 +168,12 @@ impl SweepResult {
         parts
     }
 
-    /// Creates a result from its numbers.
-    ///
-    /// # Errors
-    /// Returns an error if they contradict each other or the grid.
-    pub fn from_parts(grid: PoseGrid, shard: Shard, parts: &Parts) -> Result<Self, PartsError> {
+    /// Creates a result from its numbers; an error if they contradict each other or the grid.
+    pub fn from_parts(
+        grid: PoseGrid,
+        shard: Shard,
+        parts: &Parts,
+    ) -> Result<Self, PartsError> {
         let check = |holds: bool, what: &'static str| holds.then_some(()).ok_or(PartsError(what));
         let size = grid.sensor().size();
         let height = usize::from(size.rows());
@@ -244,15 +232,10 @@ impl SweepResult {
 /// The numbers that a result consists of.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parts {
-    /// The number of poses swept.
     pub poses: u64,
-    /// The number of poses that reach beyond the sensor.
     pub partly_off: u64,
-    /// The imprints one after another, a word per row of the sensor, bit `i` for column `i`.
     pub rows: Vec<u64>,
-    /// How often each imprint occurs.
     pub counts: Vec<u64>,
-    /// The number of the first pose of each imprint.
     pub first_poses: Vec<u64>,
     /// Sums over the orientations, in a form that may change between versions.
     pub variance_words: Vec<u64>,
@@ -397,5 +380,23 @@ mod tests {
         assert_eq!(stopped.ids(PoseIndex::new([0; 5]), 0..1, 0..1), [Some(0)]);
         let ids = stopped.ids(PoseIndex::new([0, 0, 37, 0, 0]), 0..100, 0..100);
         assert!(ids.contains(&None));
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let square = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
+        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
+        let result = Sweep::new(&grid).run();
+        // At x0 5.5 the columns at both ends are covered by half, and active.
+        assert_eq!(
+            result.ids(PoseIndex::new([0; 5]), 49..52, 0..1),
+            [Some(0), Some(1), Some(2)]
+        );
+        Ok(())
     }
 }

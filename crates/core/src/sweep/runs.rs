@@ -27,15 +27,12 @@ use crate::touch::DOUBTFUL;
 /// The result of a task for one of its groups.
 #[derive(Debug)]
 pub(crate) struct GroupResult {
-    /// The orientations of the group.
     pub(crate) orientations: Arc<[u64]>,
-    /// The indices of the values of y0.
     pub(crate) rows: Range<u64>,
     /// The imprints of one orientation, with the number of their poses.
     pub(crate) counter: ImprintCounter,
     /// The number of poses of one orientation that reach beyond the sensor.
     pub(crate) partly_off: u64,
-    /// The runs of each row, if they are wanted.
     pub(crate) runs: Runs,
 }
 
@@ -75,9 +72,7 @@ pub(crate) fn sweep_task(
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one per task")]
 enum Shape {
-    /// Straight edges only.
     Polygonal(Polygonal),
-    /// One ellipse, with or without a hole.
     Elliptic(Elliptic),
 }
 
@@ -108,9 +103,7 @@ struct Sweeper<'a> {
     report_every: u64,
     /// The top and the bottom of the shape at the origin; None if it has no boundary.
     height: Option<[f64; 2]>,
-    /// The values of x0.
     steps: Steps,
-    /// The spans of the current band; the memory is reused.
     spans: Spans,
     /// The spans of the mirror image.
     mirrored: Spans,
@@ -200,7 +193,6 @@ impl<'a> Sweeper<'a> {
         true
     }
 
-    /// Returns what was found, for each group.
     fn finish(self, detail: SweepDetail) -> Vec<GroupResult> {
         let groups = self.groups.into_iter();
         let found = groups.map(|group| GroupResult {
@@ -275,12 +267,10 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// Returns the orientation that is swept.
     fn orientation(&self) -> u64 {
         self.found.orientations[0]
     }
 
-    /// Returns the number of the first pose of a row.
     fn first(&self, y: u64) -> u64 {
         (self.orientation() * self.grid.rows_per_orientation() + y) * self.grid.row_length()
     }
@@ -318,7 +308,6 @@ impl<'a> Group<'a> {
         .spans(spans);
     }
 
-    /// Counts the imprints of a row that was swept.
     fn end(&mut self, y: u64) {
         if !self.due {
             return;

@@ -1,5 +1,3 @@
-//! A small part of a grid: the time it takes gives an estimate for the whole grid.
-
 use std::collections::HashSet;
 
 use crate::pose::{AngleClasses, Axis, PoseGrid, PoseIndex};

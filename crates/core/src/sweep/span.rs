@@ -17,19 +17,14 @@ pub(crate) const NEAR: f64 = 1e-8;
 /// The least slope at a sharp end, see [`NEAR`]; the factor of two leaves room for the curvature.
 pub(crate) const STEEP: f64 = 2.0 * DOUBT / NEAR;
 
-/// The comparison of the coverage at a place with the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Level {
-    /// Below the threshold by more than [`DOUBT`].
     Below,
-    /// Within [`DOUBT`] of the threshold.
     Doubtful,
-    /// Above the threshold by more than [`DOUBT`].
     Above,
 }
 
 impl Level {
-    /// Returns the level of a coverage; `excess` is the coverage minus the threshold.
     pub(crate) fn of(excess: f64) -> Self {
         if excess > DOUBT {
             Self::Above
@@ -60,7 +55,6 @@ pub(crate) struct Spans {
 }
 
 impl Spans {
-    /// Starts again, far to the left of the shape.
     pub(crate) fn clear(&mut self) {
         self.list.clear();
         self.sharp = true;
@@ -151,12 +145,10 @@ impl Spans {
         self.list.push(span);
     }
 
-    /// Returns true if all spans are sharp.
     pub(crate) fn sharp(&self) -> bool {
         self.sharp
     }
 
-    /// Returns the spans, from left to right.
     pub(crate) fn all(&self) -> &[Span] {
         &self.list
     }

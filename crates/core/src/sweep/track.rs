@@ -15,9 +15,7 @@ use crate::sweep::span::{NEAR, STEEP};
 /// A direction in which the coverage passes through a level, from left to right.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Passage {
-    /// The coverage grows.
     Rising,
-    /// The coverage shrinks.
     Falling,
 }
 
