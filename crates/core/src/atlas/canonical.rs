@@ -19,7 +19,6 @@ pub(crate) struct Classes {
     key: Vec<u64>,
 }
 
-/// The rows of an imprint after it was moved to the top left corner.
 #[derive(Clone, Copy)]
 struct Block {
     width: usize,
@@ -40,7 +39,6 @@ impl Classes {
         }
     }
 
-    /// Returns the number of distinct imprints up to shifts, and up to shifts, quarter turns and mirror images.
     pub(crate) fn counts(&self) -> (usize, usize) {
         (self.shifts.len(), self.symmetry.len())
     }

@@ -8,18 +8,14 @@ use crate::index::index;
 /// The number of occurrences of a key, and the number of the first pose with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tally {
-    /// The number of occurrences.
     pub(crate) count: u64,
-    /// The number of the first pose that leaves the key.
     pub(crate) first: u64,
 }
 
 /// Counts keys that all have the same length.
 #[derive(Clone, Debug)]
 pub(crate) struct ImprintCounter {
-    /// The number of words in a key.
     length: usize,
-    /// All keys, one after the other, in the order of their first addition.
     keys: Vec<u64>,
     hashes: Vec<u64>,
     tallies: Vec<Tally>,
@@ -28,7 +24,6 @@ pub(crate) struct ImprintCounter {
     slots: Vec<u64>,
 }
 
-/// The half of a slot that holds the index.
 const INDEX: u64 = 0xffff_ffff;
 
 impl ImprintCounter {
@@ -42,7 +37,6 @@ impl ImprintCounter {
         }
     }
 
-    /// Returns the number of distinct keys.
     pub(crate) fn len(&self) -> usize {
         self.tallies.len()
     }
@@ -74,7 +68,6 @@ impl ImprintCounter {
         }
     }
 
-    /// Returns the index of a key, or as an error the empty slot where it belongs.
     #[inline]
     fn probe(&self, key: &[u64], hash: u64) -> Result<usize, usize> {
         let mask = self.slots.len() - 1;
@@ -100,7 +93,6 @@ impl ImprintCounter {
         self.tallies[index].count += count;
     }
 
-    /// Sorts the keys by their first poses. Returns the former index of each key.
     pub(crate) fn sort_by_first_pose(&mut self) -> Vec<usize> {
         // With the first poses beside the indices, comparisons need not look into the tallies.
         let firsts = self.tallies.iter().map(|tally| tally.first);
@@ -122,7 +114,6 @@ impl ImprintCounter {
         order
     }
 
-    /// Returns the index of a key; None if it was never added.
     pub(crate) fn find(&self, key: &[u64], hash: u64) -> Option<usize> {
         self.probe(key, hash).ok()
     }

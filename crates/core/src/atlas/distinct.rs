@@ -1,5 +1,3 @@
-//! The atlas: every distinct imprint of a sweep, once.
-
 use rayon::prelude::*;
 
 use crate::atlas::canonical::Classes;
@@ -19,7 +17,6 @@ pub struct Atlas {
 }
 
 impl PartialEq for Atlas {
-    /// Returns true if both have the same imprints in the same order, with the same counts and first poses.
     fn eq(&self, other: &Self) -> bool {
         self.entries().eq(other.entries())
     }
@@ -89,7 +86,6 @@ impl Atlas {
             .collect()
     }
 
-    /// Adds all imprints of another atlas of the same sensor.
     pub(crate) fn add_all(&mut self, other: &Self) {
         let ids = self.add(&other.counter, 1);
         for (id, summary) in ids.into_iter().zip(&other.summaries) {
@@ -116,7 +112,6 @@ impl Atlas {
         self.summaries = order.iter().map(|&old| self.summaries[old]).collect();
     }
 
-    /// Returns the summaries of the imprints, in their order.
     pub(crate) fn summaries(&self) -> &[ImprintSummary] {
         &self.summaries
     }
@@ -176,24 +171,6 @@ impl Atlas {
 
     /// Returns the nearest imprint that differs from the given one only by a shift of whole taxels. None if there is no
     /// such imprint.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    ///
-    /// let sensor = Sensor::default();
-    /// let bar = Source::from(Figure::rectangle(3.0, 1.0).on(&sensor)?);
-    /// let ranges = Ranges::new(["2:2.9:0.1", "2", "0", "1", "1"].map(|range| range.parse().expect("a range")));
-    /// let grid = PoseGrid::new(bar, sensor, Anchor::Corner, ranges)?;
-    /// let result = Sweep::new(&grid).run();
-    /// let atlas = result.atlas();
-    /// let moved = Figure::rectangle(3.0, 1.0).at(7.0, 1.0).on(&sensor)?;
-    /// let imprint = Plane::new(sensor).touch(&moved);
-    /// assert_eq!(atlas.find(&imprint), None);
-    /// // Up to 2.4 the bar covers columns 2 to 4, from 2.6 on columns 3 to 5, which are nearer.
-    /// let found = atlas.find_shifted(&imprint).expect("the bar");
-    /// assert_eq!((found.id, found.right, found.down), (2, 4, -1));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn find_shifted(&self, imprint: &Imprint) -> Option<ShiftedImprint> {
         let size = self.layout.size();
         let bounds = imprint.bounds()?;
@@ -289,5 +266,25 @@ mod tests {
         let first = |right, down| Some(ShiftedImprint { id: 0, right, down });
         assert_eq!(found("2:6:4", "4"), first(2, 0));
         assert_eq!(found("4", "2:6:4"), first(0, 2));
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let sensor = Sensor::default();
+        let bar = Source::from(Figure::rectangle(3.0, 1.0).on(&sensor)?);
+        let ranges = Ranges::new(
+            ["2:2.9:0.1", "2", "0", "1", "1"].map(|range| range.parse().expect("a range")),
+        );
+        let grid = PoseGrid::new(bar, sensor, Anchor::Corner, ranges)?;
+        let result = Sweep::new(&grid).run();
+        let atlas = result.atlas();
+        let moved = Figure::rectangle(3.0, 1.0).at(7.0, 1.0).on(&sensor)?;
+        let imprint = Plane::new(sensor).touch(&moved);
+        assert_eq!(atlas.find(&imprint), None);
+        // Up to 2.4 the bar covers columns 2 to 4, from 2.6 on columns 3 to 5, which are nearer.
+        let found = atlas.find_shifted(&imprint).expect("the bar");
+        assert_eq!((found.id, found.right, found.down), (2, 4, -1));
+        Ok(())
     }
 }

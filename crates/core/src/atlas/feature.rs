@@ -21,7 +21,6 @@ pub struct Feature {
     pub descriptor: &'static Descriptor,
     /// Whether it is a direction that goes all around, in degrees: then its mean and its deviation are circular.
     pub circular: bool,
-    /// The index of the descriptor's part.
     part: usize,
 }
 
@@ -50,13 +49,6 @@ impl Feature {
 }
 
 /// Returns all features, in the order of [`DESCRIPTORS`].
-///
-/// ```
-/// use taxel_core::atlas::features;
-/// let keys: Vec<&str> = features().iter().map(|feature| feature.key.as_str()).collect();
-/// assert_eq!(keys[..8], ["na", "nae", "ce", "num_x", "num_y", "cg_x", "cg_y", "p"]);
-/// assert_eq!(keys.len(), 23);
-/// ```
 pub fn features() -> &'static [Feature] {
     static ALL: LazyLock<Vec<Feature>> = LazyLock::new(all);
     &ALL
@@ -75,7 +67,6 @@ fn all() -> Vec<Feature> {
     features.collect()
 }
 
-/// The number of [`features`].
 pub(crate) const FEATURE_COUNT: usize = {
     let (mut count, mut index) = (0, 0);
     while index < DESCRIPTORS.len() {
@@ -99,7 +90,6 @@ pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64
     }
 }
 
-/// Calls `take` with each number of a value.
 fn each_part(value: Value, mut take: impl FnMut(f64)) {
     match value {
         Value::None => {}
@@ -186,5 +176,19 @@ mod tests {
             let single = features().iter().map(|own| own.value(&description));
             assert_eq!(all, single.collect::<Vec<_>>(), "{rows}");
         }
+    }
+
+    #[test]
+    fn examples() {
+        use crate::atlas::features;
+        let keys: Vec<&str> = features()
+            .iter()
+            .map(|feature| feature.key.as_str())
+            .collect();
+        assert_eq!(
+            keys[..8],
+            ["na", "nae", "ce", "num_x", "num_y", "cg_x", "cg_y", "p"]
+        );
+        assert_eq!(keys.len(), 23);
     }
 }

@@ -93,19 +93,16 @@ fn expected(found: &str) -> String {
     }
 }
 
-/// The quantity that a condition compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {
     Id,
     Count,
     Pieces,
     Holes,
-    /// The feature with this index in [`features`].
     Feature(usize),
 }
 
 impl Quantity {
-    /// Returns true for a share, which the screen shows in percent.
     fn is_share(self) -> bool {
         match self {
             Self::Feature(index) => features()[index].descriptor.dimension == Dimension::Share,
@@ -114,7 +111,6 @@ impl Quantity {
     }
 }
 
-/// A sign between a quantity and a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Relation {
     Equal,
@@ -145,7 +141,6 @@ const OWN_NAMES: [(&str, Quantity); 5] = [
     ("poses", Quantity::Count),
 ];
 
-/// A quantity compared with a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Condition {
     quantity: Quantity,
@@ -155,14 +150,12 @@ struct Condition {
     half: f64,
 }
 
-/// Returns all names with which a condition can begin.
 fn names() -> Vec<&'static str> {
     let features = features().iter().map(|feature| feature.key.as_str());
     features.chain(OWN_NAMES.map(|(name, _)| name)).collect()
 }
 
 impl Condition {
-    /// Returns true if a value of the quantity fulfils the condition.
     fn holds(&self, value: f64) -> bool {
         let equal = (value - self.number).abs() <= self.half;
         match self.relation {
@@ -179,7 +172,6 @@ impl Condition {
 impl std::str::FromStr for AtlasFilter {
     type Err = FilterError;
 
-    /// Reads an expression; an empty one has no conditions.
     fn from_str(text: &str) -> Result<Self, FilterError> {
         let mut conditions = Vec::new();
         let mut rest = text.trim();
@@ -207,7 +199,6 @@ impl AtlasFilter {
             .collect()
     }
 
-    /// Returns true if an imprint fulfils all conditions.
     #[expect(clippy::cast_precision_loss, reason = "compared with a typed number")]
     fn fits(&self, id: usize, count: u64, summary: &ImprintSummary) -> bool {
         self.conditions.iter().all(|condition| {
@@ -229,7 +220,6 @@ impl AtlasFilter {
 /// Words and signs that other languages write between conditions; upper and lower case are the same.
 const JOINING: [&str; 5] = ["and", "or", "&", "&&", ","];
 
-/// Reads the condition at the start of a text. Returns it and the text after it.
 fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     let in_name = |c: char| c.is_alphanumeric() || "_-".contains(c);
     let end = text
@@ -283,7 +273,6 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     Ok((condition, rest))
 }
 
-/// Returns the quantity with a name, or with the symbol that the screen shows; upper and lower case are the same.
 fn quantity(name: &str) -> Option<Quantity> {
     let feature = |named: fn(&Feature) -> Option<&str>| {
         let is_named = |own: &str| own.eq_ignore_ascii_case(name);

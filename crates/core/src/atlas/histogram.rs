@@ -34,19 +34,6 @@ impl Histogram {
     /// Counts the poses of an atlas in at most `most` intervals, never more than 10,000, or in the smallest
     /// possible number. `values` are those of the feature, one per imprint ([`Atlas::values`]). If all are
     /// whole, the width is at least 1. A value that is missing, not finite or beyond ±1e300 counts as none.
-    ///
-    /// ```
-    /// # use taxel_core::prelude::*;
-    /// use taxel_core::atlas::Histogram;
-    /// use taxel_core::atlas::features;
-    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
-    /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
-    /// let result = Sweep::new(&grid).run();
-    /// let na = Histogram::of(result.atlas(), &features()[0], &result.atlas().values(0), 10);
-    /// assert_eq!((na.width, na.without), (1.0, 0));
-    /// assert_eq!(na.poses.iter().sum::<u64>(), 3_600_000);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn of(atlas: &Atlas, feature: &Feature, values: &[Option<f64>], most: usize) -> Self {
         let is_value = |value: &f64| value.abs() <= LARGEST;
         let found = values.iter().copied().flatten().filter(is_value);
@@ -279,5 +266,26 @@ mod tests {
             assert_eq!(histogram.poses.is_empty(), empty, "{}", feature.key);
             assert_eq!(histogram.without, if empty { 360 } else { 0 });
         }
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::atlas::{Histogram, features};
+        use crate::prelude::*;
+        let square = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
+        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
+        let result = Sweep::new(&grid).run();
+        let na = Histogram::of(
+            result.atlas(),
+            &features()[0],
+            &result.atlas().values(0),
+            10,
+        );
+        assert_eq!((na.width, na.without), (1.0, 0));
+        assert_eq!(na.poses.iter().sum::<u64>(), 3_600_000);
+        Ok(())
     }
 }

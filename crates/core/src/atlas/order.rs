@@ -1,5 +1,3 @@
-//! Sorts the imprints of an atlas by a key, such as the number of poses that leave them.
-
 use std::cmp::Ordering;
 
 use crate::atlas::distinct::Atlas;
@@ -95,7 +93,6 @@ mod tests {
     use crate::source::Source;
     use crate::sweep::Sweep;
 
-    /// Returns the atlas of a rectangle that leaves the sensor: some poses are empty, and have no values.
     fn atlas() -> Atlas {
         let source = Source::Figure(Figure::default_of(
             FigureKind::Rectangle,

@@ -20,7 +20,6 @@ static SEED: OnceLock<u64> = OnceLock::new();
 /// The way in which the imprints of a sensor are packed.
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
-    /// The size of the sensor.
     size: MatrixSize,
     /// The binary logarithm of the number of bits that a row takes: 3 to 6.
     log_width: u32,
@@ -48,7 +47,6 @@ impl Layout {
         self.size
     }
 
-    /// Returns the number of words in a key.
     pub(crate) fn words(&self) -> usize {
         (usize::from(self.size.rows()) << self.log_width).div_ceil(64)
     }
@@ -59,13 +57,11 @@ impl Layout {
         (bits / 64, bits % 64)
     }
 
-    /// Returns the random numbers of a row's taxels.
     pub(crate) fn numbers(&self, row: usize) -> &[u64] {
         let columns = usize::from(self.size.columns());
         &self.numbers[row * columns..][..columns]
     }
 
-    /// Returns the imprint of a key.
     pub(crate) fn imprint(&self, key: &[u64]) -> Imprint {
         let mut imprint = Imprint::empty(self.size);
         for row in 0..usize::from(self.size.rows()) {
@@ -75,7 +71,6 @@ impl Layout {
         imprint
     }
 
-    /// Returns the key of an imprint, and its hash.
     pub(crate) fn key(&self, imprint: &Imprint) -> (Vec<u64>, u64) {
         let mut key = vec![0; self.words()];
         let mut hash = 0;
@@ -114,13 +109,11 @@ impl Layout {
         rows.fold(0, |hash, row| hash ^ self.hash(row, self.row(turned, row)))
     }
 
-    /// Returns the taxels of a row.
     fn row(&self, key: &[u64], row: usize) -> u64 {
         let (word, shift) = self.slot(row);
         key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.size.columns()))
     }
 
-    /// Returns the contribution of a row's taxels to a hash.
     pub(crate) fn hash(&self, row: usize, mut taxels: u64) -> u64 {
         let numbers = self.numbers(row);
         let mut hash = 0;

@@ -92,7 +92,6 @@ const fn column(
     StatisticColumn { key, title, value }
 }
 
-/// The sums over all imprints.
 #[derive(Clone, Debug)]
 struct Totals {
     rows: RowSums,
@@ -133,7 +132,6 @@ impl Totals {
     }
 }
 
-/// The sums of one feature.
 #[derive(Clone, Copy, Debug)]
 struct Total {
     sum: Sum,
@@ -141,7 +139,6 @@ struct Total {
 }
 
 impl Total {
-    /// Returns the statistics of a feature whose smallest and largest values are `extremes`.
     fn statistic(
         &self,
         feature: &'static Feature,
@@ -252,7 +249,6 @@ mod tests {
     use super::*;
     use crate::atlas::sums::signed;
 
-    /// Returns the statistic of directions. Each group contains those of an orientation.
     fn of_directions(groups: &[&[f64]]) -> Statistic {
         let feature = features().iter().find(|feature| feature.circular);
         let (mut sum, mut between) = (Sum::default(), Wide::default());

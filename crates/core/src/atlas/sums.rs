@@ -20,7 +20,6 @@ pub(crate) fn fixed(value: f64) -> i64 {
     Real::max(value * ONE + 0.5, 0.0) as i64
 }
 
-/// Returns a number in [−1, 1] in fixed point.
 #[expect(clippy::cast_possible_truncation, reason = "at most 2^40")]
 pub(crate) fn signed(value: f64) -> i64 {
     (value * ONE).round() as i64
@@ -33,7 +32,6 @@ pub(crate) fn mean(sum: u128, count: u64) -> f64 {
     (whole as f64 + rest as f64 / count as f64) / ONE
 }
 
-/// Returns the mean of `count` signed fixed-point numbers with this sum.
 #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
 pub(crate) fn signed_mean(sum: i128, count: u64) -> f64 {
     sum as f64 / count as f64 / ONE
@@ -74,7 +72,6 @@ impl Wide {
         ])
     }
 
-    /// Returns this number times another one, modulo 2¹⁹².
     pub(crate) fn times(self, times: u64) -> Self {
         let low = Self::product(self.low, times);
         Self {
@@ -116,12 +113,10 @@ impl Wide {
         mean(self.low, count)
     }
 
-    /// Returns the number as three words, the lowest first.
     pub(crate) fn words(self) -> [u64; 3] {
         [lower_word(self.low), lower_word(self.low >> 64), self.high]
     }
 
-    /// Creates the number from three words, the lowest first.
     pub(crate) fn from_words([first, second, high]: [u64; 3]) -> Self {
         Self {
             high,

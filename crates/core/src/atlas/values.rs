@@ -16,17 +16,14 @@ const PART: usize = 256;
 /// The values of all features of the imprints of an atlas, one row per imprint.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    /// The length of a row.
     width: usize,
     /// The rows. All parts except the last have [`PART`] rows.
     parts: Vec<Part>,
-    /// The number of rows.
     imprints: usize,
     /// The smallest and the largest value of each feature; infinity and minus infinity where none exists.
     extremes: Vec<(f64, f64)>,
 }
 
-/// Some rows of a table.
 #[derive(Clone, Debug)]
 struct Part {
     values: Vec<i64>,
@@ -48,15 +45,12 @@ const ALL_MISSING: u32 = (1 << FEATURE_COUNT) - 1;
 /// Checks at compile time that [`Row::missing`] has a bit for each feature.
 const _: () = assert!(FEATURE_COUNT < 32);
 
-/// The extremes of a feature without values.
 const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
-/// Returns the number of values that a feature takes in a row.
 fn width(circular: bool) -> usize {
     if circular { 2 } else { 1 }
 }
 
-/// Returns the length of a row.
 pub(crate) fn row_width() -> usize {
     let widths = features().iter().map(|feature| width(feature.circular));
     widths.sum()
@@ -74,7 +68,6 @@ pub(crate) fn columns() -> Vec<(usize, bool)> {
 }
 
 impl Default for Table {
-    /// Returns an empty table.
     fn default() -> Self {
         Self {
             width: row_width(),
@@ -86,7 +79,6 @@ impl Default for Table {
 }
 
 impl Table {
-    /// Adds the rows of the imprints that are not in the table yet.
     pub(crate) fn extend(&mut self, summaries: &[ImprintSummary]) {
         let (columns, width) = (columns(), self.width);
         let new = &summaries[self.imprints.min(summaries.len())..];
@@ -113,7 +105,6 @@ impl Table {
         self.imprints = summaries.len();
     }
 
-    /// Returns the values of an imprint.
     pub(crate) fn row(&self, index: usize) -> FeatureRow<'_> {
         let (part, row) = (&self.parts[index / PART], index % PART);
         FeatureRow {
@@ -204,7 +195,6 @@ pub(crate) struct RowSums {
 }
 
 impl RowSums {
-    /// Creates sums of no rows.
     pub(crate) fn new() -> Self {
         Self {
             poses: 0,
@@ -228,7 +218,6 @@ impl RowSums {
         }
     }
 
-    /// Adds other sums to these.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.poses += other.poses;
         for (sum, other) in self.columns.iter_mut().zip(&other.columns) {
@@ -239,12 +228,10 @@ impl RowSums {
         }
     }
 
-    /// Returns the number of poses that were added.
     pub(crate) fn poses(&self) -> u64 {
         self.poses
     }
 
-    /// Returns the sum of each feature.
     pub(crate) fn sums(&self) -> Vec<Sum> {
         let features = columns().into_iter().zip(&self.missing);
         let sum = |((column, circular), missing): ((usize, bool), &u64)| Sum {

@@ -14,7 +14,6 @@ use crate::pose::MAX_VALUES;
 /// The sums of one orientation.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct OrientationSums {
-    /// The number of poses, with or without a value.
     poses: u64,
     /// The number of orientations with the same imprints, including this one.
     multiplicity: u64,
@@ -54,7 +53,6 @@ impl OrientationSums {
 /// The parts of each feature's variance that come from the position and from the orientation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct VarianceParts {
-    /// The number of poses of an orientation of the grid.
     full: u64,
     /// For each feature, over the complete orientations: the sum of sum²/poses, or of the vectors' lengths for a
     /// circular feature.
@@ -64,7 +62,6 @@ pub(crate) struct VarianceParts {
 }
 
 impl VarianceParts {
-    /// Creates the parts for orientations of `full` poses each, without any sums.
     pub(crate) fn new(full: u64) -> Self {
         Self {
             full,
@@ -92,7 +89,6 @@ impl VarianceParts {
         }
     }
 
-    /// Adds the parts from other rows of the same grid.
     pub(crate) fn merge(&mut self, other: Self) {
         for (sum, other) in self.between.iter_mut().zip(other.between) {
             *sum += other;

@@ -1,5 +1,3 @@
-//! The answer to one touch, or to several of one shape.
-
 use crate::description::{RegionKind, regions};
 use crate::imprint::Imprint;
 use crate::parameter::named;
@@ -263,7 +261,6 @@ fn may_be_cut_off(touch: &Imprint, dead: Option<&Imprint>) -> bool {
     })
 }
 
-/// Returns the answer that a posterior gives.
 fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answer {
     let Posterior {
         ranking,

@@ -13,7 +13,6 @@ pub struct ConfusionMatrix {
 }
 
 impl ConfusionMatrix {
-    /// Creates a matrix for some shapes, without touches.
     pub(super) fn new(shapes: usize) -> Self {
         Self {
             rows: vec![Vec::new(); shapes],
@@ -21,7 +20,6 @@ impl ConfusionMatrix {
         }
     }
 
-    /// Adds touches of one shape that are named as another one, or as itself.
     pub(super) fn add(&mut self, touched: usize, named: usize, touches: u128) {
         self.named[named] += touches;
         let row = &mut self.rows[touched];

@@ -1,5 +1,3 @@
-//! The limit of any method that names the shapes of a model from one touch: exact counts over all its touches.
-
 use std::collections::BTreeMap;
 
 use crate::parameter::number::share;
@@ -53,7 +51,6 @@ pub struct Evaluation {
     pub keys: usize,
     /// The confusion matrix: which shapes are named as which.
     pub confusion: ConfusionMatrix,
-    /// The sum of the weights of all shapes.
     weights: u128,
 }
 
@@ -84,7 +81,6 @@ impl Evaluation {
         evaluation
     }
 
-    /// Evaluates a model, and returns the certainty of the evaluation beside it.
     pub(super) fn with_certainty(model: &Model) -> (Self, Certainty) {
         let keys = 0..model.keys().len();
         Self::of_classes(model, keys.map(|key| model.counts(key)))
@@ -109,7 +105,6 @@ impl Evaluation {
         (evaluation.finished(), certainty)
     }
 
-    /// Creates an evaluation that has counted no touch yet.
     pub(super) fn new(model: &Model) -> Self {
         let shapes = model.shapes();
         Self {
@@ -154,7 +149,6 @@ impl Evaluation {
         sum
     }
 
-    /// Clamps rounding errors: information is neither negative nor more than there is.
     pub(super) fn finished(mut self) -> Self {
         self.information_bits = self.information_bits.clamp(0.0, self.prior_bits);
         self
@@ -211,7 +205,6 @@ impl Evaluation {
     }
 }
 
-/// Returns H(S), in bits.
 fn prior_bits(model: &Model) -> f64 {
     let weights = model.weights();
     let bits = model.shapes().iter().map(|shape| {
@@ -272,7 +265,6 @@ mod tests {
     use crate::recognition::model::{ModelHead, NamedShape};
     use crate::sensor::Sensor;
 
-    /// A whole matrix would take 6.4 GB.
     #[test]
     fn a_large_set_takes_memory_only_for_confused_pairs() {
         const SHAPES: u16 = 20_000;

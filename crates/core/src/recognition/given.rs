@@ -107,17 +107,6 @@ impl std::fmt::Display for ShapeDescriptor {
 
 /// A descriptor that is measured in steps: values are rounded to the nearest multiple of the step. As text, its key and
 /// the step: `cg_cd=0.01`.
-///
-/// ```
-/// use taxel_core::recognition::{Rounding, ShapeDescriptor};
-///
-/// let distance: ShapeDescriptor = "cg_cd".parse()?;
-/// let rounding = Rounding::new(distance, 0.01)?;
-/// assert_eq!(rounding, "cg_cd=0.01".parse()?);
-/// assert_eq!((rounding.descriptor(), rounding.step()), (distance, 0.01));
-/// assert!(Rounding::new(distance, 0.0).is_err());
-/// # Ok::<(), taxel_core::recognition::GivenError>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     descriptor: ShapeDescriptor,
@@ -150,7 +139,6 @@ impl Rounding {
 impl std::str::FromStr for Rounding {
     type Err = GivenError;
 
-    /// Reads a descriptor and a step, `cg_cd=0.01`.
     fn from_str(text: &str) -> Result<Self, GivenError> {
         let error = || GivenError::Rounding {
             found: shortened(text),
@@ -172,19 +160,6 @@ impl std::fmt::Display for Rounding {
 ///
 /// Two imprints count as the same if all given descriptors of their main regions agree. Descriptors are compared
 /// exactly ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A missing value agrees only with a missing value.
-///
-/// ```
-/// use taxel_core::recognition::{Evaluation, GivenDescriptors, GridSteps, Training, equal_figures};
-///
-/// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
-/// let error = |given: &str| given.parse().map(|given: GivenDescriptors| given.evaluate(&model).error());
-/// // The perimeter helps, but the whole imprint says more.
-/// assert!(error("na")? > error("na,p")?);
-/// assert!(error("na,p")? > Evaluation::of(&model).error());
-/// // The centre of gravity depends on the position of the imprint.
-/// assert!(error("na,cg").is_err());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GivenDescriptors {
     descriptors: Vec<ShapeDescriptor>,
@@ -224,23 +199,6 @@ impl GivenDescriptors {
     /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
     /// that has their values most often without noise. Values that no shape has without noise get no name, which counts
     /// as wrong. None if `progress` stops it, or if no imprint fits on the sensor of the touches.
-    ///
-    /// ```
-    /// use taxel_core::progress::ToTheEnd;
-    /// use taxel_core::recognition::{GivenDescriptors, GridSteps, Noise, NoisyTouches, Training, equal_figures};
-    ///
-    /// let steps = GridSteps::new(4, 15)?;
-    /// let model = Training::fitting(equal_figures(), steps)?.run()?;
-    /// let given: GivenDescriptors = "na,p".parse()?;
-    /// let rate = |noise: f64| {
-    ///     let noise = Noise::new(noise).expect("below ½");
-    ///     let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
-    ///     given.rate(&model, &touches, &ToTheEnd).expect("not stopped")
-    /// };
-    /// assert!(rate(0.0).accuracy() > rate(0.02).accuracy());
-    /// assert_eq!(rate(0.0).held_share(), 1.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn rate(
         &self,
         model: &Model,
@@ -275,7 +233,6 @@ impl GivenDescriptors {
         model.simulated(touches, progress, &judge)
     }
 
-    /// Returns the values of these descriptors, in steps where they are rounded.
     fn values(&self, description: Option<&Description>) -> Vec<ExactValue> {
         let value = |&descriptor: &ShapeDescriptor| {
             let rounding = Rounding::of(descriptor, &self.roundings);
@@ -307,7 +264,6 @@ fn known(
 impl std::str::FromStr for GivenDescriptors {
     type Err = GivenError;
 
-    /// Reads a list separated by commas.
     fn from_str(text: &str) -> Result<Self, GivenError> {
         let descriptors = text.split(',').map(str::parse);
         Ok(Self::new(
@@ -324,10 +280,8 @@ impl std::fmt::Display for GivenDescriptors {
     }
 }
 
-/// The descriptions of all keys of a model, which descriptors divide into classes.
 pub(super) struct GivenTable<'a> {
     model: &'a Model,
-    /// The description of the main region of each key; None for the empty key.
     descriptions: Vec<Option<Description>>,
 }
 
@@ -335,7 +289,6 @@ pub(super) struct GivenTable<'a> {
 type Classes = Vec<u32>;
 
 impl<'a> GivenTable<'a> {
-    /// Describes the keys of a model.
     pub(super) fn new(model: &'a Model) -> Self {
         let describe = |key| ImprintSummary::of(&model.keys().imprint(key)?).description;
         let keys = (0..model.keys().len()).into_par_iter();
@@ -350,7 +303,6 @@ impl<'a> GivenTable<'a> {
         &self.descriptions
     }
 
-    /// Returns the classes if nothing is known: all keys are one class.
     fn one_class(&self) -> Classes {
         vec![0; self.descriptions.len()]
     }
@@ -405,7 +357,6 @@ impl Rounding {
         self.descriptor
     }
 
-    /// Returns the rounding of a descriptor, if there is one.
     fn of(descriptor: ShapeDescriptor, all: &[Self]) -> Option<&Self> {
         all.iter().find(|own| own.descriptor == descriptor)
     }
@@ -472,15 +423,6 @@ impl Model {
     /// Chooses descriptors one by one: each time the one with which the most touches are named right (among equals, the
     /// first in the table), until no descriptor improves the result. Returns them in the order in which they were
     /// chosen.
-    ///
-    /// ```
-    /// use taxel_core::recognition::{GridSteps, Training, equal_figures};
-    ///
-    /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
-    /// let chosen = model.choose_descriptors(&[]);
-    /// assert!(chosen.is_sorted_by(|one, next| one.evaluation.right < next.evaluation.right));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn choose_descriptors(&self, roundings: &[Rounding]) -> Vec<ChosenDescriptor> {
         let table = GivenTable::new(self);
         let mut classes = table.one_class();
@@ -552,5 +494,46 @@ mod tests {
         for step in ["9e-10", "1.1e9", "0", "-1", "NaN", "inf"] {
             assert!(!is_read(step), "{step}");
         }
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::progress::ToTheEnd;
+        use crate::recognition::{
+            Evaluation, GivenDescriptors, GridSteps, Noise, NoisyTouches, Rounding,
+            ShapeDescriptor, Training, equal_figures,
+        };
+        let distance: ShapeDescriptor = "cg_cd".parse()?;
+        let rounding = Rounding::new(distance, 0.01)?;
+        assert_eq!(rounding, "cg_cd=0.01".parse()?);
+        assert_eq!((rounding.descriptor(), rounding.step()), (distance, 0.01));
+        assert!(Rounding::new(distance, 0.0).is_err());
+        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+        let error = |given: &str| {
+            given
+                .parse()
+                .map(|given: GivenDescriptors| given.evaluate(&model).error())
+        };
+        // The perimeter helps, but the whole imprint says more.
+        assert!(error("na")? > error("na,p")?);
+        assert!(error("na,p")? > Evaluation::of(&model).error());
+        // The centre of gravity depends on the position of the imprint.
+        assert!(error("na,cg").is_err());
+        let steps = GridSteps::new(4, 15)?;
+        let model = Training::fitting(equal_figures(), steps)?.run()?;
+        let given: GivenDescriptors = "na,p".parse()?;
+        let rate = |noise: f64| {
+            let noise = Noise::new(noise).expect("below ½");
+            let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
+            given
+                .rate(&model, &touches, &ToTheEnd)
+                .expect("not stopped")
+        };
+        assert!(rate(0.0).accuracy() > rate(0.02).accuracy());
+        assert_eq!(rate(0.0).held_share(), 1.0);
+        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+        let chosen = model.choose_descriptors(&[]);
+        assert!(chosen.is_sorted_by(|one, next| one.evaluation.right < next.evaluation.right));
+        Ok(())
     }
 }

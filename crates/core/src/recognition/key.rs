@@ -27,7 +27,6 @@ use crate::sensor::MatrixSize;
 pub struct ImprintKey {
     height: u8,
     width: u8,
-    /// A bit per taxel of the box, in reading order.
     bits: Vec<u64>,
 }
 
@@ -43,7 +42,6 @@ impl ImprintKey {
         key
     }
 
-    /// Makes this the key of another imprint.
     pub fn set(&mut self, imprint: &Imprint) {
         self.bits.clear();
         let Some(bounds) = imprint.bounds() else {
@@ -85,12 +83,10 @@ impl ImprintKey {
     }
 }
 
-/// Returns the number of words that the taxels of a box take.
 fn words(width: u8, height: u8) -> usize {
     (usize::from(width) * usize::from(height)).div_ceil(64)
 }
 
-/// Sets the bits of a row from bit `place` on.
 pub(super) fn or_bits(bits: &mut [u64], place: usize, row: u64) {
     let (word, shift) = (place / 64, place % 64);
     bits[word] |= row << shift;
@@ -109,7 +105,6 @@ pub(super) struct KeyRef<'a> {
 }
 
 impl KeyRef<'_> {
-    /// Returns the number of active taxels.
     pub(super) fn count(self) -> u32 {
         self.bits.iter().map(|word| word.count_ones()).sum()
     }
@@ -139,7 +134,6 @@ impl KeyRef<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct KeyTable {
     sizes: Vec<(u8, u8)>,
-    /// The index of the first word of each key.
     starts: Vec<usize>,
     bits: Vec<u64>,
     index: HashTable<u32>,
@@ -147,7 +141,6 @@ pub struct KeyTable {
 }
 
 impl PartialEq for KeyTable {
-    /// Returns true if both have the same keys in the same order.
     fn eq(&self, other: &Self) -> bool {
         (&self.sizes, &self.bits) == (&other.sizes, &other.bits)
     }
@@ -201,7 +194,6 @@ impl KeyTable {
         self.intern(key.borrowed()) == next
     }
 
-    /// Adds a key unless the table has it; returns its number.
     pub(super) fn intern(&mut self, key: KeyRef<'_>) -> usize {
         let hash = self.hash(key);
         let same = |&index: &u32| self.get(wide(index)) == key;

@@ -59,26 +59,6 @@ impl Model {
     ///
     /// The prior is uniform over every pose in every place on the matrix. The first call sorts the keys for scans and
     /// takes longer.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// use taxel_core::recognition::{NamedShape, Noise, Training};
-    ///
-    /// let sensor = Sensor::default();
-    /// let shapes = [
-    ///     NamedShape::new("square", Figure::rectangle(4.0, 4.0).on(&sensor)?),
-    ///     NamedShape::new("bar", Figure::rectangle(8.0, 2.0).on(&sensor)?),
-    /// ];
-    /// let ranges = Ranges::default().with(Axis::Angle, "0:345:15".parse()?);
-    /// let model = Training::new(shapes, sensor, Anchor::Centre, ranges)?.run()?;
-    ///
-    /// // A square with a taxel missing and one too many: no shape leaves it, but a square nearly does.
-    /// let touch = "......#.\n.####...\n.####...\n.###....\n.####...\n........".parse()?;
-    /// assert_eq!(model.posterior(&touch), None);
-    /// let posterior = model.posterior_under(&touch, &Noise::new(0.01)?).expect("keys fit");
-    /// assert!(posterior[0] > 0.99);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn posterior_under(&self, imprint: &Imprint, noise: &Noise) -> Option<Vec<f64>> {
         let distances = self.distances(imprint, noise)?;
         let likelihoods = self.likelihoods(imprint, &distances, noise);
@@ -86,7 +66,6 @@ impl Model {
         (sum > 0.0).then(|| likelihoods.into_iter().map(|own| own / sum).collect())
     }
 
-    /// Returns P(imprint | s) · w for each shape, times a common factor. `distances` are those of the imprint.
     pub(super) fn likelihoods(
         &self,
         imprint: &Imprint,
@@ -270,7 +249,6 @@ impl Model {
         })
     }
 
-    /// Returns the touches of each shape at the distances from `least` to `most`.
     fn histogram(&self, observed: &Observed, least: u32, most: u32) -> Vec<Vec<u64>> {
         let (shapes, width) = (self.shapes().len(), wide(most - least) + 1);
         let take = |sums: &mut Vec<u64>, key: usize, places: &[u32]| {
@@ -307,7 +285,6 @@ fn log_of_sum(one: f64, other: f64) -> f64 {
     high + libm::log1p(libm::exp(low - high))
 }
 
-/// Adds sums element by element.
 fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
     one.iter_mut()
         .zip(other)
@@ -420,5 +397,26 @@ mod tests {
         let exact = least;
         let [least, most] = bounds(&[1, 0]);
         assert!(least < exact && exact <= most, "{least} {exact} {most}");
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        use crate::recognition::{NamedShape, Noise, Training};
+        let sensor = Sensor::default();
+        let shapes = [
+            NamedShape::new("square", Figure::rectangle(4.0, 4.0).on(&sensor)?),
+            NamedShape::new("bar", Figure::rectangle(8.0, 2.0).on(&sensor)?),
+        ];
+        let ranges = Ranges::default().with(Axis::Angle, "0:345:15".parse()?);
+        let model = Training::new(shapes, sensor, Anchor::Centre, ranges)?.run()?;
+        // A square with a taxel missing and one too many: no shape leaves it, but a square nearly does.
+        let touch = "......#.\n.####...\n.####...\n.###....\n.####...\n........".parse()?;
+        assert_eq!(model.posterior(&touch), None);
+        let posterior = model
+            .posterior_under(&touch, &Noise::new(0.01)?)
+            .expect("keys fit");
+        assert!(posterior[0] > 0.99);
+        Ok(())
     }
 }

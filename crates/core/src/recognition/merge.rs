@@ -1,26 +1,9 @@
-//! Merges the shards of a training into one model.
-
 use crate::recognition::model::{Gathered, Model, ModelError, ModelHead, ShapeCount};
 use crate::sweep::{Shard, ShardOrderError};
 
 /// The shards of a training that were added so far. Memory holds only what is already merged and one shard.
-///
-/// ```
-/// use taxel_core::recognition::{GridSteps, ModelMerge, Training, equal_figures};
-/// use taxel_core::sweep::Shard;
-///
-/// let training = Training::fitting(equal_figures(), GridSteps::new(4, 45)?)?;
-/// let mut merge = ModelMerge::default();
-/// for number in 1..=2 {
-///     let shard = Shard::new(number, 2).unwrap();
-///     merge.add(&training.clone().with_shard(shard).run()?)?;
-/// }
-/// assert_eq!(merge.finish()?, training.run()?);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Default)]
 pub struct ModelMerge {
-    /// The training as the first shard describes it, with the poses so far and the last shard.
     head: Option<ModelHead>,
     gathered: Gathered,
 }
@@ -78,5 +61,22 @@ fn slot_add(counts: &mut Vec<ShapeCount>, more: ShapeCount) {
     match counts.binary_search_by_key(&more.shape, |count| count.shape) {
         Ok(index) => counts[index].poses += more.poses,
         Err(index) => counts.insert(index, more),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::recognition::{GridSteps, ModelMerge, Training, equal_figures};
+        use crate::sweep::Shard;
+        let training = Training::fitting(equal_figures(), GridSteps::new(4, 45)?)?;
+        let mut merge = ModelMerge::default();
+        for number in 1..=2 {
+            let shard = Shard::new(number, 2).unwrap();
+            merge.add(&training.clone().with_shard(shard).run()?)?;
+        }
+        assert_eq!(merge.finish()?, training.run()?);
+        Ok(())
     }
 }

@@ -63,18 +63,15 @@ impl ShapeCount {
 #[derive(Clone, Debug)]
 pub struct Model {
     head: ModelHead,
-    /// The keys, sorted.
     keys: KeyTable,
     /// The index of each key's first count, and at the end the number of counts.
     starts: Vec<usize>,
-    /// The counts of each key, in the order of the shapes.
     counts: Vec<ShapeCount>,
     /// The keys again, in the order in which a scan compares them; made by the first scan.
     scan: OnceLock<ScanTables>,
 }
 
 impl PartialEq for Model {
-    /// Returns true if both have the same shapes, poses and keys, left equally often.
     fn eq(&self, other: &Self) -> bool {
         // Tables for scans follow from the keys.
         self.head == other.head
@@ -88,7 +85,6 @@ impl PartialEq for Model {
 #[derive(Clone, Debug)]
 struct ScanTables {
     index: KeyIndex,
-    /// For each box of the index, the number of poses of each shape.
     poses: Vec<u64>,
 }
 
@@ -132,7 +128,6 @@ impl ModelHead {
         }
     }
 
-    /// Returns true if both are parts of one training.
     pub(super) fn same_training(&self, other: &Self) -> bool {
         self.shapes == other.shapes
             && self.sensor == other.sensor
@@ -142,10 +137,8 @@ impl ModelHead {
     }
 }
 
-/// The largest number of shapes in a set.
 pub(super) const MAX_SHAPES: usize = 1 << 15;
 
-/// The most characters of the name of a shape, as in a library.
 const LONGEST_NAME: usize = 64;
 
 /// The error for shapes or numbers that do not make a model.
@@ -215,9 +208,6 @@ impl ModelError {
 }
 
 /// Checks the names and weights of a set.
-///
-/// # Errors
-/// Returns the first problem found.
 pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
     if shapes.is_empty() || shapes.len() > MAX_SHAPES {
         return Err(ModelError::Shapes {
@@ -385,19 +375,6 @@ impl Model {
 
     /// Iterates over the keys in their order. Each item is the imprint of a key (None for touches that activate no
     /// taxel) and the shapes that leave it.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// use taxel_core::recognition::{NamedShape, Training};
-    ///
-    /// let sensor = Sensor::default();
-    /// let bar = NamedShape::new("bar", Figure::rectangle(4.0, 2.0).on(&sensor)?);
-    /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
-    /// let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
-    /// let most = model.entries().max_by_key(|(_, counts)| counts[0].poses).expect("a key");
-    /// assert_eq!(most.0, Some("####\n####".parse()?));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn entries(
         &self,
     ) -> impl DoubleEndedIterator<Item = (Option<Imprint>, &[ShapeCount])> + ExactSizeIterator {
@@ -426,7 +403,6 @@ impl Model {
         Some(posterior)
     }
 
-    /// Returns the keys in the order in which scans compare them.
     pub(super) fn index(&self) -> &KeyIndex {
         &self.scan_tables().index
     }
@@ -450,7 +426,6 @@ impl Model {
         })
     }
 
-    /// Returns a count times the weight of its shape.
     pub(super) fn weighted(&self, count: ShapeCount) -> u128 {
         u128::from(count.poses) * u128::from(self.head.shapes[usize::from(count.shape)].weight)
     }
@@ -464,13 +439,11 @@ impl Model {
         counts.map(|&count| (usize::from(count.shape), self.weighted(count)))
     }
 
-    /// Returns ln w of each shape, in the order of the set.
     pub(super) fn log_weights(&self) -> Vec<f64> {
         let weights = self.head.shapes.iter().map(|shape| f64::from(shape.weight));
         weights.map(libm::log).collect()
     }
 
-    /// Returns the sum of all weights.
     pub(super) fn weights(&self) -> u128 {
         let weights = self
             .head
@@ -551,5 +524,21 @@ mod tests {
         shapes.push(shape(MAX_SHAPES));
         let refused = check_shapes(&shapes).expect_err("one more");
         assert_eq!(refused.to_string(), "32769 shapes, expected 1 to 32768");
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        use crate::recognition::{NamedShape, Training};
+        let sensor = Sensor::default();
+        let bar = NamedShape::new("bar", Figure::rectangle(4.0, 2.0).on(&sensor)?);
+        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+        let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
+        let most = model
+            .entries()
+            .max_by_key(|(_, counts)| counts[0].poses)
+            .expect("a key");
+        assert_eq!(most.0, Some("####\n####".parse()?));
+        Ok(())
     }
 }

@@ -1,5 +1,3 @@
-//! The imprint of a model that differs from an observed one in the fewest taxels.
-
 use std::cmp::Reverse;
 
 use crate::imprint::Imprint;
@@ -30,7 +28,6 @@ impl Model {
         self.nearest_without(observed, None)
     }
 
-    /// Returns the same as [`Self::nearest`], except that the active taxels of `dead` do not count.
     pub(super) fn nearest_without(
         &self,
         observed: &Imprint,

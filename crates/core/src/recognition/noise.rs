@@ -52,7 +52,6 @@ pub struct UnexplainedDifference {
 }
 
 impl fmt::Display for UnexplainedDifference {
-    /// Writes what the difference means, in a sentence.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let expected = match libm::round(self.expected) {
             few if few < 1.0 => "less than 1 is".to_owned(),
@@ -106,16 +105,6 @@ impl Noise {
 
     /// Checks whether this noise explains that a touch differs from its nearest imprint in `found` taxels. Returns
     /// None if it does; otherwise the numbers.
-    ///
-    /// ```
-    /// use taxel_core::recognition::Noise;
-    ///
-    /// let touch = "#...\n....\n....\n....".parse()?;
-    /// let noise = Noise::new(0.01)?;
-    /// assert_eq!(noise.unexplained(&touch, 2), None);
-    /// assert!(noise.unexplained(&touch, 8).is_some());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn unexplained(&self, touch: &Imprint, found: u32) -> Option<UnexplainedDifference> {
         let size = touch.size();
         let dead = self.dead.map_or(0, |dead| dead.resized(size).count());
@@ -126,7 +115,6 @@ impl Noise {
         })
     }
 
-    /// Returns the probability that at least `least` of `cells` taxels flip.
     fn at_least(&self, least: u32, cells: u32) -> f64 {
         // As logarithms: the first terms may be too small for an `f64`.
         let mut term = f64::from(cells) * libm::log1p(-self.flip);
@@ -190,5 +178,15 @@ mod tests {
         let largest = Imprint::empty(MatrixSize::of(64, 64));
         assert_eq!(most.unexplained(&largest, 2100), None);
         assert!(most.unexplained(&largest, 2300).is_some());
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::recognition::Noise;
+        let touch = "#...\n....\n....\n....".parse()?;
+        let noise = Noise::new(0.01)?;
+        assert_eq!(noise.unexplained(&touch, 2), None);
+        assert!(noise.unexplained(&touch, 8).is_some());
+        Ok(())
     }
 }

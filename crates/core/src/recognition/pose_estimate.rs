@@ -1,5 +1,3 @@
-//! Estimates where a shape lay and how it was turned, given the imprint that it left.
-
 use crate::imprint::Imprint;
 use crate::index::narrow;
 use crate::pose::{Axis, PoseGrid, exact_period};
@@ -82,24 +80,6 @@ impl Model {
     /// Finds the poses in which a shape leaves an imprint, by touching with the shape in every pose of the model.
     /// Of a shard, only its own poses count. `progress` is called as by [`Sweep::with_progress`]. None if there is no
     /// such shape, if it does not leave the imprint, if the imprint is empty, or if it was stopped.
-    ///
-    /// ```
-    /// use taxel_core::prelude::*;
-    /// use taxel_core::progress::ToTheEnd;
-    /// use taxel_core::recognition::{NamedShape, Training};
-    ///
-    /// let sensor = Sensor::default();
-    /// let bar = NamedShape::new("bar", Figure::rectangle(6.0, 2.0).on(&sensor)?);
-    /// let ranges = Ranges::default().with(Axis::Angle, "0:350:10".parse()?);
-    /// let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
-    /// let touch = "........\n.######.\n.######.\n........".parse()?;
-    /// let pose = model.pose_of(0, &touch, &ToTheEnd).expect("the bar leaves it");
-    /// let angle = pose.angle.expect("a bar has one");
-    /// assert_eq!((angle.period, angle.known().is_some()), (180.0, true));
-    /// assert!(angle.standard_deviation.is_some_and(|spread| spread < 10.0));
-    /// assert!((pose.position[0] - 4.0).abs() < 0.02 && (pose.position[1] - 2.0).abs() < 0.02);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn pose_of(
         &self,
         shape: usize,
@@ -184,11 +164,8 @@ pub struct PlacedSource {
 
 /// A run of neighbouring poses that leave the imprint.
 struct SeenPose {
-    /// x, y and angle of the middle of the run.
     place: [f64; 3],
-    /// The number of poses that the run counts as.
     weight: u64,
-    /// The number of the middle pose.
     number: u64,
     /// The columns and rows by which its imprint is moved.
     by: [f64; 2],
@@ -242,7 +219,6 @@ fn ordered(distance: f64) -> u64 {
     distance.max(0.0).to_bits()
 }
 
-/// Returns the whole degree that contains an angle from 0 to below a period.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -252,7 +228,6 @@ fn whole(angle: f64, period: f64) -> usize {
     (angle as usize).min(whole_degrees(period) as usize - 1)
 }
 
-/// Sums over poses: positions, their squares, and directions.
 #[derive(Debug, Default)]
 struct PoseMoments {
     poses: u64,
@@ -268,7 +243,6 @@ struct PoseMoments {
 }
 
 impl PoseMoments {
-    /// Adds neighbouring poses of a row from one x to another: `count` poses, which count as `weight`.
     fn add(&mut self, weight: u64, (from, to): (f64, f64), count: u64, y: f64) {
         let (poses, number) = (float(weight), float(count));
         let middle = f64::midpoint(from, to);
@@ -287,7 +261,6 @@ impl PoseMoments {
         self.squares[1] += poses * y * y;
     }
 
-    /// Adds an angle, given as a part of a full turn.
     fn add_direction(&mut self, weight: u64, part: f64) {
         let first = *self.first_part.get_or_insert(part);
         let (sine, cosine) = libm::sincos((part - first) * std::f64::consts::TAU);
@@ -451,7 +424,6 @@ mod tests {
         assert!(shards.iter().all(|&poses| poses < whole), "{shards:?}");
     }
 
-    /// Returns the poses of shape 1 in a count.
     fn own_poses(count: &ShapeCount) -> u64 {
         if count.shape == 1 { count.poses } else { 0 }
     }
@@ -523,5 +495,25 @@ mod tests {
         assert_eq!(fewest(&[10, 0, 0, 0, 0, 9, 1], 20), (5, 3));
         assert_eq!(fewest(&[0, 0, 4], 4), (2, 1));
         assert_eq!(fewest(&[1, 1, 1, 1], 4), (0, 4));
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        use crate::progress::ToTheEnd;
+        use crate::recognition::{NamedShape, Training};
+        let sensor = Sensor::default();
+        let bar = NamedShape::new("bar", Figure::rectangle(6.0, 2.0).on(&sensor)?);
+        let ranges = Ranges::default().with(Axis::Angle, "0:350:10".parse()?);
+        let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
+        let touch = "........\n.######.\n.######.\n........".parse()?;
+        let pose = model
+            .pose_of(0, &touch, &ToTheEnd)
+            .expect("the bar leaves it");
+        let angle = pose.angle.expect("a bar has one");
+        assert_eq!((angle.period, angle.known().is_some()), (180.0, true));
+        assert!(angle.standard_deviation.is_some_and(|spread| spread < 10.0));
+        assert!((pose.position[0] - 4.0).abs() < 0.02 && (pose.position[1] - 2.0).abs() < 0.02);
+        Ok(())
     }
 }

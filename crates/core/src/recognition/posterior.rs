@@ -13,7 +13,6 @@ use crate::recognition::model::float;
 /// last digits.
 const SAME: f64 = 1e-12;
 
-/// The probabilities of the shapes.
 pub(super) struct Posterior {
     /// The shapes of positive probability, the likeliest first; equally likely ones in the order of the set.
     pub(super) ranking: Vec<(usize, f64)>,
@@ -24,7 +23,6 @@ pub(super) struct Posterior {
 }
 
 impl Posterior {
-    /// Creates a posterior from the odds of the possible shapes, in the order of the set.
     pub(super) fn of_odds(mut odds: Vec<(usize, Odds)>) -> Self {
         odds.sort_by(|(_, one), (_, other)| other.cmp(one));
         let equal = |(_, one): &(usize, Odds), (_, other): &(usize, Odds)| one.cmp(other).is_eq();
@@ -95,7 +93,6 @@ fn normalised(logarithms: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
     shares.filter(|&(_, share)| share > 0.0).collect()
 }
 
-/// The odds of a shape: the product of its weight and of the number of poses in which it leaves each touched key.
 #[derive(Clone, Debug)]
 pub(super) struct Odds {
     /// The factors, in ascending order. None is 0.
@@ -105,7 +102,6 @@ pub(super) struct Odds {
 }
 
 impl Odds {
-    /// Creates the product of some factors; None if one is 0.
     pub(super) fn of(mut factors: Vec<u64>) -> Option<Self> {
         factors.sort_unstable();
         let logarithm = factors.iter().map(|&own| libm::log(float(own))).sum();
@@ -113,7 +109,6 @@ impl Odds {
         positive.then_some(Self { factors, logarithm })
     }
 
-    /// Returns the product; None if it is too large.
     fn product(&self) -> Option<u128> {
         let mut factors = self.factors.iter();
         factors.try_fold(1_u128, |product, &own| product.checked_mul(own.into()))
@@ -151,7 +146,6 @@ fn without_common(one: &[u64], other: &[u64]) -> [Vec<u64>; 2] {
     rest
 }
 
-/// Returns the lower 64 bits.
 #[expect(clippy::cast_possible_truncation, reason = "this is its purpose")]
 fn low(number: u128) -> u64 {
     number as u64

@@ -1,5 +1,3 @@
-//! Random numbers for simulations, the same for the same seed on every machine.
-
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -19,7 +17,6 @@ pub fn below(random: &mut Pcg64, end: u64) -> u64 {
     lower_word(product >> 64)
 }
 
-/// Draws a number from 0 to below 1, in steps of 2⁻⁵³.
 pub(super) fn unit(random: &mut Pcg64) -> f64 {
     float(random.next_u64() >> 11) / float(1 << 53)
 }
@@ -56,7 +53,6 @@ mod tests {
         );
     }
 
-    /// Otherwise the first touches of a simulation would depend on which taxels are dead.
     #[test]
     fn dead_taxels_are_drawn_from_random_numbers_of_their_own() {
         for seed in 0..4 {

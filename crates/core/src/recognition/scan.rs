@@ -32,9 +32,7 @@ const TASK: usize = if cfg!(test) { 64 } else { 1 << 15 };
 pub(super) struct KeyIndex {
     boxes: Vec<KeyBox>,
     groups: Vec<Group>,
-    /// The numbers of the keys in their table, group after group.
     numbers: Vec<u32>,
-    /// The taxels of the keys in the same order, each key in the words of its box.
     bits: Vec<u64>,
 }
 
@@ -43,7 +41,6 @@ pub(super) struct KeyIndex {
 pub(super) struct KeyBox {
     pub(super) width: u8,
     pub(super) height: u8,
-    /// The number of words of a key.
     length: usize,
     /// The numbers of its keys in the table.
     pub(super) keys: Range<usize>,
@@ -56,7 +53,6 @@ pub(super) struct KeyBox {
 struct Group {
     count: u32,
     keys: Range<usize>,
-    /// The index of its first word in the bits of all keys.
     bits: usize,
 }
 
@@ -64,9 +60,7 @@ struct Group {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct PlacedKey {
     pub(super) distance: u32,
-    /// The number of the key in its table.
     pub(super) key: usize,
-    /// The column and the row of its first taxel.
     pub(super) place: (u8, u8),
 }
 
@@ -108,7 +102,6 @@ impl IntegralImage {
         Self { width, sums }
     }
 
-    /// Returns the number of taxels inside a box whose first taxel is in some column and row.
     fn inside(&self, (column, row): (usize, usize), (width, height): (usize, usize)) -> u32 {
         let at = |column: usize, row: usize| u32::from(self.sums[row * self.width + column]);
         let (right, bottom) = (column + width, row + height);
@@ -121,7 +114,6 @@ impl IntegralImage {
 struct BoxPosition {
     column: u8,
     row: u8,
-    /// The number of observed taxels inside the box; `dead` is the number of dead ones.
     inside: u32,
     dead: u32,
 }
@@ -187,7 +179,6 @@ impl Observed {
 /// the most taxels first.
 struct Windows {
     places: Vec<BoxPosition>,
-    /// The number of words of each window.
     length: usize,
     /// The taxels inside each place, in the layout of keys; `living` has those that are not dead.
     bits: Vec<u64>,
@@ -195,7 +186,6 @@ struct Windows {
 }
 
 impl Windows {
-    /// Creates the windows outside of which at most `most` taxels are active.
     fn new(observed: &Observed, of: &KeyBox, most: u32) -> Self {
         let mut places = Vec::new();
         observed.each_place((of.width, of.height), |place| {
@@ -230,7 +220,6 @@ impl Windows {
     }
 }
 
-/// Cuts a window out of an imprint.
 fn cut(imprint: &Imprint, of: &KeyBox, place: BoxPosition, bits: &mut [u64]) {
     let mask = u64::MAX.unbounded_shr(64 - u32::from(of.width));
     let rows = &imprint.words()[usize::from(place.row)..];
@@ -283,7 +272,6 @@ impl KeyIndex {
         index
     }
 
-    /// Returns the boxes that keys have, by height and width.
     pub(super) fn boxes(&self) -> &[KeyBox] {
         &self.boxes
     }
@@ -454,13 +442,10 @@ impl KeyIndex {
 /// Keys of one group, and the windows that they are compared with.
 struct Comparison<'a, F> {
     keys: Range<usize>,
-    /// The taxels of the keys.
     bits: &'a [u64],
-    /// The number of taxels of each key.
     count: u32,
     windows: &'a Windows,
     observed: &'a Observed,
-    /// The largest distance that matters.
     most: u32,
     take: F,
 }

@@ -15,7 +15,6 @@ use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// The number of steps into which a search divides the distance between two values of a scan.
 const FINER: u8 = 10;
 
 /// The quantity that is varied to change the size of the shapes in cells.
@@ -65,23 +64,6 @@ named!(SizeAxis, "axis", SizeAxis::ALL);
 ///
 /// As in a training, each shape is touched with its centre in one cell and at the given angles, on a sensor that cuts
 /// nothing off.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// use taxel_core::progress::ToTheEnd;
-/// use taxel_core::recognition::{CellPositions, NamedShape, Separation, SizeAxis};
-///
-/// let sensor = Sensor::default();
-/// let shapes = vec![
-///     NamedShape::new("square", Figure::rectangle(2.0, 2.0).on(&sensor)?),
-///     NamedShape::new("disc", Figure::ellipse(1.13, 1.13).on(&sensor)?),
-/// ];
-/// let separation = Separation::new(shapes)?.with_positions(CellPositions::COARSE).with_angles("0:350:10".parse()?);
-/// let scales = "1:5:1".parse()?;
-/// let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &ToTheEnd)?;
-/// assert!(points[0].error() > 0.3 && points[4].error() < 0.05);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Separation {
     shapes: Vec<NamedShape>,
@@ -263,11 +245,8 @@ impl Separation {
         Ok(point)
     }
 
-    /// Returns the same as [`Self::at`], with the model that was counted and its evaluation. The model has the zooms
-    /// of its first shape only, so it stays in the crate.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Self::at`].
+    /// Returns the same as [`Self::at`], with the model that was counted and its evaluation. The model has the zooms of
+    /// its first shape only, so it stays in the crate.
     pub fn model_at(
         &self,
         axis: SizeAxis,
@@ -590,5 +569,24 @@ mod tests {
             };
             assert!(is_there(64.0) && !is_there(64.01), "{source:?}");
         }
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        use crate::progress::ToTheEnd;
+        use crate::recognition::{CellPositions, NamedShape, Separation, SizeAxis};
+        let sensor = Sensor::default();
+        let shapes = vec![
+            NamedShape::new("square", Figure::rectangle(2.0, 2.0).on(&sensor)?),
+            NamedShape::new("disc", Figure::ellipse(1.13, 1.13).on(&sensor)?),
+        ];
+        let separation = Separation::new(shapes)?
+            .with_positions(CellPositions::COARSE)
+            .with_angles("0:350:10".parse()?);
+        let scales = "1:5:1".parse()?;
+        let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &ToTheEnd)?;
+        assert!(points[0].error() > 0.3 && points[4].error() < 0.05);
+        Ok(())
     }
 }

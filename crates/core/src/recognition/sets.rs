@@ -1,5 +1,3 @@
-//! Built-in sets of shapes, and the grid of poses that suits a set.
-
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Reach, SensorSides};
@@ -81,7 +79,6 @@ impl CellPositions {
         self.0
     }
 
-    /// Returns the distance between two positions, in hundredths of a cell.
     pub fn step(self) -> u32 {
         100 / u32::from(self.0)
     }
@@ -147,7 +144,6 @@ impl GridSteps {
         self.degrees
     }
 
-    /// Returns the range of all angles.
     fn angles(self) -> DecimalRange {
         let count = u64::from(360 / self.degrees);
         DecimalRange::from_units(0, self.degrees.into(), 0, count)

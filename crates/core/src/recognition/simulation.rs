@@ -69,7 +69,6 @@ impl RecognitionRate {
         self.held_share
     }
 
-    /// Returns the rate of all shapes, each with its weight.
     fn of(shapes: &[(u32, ShapeRate)]) -> Self {
         let sum = |of: fn(&ShapeRate) -> u64| shapes.iter().map(|(_, own)| of(own)).sum();
         let weighted = |of: fn(&ShapeRate) -> u64| -> u128 {
@@ -106,7 +105,6 @@ pub(super) struct Judgement {
     pub(super) named: Option<(usize, f64)>,
 }
 
-/// The counts of the touches of one shape.
 #[derive(Clone, Copy, Default)]
 struct ShapeRate {
     touches: u64,
@@ -117,7 +115,6 @@ struct ShapeRate {
 }
 
 impl ShapeRate {
-    /// Counts a touch of a shape.
     fn count(&mut self, shape: usize, judged: &Judgement) {
         let is_right = judged.named.is_some_and(|(named, _)| named == shape);
         self.touches += 1;
@@ -126,7 +123,6 @@ impl ShapeRate {
         self.confidence += judged.named.map_or(0.0, |(_, probability)| probability);
     }
 
-    /// Adds the counts of more touches of the same shape.
     fn add(&mut self, more: Self) {
         self.touches += more.touches;
         self.right += more.right;
@@ -177,7 +173,6 @@ impl NoisyTouches {
     }
 }
 
-/// A distribution from which touches of one shape are drawn.
 #[derive(Clone, Default)]
 pub(super) struct Draw {
     /// For each key: the number of touches up to and including this key, and the number of the key.
@@ -198,7 +193,6 @@ impl Draw {
         draws
     }
 
-    /// Draws the number of a key; None if the shape has no touch.
     pub(super) fn key(&self, random: &mut Pcg64) -> Option<usize> {
         let &(end, _) = self.sums.last().filter(|(sum, _)| *sum > 0)?;
         let touch = below(random, end);
@@ -217,20 +211,6 @@ impl Model {
     ///
     /// `progress` is called with the number of touches done since the last call, and stops the simulation by
     /// returning `Break`. Returns None if it was stopped, or if there is no touch.
-    ///
-    /// ```
-    /// use taxel_core::progress::ToTheEnd;
-    /// use taxel_core::recognition::{GridSteps, Noise, NoisyTouches, Training, equal_figures};
-    ///
-    /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
-    /// let noise = Noise::new(0.01)?;
-    /// let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
-    /// let rate = model.recognition_rate(&touches, &noise, &ToTheEnd).expect("not stopped");
-    /// let touches = touches.with_random_dead(64);
-    /// let fewer = model.recognition_rate(&touches, &noise, &ToTheEnd).expect("not stopped");
-    /// assert!(fewer.accuracy() < rate.accuracy());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn recognition_rate(
         &self,
         touches: &NoisyTouches,
@@ -259,7 +239,6 @@ impl Model {
         progress: &dyn Progress,
         judge: &(dyn Fn(&Imprint, &Imprint) -> Judgement + Sync),
     ) -> Option<RecognitionRate> {
-        /// Touches that one thread draws and counts at a time.
         const CHUNK: u64 = 50;
         /// Chunks whose counts are held at a time: a billion touches would take gigabytes.
         const HELD: usize = 4096;
@@ -313,7 +292,6 @@ impl Model {
         (!stopped.into_inner() && rate.touches > 0).then_some(rate)
     }
 
-    /// Returns the imprint of a key in a random place, with random flips.
     fn touch_of(&self, key: usize, touches: &NoisyTouches, random: &mut Pcg64) -> Imprint {
         let (size, noise) = (touches.size, &touches.noise);
         let (columns, rows) = (size.columns(), size.rows());
@@ -439,5 +417,23 @@ mod tests {
         // The variances are 25 and 16.
         let error = (9.0 * 25.0 + 16.0_f64).sqrt() / 400.0;
         assert!((found.standard_error() - error).abs() < 1e-15, "{found:?}");
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::progress::ToTheEnd;
+        use crate::recognition::{GridSteps, Noise, NoisyTouches, Training, equal_figures};
+        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+        let noise = Noise::new(0.01)?;
+        let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
+        let rate = model
+            .recognition_rate(&touches, &noise, &ToTheEnd)
+            .expect("not stopped");
+        let touches = touches.with_random_dead(64);
+        let fewer = model
+            .recognition_rate(&touches, &noise, &ToTheEnd)
+            .expect("not stopped");
+        assert!(fewer.accuracy() < rate.accuracy());
+        Ok(())
     }
 }

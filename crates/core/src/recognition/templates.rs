@@ -1,9 +1,6 @@
-//! Template matching: imprints compared taxel by taxel, without any feature.
-
 use crate::imprint::Imprint;
 use crate::recognition::model::Model;
 
-/// The most frequent imprints of each shape.
 pub(super) struct Templates(Vec<Vec<Template>>);
 
 /// An imprint, and how many of its taxels lie above each row and left of each column. An empty imprint has no rows.
@@ -100,7 +97,6 @@ impl Template {
     }
 }
 
-/// Returns the sums of the first 0, 1, 2 … values.
 fn sums_before(values: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut sum = 0;
     let after = values.map(|value| {

@@ -1,5 +1,3 @@
-//! The number of touches that are needed to name a shape, estimated by drawing touches.
-
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
@@ -109,7 +107,6 @@ impl RunCounts {
         self
     }
 
-    /// Returns the counts of the runs of both.
     fn sum(mut self, other: &Self) -> Self {
         self.runs += other.runs;
         self.right += other.right;

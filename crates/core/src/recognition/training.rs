@@ -1,5 +1,3 @@
-//! Training: touches every shape in every pose, and counts the keys.
-
 use std::fmt;
 
 use rayon::prelude::*;
@@ -224,7 +222,6 @@ impl<'a> Training<'a> {
     }
 }
 
-/// Returns the keys of imprints, and in how many poses each occurs.
 fn keys_of(counted: &CountedImprints) -> (KeyTable, Vec<u64>) {
     const CHUNK: usize = 4096;
     let chunks: Vec<Vec<(ImprintKey, u64)>> = (0..counted.len().div_ceil(CHUNK))

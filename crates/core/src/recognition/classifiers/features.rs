@@ -1,5 +1,3 @@
-//! The features that classifiers see: numbers of the main region of each key.
-
 use std::collections::HashMap;
 
 use crate::atlas::{feature_values, features};
@@ -13,16 +11,13 @@ pub(super) const LEAST_VARIANCE: f64 = 1e-9;
 
 /// The features of all keys, in units of their deviation.
 pub(super) struct FeatureTable {
-    /// The names of the features.
     pub(super) names: Vec<String>,
-    /// The features that were left out, with the reason.
     pub(super) dropped: Vec<(String, &'static str)>,
     /// A row of features for each key.
     values: Vec<f64>,
 }
 
 impl FeatureTable {
-    /// Describes the keys of a model by the features of these descriptors, or of all.
     pub(super) fn new(model: &Model, descriptors: Option<&[ShapeDescriptor]>) -> Self {
         let table = GivenTable::new(model);
         let keys = table.descriptions().len();
@@ -61,7 +56,6 @@ impl FeatureTable {
         }
     }
 
-    /// Returns the features of a key.
     pub(super) fn row(&self, key: usize) -> &[f64] {
         &self.values[key * self.names.len()..][..self.names.len()]
     }
@@ -129,7 +123,6 @@ fn equalise(
     }
 }
 
-/// Returns mean and population variance of a feature over all touches of all shapes.
 fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
     let touches = u128::from(model.poses()) * model.weights();
     let mean_of = |value: &dyn Fn(f64) -> f64| {

@@ -1,5 +1,3 @@
-//! A sample of touches, the nearest of which vote.
-
 use std::collections::BTreeMap;
 
 use rand_core::SeedableRng;
@@ -27,14 +25,12 @@ impl PoseSample {
 
 /// The touches that vote: a random sample, or all touches.
 pub(super) struct Sample {
-    /// The touches, in the order of their keys.
     touches: Vec<SampledTouches>,
     shapes: usize,
 }
 
 /// Touches of one shape that leave the same key.
 struct SampledTouches {
-    /// The number of the key.
     key: usize,
     shape: usize,
     /// The number of the touches, each of which is a vote.
@@ -42,7 +38,6 @@ struct SampledTouches {
 }
 
 impl Sample {
-    /// Draws poses of each shape; takes all of them if there are no more.
     pub(super) fn new(model: &Model, sample: PoseSample) -> Self {
         let shapes = model.shapes().len();
         let touches = if sample.is_drawn(model) {

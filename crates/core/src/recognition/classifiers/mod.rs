@@ -74,7 +74,6 @@ pub struct ClassifierSettings {
 }
 
 impl Default for ClassifierSettings {
-    /// Returns the default settings: all descriptors, 1 neighbour of 2,000 poses with seed 0, 100 templates.
     fn default() -> Self {
         Self {
             descriptors: None,
@@ -102,7 +101,6 @@ pub struct ClassifierEvaluation {
     pub sample: Option<PoseSample>,
 }
 
-/// Scores of the shapes for a key; the lowest is the best.
 type Scores = Vec<f64>;
 
 impl Classifier {
@@ -111,20 +109,6 @@ impl Classifier {
     /// Ties go to the first shape in the order of the set. `progress` is called from time to time, from any thread,
     /// with the number of keys of the model that were classified since the last call, and stops the evaluation by
     /// returning `Break`. Returns None if it was stopped.
-    ///
-    /// ```
-    /// use taxel_core::progress::ToTheEnd;
-    /// use taxel_core::recognition::{
-    ///     Classifier, ClassifierSettings, Evaluation, GridSteps, Training, equal_figures,
-    /// };
-    ///
-    /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
-    /// let settings = ClassifierSettings::default();
-    /// let result = Classifier::Knn.evaluate(&model, &settings, &ToTheEnd).expect("not stopped");
-    /// // No classifier of one touch is better than the model.
-    /// assert!(result.evaluation.right <= Evaluation::of(&model).right);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn evaluate(
         self,
         model: &Model,
@@ -207,7 +191,6 @@ impl ClassMean {
     }
 }
 
-/// Classifies every key by its scores; None if it was stopped.
 fn evaluate(
     model: &Model,
     scores: &(dyn Fn(usize) -> Scores + Sync),
@@ -261,7 +244,6 @@ fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
     [first, second, tie.map(|(_, second)| second)]
 }
 
-/// Returns how much the name tells about the shape, in bits.
 fn information(confusion: &ConfusionMatrix) -> f64 {
     let shapes = 0..confusion.shapes();
     let rows: Vec<u128> = (shapes.clone())
@@ -344,5 +326,21 @@ mod tests {
         assert_eq!(first_two(&[2.0, 1.0, 1.0]), [Some(1), Some(2), Some(2)]);
         assert_eq!(first_two(&[2.0, 1.0, 3.0]), [Some(1), Some(0), None]);
         assert_eq!(first_two(&[2.0]), [Some(0), None, None]);
+    }
+
+    #[test]
+    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::progress::ToTheEnd;
+        use crate::recognition::{
+            Classifier, ClassifierSettings, Evaluation, GridSteps, Training, equal_figures,
+        };
+        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+        let settings = ClassifierSettings::default();
+        let result = Classifier::Knn
+            .evaluate(&model, &settings, &ToTheEnd)
+            .expect("not stopped");
+        // No classifier of one touch is better than the model.
+        assert!(result.evaluation.right <= Evaluation::of(&model).right);
+        Ok(())
     }
 }
