@@ -9,6 +9,7 @@ const _: () = assert!(
     "a u32 is an index on every supported target"
 );
 
+/// Converts a `u32` to an index, without loss.
 pub const fn wide(number: u32) -> usize {
     number as usize
 }

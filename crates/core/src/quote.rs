@@ -1,6 +1,7 @@
 //! Shortens untrusted text for messages, and suggests the name that was meant. Text from files and arguments may be
 //! megabytes long.
 
+/// Shortens text that a message quotes, to at most 40 characters and `…`.
 pub fn shortened(text: &str) -> String {
     cut(text, 40)
 }

@@ -20,6 +20,7 @@ pub struct MatrixSize {
 }
 
 impl MatrixSize {
+    /// The smallest size: one cell.
     pub const SMALLEST: Self = Self {
         columns: 1,
         rows: 1,

@@ -76,6 +76,7 @@ pub enum FrameError {
 }
 
 impl FrameError {
+    /// Returns true if a frame of another size could be processed.
     pub fn is_of_size(&self) -> bool {
         matches!(
             self,

@@ -13,6 +13,7 @@ pub struct FirstFrames {
 }
 
 impl FirstFrames {
+    /// Begins a tare of `wanted` frames, at least one.
     pub fn new(wanted: u64) -> Self {
         Self {
             frames: TareFrames::new(wanted),
@@ -20,10 +21,12 @@ impl FirstFrames {
         }
     }
 
+    /// Returns the number of frames that the tare needs.
     pub fn wanted(&self) -> u64 {
         self.frames.wanted()
     }
 
+    /// Returns the number of frames that are still missing.
     pub fn missing(&self) -> u64 {
         self.frames.missing()
     }
@@ -69,6 +72,10 @@ impl FirstFrames {
         }
     }
 
+    /// Computes the tare.
+    ///
+    /// # Errors
+    /// Returns an error if frames are missing.
     pub fn finish(self) -> Result<Tare, FrameError> {
         self.frames.finish()
     }

@@ -18,8 +18,10 @@ pub struct FrameSize {
 }
 
 impl FrameSize {
+    /// The allowed numbers of columns, and of rows.
     pub const SIDES: RangeInclusive<u16> = 1..=MAX_FRAME_SIDE;
 
+    /// One cell.
     pub const SMALLEST: Self = Self {
         columns: 1,
         rows: 1,

@@ -18,6 +18,7 @@ pub fn short(number: f64) -> String {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
+/// Returns a part divided by the whole; 0 if the whole is 0, as in a shard without poses.
 pub fn share(part: u128, whole: u128) -> f64 {
     if whole == 0 {
         return 0.0;

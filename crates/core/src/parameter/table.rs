@@ -54,6 +54,7 @@ impl Parameter {
         self.key_without_unit().replace('_', "-")
     }
 
+    /// Returns the key without a unit, as in the settings file.
     pub fn key_without_unit(self) -> &'static str {
         let key = self.row().key;
         key.strip_suffix("_mm").unwrap_or(key)

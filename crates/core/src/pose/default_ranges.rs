@@ -139,6 +139,7 @@ pub struct SensorSides {
 }
 
 impl SensorSides {
+    /// Creates sides of which none is given.
     pub fn at_least(least: u8) -> Self {
         Self {
             columns: None,
@@ -156,6 +157,7 @@ impl SensorSides {
         }
     }
 
+    /// Returns the largest sensor with these sides.
     pub fn largest(self) -> Sensor {
         self.sensors().last().unwrap_or(Sensor::LARGEST)
     }
@@ -197,6 +199,7 @@ fn is_allowed(source: &Source, sensor: &Sensor) -> bool {
     })
 }
 
+/// Returns an error if a given range exceeds that of its parameter.
 pub fn check_given(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError> {
     for (axis, range) in given.iter() {
         if let Some(range) = range {

@@ -42,6 +42,7 @@ impl ImprintKey {
         key
     }
 
+    /// Makes this the key of another imprint.
     pub fn set(&mut self, imprint: &Imprint) {
         self.bits.clear();
         let Some(bounds) = imprint.bounds() else {

@@ -79,6 +79,7 @@ impl CellPositions {
         self.0
     }
 
+    /// Returns the distance between two positions, in hundredths of a cell.
     pub fn step(self) -> u32 {
         100 / u32::from(self.0)
     }

@@ -153,6 +153,7 @@ impl SweepResult {
         runs.collect()
     }
 
+    /// Returns the numbers that the result consists of.
     pub fn parts(&self) -> Parts {
         let mut parts = Parts {
             poses: self.poses,
@@ -169,11 +170,7 @@ impl SweepResult {
     }
 
     /// Creates a result from its numbers; an error if they contradict each other or the grid.
-    pub fn from_parts(
-        grid: PoseGrid,
-        shard: Shard,
-        parts: &Parts,
-    ) -> Result<Self, PartsError> {
+    pub fn from_parts(grid: PoseGrid, shard: Shard, parts: &Parts) -> Result<Self, PartsError> {
         let check = |holds: bool, what: &'static str| holds.then_some(()).ok_or(PartsError(what));
         let size = grid.sensor().size();
         let height = usize::from(size.rows());
@@ -232,10 +229,15 @@ impl SweepResult {
 /// The numbers that a result consists of.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parts {
+    /// The number of poses swept. If the sweep was stopped, it is less than the number of poses of the shard.
     pub poses: u64,
+    /// The number of poses that reach beyond the sensor.
     pub partly_off: u64,
+    /// The imprints one after another, a word per row of the sensor, bit `i` for column `i`.
     pub rows: Vec<u64>,
+    /// How often each imprint occurs.
     pub counts: Vec<u64>,
+    /// The number of the first pose of each imprint.
     pub first_poses: Vec<u64>,
     /// Sums over the orientations, in a form that may change between versions.
     pub variance_words: Vec<u64>,
