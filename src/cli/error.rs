@@ -124,8 +124,8 @@ pub(crate) enum CliError {
         name: Option<String>,
         failure: runner::ScriptFailure,
     },
-    #[error("{name:?} already exists and is not replaced; {free} is free")]
-    Recorded { name: String, free: String },
+    #[error("{name:?} already exists and is not replaced")]
+    Recorded { name: String },
     #[error("{name}: cannot record: {}", write_reason(error))]
     Record { name: String, error: io::Error },
     #[error("{0}")]

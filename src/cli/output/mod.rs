@@ -13,8 +13,6 @@ pub(super) mod heat_map;
 
 pub(super) mod line_writer;
 
-pub(super) mod record_writer;
-
 pub(super) mod recording_list;
 
 pub(super) mod ranges;

@@ -23,8 +23,6 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::state::Live;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::recognise::confusion::Confusion;
-use crate::tui::recognise::quiz::Quiz;
-use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::search::page::SearchDialog;
 use crate::tui::shapes::state::ListDialog;
@@ -63,12 +61,8 @@ pub enum Dialog {
     Filter(FilterDialog),
     /// Recognition of the shape on the matrix. Its state outlasts the page, so the program keeps it.
     Recognition,
-    /// The quiz: a random touch that the user names.
-    Quiz(Box<Quiz>),
     /// The confusion matrix of a model.
     Confusion(Box<Confusion>),
-    /// The limit of a set against the size of its shapes.
-    Separate(Box<Separate>),
     /// The frames of a sensor.
     Live(Box<Live>),
 }
@@ -92,9 +86,7 @@ impl Dialog {
             Self::Export(page) => page,
             Self::Filter(page) => page,
             Self::Recognition => recognition,
-            Self::Quiz(page) => &**page,
             Self::Confusion(page) => &**page,
-            Self::Separate(page) => &**page,
             Self::Live(page) => &**page,
         }
     }

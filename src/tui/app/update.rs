@@ -129,7 +129,7 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
     if !message.moves_shape() && app.held.is_none() {
         app.moves = None;
     }
-    if matches!(message, Message::Paste(_)) && !has_field(app.context()) {
+    if matches!(message, Message::Paste(_)) && !app.context().takes_text() {
         refuse(app, "pasted text goes into fields only");
         return None;
     }
@@ -137,11 +137,6 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
         Some(dialog) => in_dialog(app, dialog, message),
         None => matrix::update::act(app, message),
     }
-}
-
-/// Returns true if there is a field that takes text. A quiz takes single letters.
-fn has_field(here: Context) -> bool {
-    here.takes_text() && here != Context::Quiz
 }
 
 /// Explains that a key does nothing here, once per key. Names the key that lists all keys or, in that list, the keys
@@ -202,9 +197,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Export(dialog) => explore::update::in_export(app, dialog, &message),
         Dialog::Filter(dialog) => explore::prompts::in_filter(app, dialog, &message),
         Dialog::Recognition => recognise::update::in_recognition(app, message),
-        Dialog::Quiz(page) => recognise::update::in_quiz(app, page, message),
         Dialog::Confusion(page) => recognise::update::in_confusion(app, page, &message),
-        Dialog::Separate(page) => recognise::separate::update::in_separate(app, page, &message),
         Dialog::Live(page) => live::update::in_live(app, page, message),
     }
 }

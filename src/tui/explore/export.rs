@@ -17,25 +17,20 @@ const LONGEST: usize = 4096;
 
 /// The kind of export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExportKind {
-    /// The imprints of a sweep.
-    Sweep {
-        /// Whether all poses were swept, so that they can be written too.
-        poses: bool,
-        /// Whether the tab has a drawing.
-        drawing: bool,
-        /// Whether a CSV file holds the table of the tab.
-        table: bool,
-    },
-    /// The error of a set against size.
-    Curve,
+pub struct ExportKind {
+    /// Whether all poses were swept, so that they can be written too.
+    poses: bool,
+    /// Whether the tab has a drawing.
+    drawing: bool,
+    /// Whether a CSV file holds the table of the tab.
+    table: bool,
 }
 
 impl ExportKind {
     /// Returns the kind of export of a sweep's results from the open tab.
     pub fn of(results: &Results) -> Self {
         let tab = tabs::row(results.tab());
-        Self::Sweep {
+        Self {
             poses: results.sweep().complete(),
             drawing: tab.drawing.is_some(),
             table: tab.table.is_some(),
@@ -44,24 +39,14 @@ impl ExportKind {
 
     /// Returns the extensions that a name can have.
     fn endings(self) -> Vec<&'static str> {
-        match self {
-            Self::Sweep { poses, drawing, .. } => {
-                let poses: &[&str] = if poses { &[".npy"] } else { &[] };
-                let drawings: &[&str] = if drawing { &[".svg"] } else { &[] };
-                [&[".csv", ".jsonl", ".npz"], poses, drawings].concat()
-            }
-            Self::Curve => vec![".csv", ".svg"],
-        }
+        let poses: &[&str] = if self.poses { &[".npy"] } else { &[] };
+        let drawings: &[&str] = if self.drawing { &[".svg"] } else { &[] };
+        [&[".csv", ".jsonl", ".npz"], poses, drawings].concat()
     }
 
     /// Returns true if a file of that name can be made, at least on some tab.
-    fn takes(self, name: &str) -> bool {
-        match self {
-            Self::Sweep { .. } => {
-                is_poses(name) || has_ending(name, "svg") || AtlasFile::new(name).is_ok()
-            }
-            Self::Curve => has_ending(name, "csv") || has_ending(name, "svg"),
-        }
+    fn takes(name: &str) -> bool {
+        is_poses(name) || has_ending(name, "svg") || AtlasFile::new(name).is_ok()
     }
 }
 
@@ -96,7 +81,7 @@ impl ExportDialog {
     /// Returns a message that says what is wrong with the name, and what was expected.
     pub fn name(&self) -> Result<String, String> {
         let name = self.field.text().trim();
-        if self.what.takes(name) {
+        if ExportKind::takes(name) {
             return Ok(name.to_owned());
         }
         let found = if name.is_empty() {
@@ -114,13 +99,10 @@ impl LinePrompt for ExportDialog {
 
     /// Says "all", because all imprints are written even if their list is filtered.
     fn label(&self) -> &'static str {
-        match self.what {
-            ExportKind::Sweep {
-                drawing: false,
-                table: false,
-                ..
-            } => "Export all imprints to: ",
-            _ => "Export to: ",
+        if self.what.drawing || self.what.table {
+            "Export to: "
+        } else {
+            "Export all imprints to: "
         }
     }
 
@@ -136,8 +118,9 @@ impl LinePrompt for ExportDialog {
         let plain = dotted.replace('.', "");
         let with_page = |endings: &str| {
             let (table, others) = endings.split_once(' ')?;
-            let has_page = matches!(self.what, ExportKind::Sweep { table: true, .. });
-            has_page.then(|| format!("{table} page; {others} imprints"))
+            self.what
+                .table
+                .then(|| format!("{table} page; {others} imprints"))
         };
         let forms = [
             format!("   ({})", with_page(&dotted).unwrap_or(dotted)),
@@ -156,7 +139,7 @@ mod tests {
 
     #[test]
     fn the_extension_decides_the_format() {
-        let all = ExportKind::Sweep {
+        let all = ExportKind {
             poses: true,
             drawing: true,
             table: false,

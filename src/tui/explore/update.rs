@@ -22,8 +22,6 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::tabs;
 use crate::tui::explore::work::{act, tab_area};
 use crate::tui::keys::action;
-use crate::tui::recognise;
-use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::effect::Effect;
 
 /// Handles a message over the results. The page was taken off the stack: an arm that opens another page puts it back
@@ -230,8 +228,7 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     None
 }
 
-/// Handles a message in the prompt for the name of a file. The prompt serves the tabs of Explore and the curve of
-/// the page of sizes; a refused name stays in it.
+/// Handles a message in the prompt for the name of a file; a refused name stays in it.
 pub(in crate::tui) fn in_export(
     app: &mut App,
     mut dialog: ExportDialog,
@@ -239,11 +236,6 @@ pub(in crate::tui) fn in_export(
 ) -> Option<Effect> {
     if *message == Message::Accept {
         match dialog.name() {
-            Ok(name) if dialog.what == ExportKind::Curve => {
-                return from_prompt(app, Dialog::Export(dialog), |app| {
-                    recognise::update::act(app, RecogniseMessage::WriteSizes(name))
-                });
-            }
             Ok(name) => return export(app, dialog, name),
             Err(error) => refuse(app, error),
         }

@@ -20,7 +20,6 @@ use crate::tui::explore::message::{ExploreMessage, ExploreTab};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::message::RecogniseMessage;
-use crate::tui::recognise::separate::request::SeparationFlags;
 
 /// Something that a user can ask for.
 #[derive(Debug, PartialEq)]
@@ -69,8 +68,6 @@ pub enum Arguments {
     Distance,
     /// The name of a set of shapes.
     Model,
-    /// The sizes of a set.
-    Sizes,
     /// A whole number.
     Seed,
     /// A source of frames.
@@ -124,7 +121,6 @@ impl Arguments {
             Self::Taxel => "COLUMN ROW",
             Self::Distance => "DX DY",
             Self::Model => "MODEL",
-            Self::Sizes => "--scale 0.5:3:0.1 ...",
             Self::Seed => "NUMBER",
             Self::FrameSource => "SOURCE --baud 9600 ...",
             Self::Threshold => "VALUE",
@@ -289,16 +285,13 @@ actions! {
         NEXT_ZOOM_Y "next-zoom-y" [] Explore(Along(Axis::ZoomY, 1));
         PREVIOUS_ZOOM_Y "previous-zoom-y" [] Explore(Along(Axis::ZoomY, -1));
         RECOGNISE "recognise" [] Recognise(RecogniseMessage::Open);
-        QUIZ "quiz" [] Recognise(RecogniseMessage::Touch);
+        RANDOM_TOUCH "random-touch" [] Recognise(RecogniseMessage::Touch);
         KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
         FORGET "forget" [] Recognise(RecogniseMessage::Forget), "forget the touches that were kept";
         NEXT_MODEL "next-model" [] Recognise(RecogniseMessage::NextModel(1)), "the next model";
         PREVIOUS_MODEL "previous-model" [] Recognise(RecogniseMessage::NextModel(-1)), "the previous model";
         CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
         POSES "poses" [] Recognise(RecogniseMessage::Poses);
-        SEPARATE "separate" [] Recognise(RecogniseMessage::Separate(SeparationFlags::NONE));
-        LOWER_ERROR "lower-error" [] Recognise(RecogniseMessage::Want(-1));
-        HIGHER_ERROR "higher-error" [] Recognise(RecogniseMessage::Want(1));
         WATCH "watch" [] Message::Live(LiveMessage::Open);
         WATCH_AGAIN "watch-again" [] Message::Live(LiveMessage::Again);
         TARE "tare" [] Message::Live(LiveMessage::Tare);
@@ -338,9 +331,8 @@ actions! {
         "recognise" Arguments::Model, "Recognise: which shape of this model left the imprint";
         "restore" Arguments::Deleted, "bring back this deleted shape, or the one deleted last";
         "save" Arguments::Name;
-        "seed" Arguments::Seed, "set the seed of the quiz's random touches";
+        "seed" Arguments::Seed, "set the seed of random touches";
         "sensor" Arguments::Sensor;
-        "separate" Arguments::Sizes, "the error against the size of shapes";
         "turn" Arguments::Degrees, "turn the shape right; negative degrees: left";
         "watch" Arguments::FrameSource, "Watch: frames, live or recorded";
         "write" Arguments::File(FilePurpose::Write), "write an imprint, shape or drawing, by file extension";

@@ -110,12 +110,8 @@ contexts! {
     Export "export" "Exporting" Typed, LINE;
     /// On the matrix, with recognition beside it.
     Recognise "recognise" "Recognising" Ignored, Some(Self::Matrix);
-    /// In the quiz.
-    Quiz "quiz" "In the quiz" Typed, EVERYWHERE;
     /// On the confusion matrix.
     Confusion "confusion" "At the confusion matrix" Ignored, EVERYWHERE;
-    /// On the page of sizes.
-    Separate "separate" "At the sizes of shapes" Ignored, EVERYWHERE;
     /// On the page that watches the frames of a sensor.
     Live "live" "Watching a sensor" Ignored, EVERYWHERE;
     /// At a yes-or-no question.

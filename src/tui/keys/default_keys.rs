@@ -304,30 +304,17 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     /// Keys without a row go to the matrix: the user can draw, move and turn while the answer follows.
     Recognise {
-        [Char('t') => QUIZ] "quiz" "quiz: name the shape that left a random touch";
+        [Char('t') => RANDOM_TOUCH] "random touch" "a random touch of a shape of the model";
         [Char('a') => KEEP, Char('x') => FORGET]
             "keep, forget" "keep this touch as one of several; forget them";
         [Char('o') => NEXT_MODEL, Char('O') => PREVIOUS_MODEL]
             "other model" "next, previous model: built in, then your own";
         [Char('v') => CONFUSION] "confusion" "which shapes are confused with which";
-        [Char('V') => SEPARATE] "" "the error against the size of the shapes";
         [Char('i') => PANEL] "answer" "on a narrow screen: the answer or the matrix";
         [Char('P') => POSES] "" "outlines of the likeliest pose and of others";
         [Enter => ACCEPT] "" "train the model after a stop";
         [Esc => CANCEL, Char('r') => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "stop training; back to the descriptors";
-    }
-
-    /// Letters choose a shape by the beginning of its name, and a digit names one at once by its number; so help is F1.
-    Quiz {
-        [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape, or by its first letter";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, forward";
-        [Home => FIRST, End => LAST] "" "first, last shape";
-        [Enter => ACCEPT] "name it" "name the shape, or 1 to 9";
-        [Char(' ') => QUIZ] "again" "touch again, in another pose";
-        [Tab => PANEL] "list" "on a narrow screen: list or matrix";
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "give up" "show which shape it was";
-        [F1 => HELP] "help" "these keys";
     }
 
     Confusion {
@@ -338,22 +325,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Enter => ACCEPT] "to matrix" "put the imprint of the cell onto the matrix";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to Recognise";
-    }
-
-    /// While sizes are being checked, Enter is refused. The first Esc stops the work and leaves the page open, a second
-    /// one closes it.
-    Separate {
-        [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "size" "previous, next size";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten sizes back, forward";
-        [Home => FIRST, End => LAST] "" "first, last size";
-        [Char('+') => HIGHER_ERROR, Char('=') => HIGHER_ERROR, Char('-') => LOWER_ERROR]
-            "error" "raise, lower the wanted error";
-        [Char('x') => EXPORT] "export" "write a file: .csv numbers, .svg curve";
-        [Enter => ACCEPT] "to matrix" "put the confused imprint onto the matrix";
-        [Char('V') => SEPARATE] "" "resume after a stop";
-        [Char('?') => HELP] "help" "these keys";
-        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
-            "close" "stop the work; back to Recognise";
     }
 
     /// All four arrows move in the history of frames: the page has no cursor to move.

@@ -25,8 +25,6 @@ use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
 use crate::tui::live::named_source::{NamedSource, flags_start};
 use crate::tui::prompt::flags::{is_given, lacks_value};
-use crate::tui::recognise::message::RecogniseMessage;
-use crate::tui::recognise::separate::request::SeparationFlags;
 
 /// The flag of the anchor in `explore`.
 pub(super) const ANCHOR: &str = "--anchor";
@@ -66,20 +64,13 @@ fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
             .filter(|row| places.contains(&row.context));
         rows.any(|row| row.keys.iter().any(|(_, own)| *own == action))
     };
+    // The page of recognition uses the prompt of the matrix.
+    let recognises = |action: &Action| matches!(action.message(), Some(Message::Recognise(_)));
     ACTIONS.iter().copied().filter(move |action| {
         let works = recognises(action) || bound(action, &places) || !bound(action, &Context::ALL);
         // To type a command is no command.
         works && action.message() != Some(&Message::Command)
     })
-}
-
-/// Returns true if an action belongs to recognition, whose page uses the prompt of the matrix. The page of sizes does
-/// not, so its actions are left out.
-fn recognises(action: &Action) -> bool {
-    match action.message() {
-        Some(Message::Recognise(asked)) => !matches!(asked, RecogniseMessage::Want(_)),
-        _ => false,
-    }
 }
 
 /// Returns all commands, sorted by name.
@@ -249,9 +240,6 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         (Some(Arguments::Ranges), said) => {
             let ranges = Axis::ALL.map(|axis| format!("--{}", axis.parameter().flag()));
             words([&ranges[..], &[ANCHOR.to_owned()]].concat(), said)
-        }
-        (Some(Arguments::Sizes), said) => {
-            words(SeparationFlags::NAMES.map(str::to_owned).to_vec(), said)
         }
         (Some(Arguments::FrameSource), said) => {
             let is_flag = |word: &&str| word.starts_with("--");

@@ -35,7 +35,6 @@ use crate::tui::live::named_source::NamedSource;
 use crate::tui::prompt::commands::{ANCHOR, PromptCommand, commands, find};
 use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
-use crate::tui::recognise::separate::request::SeparationFlags;
 
 /// Words for what the screen leaves to the shell, each with the command there.
 const IN_SHELL: [(&str, &str); 5] = [
@@ -115,10 +114,6 @@ fn with_arguments(
         (Arguments::Model, _) => {
             let choice = ModelChoice::from_text(rest);
             Ok(Message::Recognise(RecogniseMessage::Choose(choice)))
-        }
-        (Arguments::Sizes, words) => {
-            let flags = SeparationFlags::read(words)?;
-            Ok(Message::Recognise(RecogniseMessage::Separate(flags)))
         }
         (Arguments::Seed, _) => seed(rest),
         (Arguments::FrameSource, _) => {

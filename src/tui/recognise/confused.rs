@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
-use crate::parameter::number::share;
 use crate::recognition::{Evaluation, Model, ShapeCount};
 
 /// The most frequent imprint of a cell of the confusion matrix.
@@ -80,34 +79,6 @@ pub fn worst_cell(evaluation: &Evaluation) -> Option<(usize, usize)> {
     let most = wrong.rev().max_by_key(|&(_, _, touches)| touches);
     let first = (evaluation.confusion.shapes() > 1).then_some((0, 1));
     most.map(|(row, column, _)| (row, column)).or(first)
-}
-
-/// A shape that is taken for another one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ConfusedPair {
-    /// The index of the touching shape.
-    pub touched: usize,
-    /// The index of the named shape.
-    pub named: usize,
-    /// The share of the touching shape's touches that are named so.
-    pub share: f64,
-    /// An imprint that is named so.
-    pub example: Option<Example>,
-}
-
-impl ConfusedPair {
-    /// Returns the pair of a model that is confused in the most touches; None if none is confused.
-    pub fn worst(model: &Model, evaluation: &Evaluation) -> Option<Self> {
-        let (touched, named) = worst_cell(evaluation)?;
-        let confusion = &evaluation.confusion;
-        let wrong = confusion.get(touched, named);
-        (wrong > 0).then(|| Self {
-            touched,
-            named,
-            share: share(wrong, confusion.touches_of(touched)),
-            example: Examples::of(model).get(model, (touched, named)),
-        })
-    }
 }
 
 #[cfg(test)]

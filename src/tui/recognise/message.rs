@@ -4,10 +4,8 @@ use std::sync::Arc;
 
 use crate::formats::Name;
 use crate::imprint::Imprint;
-use crate::recognition::{Nearest, PlacedSource, PoseEstimate, SeparationPoint, SmallestSize};
+use crate::recognition::{Nearest, PlacedSource, PoseEstimate};
 use crate::storage::ModelChoice;
-use crate::tui::recognise::confused::ConfusedPair;
-use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::trained::TrainedModel;
 
 /// A request by a key or a command.
@@ -29,14 +27,8 @@ pub enum RecogniseMessage {
     Poses,
     /// Shows the confusion matrix.
     Confusion,
-    /// Shows the limit of the set against the size of its shapes.
-    Separate(SeparationFlags),
-    /// Chooses another wanted error on the page of sizes: a larger one, or a smaller one if negative.
-    Want(i8),
     /// Starts the random touches from this seed.
     Seed(u64),
-    /// Writes the sizes into a file with this name.
-    WriteSizes(String),
     /// Selects a cell of the confusion matrix: row, column.
     SelectCell(usize, usize),
 }
@@ -90,37 +82,13 @@ pub struct Prepared {
     pub trained: Result<Arc<TrainedModel>, String>,
 }
 
-/// The result for one size.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SizeFound {
-    /// The limit of one touch.
-    pub point: SeparationPoint,
-    /// The shape that is taken most often for another one, and that one; None if no shape is.
-    pub worst: Option<ConfusedPair>,
-}
-
-/// The results for some sizes, or the end of the work.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SizesFound {
-    /// The number of the piece of work.
-    pub number: u64,
-    /// The results, in the order of sizes.
-    pub sizes: Vec<SizeFound>,
-    /// At the end of the work: the smallest size that reaches the wanted error, or why the work ended too early.
-    pub end: Option<Result<Option<SmallestSize>, String>>,
-}
-
 /// A report from the worker.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecognitionEvent {
     /// A training began: its number, and its number of poses.
     Begun(u64, u64),
-    /// The work with this number is no longer waited for; its description, in a few words.
-    GivenUp(u64, String),
     /// A model is ready, or there is none.
     Prepared(Box<Prepared>),
     /// The search with this number has ended: its result, or the reason why it failed.
     Searched(u64, Result<Box<PoseSearchResult>, String>),
-    /// Some sizes were evaluated.
-    Sizes(Box<SizesFound>),
 }

@@ -1,16 +1,13 @@
 //! Recognise: names the shape on the matrix from one or several touches, and shows how far the name can be trusted.
 //!
 //! ```text
-//! trained        a model, how well it tells its shapes apart, and examples
-//! confused       pairs of shapes that are confused, with an imprint
+//! trained        a model, how well it tells its shapes apart, examples, a random touch
 //! message        what keys ask for, and what the worker reports
 //! pose_searches  which search for poses is needed, in progress, or done
 //! state          the set, its model, the touches, the answer
 //! view           the panel beside the matrix: shapes with bars, the nearest imprint, the pose
 //! update         what messages do; the answer follows the matrix
-//! quiz           a random touch to name, and the score
 //! confusion      which shapes are taken for which, with an imprint that two share
-//! separate       the limit of the set against the size of its shapes
 //! ```
 
 pub mod trained;
@@ -25,10 +22,6 @@ pub mod state;
 
 pub mod view;
 
-pub mod quiz;
-
 pub mod confusion;
-
-pub mod separate;
 
 pub mod update;

@@ -1,4 +1,4 @@
-//! The state of recognition: the set and its model, the touches, the answer about them, the score of the quiz.
+//! The state of recognition: the set and its model, the touches, the answer about them.
 
 use std::sync::Arc;
 
@@ -14,7 +14,6 @@ use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, Prepared, RecogniseMessage};
 use crate::tui::recognise::pose_searches::{PoseSearches, SearchStep};
-use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::other;
 
@@ -70,19 +69,6 @@ struct SetBefore {
     trained: Option<Arc<TrainedModel>>,
     /// Whether its model was being prepared.
     preparing: bool,
-    /// The score of the quiz with this set.
-    score: Score,
-}
-
-/// The score of the quiz.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Score {
-    /// The number of shapes that the user was asked to name.
-    pub asked: u32,
-    /// The number of shapes that the user named correctly.
-    pub right: u32,
-    /// The number of shapes that the best classifier named correctly.
-    pub best: u32,
 }
 
 /// The state of the page.
@@ -114,10 +100,6 @@ pub struct Recognition {
     searches: PoseSearches,
     /// Whether outlines of poses are shown; None shows them if taxels are large.
     outlines: Option<bool>,
-    /// The page of sizes, while it is closed.
-    pub(super) separate: Option<Box<Separate>>,
-    /// The score of the quiz.
-    pub(super) score: Score,
     /// The generator of random touches.
     pub(super) random: Pcg64,
 }
@@ -139,8 +121,6 @@ impl Recognition {
             answer: None,
             searches: PoseSearches::default(),
             outlines: None,
-            separate: None,
-            score: Score::default(),
             random: Pcg64::seed_from_u64(seed),
         }
     }
@@ -186,7 +166,7 @@ impl Recognition {
     }
 
     /// Chooses a set, whose model is prepared by the work with this number. Kept touches stay, so that sets can be
-    /// compared; with another set, the score begins anew. A stored model may be missing or damaged; then the earlier
+    /// compared. A stored model may be missing or damaged; then the earlier
     /// set returns. `opened`: whether the page was opened for this set. A search in progress is forgotten, because it
     /// is about the old model.
     pub fn prepare(&mut self, choice: ModelChoice, number: u64, opened: bool) {
@@ -202,7 +182,6 @@ impl Recognition {
                 choice: std::mem::replace(&mut self.choice, choice),
                 trained,
                 preparing,
-                score: std::mem::take(&mut self.score),
             };
             self.searches.forget_result();
             before = before.or_else(|| Some(Box::new(set)));
@@ -278,15 +257,6 @@ impl Recognition {
         self.preparation(number)?.request.take()
     }
 
-    /// Records that the work with this number is no longer waited for.
-    pub fn leave_model(&mut self, number: u64) {
-        if let Some(preparation) = self.preparation(number) {
-            let known = preparation.known.take();
-            self.state = known.map_or(ModelState::Missing, ModelState::Ready);
-            self.ask();
-        }
-    }
-
     /// Takes over a prepared model. Returns the reason if there is none.
     pub fn take_model(&mut self, prepared: Prepared) -> Option<NoModel> {
         self.preparation(prepared.number)?;
@@ -326,15 +296,10 @@ impl Recognition {
 
     /// Returns to the earlier set.
     fn take_back(&mut self, before: SetBefore) {
-        let SetBefore {
-            choice,
-            trained,
-            preparing: _,
-            score,
-        } = before;
-        self.unreadable = Some(std::mem::replace(&mut self.choice, choice));
-        self.score = score;
-        self.state = trained.map_or(ModelState::Missing, ModelState::Ready);
+        self.unreadable = Some(std::mem::replace(&mut self.choice, before.choice));
+        self.state = before
+            .trained
+            .map_or(ModelState::Missing, ModelState::Ready);
         self.ask();
     }
 
@@ -423,21 +388,6 @@ impl Recognition {
         self.kept_source = self.source.clone();
         self.present_kept = true;
         true
-    }
-
-    /// Replaces the kept touches by those of a shape; the last one is on the matrix.
-    pub fn set_touches(&mut self, touches: Vec<Imprint>) {
-        if let Some(&last) = touches.last() {
-            (self.present, self.source, self.kept_source) = (last, None, None);
-        }
-        // A single touch is the one on the matrix, which need not be kept.
-        self.present_kept = touches.len() > 1;
-        self.kept = if self.present_kept {
-            touches
-        } else {
-            Vec::new()
-        };
-        self.ask();
     }
 
     /// Forgets the kept touches; returns false if there were none.

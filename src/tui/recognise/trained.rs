@@ -3,8 +3,10 @@
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 
+use crate::imprint::Imprint;
 use crate::pose::{Axis, DecimalRange, PoseGrid, Ranges};
 use crate::recognition::{Evaluation, Model, below};
+use crate::sensor::Sensor;
 use crate::storage::{FileVersion, ModelChoice};
 use crate::touch::Plane;
 use crate::tui::recognise::confused::Examples;
@@ -54,9 +56,29 @@ impl TrainedModel {
         shape.map_or("", |shape| &shape.name)
     }
 
-    /// Returns the grid of poses of a shape; None if there is no such shape.
-    pub fn grid(&self, shape: usize) -> Option<PoseGrid> {
-        grid_of(&self.model, shape, *self.model.ranges())
+    /// Touches with a random shape, with a probability in proportion to its weight, in a random pose of the grid.
+    /// Returns the index of the shape, the sensor and the imprint: on the user's sensor if it fits there, off the rim if
+    /// there is room; otherwise on the model's sensor.
+    pub fn random_touch(
+        &self,
+        sensor: Sensor,
+        random: &mut Pcg64,
+    ) -> Option<(usize, Sensor, Imprint)> {
+        let shapes = self.model.shapes();
+        let weights = shapes.iter().map(|shape| u64::from(shape.weight));
+        let mut rest = below(random, weights.clone().sum());
+        let before = weights.take_while(|&weight| {
+            let later = rest >= weight;
+            rest = rest.saturating_sub(weight);
+            later
+        });
+        let shape = before.count();
+        let grid = grid_of(&self.model, shape, *self.model.ranges())?;
+        let pose = below(random, grid.poses());
+        let own = *grid.sensor();
+        let imprint = Plane::new(own).touch(&grid.placed(pose));
+        let (sensor, imprint) = onto(&imprint, sensor, own);
+        Some((shape, sensor, imprint))
     }
 }
 
@@ -67,7 +89,6 @@ impl TrainedModel {
         use crate::figure::Figure;
         use crate::pose::Anchor;
         use crate::recognition::{NamedShape, Training};
-        use crate::sensor::Sensor;
 
         let sensor = Sensor::default();
         let bar = Figure::rectangle(6.0, 2.0).on(&sensor).expect("in range");
@@ -85,6 +106,33 @@ impl TrainedModel {
         let model = training.expect("a set").run().expect("not stopped");
         Self::new(choice, model, None)
     }
+}
+
+/// Returns an imprint on the user's sensor if it fits there, otherwise on the model's sensor; and that sensor.
+pub(super) fn onto(imprint: &Imprint, sensor: Sensor, own: Sensor) -> (Sensor, Imprint) {
+    let moved = |sensor: Sensor| Some((sensor, moved_onto(imprint, &sensor)?));
+    let moved = moved(sensor).or_else(|| moved(own));
+    moved.unwrap_or((sensor, Imprint::empty(sensor.size())))
+}
+
+/// Moves an imprint onto a sensor: as near to its own place as possible, off the rim if there is room. None if it
+/// does not fit.
+fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
+    let mut moved = Imprint::empty(sensor.size());
+    let Some(bounds) = imprint.bounds() else {
+        return Some(moved);
+    };
+    let place = |start: u8, end: u8, side: u8| {
+        let room = side.checked_sub(end - start)?;
+        let margin = u8::from(room >= 2);
+        Some(start.clamp(margin, room - margin))
+    };
+    let left = place(bounds.left, bounds.right, sensor.columns())?;
+    let top = place(bounds.top, bounds.bottom, sensor.rows())?;
+    for (column, row) in imprint.active() {
+        moved.set(column - bounds.left + left, row - bounds.top + top, true);
+    }
+    Some(moved)
 }
 
 /// Returns the poses of a shape on the sensor of its model, in the given ranges: those of the model, or finer ones to
@@ -147,7 +195,6 @@ mod tests {
     use crate::figure::Figure;
     use crate::pose::Anchor;
     use crate::recognition::{NamedShape, Training};
-    use crate::sensor::Sensor;
 
     /// Returns the result for a bar and a disc with these weights.
     fn between(weights: [u32; 2]) -> (u64, u64) {
@@ -175,5 +222,17 @@ mod tests {
         assert!(of_bar > of_disc, "{of_bar} {of_disc}");
         assert_eq!((both.1, bar.1), (200, 300));
         assert_eq!(between([100, 1]), (100 * of_bar + of_disc, 10_100));
+    }
+
+    #[test]
+    fn a_touch_is_moved_onto_the_sensor_if_it_fits() {
+        let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
+        let own = read("......\n......\n......\n....##\n....#.\n......");
+        let sensor = |columns, rows| Sensor::new(columns, rows).expect("a sensor");
+        let onto = |columns, rows| moved_onto(&own, &sensor(columns, rows));
+        assert_eq!(onto(4, 4), Some(read("....\n.##.\n.#..\n....")));
+        assert_eq!(onto(3, 2), Some(read(".##\n.#.")));
+        assert_eq!(onto(1, 9), None);
+        assert_eq!(onto(8, 8).and_then(|moved| moved.bounds()), own.bounds());
     }
 }

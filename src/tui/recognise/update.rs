@@ -1,4 +1,4 @@
-//! The effects of messages on the page of recognition and in its quiz. The answer follows the matrix: `next_work`
+//! The effects of messages on the page of recognition. The answer follows the matrix: `next_work`
 //! is called after every message.
 
 use std::sync::Arc;
@@ -13,14 +13,11 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
 use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::message::{RecogniseMessage, RecognitionEvent};
 use crate::tui::recognise::pose_searches::SearchStep;
-use crate::tui::recognise::quiz::Quiz;
-use crate::tui::recognise::separate;
 use crate::tui::recognise::state::{ModelState, NoModel};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::effect::{Effect, Work};
@@ -67,7 +64,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
         RecogniseMessage::Choose(choice) => open(app, Some(choice)),
         RecogniseMessage::NextModel(by) => next_model(app, by),
         RecogniseMessage::Touch => {
-            with_model(app, asked, touch);
+            with_model(app, asked, |app, trained| touch(app, &trained));
             None
         }
         RecogniseMessage::Keep => {
@@ -85,24 +82,16 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             });
             None
         }
-        RecogniseMessage::Separate(ref flags) => {
-            let flags = flags.clone();
-            with_model(app, asked, |app, trained| {
-                separate::update::open(app, flags.request(trained));
-            });
-            None
-        }
         RecogniseMessage::Poses => {
             with_model(app, asked, |app, _| show_poses(app));
             None
         }
-        RecogniseMessage::WriteSizes(name) => separate::update::write(app, name),
         RecogniseMessage::Seed(seed) => {
             app.recognition.random = Pcg64::seed_from_u64(seed);
             inform(app, format!("random touches begin with the seed {seed}"));
             None
         }
-        RecogniseMessage::SelectCell(..) | RecogniseMessage::Want(_) => None,
+        RecogniseMessage::SelectCell(..) => None,
     }
 }
 
@@ -199,23 +188,20 @@ fn show_poses(app: &mut App) {
     }
 }
 
-/// Begins a quiz. Kept touches are forgotten: they were of another shape, and the answer is about one shape only.
-fn touch(app: &mut App, trained: Arc<TrainedModel>) {
-    let page = &mut app.recognition;
-    page.forget();
-    let quiz = Quiz::new(trained, &mut page.random);
-    touch_again(app, quiz);
-}
-
-/// Puts another touch of the shape onto the matrix, and keeps asking for its name. The shape stays the same, in
-/// another pose, so that further touches narrow down what it may be.
-fn touch_again(app: &mut App, mut quiz: Quiz) {
+/// Puts a random touch onto the matrix and tells its shape. Kept touches are forgotten: they were of another shape, and
+/// the answer is about one shape only.
+fn touch(app: &mut App, trained: &TrainedModel) {
     let sensor = app.history.present().sensor;
-    if let Some((sensor, imprint)) = quiz.touch(sensor, &mut app.recognition.random) {
-        begin_drawn(app, sensor, &imprint, "random touch");
-    }
+    app.recognition.forget();
+    let Some((shape, sensor, imprint)) = trained.random_touch(sensor, &mut app.recognition.random)
+    else {
+        return;
+    };
+    begin_drawn(app, sensor, &imprint, "random touch");
     let_go(app);
-    app.dialogs.push(Dialog::Quiz(Box::new(quiz)));
+    let undo = app.key_of(&action::UNDO);
+    let name = trained.name(shape);
+    inform(app, format!("a random touch of {name}; {undo} undoes it"));
 }
 
 /// Forgets the kept touches.
@@ -290,67 +276,6 @@ fn close(app: &mut App) -> Option<Effect> {
     stops.then_some(Effect::Work(Work::StopFindingPoses))
 }
 
-/// Handles a message in the quiz. Enter or a digit names the shape; closing the page means giving up, which counts as
-/// asked and not as right.
-pub(in crate::tui) fn in_quiz(
-    app: &mut App,
-    mut quiz: Box<Quiz>,
-    message: Message,
-) -> Option<Effect> {
-    match message {
-        Message::Accept => guess(app, *quiz),
-        Message::Cancel | Message::Quit => end_quiz(app, *quiz, None),
-        Message::Recognise(RecogniseMessage::Touch) => touch_again(app, *quiz),
-        Message::SwitchPane => {
-            app.dialogs.push(Dialog::Quiz(quiz));
-            return matrix::update::act(app, message);
-        }
-        message => match quiz.take(&message) {
-            Ok(true) => guess(app, *quiz),
-            taken => {
-                app.dialogs.push(Dialog::Quiz(quiz));
-                if let Err(reason) = taken {
-                    refuse(app, reason);
-                }
-            }
-        },
-    }
-    None
-}
-
-/// Ends the quiz with the selected shape as the answer.
-fn guess(app: &mut App, quiz: Quiz) {
-    let selected = quiz.selected();
-    end_quiz(app, quiz, Some(selected));
-}
-
-/// Ends the quiz with the shape that the user named, if any. Its touches become the kept ones, so that
-/// the panel shows what could be known about them. `best` counts how often the most probable shape was the right one:
-/// nobody is right more often in the long run.
-fn end_quiz(app: &mut App, quiz: Quiz, named: Option<usize>) {
-    let shape = quiz.shape();
-    let (right, name) = (named == Some(shape), quiz.name(shape).to_owned());
-    let touch = app.keymap().label(Context::Recognise, &action::QUIZ);
-    let undo = app.key_of(&action::UNDO);
-    let further = format!("{touch} for another, {undo} undoes the touch");
-    let text = match named {
-        Some(_) if right => format!("right: {name}; {further}"),
-        Some(named) => format!(
-            "wrong: the shape is {name}, not {}; {further}",
-            quiz.name(named)
-        ),
-        None => format!("it was the {name}; {undo} brings back what was there before"),
-    };
-    let page = &mut app.recognition;
-    page.set_touches(quiz.into_touches());
-    let best = page.answer().and_then(|answer| answer.shape);
-    page.score.asked += 1;
-    page.score.right += u32::from(right);
-    page.score.best += u32::from(best == Some(shape));
-    app.narrow_pane = NarrowPane::Panel;
-    inform(app, text);
-}
-
 /// Handles a message over the confusion matrix. Enter puts the imprint of the cell onto the matrix and closes the
 /// page; it is refused if the cell has no imprint.
 pub(in crate::tui) fn in_confusion(
@@ -378,10 +303,6 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Optio
     let page = &mut app.recognition;
     match event {
         RecognitionEvent::Begun(number, poses) => page.take_poses(number, poses),
-        RecognitionEvent::GivenUp(number, what) => {
-            page.leave_model(number);
-            inform(app, format!("{what}: stopped waiting"));
-        }
         RecognitionEvent::Prepared(prepared) => {
             let request = page.take_request(prepared.number);
             let failed = page.take_model(*prepared);
@@ -398,15 +319,12 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Optio
                 refuse(app, reason);
             }
         }
-        RecognitionEvent::Sizes(found) => separate::update::on_found(app, *found),
     }
     None
 }
 
-/// Handles a training that failed unexpectedly. The number is that of a training or of the work on sizes; a page that
-/// waits for other work ignores it.
+/// Handles a training that failed unexpectedly. A page that waits for other work ignores it.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> Option<Effect> {
-    separate::update::on_failure(app, number, reason);
     let failed = app.recognition.fail(number, reason.to_owned());
     without_model(app, failed)
 }
@@ -430,18 +348,12 @@ fn without_model(app: &mut App, failed: Option<NoModel>) -> Option<Effect> {
 
 /// Handles the progress of a training.
 pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) {
-    separate::update::on_progress(app, number, progress.poses);
     app.recognition.take_progress(number, progress);
-}
-
-/// Returns the next work for the page of sizes, or for the answer about the imprint on the matrix.
-pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
-    separate::update::next_work(app).or_else(|| search(app))
 }
 
 /// Passes the imprint of the matrix to the page. Returns the search that its answer needs, or the request to stop one
 /// that it no longer needs.
-fn search(app: &mut App) -> Option<Effect> {
+pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     if !is_open(app) {
         return None;
     }

@@ -1,4 +1,4 @@
-//! The panel beside the matrix: the set, the shapes with bars, the nearest imprint, the pose, touches and score.
+//! The panel beside the matrix: the set, the shapes with bars, the nearest imprint, the pose, touches.
 //!
 //! ```text
 //! the model                   +--------------------------------------------+
@@ -241,7 +241,7 @@ impl Panel<'_> {
     /// Writes the answer, every shape that it may be, and the results of the search.
     fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
         let Some(answer) = page.answer() else {
-            let touch = self.key(&action::QUIZ);
+            let touch = self.key(&action::RANDOM_TOUCH);
             let text = format!(
                 "The matrix is empty. Draw or place a shape, or press {touch} for a random touch."
             );
@@ -340,20 +340,13 @@ impl Panel<'_> {
         write::line(self.buffer, row, self.theme, pieces);
     }
 
-    /// Returns the lines about the kept touches and the score.
+    /// Returns the lines about the kept touches.
     fn touches(&self, page: &Recognition) -> Vec<String> {
         let mut lines = Vec::new();
         if page.kept() > 0 {
             let touches = counted(page.kept() as u64, "touch");
             let forget = self.key(&action::FORGET);
             lines.push(format!("{touches} kept; {forget} forgets"));
-        }
-        let score = page.score;
-        if score.asked > 0 {
-            lines.push(format!(
-                "quiz: you named {} of {} right, the model {}",
-                score.right, score.asked, score.best
-            ));
         }
         lines
     }

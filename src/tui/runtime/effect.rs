@@ -6,7 +6,6 @@ use std::sync::Arc;
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::imprint::Imprint;
 use crate::pose::{PoseGrid, PoseIndex};
-use crate::recognition::SeparationPoint;
 use crate::storage::Existing;
 use crate::storage::ModelChoice;
 use crate::tui::app::library::LibraryRequest;
@@ -14,7 +13,6 @@ use crate::tui::explore::message::Findings;
 use crate::tui::live::naming::NamingRequest;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::message::PoseSearch;
-use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::recognise::trained::TrainedModel;
 
 /// A request of `update` to the runtime or the terminal.
@@ -77,10 +75,6 @@ pub enum Work {
     Prepare(u64, ModelChoice, Option<Arc<TrainedModel>>),
     /// Stop preparing a model.
     StopPreparing,
-    /// Compute the limit of a set in several sizes, of which the first are known.
-    Separate(u64, Arc<SeparationRequest>, Vec<SeparationPoint>),
-    /// Stop computing the limits.
-    StopSeparating,
     /// Search a model for the nearest imprint, and for the poses of the named shape, or of the nearest imprint's
     /// shape.
     FindPoses(u64, Box<PoseSearch>),

@@ -7,7 +7,6 @@
 //! disk        reads and writes, in order, on a disk that may answer late
 //! work        sweeps, models and exports, each on a thread of its own
 //! frames      a source of frames: watched, recorded
-//! slow_work   work that the user waits for, and when the screen says so
 //! mailbox     messages from other threads, which wake the event loop
 //! ```
 
@@ -19,31 +18,26 @@ pub mod work;
 
 mod frames;
 
-mod slow_work;
-
 pub mod mailbox;
 
 pub use crate::tui::runtime::frames::source::check as check_source;
-pub use crate::tui::runtime::work::progress::WorkerEventSink;
+pub use crate::tui::runtime::work::execution::WorkerEventSink;
 
 use std::collections::VecDeque;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::tui::runtime::disk::journal_writer::JournalWriter;
 use crate::tui::runtime::disk::leftover;
 use crate::tui::runtime::disk::queue::DiskQueue;
-use crate::tui::runtime::disk::reading::Reader;
 use crate::tui::runtime::disk::reminders::Reminders;
 use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest, newest_orphan, not_recorded};
-use crate::tui::runtime::disk::shape_log::ShapeLog;
-pub use crate::tui::runtime::disk::shape_log::ShapeSink;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::frames::recording::Recording;
+use crate::tui::runtime::work::execution::PATIENCE;
 use crate::tui::runtime::work::models::ModelStore;
-use crate::tui::runtime::work::threads::PATIENCE;
 use crate::tui::runtime::work::workers::Workers;
 
 use crate::formats::StoredShape;
@@ -68,14 +62,7 @@ pub struct World {
     journal: JournalWriter,
     /// The reminders from run to run; None if nothing is remembered.
     reminders: Option<Reminders>,
-    /// The log of the stored shapes that were used.
-    log: ShapeLog,
-    /// The queue of changes to the library and to files.
-    writer: DiskQueue,
-    /// The reader of the library and of files.
-    reader: Reader,
-    /// The queue of reminders to write, which nobody waits for.
-    reminder_writer: DiskQueue,
+    disk: DiskQueue,
     /// Messages that come after the present one.
     later: VecDeque<Message>,
     /// Sweeps and exports in progress.
@@ -101,14 +88,11 @@ impl World {
     pub fn for_script(library: Library) -> Self {
         let workers = Workers::with(ModelStore::beside(&library));
         Self {
-            writer: DiskQueue::new(library.clone()),
-            reader: Reader::new(DiskQueue::new(library.clone())),
-            reminder_writer: DiskQueue::new(library),
+            disk: DiskQueue::new(library),
             later: VecDeque::new(),
             orphan: None,
             unreadable: None,
             reminders: None,
-            log: ShapeLog::default(),
             journal: JournalWriter::idle(),
             workers,
             _scratch: None,
@@ -158,17 +142,8 @@ impl World {
     #[must_use]
     pub fn with_workers(mut self, post: WorkerEventSink) -> Self {
         self.journal.report_to(Arc::clone(&post));
-        self.writer.post_to(Arc::clone(&post));
-        self.reader.queue.post_to(Arc::clone(&post));
-        self.reminder_writer.post_to(Arc::clone(&post));
+        self.disk.post_to(Arc::clone(&post));
         self.workers.post_to(post);
-        self
-    }
-
-    /// Gives `sink` each of the user's stored shapes that is used, before its answer is shown.
-    #[must_use]
-    pub fn with_shape_log(mut self, sink: ShapeSink) -> Self {
-        self.log = ShapeLog::of(sink);
         self
     }
 
@@ -177,8 +152,7 @@ impl World {
     #[must_use]
     pub fn confined_to(mut self, folder: PathBuf) -> Self {
         self.workers.access = Arc::new(WriteAccess::below(folder));
-        self.writer.access = Arc::clone(&self.workers.access);
-        self.reader.queue.access = Arc::clone(&self.workers.access);
+        self.disk.access = Arc::clone(&self.workers.access);
         self
     }
 
@@ -233,11 +207,7 @@ impl World {
     /// open pages then need is begun. Returns the effect for the terminal, if there is one.
     pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
         let mut terminal = None;
-        if message == Message::Worker(WorkerEvent::Answered) {
-            self.collect_changes();
-        } else {
-            self.receive(app, message);
-        }
+        self.receive(app, message);
         while let Some(next) = self.next_message(app) {
             let mut next = Some(next);
             while let Some(effect) = (next.take())
@@ -250,62 +220,57 @@ impl World {
                         None
                     }
                     Effect::Library(request) if request.is_change() => {
-                        self.change(DiskRequest::Library(request))
+                        self.change(app, DiskRequest::Library(request))
                     }
                     Effect::Library(request) => self.read(app, DiskRequest::Library(request)),
                     Effect::Recover => Some(self.recover()),
-                    Effect::GiveUp => self.give_up(),
+                    Effect::GiveUp => self.give_up(app),
                     Effect::File(request @ FileRequest::Write(..)) => {
-                        self.change(DiskRequest::File(request))
+                        self.change(app, DiskRequest::File(request))
                     }
                     Effect::File(request) => self.read(app, DiskRequest::File(request)),
                     Effect::Work(work) => self.workers.perform(work).map(Message::Worker),
-                    Effect::Frames(work) => self.frames(work),
+                    Effect::Frames(work) => self.frames(app, work),
                 };
             }
         }
         self.journal.note(app);
         if let Some(reminders) = &mut self.reminders {
-            reminders.note(app, &mut self.reminder_writer);
+            reminders.note(app, &mut self.disk);
         }
         terminal
     }
 
-    /// Takes the answers to changes, if they have not been taken already.
-    fn collect_changes(&mut self) {
-        // Reminders have no answer.
-        while self.reminder_writer.wait(Duration::ZERO).is_some() {}
-        while let Some(answer) = self.writer.wait(Duration::ZERO) {
-            let message = self.answer(answer);
-            self.later.extend(message);
-        }
-    }
-
-    /// Returns the next message; if there is none, the answer to a request of the top page to read something.
     fn next_message(&mut self, app: &App) -> Option<Message> {
-        let mut next = self.later.pop_front();
-        while next.is_none() {
-            let answer = self.reader.take(app.dialogs.len())?;
-            next = self.answer(answer);
-        }
-        next
+        self.later.pop_front().or_else(|| self.answered(app))
     }
 
-    /// Queues a message. Esc on the page that reads from the disk also stops waiting for the disk.
+    /// Returns the message for the next answer of the disk, if one has come that the top page may take.
+    fn answered(&mut self, app: &App) -> Option<Message> {
+        loop {
+            let answer = self.disk.take(app.dialogs.len())?;
+            let message = self.answer(answer);
+            if message.is_some() {
+                return message;
+            }
+        }
+    }
+
+    /// Queues a message. Esc on the page that waits for the disk also stops waiting.
     fn receive(&mut self, app: &App, message: Message) {
         let esc = Message::Unknown(Key::Esc);
         let leaves = matches!(message, Message::Cancel | Message::Quit) || message == esc;
-        let pages = app.dialogs.len();
-        let given_up = leaves.then(|| self.reader.give_up(pages)).flatten();
+        let dropped = leaves.then(|| self.disk.drop_readings(app.dialogs.len()));
+        let dropped = dropped.flatten();
         // On the matrix, Esc means nothing else.
-        let is_done = given_up.is_some() && message == esc;
+        let is_done = dropped.is_some() && message == esc;
         self.later.extend((!is_done).then_some(message));
-        let given_up = given_up.map(WorkerEvent::GivenUp);
-        self.later.extend(given_up.map(Message::Worker));
+        let dropped = dropped.map(WorkerEvent::GivenUp);
+        self.later.extend(dropped.map(Message::Worker));
     }
 
     /// Begins work about a source of frames. Returns its event if it is known already.
-    fn frames(&mut self, work: FrameWork) -> Option<Message> {
+    fn frames(&mut self, app: &App, work: FrameWork) -> Option<Message> {
         let event = match work {
             FrameWork::Watch {
                 number,
@@ -322,16 +287,18 @@ impl World {
                 None
             }
             FrameWork::Record(metadata) => match self.workers.frames.start_recording() {
-                Ok(number) => return self.change(DiskRequest::BeginRecording(number, metadata)),
+                Ok(number) => {
+                    return self.change(app, DiskRequest::BeginRecording(number, metadata));
+                }
                 Err(refused) => Some(WorkerEvent::Refused(refused.to_owned())),
             },
             FrameWork::StopRecording => {
                 let (number, recording) = self.workers.frames.end_recording()?;
-                return self.change(DiskRequest::EndRecording(number, recording));
+                return self.change(app, DiskRequest::EndRecording(number, recording));
             }
             FrameWork::WriteMetadata(view) => {
                 let (number, recording) = self.workers.frames.recording()?;
-                return self.change(DiskRequest::WriteMetadata(number, recording, view));
+                return self.change(app, DiskRequest::WriteMetadata(number, recording, view));
             }
             FrameWork::NameBy(number, naming) => {
                 self.workers.name_by(number, naming);
@@ -345,8 +312,8 @@ impl World {
     /// Stops watching, and finishes the recording.
     fn stop_watching(&mut self) {
         if let Some((number, recording)) = self.workers.frames.stop() {
-            let ended = self.change(DiskRequest::EndRecording(number, recording));
-            self.later.extend(ended);
+            self.disk
+                .change(DiskRequest::EndRecording(number, recording));
         }
     }
 
@@ -367,31 +334,25 @@ impl World {
         events.map(Message::Worker).collect()
     }
 
-    /// Returns when to check again on the requests that are waited for; None if there are none.
-    pub(in crate::tui) fn changes_due(&self) -> Option<Instant> {
-        let changes = self.writer.next_check().into_iter();
-        let read = self.reader.next_check().into_iter();
-        let read = read.chain(self.workers.models.next_check());
-        changes.chain(read).min()
+    /// Returns when to look again what the disk is waited for; None if that does not change.
+    pub(in crate::tui) fn disk_due(&self) -> Option<Instant> {
+        self.disk.due()
     }
 
-    /// Returns the request that is waited for, if it takes long: a change, else something to read.
+    /// Returns the request to the disk that is waited for, if it takes long.
     pub(in crate::tui) fn waiting(&self) -> Option<String> {
-        let read = || self.reader.status();
-        let model = || self.workers.models.status();
-        self.writer.status().or_else(read).or_else(model)
+        self.disk.status()
     }
 
     /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end. Waits
     /// for at most 1.5 s. Returns lines about everything that is not on the disk, because of an error or because the
     /// disk does not answer.
     pub fn end(&mut self, app: &mut App) -> Vec<String> {
-        let recording = self.workers.frames.stop();
-        let ended = recording.and_then(|(number, recording)| {
-            let request = DiskRequest::EndRecording(number, recording);
-            self.writer.begin(request)
-        });
-        let (mut lines, is_kept) = self.write_all(app, ended, |_, app, answer| {
+        if let Some((number, recording)) = self.workers.frames.stop() {
+            self.disk
+                .begin(DiskRequest::EndRecording(number, recording));
+        }
+        let (mut lines, is_kept) = self.write_all(app, |_, app, answer| {
             // No more effects are performed.
             let _ = update(app, answer);
         });
@@ -407,48 +368,33 @@ impl World {
     /// perhaps for ever. Waits for at most 1.5 s. Everything goes on when the program is continued. Returns lines
     /// about everything that is not on the disk.
     pub fn flush(&mut self, app: &mut App) -> Vec<String> {
-        let recording = self.workers.frames.recording();
-        let flushed = recording.and_then(|(number, recording)| {
-            let request = DiskRequest::FlushRecording(number, recording);
-            self.writer.begin(request)
-        });
-        let (lines, _) = self.write_all(app, flushed, |world, app, answer| {
+        if let Some((number, recording)) = self.workers.frames.recording() {
+            self.disk
+                .begin(DiskRequest::FlushRecording(number, recording));
+        }
+        let (lines, _) = self.write_all(app, |world, app, answer| {
             // The terminal is about to be given back, so its effects are dropped.
             let _ = world.handle(app, answer);
         });
         lines
     }
 
-    /// Waits for changes, reminders and the journal, at most [`PATIENCE`], and passes the answers to `take`,
-    /// beginning with the one that is `done`. Returns lines about everything that is not on the disk, and whether
-    /// unsaved work is on it.
+    /// Waits for changes and the journal, at most [`PATIENCE`], and passes the answers to `take`. Returns lines about
+    /// everything that is not on the disk, and whether unsaved work is on it.
     fn write_all(
         &mut self,
         app: &mut App,
-        done: Option<DiskAnswer>,
         take: fn(&mut Self, &mut App, Message),
     ) -> (Vec<String>, bool) {
         let end = Instant::now() + PATIENCE;
         // Changes get half of the time: the journal keeps what could not be saved.
-        let saved_by = Instant::now() + PATIENCE / 2;
-        let mut lines = Vec::new();
-        if let Some(answer) = done {
-            lines.extend(not_recorded(&answer));
-            self.take(app, answer, take);
-        }
-        lines.extend(self.finish_changes(app, saved_by, take));
-        while !self.reminder_writer.is_idle() {
-            let time = saved_by.saturating_duration_since(Instant::now());
-            if self.reminder_writer.wait(time).is_none() {
-                break;
-            }
-        }
+        let mut lines = self.finish_changes(app, Instant::now() + PATIENCE / 2, take);
         self.journal.note(app);
         let is_kept = (self.journal).written(end.saturating_duration_since(Instant::now()));
         // Changes get the time that the journal has left.
         lines.extend(self.finish_changes(app, end, take));
         self.journal.note(app);
-        lines.extend(self.writer.left());
+        lines.extend(self.disk.left());
         if !is_kept && !app.unsaved_work().is_empty() {
             let line =
                 "unsaved work may not be on the disk: the disk refuses it or does not answer\n";
@@ -466,48 +412,39 @@ impl World {
         take: fn(&mut Self, &mut App, Message),
     ) -> Vec<String> {
         let mut lines = Vec::new();
-        while !self.writer.is_idle() {
-            let time = end.saturating_duration_since(Instant::now());
-            let Some(answer) = self.writer.wait(time) else {
-                break;
-            };
-            lines.extend(not_recorded(&answer));
-            self.take(app, answer, take);
-        }
-        lines
-    }
-
-    /// Passes the message for an answer to `take`, if there is one.
-    fn take(&mut self, app: &mut App, answer: DiskAnswer, take: fn(&mut Self, &mut App, Message)) {
-        if let Some(answer) = self.answer(answer) {
-            take(self, app, answer);
+        loop {
+            while let Some(answer) = self.disk.take(app.dialogs.len()) {
+                lines.extend(not_recorded(&answer));
+                if let Some(answer) = self.answer(answer) {
+                    take(self, app, answer);
+                }
+            }
+            if self.disk.is_idle() || !self.disk.wait(end) {
+                return lines;
+            }
         }
     }
 
-    /// Makes a change, at once or on the thread of the disk. Returns the answer if it comes within a moment.
-    fn change(&mut self, change: DiskRequest) -> Option<Message> {
-        let answer = self.writer.ask(change)?;
-        self.answer(answer)
+    /// Makes a change. Returns the answer if it comes within a moment.
+    fn change(&mut self, app: &App, change: DiskRequest) -> Option<Message> {
+        self.disk.change(change);
+        self.answered(app)
     }
 
-    /// Reads something, at once or on a thread. Returns the answer if it comes within a moment.
+    /// Reads something for the top page. Returns the answer if it comes within a moment.
     fn read(&mut self, app: &App, request: DiskRequest) -> Option<Message> {
-        let answer = self.reader.ask(request, app.dialogs.len())?;
-        self.answer(answer)
+        self.disk.read(request, app.dialogs.len());
+        self.answered(app)
     }
 
     /// Returns the message that tells the program the outcome of a request; None if there is nothing to tell.
     fn answer(&mut self, changed: DiskAnswer) -> Option<Message> {
         let answer = match changed {
-            DiskAnswer::Stored(shape, Ok(stamp), _) => {
-                self.log.stored(shape.name.as_str(), stamp);
+            DiskAnswer::Stored(shape, Ok(stamp)) => {
                 LibraryEvent::Stored(shape.name.to_string(), stamp)
             }
-            DiskAnswer::Stored(shape, Err(error), in_the_way) => match error {
+            DiskAnswer::Stored(shape, Err(error)) => match error {
                 LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
-                    if let Some(loaded) = in_the_way {
-                        self.log.shape(&loaded);
-                    }
                     LibraryEvent::Differs(shape, stamp, error.to_string())
                 }
                 LibraryError::Shipped { name } => {
@@ -522,10 +459,7 @@ impl World {
             }
             DiskAnswer::ThrownAway(thrown, next) => self.given_up(thrown, next),
             DiskAnswer::File(event) => return Some(Message::File(event)),
-            DiskAnswer::Library(event) => {
-                self.log.event(&event);
-                event
-            }
+            DiskAnswer::Library(event) => event,
             DiskAnswer::Recording(number, begun) => return Some(self.recording(number, begun)),
             DiskAnswer::Live(number, event) => {
                 return Some(Message::Worker(WorkerEvent::Live(number, event)));
@@ -547,8 +481,9 @@ impl World {
         };
         // The recording to end: the new one if its source was left meanwhile, or another one that was still open.
         let over = self.workers.frames.recording_started(number, recording);
-        let ended = over.and_then(|over| self.change(DiskRequest::EndRecording(number, over)));
-        self.later.extend(ended);
+        if let Some(over) = over {
+            self.disk.change(DiskRequest::EndRecording(number, over));
+        }
         Message::Worker(WorkerEvent::Live(number, event))
     }
 
@@ -560,15 +495,14 @@ impl World {
         let shape = orphan.shape.clone();
         // The work is put into this program's journal before it is taken out of the other one.
         self.journal.adopt(*orphan);
-        let next = self.change(DiskRequest::FindWork);
-        self.later.extend(next);
+        self.disk.change(DiskRequest::FindWork);
         Message::Library(LibraryEvent::Recovered(Box::new(shape)))
     }
 
     /// Moves the unsaved work that is offered to the trash. Returns the answer if there is one within a moment.
-    fn give_up(&mut self) -> Option<Message> {
+    fn give_up(&mut self, app: &App) -> Option<Message> {
         match self.orphan.take() {
-            Some((orphan, _)) => self.change(DiskRequest::ThrowAway(orphan)),
+            Some((orphan, _)) => self.change(app, DiskRequest::ThrowAway(orphan)),
             None => Some(no_work_left()),
         }
     }

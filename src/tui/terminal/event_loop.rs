@@ -23,9 +23,7 @@ use ratatui::layout::Size;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
-use crate::acquire::SourceName;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::app::view::view;
 use crate::tui::app::worker_event::WorkerEvent;
@@ -48,7 +46,7 @@ const PICTURE: Duration = Duration::from_millis(34);
 
 /// Runs the program until it ends. The terminal is restored, even after an error, a signal or a panic, and unsaved
 /// work is in the journal at every point from which the program may not come back. `first` is the first message to the
-/// program; later ones come through the mailbox. `watch` is called with each event that a record contains.
+/// program; later ones come through the mailbox. `watch` is called with each input.
 ///
 /// # Errors
 /// Returns an error if there is no terminal, or if it cannot be read or written.
@@ -58,7 +56,7 @@ pub fn run(
     world: World,
     settings: &TerminalSettings,
     (sender, mailbox): (Sender, Mailbox),
-    watch: &mut dyn FnMut(SessionEvent<'_>),
+    watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
     let post = Arc::new(move |event| sender.send(Message::Worker(event)));
     let mut world = world.with_workers(post);
@@ -114,31 +112,10 @@ fn leave_on_panic() {
     }));
 }
 
-/// An event that a record of a session contains.
-#[derive(Clone, Copy, Debug)]
-pub enum SessionEvent<'a> {
-    /// An input by the user.
-    Input {
-        /// The input.
-        input: &'a Input,
-        /// Whether the program was at work: a script finishes work before the next input.
-        at_work: bool,
-    },
-    /// Frames that have come from a source.
-    Frames {
-        /// The name of the source.
-        source: &'a SourceName,
-        /// The number of frames since the last event.
-        count: u64,
-    },
-}
-
 /// The loop between the terminal and the program.
 struct EventLoop<'a> {
-    /// Called with each event, to record it.
-    watch: &'a mut dyn FnMut(SessionEvent<'_>),
-    /// The number of the watched source, and how many of its frames have been recorded.
-    recorded: (u64, u64),
+    /// Called with each input, to record it.
+    watch: &'a mut dyn FnMut(&Input),
     /// The state of the program.
     app: App,
     /// The library, the journal and the workers.
@@ -196,7 +173,7 @@ impl<'a> EventLoop<'a> {
     /// # Errors
     /// Returns an error if there is no terminal, or if signals cannot be handled.
     fn open(
-        watch: &'a mut dyn FnMut(SessionEvent<'_>),
+        watch: &'a mut dyn FnMut(&Input),
         app: App,
         world: World,
         settings: TerminalSettings,
@@ -210,7 +187,6 @@ impl<'a> EventLoop<'a> {
         let Ok(screen) = Terminal::new(screen);
         Ok(Self {
             watch,
-            recorded: (0, 0),
             app,
             world,
             settings,
@@ -272,7 +248,7 @@ impl<'a> EventLoop<'a> {
         let due = [
             self.frames_due,
             self.pacing.deadline(),
-            self.world.changes_due(),
+            self.world.disk_due(),
         ];
         let due = due.into_iter().flatten().min();
         let due = due.map(|due| due.saturating_duration_since(Instant::now()));
@@ -359,27 +335,6 @@ impl<'a> EventLoop<'a> {
         messages.try_for_each(|message| self.update(message))
     }
 
-    /// Records an input.
-    fn record(&mut self, input: &Input) {
-        let at_work = self.app.pages().any(Page::awaits_work);
-        (self.watch)(SessionEvent::Input { input, at_work });
-    }
-
-    /// Records how many frames have come since the last input: an input may depend on the frame that is shown.
-    fn record_frames(&mut self) {
-        let Some(page) = last_page(&self.app) else {
-            return;
-        };
-        let number = page.number();
-        let (watched, before) = self.recorded;
-        let count = page.arrived() - if watched == number { before } else { 0 };
-        self.recorded = (number, page.arrived());
-        if count > 0 {
-            let source = &page.request().source;
-            (self.watch)(SessionEvent::Frames { source, count });
-        }
-    }
-
     /// Reads the available bytes, or handles a timeout.
     fn read(&mut self, ready: &Ready) -> io::Result<()> {
         let inputs = if ready.input {
@@ -399,8 +354,7 @@ impl<'a> EventLoop<'a> {
             self.pacing.on_answer();
         }
         for input in inputs {
-            self.record_frames();
-            self.record(&input);
+            (self.watch)(&input);
             let message = match input {
                 // Each key is looked up in the state to which the one before has led.
                 Input::Key(key) => Some(self.app.meaning(key)),
@@ -496,7 +450,7 @@ impl<'a> EventLoop<'a> {
     fn tell_size(&mut self) {
         let Ok(size) = ratatui::backend::Backend::size(self.screen.backend());
         let input = Input::Size(size.width, size.height);
-        self.record(&input);
+        (self.watch)(&input);
         let _ = self
             .world
             .handle(&mut self.app, Message::Resized(size.width, size.height));

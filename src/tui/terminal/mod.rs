@@ -40,6 +40,6 @@ mod outcome;
 
 mod event_loop;
 
-pub use event_loop::{SessionEvent, run};
+pub use event_loop::run;
 pub use outcome::Outcome;
 pub use settings::TerminalSettings;

@@ -1,7 +1,6 @@
 //! How the program ended, for the exit status.
 
 use signal_hook::consts::SIGHUP;
-use signal_hook::low_level::signal_name;
 
 /// How the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,16 +24,6 @@ impl Outcome {
             Self::RecordingFailed => 1,
             Self::Signal(number) => 128_u8.saturating_add(u8::try_from(number).unwrap_or(127)),
             Self::Hangup => Self::Signal(SIGHUP).status(),
-        }
-    }
-
-    /// Returns the name of the signal that ended it, as in scripts: `TERM`. A lost terminal counts as SIGHUP. None if
-    /// no signal ended it.
-    pub fn signal_name(self) -> Option<&'static str> {
-        match self {
-            Self::Quit | Self::RecordingFailed => None,
-            Self::Signal(number) => signal_name(number)?.strip_prefix("SIG"),
-            Self::Hangup => Self::Signal(SIGHUP).signal_name(),
         }
     }
 }

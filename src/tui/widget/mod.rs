@@ -7,7 +7,7 @@
 //! number       numbers of columns, lines, taxels     thumbnail   a small imprint
 //! rows         the selected row of a list            plot        two axes around a field of dots
 //! columns      widths and word wrap                  dots        lines and points in Braille
-//! curve        a curve with axes                     heat        shades and colours of values
+//! heat         shades and colours of values
 //! ```
 
 pub mod text_field;
@@ -29,8 +29,6 @@ pub mod found;
 pub mod heat;
 
 pub mod dots;
-
-pub mod curve;
 
 pub mod plot;
 

@@ -20,8 +20,7 @@ use crate::storage::{Journal, Library, LibraryError, Orphan};
 use crate::tui::app::state::App;
 use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::runtime::work::progress::WorkerEventSink;
-use crate::tui::runtime::work::threads::{self, PATIENCE};
+use crate::tui::runtime::work::execution::{PATIENCE, WorkerEventSink, start};
 
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
 const GATHER: Duration = Duration::from_millis(400);
@@ -61,7 +60,7 @@ impl JournalWriter {
     pub(in crate::tui) fn new(library: Library) -> Self {
         let (notes, inbox) = channel();
         let writer = JournalThread::new(library);
-        match threads::start(move || writer.run(&inbox)) {
+        match start(move || writer.run(&inbox)) {
             Ok(thread) => Self {
                 notes: Some(notes),
                 thread: Some(thread),

@@ -49,10 +49,9 @@ impl Reminders {
     /// Remembers everything new. A set is remembered once its model is ready, so that it surely exists. A model from
     /// a file is not, since the next run may begin in another folder.
     pub(in crate::tui::runtime) fn note(&mut self, app: &App, queue: &mut DiskQueue) {
-        // The answers say nothing.
         if let Some(new @ [_, ..]) = app.commands.get(self.remembered..) {
             let (file, new) = (self.commands.clone(), new.to_vec());
-            let _ = queue.begin(DiskRequest::RememberMore(file, new));
+            queue.begin(DiskRequest::RememberMore(file, new));
             self.remembered = app.commands.len();
         }
         let is_new = |now: &&ModelChoice| {
@@ -62,7 +61,7 @@ impl Reminders {
         let now = trained.map(|trained| &trained.choice).filter(is_new);
         if let Some(now) = now {
             let name = vec![now.name().to_owned()];
-            let _ = queue.begin(DiskRequest::Remember(self.set.clone(), name));
+            queue.begin(DiskRequest::Remember(self.set.clone(), name));
             self.chosen = Some(now.clone());
         }
     }

@@ -8,9 +8,7 @@ use rustix::io::Errno;
 
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::formats::{Name, StoredShape};
-use crate::storage::{
-    Expected, Library, LibraryError, LoadedShape, Orphan, RememberedFile, UNNAMED,
-};
+use crate::storage::{Expected, Library, LibraryError, Orphan, RememberedFile, UNNAMED};
 use crate::tui::app::library::{LibraryEvent, LibraryRequest, Purpose};
 use crate::tui::app::message::FileEvent;
 use crate::tui::live::message::LiveEvent;
@@ -48,13 +46,8 @@ pub(in crate::tui::runtime) enum DiskRequest {
 /// The outcome of a request.
 #[derive(Debug)]
 pub(in crate::tui::runtime) enum DiskAnswer {
-    /// The shape that was to be saved; the stamp of its file, or the error; and the stored shape that is in its way,
-    /// if any.
-    Stored(
-        Box<StoredShape>,
-        Result<u64, LibraryError>,
-        Option<Box<LoadedShape>>,
-    ),
+    /// The shape that was to be saved; the stamp of its file, or the error.
+    Stored(Box<StoredShape>, Result<u64, LibraryError>),
     /// The unsaved work to offer, with the number of offers; None if there is none.
     FoundWork(Option<(Box<Orphan>, usize)>),
     /// The name of the unsaved work in the trash, or the error; and the next work to offer, with the number of
@@ -91,17 +84,6 @@ impl DiskRequest {
             Self::FlushRecording(_, recording) | Self::EndRecording(_, recording) => {
                 format!("Saving {}", recording.path().display())
             }
-        }
-    }
-
-    /// Returns true if the request makes an earlier one needless: of the metadata of a recording, only the
-    /// latest stays.
-    pub(super) fn replaces(&self, earlier: &Self) -> bool {
-        match (self, earlier) {
-            (Self::WriteMetadata(_, own, _), Self::WriteMetadata(_, other, _)) => {
-                Arc::ptr_eq(own, other)
-            }
-            _ => false,
         }
     }
 
@@ -234,20 +216,14 @@ fn not_changed(library: &Library, what: &str, error: &LibraryError) -> String {
     }
 }
 
-/// Saves a shape, or reads the one that is in its way.
 fn store(library: &Library, shape: Box<StoredShape>, expected: Expected) -> DiskAnswer {
-    let stored = library.save(&shape, expected);
-    let in_the_way = match &stored {
-        Err(error) if says_read_only(library, error) => {
+    match library.save(&shape, expected) {
+        Err(error) if says_read_only(library, &error) => {
             let text = format!("not saved: {READ_ONLY}; :write FILE saves elsewhere");
-            return DiskAnswer::Library(LibraryEvent::NotStored(text));
+            DiskAnswer::Library(LibraryEvent::NotStored(text))
         }
-        Err(LibraryError::Exists { .. } | LibraryError::Changed { .. }) => {
-            library.load(shape.name.as_str()).ok()
-        }
-        _ => None,
-    };
-    DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
+        stored => DiskAnswer::Stored(shape, stored),
+    }
 }
 
 /// Returns the answer after something was written to a recording of the source of that number: a failure ends the

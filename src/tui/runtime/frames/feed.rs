@@ -22,7 +22,7 @@ use crate::tui::runtime::frames::no_frame;
 use crate::tui::runtime::frames::pending::Pending;
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::frames::source;
-use crate::tui::runtime::work::progress::caught;
+use crate::tui::runtime::work::execution::caught;
 
 /// The frames that have come and were not taken yet, and their recording.
 #[derive(Debug, Default)]

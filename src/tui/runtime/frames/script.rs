@@ -19,7 +19,7 @@ use crate::tui::live::message::FrameBatch;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::frames::feed::FrameFeed;
 use crate::tui::runtime::frames::recording::Recording;
-use crate::tui::runtime::work::threads;
+use crate::tui::runtime::work::execution::start;
 
 /// A source that is read from its beginning.
 #[derive(Debug)]
@@ -96,7 +96,7 @@ impl ScriptReader {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         };
-        let thread = threads::start(move || {
+        let thread = start(move || {
             if is_wanted().is_break() {
                 return;
             }

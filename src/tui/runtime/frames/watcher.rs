@@ -22,8 +22,7 @@ use crate::tui::runtime::frames::feed::FrameFeed;
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::frames::script::{ScriptReader, ScriptSource};
 use crate::tui::runtime::frames::source;
-use crate::tui::runtime::work::execution::Execution;
-use crate::tui::runtime::work::threads;
+use crate::tui::runtime::work::execution::{Execution, start, wait_until_finished};
 
 /// The watcher of a source of frames.
 #[derive(Debug, Default)]
@@ -91,9 +90,9 @@ impl FrameWatcher {
         };
         let stop = Arc::clone(&watched.stop);
         let before = self.thread.take();
-        let thread = threads::start(move || {
+        let thread = start(move || {
             if let Some(before) = before {
-                threads::wait_until_finished(&before, CLOSE_TIMEOUT);
+                wait_until_finished(&before, CLOSE_TIMEOUT);
             }
             // Before the first frame, so that none is missing; not on the screen's thread, as the disk may hang.
             if let Err(refused) = feed.begin_recording(&request, existing) {

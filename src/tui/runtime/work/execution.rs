@@ -1,10 +1,24 @@
-//! The execution of work: at once or on threads of its own, and how it is stopped there.
+//! How work is done: at once or on threads of its own, how it is stopped there, and how it reports.
 
 use std::fmt;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::{Builder, JoinHandle};
+use std::time::{Duration, Instant};
 
-use crate::tui::runtime::work::progress::{PoseLimit, WorkerEventSink};
+use crate::formats::file::system_reason;
+use crate::lock::try_locked;
+use crate::memory::MemoryGuard;
+use crate::progress::{Progress, stop_if};
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::explore::message::SweepProgress;
+
+/// The longest time that the end of the program waits for the disk.
+pub(in crate::tui::runtime) const PATIENCE: Duration = Duration::from_millis(1500);
+
+/// The pause between two checks of a thread that is about to end.
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// A way of doing work.
 #[derive(Clone)]
@@ -53,6 +67,150 @@ impl StopFlag {
 impl Drop for StopFlag {
     fn drop(&mut self) {
         self.stop();
+    }
+}
+
+/// Starts a thread.
+///
+/// # Errors
+/// Returns a sentence if the system gives no thread.
+pub(in crate::tui::runtime) fn start(
+    body: impl FnOnce() + Send + 'static,
+) -> Result<JoinHandle<()>, String> {
+    let thread = Builder::new().spawn(body);
+    thread.map_err(|error| format!("cannot start a thread: {}", system_reason(&error)))
+}
+
+/// Waits for a thread to end, but not for longer than `patience`. It is not joined: a disk or a host that does not
+/// answer may hold it up.
+pub(in crate::tui::runtime) fn wait_until_finished(thread: &JoinHandle<()>, patience: Duration) {
+    let begun = Instant::now();
+    while !thread.is_finished() && begun.elapsed() < patience {
+        std::thread::sleep(PAUSE);
+    }
+}
+
+/// A receiver of workers' events, from any thread.
+pub type WorkerEventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
+
+/// Minimum interval between progress events.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+
+/// A counter of the poses of several threads, which sends progress events.
+pub(in crate::tui::runtime) struct ProgressReporter<'a> {
+    /// The number of the work, which its events carry.
+    number: u64,
+    /// The receiver of the events.
+    post: &'a WorkerEventSink,
+    /// The time when the work began.
+    start: Instant,
+    /// The number of poses done.
+    poses: AtomicU64,
+    /// The time when progress was sent last.
+    last: Mutex<Instant>,
+}
+
+impl<'a> ProgressReporter<'a> {
+    /// Returns the reporter for work that begins now.
+    pub(in crate::tui::runtime) fn new(number: u64, post: &'a WorkerEventSink) -> Self {
+        let start = Instant::now();
+        Self {
+            number,
+            post,
+            start,
+            poses: AtomicU64::new(0),
+            last: Mutex::new(start),
+        }
+    }
+
+    /// Counts poses that are done.
+    fn add(&self, poses: u64) {
+        let poses = self.poses.fetch_add(poses, Ordering::Relaxed) + poses;
+        // A thread that finds the lock taken leaves the report to the other one.
+        if let Some(mut last) = try_locked(&self.last)
+            && last.elapsed() >= PROGRESS_INTERVAL
+        {
+            *last = Instant::now();
+            let elapsed = self.start.elapsed();
+            (self.post)(WorkerEvent::Progress(
+                self.number,
+                SweepProgress { poses, elapsed },
+            ));
+        }
+    }
+}
+
+/// Does a piece of work on a thread of its own, which gets the number and the sink of its events.
+///
+/// # Errors
+/// Returns the event that says so if the system gives no thread.
+pub(in crate::tui::runtime) fn on_a_thread(
+    number: u64,
+    post: &WorkerEventSink,
+    work: impl FnOnce(&WorkerEventSink) + Send + 'static,
+) -> Result<JoinHandle<()>, WorkerEvent> {
+    let own = Arc::clone(post);
+    let thread = start(move || work(&own));
+    thread.map_err(|message| WorkerEvent::Failed(number, message))
+}
+
+/// Turns a panic into an event; without it the program would wait for ever.
+pub(in crate::tui::runtime) fn guarded(
+    number: u64,
+    work: impl FnOnce() -> WorkerEvent,
+) -> WorkerEvent {
+    caught(work).unwrap_or_else(|message| WorkerEvent::Failed(number, message))
+}
+
+/// Turns a panic into an error.
+///
+/// # Errors
+/// Returns a sentence if the work panics.
+pub(in crate::tui::runtime) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    let done = catch_unwind(AssertUnwindSafe(work));
+    done.map_err(|_| "the work failed; this is a bug".to_owned())
+}
+
+/// The largest number of poses of a piece of work that is done at once; None for any number.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::tui::runtime) struct PoseLimit(pub(in crate::tui::runtime) Option<u64>);
+
+/// The progress of a piece of work on the screen. It knows nothing of memory, so work reports to it only within a guard.
+pub(in crate::tui::runtime) struct WorkProgress<'a>(Box<dyn Progress + 'a>);
+
+impl<'a> WorkProgress<'a> {
+    /// Returns the progress of work that is done at once, and stopped after a number of poses.
+    pub(in crate::tui::runtime) fn up_to(limit: PoseLimit) -> Self {
+        let all = AtomicU64::new(0);
+        Self(Box::new(move |poses| {
+            let all = all.fetch_add(poses, Ordering::Relaxed) + poses;
+            stop_if(limit.0.is_some_and(|most| all > most))
+        }))
+    }
+
+    /// Returns the progress of work that is stopped by a flag. The clock, if there is one, counts its poses.
+    pub(in crate::tui::runtime) fn until(
+        stop: &'a AtomicBool,
+        clock: Option<&'a ProgressReporter<'a>>,
+    ) -> Self {
+        Self(Box::new(move |poses| {
+            if let Some(clock) = clock {
+                clock.add(poses);
+            }
+            stop_if(stop.load(Ordering::Relaxed))
+        }))
+    }
+
+    /// Does work that reports its progress, and is stopped when memory runs short.
+    ///
+    /// # Errors
+    /// Returns a message if memory ran short.
+    pub(in crate::tui::runtime) fn within<T>(
+        &self,
+        memory: &MemoryGuard,
+        work: impl FnOnce(&dyn Progress) -> T,
+    ) -> Result<T, String> {
+        memory.limit(&*self.0, work)
     }
 }
 

@@ -3,20 +3,16 @@
 //! ```text
 //! Prepare(number, set)  -> Begun, Progress …, then Prepared: the model, or why there is none
 //! ```
-//! Reading from a disk that hangs cannot be stopped. The thread is left to itself, and `GivenUp` says so.
-//!
 //! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the
 //! folder beside the library, any other from its file. Training goes on while a sweep begins, and stops only on
 //! request.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Instant;
 
 use crate::formats::Name;
-use crate::lock::locked;
 use crate::memory::MemoryGuard;
 use crate::quote::shortened;
 use crate::recognition::{Model, TrainingError};
@@ -27,9 +23,9 @@ use crate::storage::{ModelChoice, unknown_set};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{Prepared, RecognitionEvent};
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::runtime::slow_work::SlowWork;
-use crate::tui::runtime::work::execution::{Execution, StopFlag};
-use crate::tui::runtime::work::progress::{ProgressReporter, WorkProgress, guarded, on_a_thread};
+use crate::tui::runtime::work::execution::{
+    Execution, ProgressReporter, StopFlag, WorkProgress, guarded, on_a_thread,
+};
 
 /// The places where models are stored.
 #[derive(Clone, Debug, Default)]
@@ -137,31 +133,11 @@ impl ModelStore {
     }
 }
 
-/// The work of a thread that reads from the disk at the moment. The screen's thread looks at it.
-#[derive(Clone, Debug, Default)]
-struct ModelReading(Arc<Mutex<Option<SlowWork>>>);
-
-impl ModelReading {
-    /// Notes that something is read from now on.
-    fn begin(&self, words: &str) {
-        *locked(&self.0) = Some(SlowWork::new(words.to_owned()));
-    }
-
-    /// Notes that nothing is read any more. Returns the work that has ended.
-    fn end(&self) -> Option<SlowWork> {
-        locked(&self.0).take()
-    }
-}
-
 /// The thread that prepares a model.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct ModelWorker {
     /// The store of models.
     pub(in crate::tui::runtime) store: ModelStore,
-    /// The number of the piece of work.
-    number: u64,
-    /// The reading from the disk in progress.
-    reading: ModelReading,
     /// Stops the training in progress.
     stop: StopFlag,
     /// The training in progress.
@@ -179,67 +155,35 @@ impl ModelWorker {
         execution: &Execution,
     ) -> Option<WorkerEvent> {
         let stop = self.stop.renew();
-        self.reading = ModelReading::default();
-        self.number = number;
-        let (store, reading) = (self.store.clone(), self.reading.clone());
+        let store = self.store.clone();
         let post = match execution {
             Execution::AtOnce(limit) => {
                 let progress = WorkProgress::up_to(*limit);
-                let calls: Calls<'_> = (&|_| {}, &progress);
-                let event = prepare(&store, number, choice, known, &reading, calls);
-                return Some(WorkerEvent::Recognition(event));
+                return Some(prepare(&store, number, choice, known, (&|_| {}, &progress)));
             }
             Execution::OnThreads(post) => post,
         };
-        reading.begin(&format!("Reading {choice}"));
         let thread = on_a_thread(number, post, move |post| {
             let clock = ProgressReporter::new(number, post);
             let begins = |poses| {
-                reading.end();
-                post(WorkerEvent::Recognition(RecognitionEvent::Begun(
-                    number, poses,
-                )));
+                let begun = RecognitionEvent::Begun(number, poses);
+                post(WorkerEvent::Recognition(begun));
             };
             let progress = WorkProgress::until(&stop, Some(&clock));
-            let event = guarded(number, || {
-                let calls: Calls<'_> = (&begins, &progress);
-                let event = prepare(&store, number, choice, known, &reading, calls);
-                WorkerEvent::Recognition(event)
-            });
-            reading.end();
-            post(event);
+            post(guarded(number, || {
+                prepare(&store, number, choice, known, (&begins, &progress))
+            }));
         });
         match thread {
             Ok(thread) => self.thread = Some(thread),
-            Err(refused) => {
-                self.reading.end();
-                return Some(refused);
-            }
+            Err(refused) => return Some(refused),
         }
         None
     }
 
-    /// Stops the training in progress. Stops waiting for a model that is being read, and returns the event that says
-    /// so.
-    pub(in crate::tui::runtime) fn give_up(&mut self) -> Option<WorkerEvent> {
+    /// Stops the training in progress. A model that is being read comes all the same.
+    pub(in crate::tui::runtime) fn stop(&self) {
         self.stop.stop();
-        let read = std::mem::take(&mut self.reading).end()?;
-        self.thread = None;
-        let event = RecognitionEvent::GivenUp(self.number, read.words);
-        Some(WorkerEvent::Recognition(event))
-    }
-
-    /// Returns a text about the model that is being read, if that takes long.
-    pub(in crate::tui::runtime) fn status(&self) -> Option<String> {
-        // Not only the disk takes time: a model is unpacked and evaluated, too.
-        let reading = locked(&self.reading.0);
-        let words = reading.as_ref()?.slow_words()?;
-        Some(format!("{words}; Esc gives up"))
-    }
-
-    /// Returns when to check again on the reading; None if nothing is read.
-    pub(in crate::tui::runtime) fn next_check(&self) -> Option<Instant> {
-        locked(&self.reading.0).as_ref().map(SlowWork::next_check)
     }
 
     /// Stops for good. Returns the thread, which ends by itself.
@@ -259,9 +203,8 @@ fn prepare(
     number: u64,
     choice: ModelChoice,
     known: Option<Arc<TrainedModel>>,
-    reading: &ModelReading,
     (begins, progress): Calls<'_>,
-) -> RecognitionEvent {
+) -> WorkerEvent {
     let choice = store.located(choice);
     // Before it is read: if it is written meanwhile, it is read again the next time.
     let version = store.path(&choice).as_deref().and_then(FileVersion::of);
@@ -271,12 +214,9 @@ fn prepare(
         None => (store.model(&choice, begins, progress))
             .map(|model| Arc::new(TrainedModel::new(choice, model, version))),
     };
-    reading.begin("Listing the models");
-    let stored = store.names();
-    reading.end();
-    RecognitionEvent::Prepared(Box::new(Prepared {
+    WorkerEvent::Recognition(RecognitionEvent::Prepared(Box::new(Prepared {
         number,
-        stored,
+        stored: store.names(),
         trained,
-    }))
+    })))
 }

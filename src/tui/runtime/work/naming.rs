@@ -18,10 +18,10 @@ use crate::recognition::Model;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::live::naming::{NamedImprint, NamingRequest};
-use crate::tui::runtime::work::execution::{Execution, StopFlag};
+use crate::tui::runtime::work::execution::{
+    Execution, PoseLimit, StopFlag, WorkProgress, caught, start,
+};
 use crate::tui::runtime::work::models::ModelStore;
-use crate::tui::runtime::work::progress::{PoseLimit, WorkProgress, caught};
-use crate::tui::runtime::work::threads;
 
 /// A model that is used on the thread that waits for its answer.
 #[derive(Debug)]
@@ -92,7 +92,7 @@ impl ShapeNamer {
                 say(LiveEvent::NotNamed(by, reason));
             }
         };
-        let thread = threads::start(move || threads::run(work));
+        let thread = start(work);
         match thread {
             Ok(thread) => self.thread = Some(thread),
             Err(reason) => {

@@ -10,9 +10,7 @@ use std::sync::Arc;
 use crate::memory::MemoryGuard;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, RecognitionEvent};
-use crate::tui::runtime::work::execution::{Execution, StopFlag};
-use crate::tui::runtime::work::progress::{WorkProgress, caught};
-use crate::tui::runtime::work::threads;
+use crate::tui::runtime::work::execution::{Execution, StopFlag, WorkProgress, caught, start};
 
 /// The largest number of poses whose outlines are drawn; more cannot be told apart over a matrix.
 const POSES: usize = 13;
@@ -40,7 +38,7 @@ pub(in crate::tui::runtime) fn find(
         let progress = WorkProgress::until(&stop, None);
         post(event(caught(|| run(&progress))));
     };
-    let thread = threads::start(move || threads::run(work));
+    let thread = start(work);
     thread.err().map(|reason| event(Err(reason)))
 }
 
@@ -79,7 +77,7 @@ mod tests {
     use super::*;
     use crate::storage::ModelChoice;
     use crate::tui::recognise::trained::TrainedModel;
-    use crate::tui::runtime::work::progress::PoseLimit;
+    use crate::tui::runtime::work::execution::PoseLimit;
 
     fn request() -> PoseSearch {
         let touch = "........\n.######.\n.######.\n........";

@@ -30,13 +30,13 @@ use crate::tui::runtime::disk::files::absolute;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::watcher::FrameWatcher;
-use crate::tui::runtime::work::execution::{Execution, StopFlag};
+use crate::tui::runtime::work::execution::{
+    Execution, PoseLimit, ProgressReporter, StopFlag, WorkProgress, WorkerEventSink, caught,
+    guarded, on_a_thread, start, wait_until_finished,
+};
 use crate::tui::runtime::work::models::{ModelStore, ModelWorker};
 use crate::tui::runtime::work::naming::ShapeNamer;
-use crate::tui::runtime::work::progress::{
-    PoseLimit, ProgressReporter, WorkProgress, WorkerEventSink, caught, guarded, on_a_thread,
-};
-use crate::tui::runtime::work::{poses, sizes, threads};
+use crate::tui::runtime::work::poses;
 
 /// The longest time that the end of the program waits for files that are being written.
 const WRITING: Duration = Duration::from_millis(400);
@@ -55,8 +55,6 @@ pub(in crate::tui) struct Workers {
     measuring: StopFlag,
     /// The stop flag of the search for poses in progress.
     finding_poses: StopFlag,
-    /// The stop flag of the work on the sizes of a set.
-    separating: StopFlag,
     /// The thread that writes a file.
     writing: Option<JoinHandle<()>>,
     /// The worker that prepares models.
@@ -89,7 +87,6 @@ impl Workers {
 
     /// Begins a piece of work. Without threads, does it and returns its last event.
     pub(in crate::tui::runtime) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
-        threads::prepare();
         match work {
             Work::Stop => {
                 self.working.stop();
@@ -108,16 +105,8 @@ impl Workers {
                 self.finding_poses.stop();
                 (self.models).prepare(number, choice, known, &self.execution)
             }
-            Work::StopPreparing => self.models.give_up(),
-            Work::Separate(number, request, known) => sizes::separate(
-                number,
-                request,
-                known,
-                &mut self.separating,
-                &self.execution,
-            ),
-            Work::StopSeparating => {
-                self.separating.stop();
+            Work::StopPreparing => {
+                self.models.stop();
                 None
             }
             Work::FindPoses(number, search) => {
@@ -149,7 +138,6 @@ impl Workers {
         number: u64,
         naming: Option<Box<NamingRequest>>,
     ) {
-        threads::prepare();
         match naming {
             Some(naming) => {
                 let store = self.models.store.clone();
@@ -171,7 +159,7 @@ impl Workers {
                 post(WorkerEvent::Estimate(grid, time));
             }
         };
-        let reason = threads::start(move || threads::run(work)).err()?;
+        let reason = start(work).err()?;
         Some(WorkerEvent::Refused(format!(
             "the time of the sweep cannot be measured: {reason}"
         )))
@@ -202,7 +190,7 @@ impl Workers {
         };
         if let Execution::OnThreads(post) = &self.execution {
             let (post, run) = (Arc::clone(post), run.clone());
-            if threads::start(move || threads::run(|| post(run()))).is_ok() {
+            if start(move || post(run())).is_ok() {
                 return None;
             }
         }
@@ -251,7 +239,7 @@ impl Drop for Workers {
         let threads = [self.writing.take(), self.models.end(), self.namer.leave()];
         let end = Instant::now() + WRITING;
         for thread in threads.into_iter().flatten() {
-            threads::wait_until_finished(&thread, end.saturating_duration_since(Instant::now()));
+            wait_until_finished(&thread, end.saturating_duration_since(Instant::now()));
         }
     }
 }

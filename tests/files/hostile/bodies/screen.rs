@@ -250,7 +250,6 @@ const STARTS: [&str; 12] = [
     "l",
     "f<Enter>r",
     "f<Enter>rt",
-    "r:separate --scale 1:2:1 --positions 1 --angle 0<Enter>",
 ];
 
 /// Returns the program at a starting point. It keeps its results, so that no input has to compute them again.
