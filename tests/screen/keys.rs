@@ -725,10 +725,7 @@ fn recognise_steps_through_sets_and_accepts_a_name() {
     );
     shows("rP", &["no pose to show: nothing is touched"]);
     shows(":seed x<Enter>", &["seed takes a whole number"]);
-    shows(
-        ":quiz<Enter>",
-        &["the model is ready", "Which shape is this?"],
-    );
+    shows(":random-touch<Enter>", &["a random touch of "]);
     shows("r<Enter>", &["the model is ready: nothing was stopped"]);
 }
 

@@ -172,6 +172,29 @@ fn a_stored_model_is_completed_used_and_remembered() {
 }
 
 #[test]
+fn a_random_touch_tells_its_shape_and_can_be_undone() {
+    let figures = "ellipse rectangle triangle pentagon hexagon heptagon octagon";
+    let mut touched = std::collections::BTreeSet::new();
+    let mut session = started(world(), ":seed 1<Enter>rta");
+    for _ in 0..20 {
+        press(&mut session, "t");
+        let screen = session.screen();
+        let name = figures
+            .split(' ')
+            .find(|name| screen.contains(&format!("a random touch of {name}; u undoes it")));
+        let name = name.unwrap_or_else(|| panic!("no name on\n{screen}"));
+        assert!(screen.contains(&format!("certain: {name}")), "{screen}");
+        assert!(!screen.contains("kept"), "{screen}");
+        touched.insert(name);
+    }
+    assert!(touched.len() > 4, "{touched:?}");
+    press(&mut session, "n<Space>t");
+    shows(&session, &["random touch"]);
+    press(&mut session, "u");
+    shows(&session, &["NA 1 in all"]);
+}
+
+#[test]
 fn the_pose_belongs_to_the_shape_that_all_touches_name() {
     // Of two touches, the octagon is the likeliest for the second one alone, but the ellipse for both.
     let begin = ":seed 4<Enter>:recognise figures-30<Enter>t<Space><Esc>";
@@ -226,10 +249,7 @@ fn a_threshold_that_differs_from_that_of_the_model_is_pointed_out() {
 #[test]
 fn nothing_is_cut_off_beside_a_large_sensor() {
     let sensor = ":sensor --columns 64 --rows 64<Enter>:seed 4<Enter>";
-    let mut session = started(
-        world(),
-        &format!("{sensor}:recognise figures-30<Enter>t<Enter>"),
-    );
+    let mut session = started(world(), &format!("{sensor}:recognise figures-30<Enter>t"));
     for size in [(80, 24), (70, 24)] {
         session.resize(size.0, size.1);
         let screen = session.screen();
@@ -245,7 +265,6 @@ fn nothing_is_cut_off_beside_a_large_sensor() {
         for text in [
             "grid: 0.01 cells, 1°; 25,200,000 touches",
             "error 33.0 %, certain 38.3 %",
-            "the model 1",
         ] {
             assert!(panel.contains(text), "{size:?}: no {text:?}\n{screen}");
         }
@@ -266,7 +285,7 @@ fn a_set_that_does_not_exist_changes_nothing() {
     );
     shows_no(&session, "Recognise: model");
     press(&mut session, "<Esc>r");
-    shows(&session, &["Recognise: model figures", "t quiz"]);
+    shows(&session, &["Recognise: model figures", "t random touch"]);
     shows_no(&session, "not read");
     // The open page stays open, with the set that it has.
     press(&mut session, ":recognise nope<Enter>");
@@ -354,11 +373,6 @@ fn work_beyond_the_pose_limit_is_stopped() {
         &started(untrained().with_pose_limit(10), "r"),
         &["training was stopped"],
     );
-    let sizes = ":separate --scale 1 --positions 10 --angle 0<Enter>";
-    let asked = started(world(), "r").app().clone();
-    let mut session = Session::of(asked, untrained().with_pose_limit(10), 80, 24);
-    press(&mut session, sizes);
-    shows(&session, &["stopped; what was found stays"]);
 }
 
 #[test]
@@ -392,8 +406,7 @@ fn escape_stops_a_training_and_enter_restarts_it() {
 fn keys_that_need_a_model_wait_for_it() {
     for (key, text) in [
         ("v", "Confusion: "),
-        ("V", "Separate: "),
-        ("t", "Which shape is this?"),
+        ("t", "a random touch of "),
         ("P", "the poses are still being searched for"),
     ] {
         let mut program = Beside::new(&format!("f<Enter>r{key}"));
@@ -409,34 +422,6 @@ fn a_notice_that_the_model_is_not_ready_goes_when_it_is() {
     shows(&program.session, &["the model is not ready yet"]);
     program.until("the model is ready");
     hides(&program.session, &["not ready"]);
-}
-
-#[test]
-fn escape_stops_the_sizes_and_keeps_the_results() {
-    let mut program = Beside::new("r");
-    program.until("limit: error");
-    press(
-        &mut program.session,
-        ":separate --scale 0.5:3:0.01 --positions 20<Enter>",
-    );
-    program.until("1 of 251 sizes; Esc stops");
-    press(&mut program.session, "<Esc>");
-    program.until("stopped; what was found stays");
-    shows(&program.session, &["stopped; V resumes", "\n0.5 "]);
-    press(&mut program.session, "V");
-    shows(&program.session, &["of 251 sizes; Esc stops"]);
-    press(&mut program.session, "<Esc>");
-    program.until("stopped; V resumes");
-    press(&mut program.session, "<Esc>");
-    shows(&program.session, &["Recognise: model figures"]);
-    // A second Esc does not wait for the work to stop.
-    let begin = ":separate --scale 0.5:3:0.01 --positions 20<Enter>";
-    press(&mut program.session, begin);
-    shows(&program.session, &["of 251 sizes; Esc stops"]);
-    press(&mut program.session, "<Esc><Esc>");
-    shows(&program.session, &["Recognise: model figures"]);
-    press(&mut program.session, begin);
-    program.until("3 of 251 sizes; Esc stops");
 }
 
 /// A page that is closed does not follow the matrix.

@@ -3,8 +3,7 @@
 //! ```text
 //! settings   environment and flags -> what this terminal is sent
 //! input      bytes -> key, paste, mouse
-//! style      changes of style -> few bytes
-//! screen     changed cells -> few bytes, frame by frame
+//! screen     changed cells -> bytes, frame by frame
 //! device     the terminal's two files
 //! pacing     pictures of a source, no faster than the line
 //! session    one way in, one way out
@@ -21,8 +20,6 @@
 pub mod settings;
 
 pub mod input;
-
-mod style;
 
 pub mod screen;
 

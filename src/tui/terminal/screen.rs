@@ -1,38 +1,19 @@
-//! The screen of a terminal behind ratatui, kept up to date with few bytes.
+//! The screen of a terminal behind ratatui: the bytes of a frame, for one write.
 //!
-//! Bytes of a frame at 80 × 24 beside ratatui's own backend (`CrosstermBackend` into one buffer), measured by
-//! `tests/screen/frames.rs`:
-//! ```text
-//!                             this   stock
-//! first frame                 2116    2970
-//! cursor move                   23      72
-//! cursor move on a figure       26      65
-//! first toggle                 166     329
-//! toggle that makes a hole      54     105
-//! a form opens                 666    1491
-//! a tab of Explore            1498    2504
-//! nothing has changed            0      25
-//! ```
-//! The budgets are 2200 bytes for the first frame, 60 for a cursor move and 0 for no change (a line of 9600 baud
-//! takes 960 bytes a second); the stock backend exceeds them. The savings come from five things: the shortest of
-//! several cursor moves is sent, short unchanged stretches are written again instead of jumped over, blanks are
-//! erased at once, styles are changed by their difference, and of several orders of writing the shortest is sent.
+//! Ratatui's own backend is not used because it sends bytes for every frame, also if nothing has changed, and because
+//! it makes reversed cells invisible where `NO_COLOR` is set. A key takes at most one network packet of 1,448 bytes, the
+//! first screen at most 4,500.
 //!
-//! The terminal is assumed to behave like a VT100: a character in the last column leaves the cursor there, and a line
-//! feed keeps the column (in raw mode). A character that some terminals may show wider than others is followed by a
-//! move to an absolute position.
+//! A character that some terminals may show wider than others is followed by a move to an absolute position.
 
 use std::convert::Infallible;
-use std::ops::Range;
 
 use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
-use ratatui::text::Span;
+use ratatui::style::{Color, Modifier};
 
 use crate::tui::terminal::settings::Abilities;
-use crate::tui::terminal::style::{CellStyle, PLAIN};
-use crate::tui::widget::number::narrow;
 
 /// The size in bytes from which a frame is marked as synchronized. A smaller one fits into one network packet, so it
 /// arrives in one piece without marks.
@@ -40,77 +21,49 @@ const SMALL_FRAME: usize = 256;
 
 /// Makes the terminal hold back what it shows until the end of the frame (mode 2026).
 const BEGIN_SYNCHRONIZED: &[u8] = b"\x1b[?2026h";
-/// Makes the terminal show the frame.
 const END_SYNCHRONIZED: &[u8] = b"\x1b[?2026l";
-/// Hides the cursor (mode 25).
 const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
-/// Shows the cursor.
 const SHOW_CURSOR: &[u8] = b"\x1b[?25h";
-/// Erases from the cursor to the end of the line.
-const ERASE_TO_END: &[u8] = b"\x1b[K";
 
-/// Saves the cursor position and the style (DECSC).
-const SAVE_CURSOR: &[u8] = b"\x1b7";
-/// Restores both (DECRC).
-const RESTORE_CURSOR: &[u8] = b"\x1b8";
-/// Moves the cursor up by a row (RI).
-const REVERSE_INDEX: &[u8] = b"\x1bM";
-
-/// The greatest number of stretches for which several ways of writing are tried. A frame with more is long in any
-/// case, and few of its bytes are cursor moves.
-const MOST_TRIED: usize = 40;
-
-/// A terminal's screen, as a backend of ratatui; it finds out what has changed.
+/// A terminal's screen, as a backend of ratatui.
 #[derive(Debug)]
 pub struct Screen {
-    /// Columns and rows.
     size: Size,
-    /// The cells that the screen shows once none is stale.
-    cells: Vec<Cell>,
-    /// Whether each cell differs from what the terminal shows.
-    stale: Vec<bool>,
-    /// The position of the terminal's cursor; None if it is not certain. A column beyond the last one means the last
-    /// one, after a character was written there.
+    abilities: Abilities,
+    /// The position of the terminal's cursor; None if it is not certain, as after the last column.
     at: Option<Position>,
-    /// The style that is switched on.
-    style: CellStyle,
+    /// The colours and attributes that are switched on.
+    style: (Color, Color, Modifier),
     /// Whether the terminal shows its cursor.
     visible: bool,
     /// The position at which to show the cursor; None to hide it.
     wanted: Option<Position>,
     /// The position that ratatui set last and reads back.
     asked: Position,
-    /// The abilities of the terminal.
-    abilities: Abilities,
     /// The bytes of the frame so far.
     out: Vec<u8>,
 }
 
+const PLAIN: (Color, Color, Modifier) = (Color::Reset, Color::Reset, Modifier::empty());
+
 impl Screen {
     /// Creates an empty screen with a visible cursor.
     pub fn new(size: Size, abilities: Abilities) -> Self {
-        let mut screen = Self {
+        Self {
             size,
-            cells: Vec::new(),
-            stale: Vec::new(),
+            abilities,
             at: None,
             style: PLAIN,
             visible: true,
             wanted: None,
             asked: Position::ORIGIN,
-            abilities,
             out: Vec::new(),
-        };
-        screen.resize(size);
-        screen
+        }
     }
 
     /// Changes the size; the next frame is drawn on an empty screen.
     pub fn resize(&mut self, size: Size) {
-        let cells = usize::from(size.width) * usize::from(size.height);
         self.size = size;
-        self.cells = vec![Cell::default(); cells];
-        self.stale = vec![false; cells];
         self.at = None;
     }
 
@@ -124,280 +77,53 @@ impl Screen {
 
     /// Returns the bytes of the frame, for one write; empty if nothing has changed.
     pub fn take_frame(&mut self) -> Vec<u8> {
+        if let Some(wanted) = self.wanted {
+            self.go(wanted);
+        }
         let shown = self.wanted.is_some();
-        let mut out = std::mem::take(&mut self.out);
-        let attempt = self.shortest();
-        out.extend(attempt.out);
-        (self.at, self.style) = (attempt.at, attempt.style);
-        self.stale.fill(false);
-        let large = out.len() > SMALL_FRAME;
+        let mut frame = std::mem::take(&mut self.out);
+        let large = frame.len() > SMALL_FRAME;
         if large && shown && self.visible && !self.abilities.synchronized {
             // The moving cursor would be visible.
-            out.splice(0..0, HIDE_CURSOR.iter().copied());
+            frame.splice(0..0, HIDE_CURSOR.iter().copied());
             self.visible = false;
         }
         if shown != self.visible {
-            out.extend(if shown { SHOW_CURSOR } else { HIDE_CURSOR });
+            frame.extend(if shown { SHOW_CURSOR } else { HIDE_CURSOR });
             self.visible = shown;
         }
         if large && self.abilities.synchronized {
-            out.splice(0..0, BEGIN_SYNCHRONIZED.iter().copied());
-            out.extend(END_SYNCHRONIZED);
+            frame.splice(0..0, BEGIN_SYNCHRONIZED.iter().copied());
+            frame.extend(END_SYNCHRONIZED);
         }
-        out
+        frame
     }
 
-    /// Returns the shortest way to write the stale cells. If there are few stretches, several ways are tried.
-    fn shortest(&self) -> Attempt<'_> {
-        let runs = self.runs();
-        let first = Attempt::new(self).written(&runs, false);
-        if runs.len() > MOST_TRIED || runs.is_empty() {
-            return first;
+    fn go(&mut self, to: Position) {
+        let moved = match self.at {
+            Some(at) if at == to => return,
+            Some(at) if at.y == to.y && at.x < to.x => format!("\x1b[{}C", to.x - at.x),
+            _ => format!("\x1b[{};{}H", u32::from(to.y) + 1, u32::from(to.x) + 1),
+        };
+        self.out.extend(moved.as_bytes());
+        self.at = Some(to);
+    }
+
+    fn write(&mut self, cell: &Cell) {
+        let style = (cell.fg, cell.bg, cell.modifier);
+        if self.abilities.styles && style != self.style {
+            self.out.extend(sgr(style).as_bytes());
+            self.style = style;
         }
-        let near = |run: &&Run| self.at.is_some_and(|at| run.is_near(at));
-        let (near, far): (Vec<&Run>, Vec<&Run>) = runs.iter().partition(near);
-        let near_first: Vec<Run> = near.iter().chain(&far).copied().cloned().collect();
-        let near_last: Vec<Run> = far.iter().chain(&near).copied().cloned().collect();
-        let tries = [
-            (&runs, true),
-            (&near_first, false),
-            (&near_first, true),
-            (&near_last, false),
-        ];
-        let tries = tries.map(|(runs, saves)| Attempt::new(self).written(runs, saves));
-        tries.into_iter().fold(first, |one, other| {
-            if other.out.len() < one.out.len() {
-                other
-            } else {
-                one
-            }
-        })
-    }
-
-    /// Returns the index of a cell.
-    fn index(&self, x: u16, y: u16) -> usize {
-        usize::from(y) * usize::from(self.size.width) + usize::from(x)
-    }
-
-    /// Returns the indices of the cells of a row.
-    fn row(&self, y: u16) -> Range<usize> {
-        self.index(0, y)..self.index(self.size.width, y)
-    }
-
-    /// Marks a row as stale if it has a wide character: terminals differ in what they show of one that is half
-    /// overwritten.
-    fn renew_wide_row(&mut self, y: u16) {
-        let row = self.row(y);
-        if self.cells[row.clone()]
-            .iter()
-            .any(|cell| !is_narrow(cell.symbol()))
-        {
-            self.stale[row].fill(true);
-        }
-    }
-
-    /// Returns the stretches of stale cells in all rows, in reading order.
-    fn runs(&self) -> Vec<Run> {
-        let mut runs = Vec::new();
-        for y in 0..self.size.height {
-            let mut x = 0;
-            while x < self.size.width {
-                let stale = |&x: &u16| self.stale[self.index(x, y)];
-                let end = (x..self.size.width).find(|x| !stale(x));
-                let columns = x..end.unwrap_or(self.size.width);
-                x = columns.end + 1;
-                if !columns.is_empty() {
-                    runs.push(Run { y, columns });
-                }
-            }
-        }
-        runs
-    }
-}
-
-/// A try to write the stale cells in a certain order.
-#[derive(Debug)]
-struct Attempt<'a> {
-    /// The screen whose cells are written.
-    screen: &'a Screen,
-    /// Whether each cell still differs from what the terminal shows.
-    stale: Vec<bool>,
-    /// The position of the terminal's cursor; see [`Screen`].
-    at: Option<Position>,
-    /// The style that is switched on.
-    style: CellStyle,
-    /// The style that was saved together with the wanted cursor position; None if it was not saved.
-    saved: Option<CellStyle>,
-    /// The bytes so far.
-    out: Vec<u8>,
-}
-
-impl<'a> Attempt<'a> {
-    /// Creates an attempt that has written nothing yet.
-    fn new(screen: &'a Screen) -> Self {
-        Self {
-            screen,
-            stale: screen.stale.clone(),
-            at: screen.at,
-            style: screen.style,
-            saved: None,
-            out: Vec::new(),
-        }
-    }
-
-    /// Writes stretches in this order and leaves the cursor at the wanted position. If `saves`, the terminal saves
-    /// the cursor when it passes that position, and restores it at the end.
-    fn written(mut self, runs: &[Run], saves: bool) -> Self {
-        self.save(saves);
-        for run in runs {
-            self.write_run(run, saves);
-        }
-        if let Some(wanted) = self.screen.wanted {
-            match self.saved {
-                Some(style) if self.at != Some(wanted) => {
-                    self.out.extend(RESTORE_CURSOR);
-                    (self.at, self.style) = (Some(wanted), style);
-                }
-                _ => self.go(wanted.x, wanted.y),
-            }
-        }
-        self
-    }
-
-    /// Makes the terminal save the cursor and its style, if `saves` and the cursor is at the wanted position.
-    fn save(&mut self, saves: bool) {
-        if saves && self.saved.is_none() && self.at.is_some() && self.at == self.screen.wanted {
-            self.out.extend(SAVE_CURSOR);
-            self.saved = Some(self.style);
-        }
-    }
-
-    /// Writes changed cells that stand side by side, and blanks after them that have changed.
-    fn write_run(&mut self, run: &Run, saves: bool) {
-        let row = self.screen.row(run.y);
-        let cells = &self.screen.cells;
-        let ink = cells[row.clone()].iter().rposition(|cell| !is_blank(cell));
-        let end_of_ink = row.start + ink.map_or(0, |last| last + 1);
-        for x in run.columns.clone() {
-            let index = self.screen.index(x, run.y);
-            if !self.stale[index] {
-                continue;
-            }
-            self.go(x, run.y);
-            self.save(saves);
-            let left = self.stale[index..row.end].iter().filter(|stale| **stale);
-            if index >= end_of_ink && left.count() > ERASE_TO_END.len() {
-                self.erase(ERASE_TO_END);
-                self.stale[index..row.end].fill(false);
-                return;
-            }
-            let blanks = self.blanks(index..row.end);
-            let erasure = csi(narrow(blanks), 'X');
-            // Erasing does not move the cursor: if more follows in this row, that costs a move.
-            let more = self.stale[index + blanks..row.end].contains(&true);
-            let moved = if more { 4 } else { 0 };
-            if self.screen.abilities.erases && erasure.len() + moved < blanks {
-                self.erase(&erasure);
-                self.stale[index..index + blanks].fill(false);
-                continue;
-            }
-            self.write(index);
-            let end = index + columns(&cells[index]);
-            self.stale[index..end.min(row.end)].fill(false);
-        }
-    }
-
-    /// Returns the number of blank cells at the start of `cells`, up to the last stale one among them.
-    fn blanks(&self, cells: Range<usize>) -> usize {
-        let blank = |index: &usize| is_blank(&self.screen.cells[*index]);
-        let stretch: Vec<usize> = cells.take_while(blank).collect();
-        let last = stretch.iter().rposition(|&index| self.stale[index]);
-        last.map_or(0, |last| last + 1)
-    }
-
-    /// Erases with the sequence `how`; erased cells are blank and have no style.
-    fn erase(&mut self, how: &[u8]) {
-        if !self.style.leaves_blanks_plain() {
-            self.change_style(PLAIN);
-        }
-        self.out.extend(how);
-    }
-
-    /// Switches to another style.
-    fn change_style(&mut self, style: CellStyle) {
-        if self.screen.abilities.styles {
-            style.change(self.style, &mut self.out);
-        }
-        self.style = style;
-    }
-
-    /// Writes a cell at the cursor.
-    fn write(&mut self, index: usize) {
-        let style = CellStyle::of(&self.screen.cells[index]);
-        let blank = self.screen.cells[index].symbol() == " ";
-        let plain = self.style.leaves_blanks_plain() && style.leaves_blanks_plain();
-        if !(blank && plain) {
-            self.change_style(style);
-        }
-        let symbol = self.screen.cells[index].symbol();
+        // Ratatui leaves out control characters but not these two, which end a line or a paragraph.
+        let symbol = match cell.symbol() {
+            "\u{2028}" | "\u{2029}" => " ",
+            symbol => symbol,
+        };
         self.out.extend(symbol.as_bytes());
-        self.at = self
-            .at
-            .filter(|_| is_narrow(symbol))
-            .map(|at| Position { x: at.x + 1, ..at });
-    }
-
-    /// Moves the cursor with as few bytes as possible.
-    fn go(&mut self, x: u16, y: u16) {
-        let target = Position { x, y };
-        if self.at == Some(target) {
-            return;
-        }
-        let mut best = absolute(target);
-        if let Some(at) = self.at {
-            let down = usize::from(y.saturating_sub(at.y));
-            let vertical = match at.y.checked_sub(y) {
-                Some(1) => REVERSE_INDEX.to_vec(),
-                Some(up) if up > 0 => csi(up, 'A'),
-                _ => shorter(b"\n".repeat(down), csi(y - at.y.min(y), 'B')),
-            };
-            let returned = [vec![b'\r'], vertical.clone(), self.forward(0, x, y)].concat();
-            best = shorter(best, returned);
-            // After the last column, only a carriage return or an absolute position is reliable.
-            if at.x < self.screen.size.width {
-                let horizontal = match at.x.checked_sub(x) {
-                    Some(left) => shorter(b"\x08".repeat(usize::from(left)), csi(left, 'D')),
-                    None => self.forward(at.x, x, y),
-                };
-                best = shorter(best, [vertical, horizontal].concat());
-            }
-        }
-        self.out.extend(best);
-        self.at = Some(target);
-    }
-
-    /// Moves right from column `from` to column `to` of a row: by a move, or by writing the cells between again if
-    /// they have the current style.
-    fn forward(&self, from: u16, to: u16, y: u16) -> Vec<u8> {
-        let moved = csi(to - from, 'C');
-        let between = self.screen.index(from, y)..self.screen.index(to, y);
-        // The first cell may be the second half of a wide character.
-        let half = from > 0 && !is_narrow(self.screen.cells[between.start - 1].symbol());
-        if between.len() > moved.len() || half {
-            return moved;
-        }
-        let mut over = Vec::new();
-        for index in between {
-            let cell = &self.screen.cells[index];
-            let style = CellStyle::of(cell);
-            let blank = is_blank(cell) && self.style.leaves_blanks_plain();
-            let same = !self.screen.abilities.styles || style == self.style;
-            if self.stale[index] || !is_narrow(cell.symbol()) || !(same || blank) {
-                return moved;
-            }
-            over.extend(cell.symbol().as_bytes());
-        }
-        shorter(over, moved)
+        let last = self.size.width.saturating_sub(1);
+        let known = self.at.filter(|at| at.x < last && is_narrow(symbol));
+        self.at = known.map(|at| Position { x: at.x + 1, ..at });
     }
 }
 
@@ -408,27 +134,11 @@ impl Backend for Screen {
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
     {
-        let mut rows = vec![false; usize::from(self.size.height)];
         for (x, y, cell) in content {
             if x < self.size.width && y < self.size.height {
-                let touched = std::mem::replace(&mut rows[usize::from(y)], true);
-                if !touched {
-                    self.renew_wide_row(y);
-                }
-                let index = self.index(x, y);
-                let end = (index + columns(cell)).min(self.row(y).end);
-                // Ratatui does not report the cell that a wide character covers.
-                self.cells[index..end].fill(Cell::default());
-                self.cells[index] = cell.clone();
-                // Ratatui leaves out control characters but not these two, which end a line or a paragraph.
-                if matches!(cell.symbol(), "\u{2028}" | "\u{2029}") {
-                    self.cells[index].set_symbol(" ");
-                }
-                self.stale[index] = true;
+                self.go(Position { x, y });
+                self.write(cell);
             }
-        }
-        for y in (0..self.size.height).filter(|&y| rows[usize::from(y)]) {
-            self.renew_wide_row(y);
         }
         Ok(())
     }
@@ -459,18 +169,9 @@ impl Backend for Screen {
 
     /// Clears the whole screen whatever the type, because the program uses all of it.
     fn clear_region(&mut self, _: ClearType) -> Result<(), Self::Error> {
-        self.resize(self.size);
-        self.out.clear();
-        self.style = PLAIN;
-        self.out.extend(
-            if self.abilities.styles {
-                "\x1b[m\x1b[H\x1b[2J"
-            } else {
-                "\x1b[H\x1b[2J"
-            }
-            .as_bytes(),
-        );
-        self.at = Some(Position::ORIGIN);
+        let plain = if self.abilities.styles { "\x1b[m" } else { "" };
+        self.out = format!("{plain}\x1b[H\x1b[2J").into_bytes();
+        (self.style, self.at) = (PLAIN, Some(Position::ORIGIN));
         Ok(())
     }
 
@@ -491,62 +192,66 @@ impl Backend for Screen {
     }
 }
 
-/// A stretch of stale cells in a row.
-#[derive(Clone, Debug)]
-struct Run {
-    /// The row.
-    y: u16,
-    /// The columns.
-    columns: Range<u16>,
-}
+/// The attributes that are sent, with their numbers.
+const ATTRIBUTES: [(Modifier, &str); 7] = [
+    (Modifier::BOLD, "1"),
+    (Modifier::DIM, "2"),
+    (Modifier::ITALIC, "3"),
+    (Modifier::UNDERLINED, "4"),
+    (Modifier::SLOW_BLINK, "5"),
+    (Modifier::REVERSED, "7"),
+    (Modifier::CROSSED_OUT, "9"),
+];
 
-impl Run {
-    /// Returns true if a position is at most one row and four columns away from the start.
-    fn is_near(&self, at: Position) -> bool {
-        self.y.abs_diff(at.y) <= 1 && self.columns.start.abs_diff(at.x) <= 4
+/// Returns the sequence that switches to a style from any other.
+fn sgr((fore, back, attributes): (Color, Color, Modifier)) -> String {
+    let set = ATTRIBUTES
+        .iter()
+        .filter(|(own, _)| attributes.contains(*own));
+    let mut steps: Vec<String> = set.map(|(_, number)| (*number).to_owned()).collect();
+    for (color, base) in [(fore, 30), (back, 40)] {
+        if color != Color::Reset {
+            steps.push(color_parameters(color, base));
+        }
     }
+    // Empty means 0, the reset.
+    steps.insert(0, String::new());
+    format!("\x1b[{}m", steps.join(";"))
 }
 
-/// Returns the shorter of two sequences; the first if they are equally long.
-fn shorter(first: Vec<u8>, second: Vec<u8>) -> Vec<u8> {
-    if second.len() < first.len() {
-        second
-    } else {
-        first
-    }
-}
-
-/// Returns `ESC [ count final`, without a count of 1; empty for 0.
-fn csi(count: u16, last: char) -> Vec<u8> {
-    match count {
-        0 => Vec::new(),
-        1 => format!("\x1b[{last}").into_bytes(),
-        _ => format!("\x1b[{count}{last}").into_bytes(),
-    }
-}
-
-/// Returns the move to an absolute position, `ESC [ row ; column H`, which every terminal knows.
-fn absolute(target: Position) -> Vec<u8> {
-    let (row, column) = (u32::from(target.y) + 1, u32::from(target.x) + 1);
-    match (row, column) {
-        (1, 1) => "\x1b[H".to_owned(),
-        (1, _) => format!("\x1b[;{column}H"),
-        (_, 1) => format!("\x1b[{row}H"),
-        _ => format!("\x1b[{row};{column}H"),
-    }
-    .into_bytes()
-}
-
-/// Returns true if a cell looks like an erased one.
-fn is_blank(cell: &Cell) -> bool {
-    cell.symbol() == " " && CellStyle::of(cell).leaves_blanks_plain()
-}
-
-/// Returns the number of columns that a cell takes.
-fn columns(cell: &Cell) -> usize {
-    match cell.symbol() {
-        narrow if is_narrow(narrow) => 1,
-        other => Span::raw(other).width().max(1),
+/// Returns a colour's parameters; `base` is 30 for text and 40 for the background. The sixteen colours have short
+/// numbers that every terminal knows.
+fn color_parameters(color: Color, base: u8) -> String {
+    let sixteen = [
+        Color::Black,
+        Color::Red,
+        Color::Green,
+        Color::Yellow,
+        Color::Blue,
+        Color::Magenta,
+        Color::Cyan,
+        Color::Gray,
+        Color::DarkGray,
+        Color::LightRed,
+        Color::LightGreen,
+        Color::LightYellow,
+        Color::LightBlue,
+        Color::LightMagenta,
+        Color::LightCyan,
+        Color::White,
+    ];
+    match color {
+        Color::Indexed(index) => format!("{};5;{index}", base + 8),
+        Color::Rgb(red, green, blue) => format!("{};2;{red};{green};{blue}", base + 8),
+        color => {
+            let number = (0_u8..).zip(sixteen).find(|(_, own)| *own == color);
+            let offset = match number {
+                None => 9,
+                Some((number @ 0..8, _)) => number,
+                Some((number, _)) => 52 + number,
+            };
+            (base + offset).to_string()
+        }
     }
 }
 
@@ -562,5 +267,178 @@ fn is_narrow(symbol: &str) -> bool {
         })
 }
 
+/// After it has read the bytes, an emulator shows exactly what was drawn.
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use ratatui::Terminal;
+    use ratatui::buffer::Buffer;
+    use ratatui::style::Style;
+    use ratatui::text::Span;
+
+    const SIZE: Size = Size {
+        width: 11,
+        height: 5,
+    };
+
+    /// A column, a row, and a text to write there in a style.
+    type Writing = (u16, u16, &'static str, Style);
+
+    fn emulator(size: Size) -> vt100::Parser {
+        let side = |side: u16| std::num::NonZeroU16::new(side).expect("not empty");
+        vt100::Parser::new(side(size.height), side(size.width), 0)
+    }
+
+    /// The column and row of the cursor; None if it is hidden.
+    type ScreenCursor = Option<(u16, u16)>;
+
+    /// Draws frames, each made of texts and a cursor; after each, the emulator must show what ratatui drew.
+    fn check(frames: &[(Vec<Writing>, ScreenCursor)], synchronized: bool) {
+        let abilities = Abilities {
+            styles: true,
+            synchronized,
+        };
+        let Ok(mut terminal) = Terminal::new(Screen::new(SIZE, abilities));
+        let mut emulator = emulator(SIZE);
+        for (index, (writings, cursor)) in frames.iter().enumerate() {
+            if index % 7 == 6 {
+                let Ok(()) = terminal.clear();
+            }
+            let Ok(drawn) = terminal.draw(|frame| {
+                for &(x, y, text, style) in writings {
+                    let (room, buffer) = (usize::from(SIZE.width - x), frame.buffer_mut());
+                    // Ratatui does not promise to draw a buffer with half of a wide character.
+                    if x > 0 && Span::raw(buffer[(x - 1, y)].symbol()).width() > 1 {
+                        buffer[(x - 1, y)].set_symbol(" ");
+                    }
+                    buffer.set_stringn(x, y, text, room, style);
+                }
+                if let Some(cursor) = cursor {
+                    frame.set_cursor_position(*cursor);
+                }
+            });
+            let buffer = drawn.buffer.clone();
+            emulator.process(&terminal.backend_mut().take_frame());
+            assert!(
+                terminal.backend_mut().take_frame().is_empty(),
+                "said once is enough"
+            );
+            let screen = emulator.screen();
+            assert_eq!(screen.hide_cursor(), cursor.is_none());
+            if let Some((x, y)) = *cursor {
+                assert_eq!(screen.cursor_position(), (y, x));
+            }
+            shows(screen, &buffer, index);
+        }
+    }
+
+    /// Asserts that the emulator shows a buffer, cell by cell.
+    fn shows(screen: &vt100::Screen, buffer: &Buffer, frame: usize) {
+        for position in buffer.area.positions() {
+            let (expected, found) = (&buffer[position], screen.cell(position.y, position.x));
+            let found = found.expect("a cell");
+            if found.is_wide_continuation() {
+                continue;
+            }
+            let symbol = if found.has_contents() {
+                found.contents()
+            } else {
+                " "
+            };
+            assert_eq!(expected.symbol(), symbol, "at {position} of frame {frame}");
+            let has = |attribute| expected.modifier.contains(attribute);
+            let reversed = (has(Modifier::REVERSED), has(Modifier::UNDERLINED));
+            let found_reversed = (found.inverse(), found.underline());
+            assert_eq!(reversed, found_reversed, "at {position}");
+            if symbol != " " {
+                let weight = (has(Modifier::BOLD), has(Modifier::DIM));
+                assert_eq!(weight, (found.bold(), found.dim()), "at {position}");
+                assert_eq!(color_of(expected.fg), found.fgcolor(), "at {position}");
+            }
+            assert_eq!(color_of(expected.bg), found.bgcolor(), "at {position}");
+        }
+    }
+
+    fn color_of(color: Color) -> vt100::Color {
+        match color {
+            Color::Red => vt100::Color::Idx(1),
+            Color::Indexed(index) => vt100::Color::Idx(index),
+            Color::Rgb(red, green, blue) => vt100::Color::Rgb(red, green, blue),
+            _ => vt100::Color::Default,
+        }
+    }
+
+    fn style() -> impl Strategy<Value = Style> {
+        // The emulator has bold or dim, not both.
+        let weight = prop::sample::select(vec![Modifier::empty(), Modifier::BOLD, Modifier::DIM]);
+        let marks = vec![Modifier::REVERSED, Modifier::UNDERLINED];
+        let marks = prop::sample::subsequence(marks, 0..=2);
+        let colors = vec![
+            Color::Reset,
+            Color::Reset,
+            Color::Red,
+            Color::Indexed(114),
+            Color::Rgb(1, 2, 3),
+        ];
+        let color = prop::sample::select(colors);
+        (weight, marks, color.clone(), color).prop_map(|(weight, marks, fore, back)| {
+            let attributes = marks.into_iter().fold(weight, Modifier::union);
+            Style::reset().add_modifier(attributes).fg(fore).bg(back)
+        })
+    }
+
+    fn writing() -> impl Strategy<Value = Writing> {
+        let texts = [
+            "a",
+            "b c",
+            "· · ·",
+            "██",
+            "    ",
+            "hello world",
+            "你好",
+            "é–²",
+            "x       y",
+        ];
+        (
+            0..SIZE.width,
+            0..SIZE.height,
+            prop::sample::select(texts.to_vec()),
+            prop_oneof![2 => Just(Style::reset()), 3 => style()],
+        )
+    }
+
+    proptest! {
+        /// The terminal shows each frame that is drawn, independent of the frames before it.
+        #[test]
+        fn a_terminal_shows_what_is_drawn(
+            frames in prop::collection::vec(
+                (
+                    prop::collection::vec(writing(), 0..8),
+                    prop::option::of((0..SIZE.width, 0..SIZE.height)),
+                ),
+                1..12,
+            ),
+            synchronized: bool,
+        ) {
+            check(&frames, synchronized);
+        }
+    }
+
+    #[test]
+    fn characters_that_end_a_line_are_drawn_as_blanks() {
+        let abilities = Abilities {
+            styles: true,
+            synchronized: false,
+        };
+        let Ok(mut terminal) = Terminal::new(Screen::new(SIZE, abilities));
+        let Ok(_) = terminal.draw(|frame| {
+            let buffer = frame.buffer_mut();
+            buffer.set_string(0, 0, "a.b.", Style::new());
+            buffer[(1, 0)].set_symbol("\u{2028}");
+            buffer[(3, 0)].set_symbol("\u{2029}");
+        });
+        let frame = String::from_utf8(terminal.backend_mut().take_frame()).expect("text");
+        assert!(frame.contains("a b "), "{frame:?}");
+    }
+}

@@ -73,9 +73,6 @@ pub struct Abilities {
     pub styles: bool,
     /// Whether it can hold back a frame until all of it has arrived (mode 2026).
     pub synchronized: bool,
-    /// Whether it can erase a number of characters in the middle of a row (ECH), as all terminals since the VT220
-    /// can.
-    pub erases: bool,
 }
 
 /// The settings that decide what is sent to the terminal.
@@ -136,7 +133,6 @@ impl TerminalSettings {
             abilities: Abilities {
                 styles: kind > TerminalKind::Dumb || color != ColorDepth::Never,
                 synchronized: kind == TerminalKind::Window,
-                erases: kind >= TerminalKind::Console,
             },
         }
     }
@@ -213,7 +209,6 @@ mod tests {
                 kind == TerminalKind::Window,
                 "{name}"
             );
-            assert_eq!(abilities.erases, kind >= TerminalKind::Console, "{name}");
             assert_eq!(kind.has_clipboard(), kind == TerminalKind::Window, "{name}");
             assert_eq!(settings.ascii, kind <= TerminalKind::Serial, "{name}");
             assert_eq!(abilities.styles, kind != TerminalKind::Dumb, "{name}");

@@ -6,20 +6,16 @@ use rustix::process::Signal;
 use taxel::storage::{Library, Orphan};
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::runtime::{World, mailbox};
+use taxel::tui::terminal;
 use taxel::tui::terminal::input::Input;
 use taxel::tui::terminal::settings::{Flags, TerminalSettings};
-use taxel::tui::terminal::{self, SessionEvent};
 
 use super::program::{Program, Start, TAXEL};
 
 /// The states in which the program is ended: keys, and a text that is then on the screen.
-const STATES: [(&[u8], &str); 9] = [
-    (b"", "? Help"),
+const STATES: [(&[u8], &str); 5] = [
     (b"f\t2", "rx 2.00"),
-    (b"l", "filter:"),
-    (b" ", "NA 1 in all"),
     (b"f\rq", "(y: lose it, n: stay, s: save first)"),
-    (b"?", "On the matrix"),
     // A sweep that takes minutes is running.
     (
         b"fr\r:explore --x0 0:9.999:0.001 --y0 0:9.999:0.001\r",
@@ -39,20 +35,16 @@ fn in_state(start: &Start<'_>, (keys, shown): (&[u8], &str)) -> Program {
 
 #[test]
 fn every_signal_in_every_state_leaves_the_terminal_as_it_was() {
+    let signals = [
+        (Signal::HUP, 129),
+        (Signal::INT, 130),
+        (Signal::QUIT, 131),
+        (Signal::TERM, 143),
+        // This signal means nothing to the program; by default, it ends it at once.
+        (Signal::USR1, 138),
+    ];
     for state in STATES {
-        for (signal, status) in [
-            (Signal::HUP, 129),
-            (Signal::INT, 130),
-            (Signal::QUIT, 131),
-            (Signal::TERM, 143),
-            // These signals mean nothing to the program; by default, they end it at once.
-            (Signal::USR1, 138),
-            (Signal::USR2, 140),
-            (Signal::ALARM, 142),
-            (Signal::ABORT, 134),
-            (Signal::XCPU, 152),
-            (Signal::VTALARM, 154),
-        ] {
+        for (signal, status) in signals {
             let mut program = in_state(&Start::default(), state);
             program.signal(signal);
             program.ends_well(status);
@@ -63,14 +55,7 @@ fn every_signal_in_every_state_leaves_the_terminal_as_it_was() {
 /// Unsaved work waits in the library, however the program ended.
 #[test]
 fn unsaved_work_is_kept_at_every_end() {
-    let ends = [
-        Some(Signal::HUP),
-        Some(Signal::INT),
-        Some(Signal::QUIT),
-        Some(Signal::TERM),
-        None,
-    ];
-    for end in ends {
+    for end in [Some(Signal::HUP), Some(Signal::TERM), None] {
         let folder = tempfile::tempdir().expect("a folder");
         let start = Start {
             library: Some(folder.path()),
@@ -111,25 +96,18 @@ fn keys_end_the_program_with_status_0() {
     }
 }
 
-/// Two Ctrl-C during a sweep: the program does not wait for the sweep, and unsaved work is kept.
+/// Two Ctrl-C during a sweep: the program does not wait for the sweep.
 #[test]
 fn quitting_does_not_wait_for_a_running_sweep() {
-    let took = (0..3).map(|_| {
-        let mut program = in_state(&Start::default(), STATES[6]);
-        program.types(b"\x03\x03");
-        let (ended, took) = program.ends();
-        assert_eq!(ended.code(), Some(0));
-        program.is_left();
-        took
-    });
-    println!("ended within {:?}", took.min().expect("three times"));
+    let mut program = in_state(&Start::default(), STATES[2]);
+    program.types(b"\x03\x03");
+    program.ends_well(0);
 }
 
 /// The program ends with and without a signal from the system, and with any half-typed input.
 #[test]
 fn a_lost_line_ends_the_program() {
     let ignoring = ["sh", "-c", "trap '' HUP; exec \"$0\"", TAXEL];
-    let mut slowest = Duration::ZERO;
     for state in STATES {
         for (command, controlling) in [(&[TAXEL][..], true), (&ignoring, true), (&[TAXEL], false)] {
             let start = Start {
@@ -137,15 +115,17 @@ fn a_lost_line_ends_the_program() {
                 controlling,
                 ..Start::default()
             };
-            let mut program = in_state(&start, state);
-            program.hang_up();
-            let (ended, took) = program.ends();
-            assert_eq!(ended.code(), Some(129), "{command:?}");
-            slowest = slowest.max(took);
+            // A very busy machine may take longer, but not every time.
+            let is_soon = (0..5).any(|_| {
+                let mut program = in_state(&start, state);
+                program.hang_up();
+                let (ended, took) = program.ends();
+                assert_eq!(ended.code(), Some(129), "{command:?}");
+                took < Duration::from_secs(1)
+            });
+            assert!(is_soon, "{command:?}");
         }
     }
-    // The time depends on the load of the machine, so it is printed, not checked.
-    println!("a lost line ends it within {slowest:?}");
 }
 
 /// A terminal that accepts no more output cannot keep the program from ending.
@@ -159,9 +139,8 @@ fn a_stuck_line_does_not_keep_the_program_from_ending() {
     program.signal(Signal::TERM);
     // Nothing is read from the terminal until the program has ended.
     let master = program.take_master();
-    let (ended, took) = program.ends();
+    let (ended, _) = program.ends();
     assert_eq!(ended.code(), Some(143));
-    println!("a stuck line holds it for {took:?}");
     drop(master);
 }
 
@@ -175,17 +154,8 @@ fn panics() {
     let app = App::new(&Options::plain(true));
     let world = World::scratch().expect("a folder");
     let mail = mailbox::new().expect("a mailbox");
-    let outcome = terminal::run(app, None, world, &settings, mail, &mut |event| {
-        assert!(
-            !matches!(
-                event,
-                SessionEvent::Input {
-                    input: Input::Key(_),
-                    ..
-                }
-            ),
-            "on purpose"
-        );
+    let outcome = terminal::run(app, None, world, &settings, mail, &mut |input| {
+        assert!(!matches!(input, Input::Key(_)), "on purpose");
     });
     println!("{outcome:?}");
 }

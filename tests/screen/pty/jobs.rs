@@ -32,27 +32,6 @@ fn ctrl_z_stops_the_program_and_fg_continues_it() {
     program.is_left();
 }
 
-/// The processes that wait for the program are stopped, too.
-#[test]
-fn ctrl_z_stops_the_whole_process_group() {
-    let outer = "set -m; sh -c '\"$0\"; echo inner' \"$0\"; echo stopped; read line; fg >/dev/null; echo ended; read line";
-    let command = ["sh", "-c", outer, TAXEL];
-    let mut program = Program::started(&Start {
-        command: &command,
-        ..Start::default()
-    });
-    program.types(b"\x1a");
-    program.shows("stopped");
-    program.is_left();
-    program.forget();
-    program.types(b"\n");
-    program.agrees(&session(false, (80, 24)));
-    program.types(b"q");
-    program.shows("inner");
-    program.shows("ended");
-    program.is_left();
-}
-
 /// Nobody would continue the first process of a session, so it keeps running, and keys still work.
 #[test]
 fn without_a_shell_the_program_is_not_stopped() {

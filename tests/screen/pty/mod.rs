@@ -1,8 +1,6 @@
-//! The real program in a pseudo-terminal: ends, hang-ups, stops, unusual terminals, bytes and wake-ups.
+//! The real program in a pseudo-terminal: ends, hang-ups, stops, kinds of terminals, live frames, bytes and wake-ups.
 //!
 //! No test waits a fixed time for a result: every wait is for a condition, with a long deadline.
-
-mod drawn;
 
 mod program;
 
@@ -12,25 +10,11 @@ mod ends;
 
 mod jobs;
 
-mod cost;
-
-mod scripts;
-
-mod mouse;
-
-mod record;
-
-mod saves;
-
-mod tracer;
-
-mod reading;
-
-mod hostile;
-
 mod live;
 
-mod links;
+mod lines;
+
+mod saves;
 
 /// Becomes the program; see [`program`].
 #[test]

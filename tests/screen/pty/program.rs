@@ -4,6 +4,8 @@
 //! Rust cannot do between fork and exec. So the test's own binary is started first, as [`launch`], and then replaced.
 
 use std::env;
+use std::fmt::Write as _;
+use std::num::NonZeroU16;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::Path;
@@ -17,8 +19,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{Termios, Winsize, tcgetattr, tcsetwinsize};
 use taxel::tui::script::Session;
-
-use super::drawn::{emulator, of_emulator, of_session, side};
+use taxel::tui::widget::theme;
 
 /// The path of the real binary.
 pub(crate) const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
@@ -307,11 +308,6 @@ impl Program {
         rest.chars().next().expect("a state")
     }
 
-    /// Returns true if the program has ended.
-    pub(crate) fn has_ended(&mut self) -> bool {
-        self.child.try_wait().expect("a child").is_some()
-    }
-
     /// Waits for the end; returns the exit status and the time.
     pub(crate) fn ends(&mut self) -> (ExitStatus, Duration) {
         let start = Instant::now();
@@ -387,21 +383,6 @@ impl Program {
             .expect("a number")
     }
 
-    /// Returns how often each of its threads has given up the processor voluntarily.
-    pub(crate) fn wake_ups(&self) -> Vec<u64> {
-        let folder = format!("/proc/{}/task", self.child.id());
-        let tasks = std::fs::read_dir(folder).expect("it runs").flatten();
-        let switches = tasks.map(|task| {
-            let text = std::fs::read_to_string(task.path().join("status")).expect("it runs");
-            let line = text
-                .lines()
-                .find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"));
-            let number = line.and_then(|number| number.trim().parse().ok());
-            number.expect("a number")
-        });
-        switches.collect()
-    }
-
     /// Returns the processor time in hundredths of a second.
     pub(crate) fn cpu(&self) -> u64 {
         let file = format!("/proc/{}/stat", self.child.id());
@@ -437,4 +418,74 @@ fn set_size(master: &OwnedFd, (columns, rows): (u16, u16)) {
         ws_ypixel: 0,
     };
     tcsetwinsize(master, size).expect("a size");
+}
+
+pub(crate) fn emulator(columns: u16, rows: u16) -> vt100::Parser {
+    vt100::Parser::new(side(rows), side(columns), 0)
+}
+
+fn side(number: u16) -> NonZeroU16 {
+    NonZeroU16::new(number).expect("not empty")
+}
+
+/// Returns a screen as text: the rows, the styles of everything that is not blank, the cursor.
+fn of_session(session: &Session) -> String {
+    let mut text = String::new();
+    for (row, styles) in session.screen().lines().zip(session.styles().lines()) {
+        // Blanks at the end of a row are cut off, but they may be reversed.
+        let row = row.chars().chain(std::iter::repeat(' '));
+        let cells: Vec<(char, char)> = row.zip(styles.chars()).collect();
+        write_row(&mut text, &cells);
+    }
+    let cursor = session.cursor().map(|cursor| (cursor.x, cursor.y));
+    write!(text, "cursor {cursor:?}").expect("a string");
+    text
+}
+
+fn of_emulator(screen: &vt100::Screen) -> String {
+    let (rows, columns) = screen.size();
+    let mut text = String::new();
+    for row in 0..rows.get() {
+        let cells: Vec<(char, char)> = (0..columns.get())
+            .filter_map(|column| screen.cell(row, column))
+            .filter(|cell| !cell.is_wide_continuation())
+            .map(|cell| (cell.contents().chars().next().unwrap_or(' '), letter(cell)))
+            .collect();
+        write_row(&mut text, &cells);
+    }
+    let (row, column) = screen.cursor_position();
+    let cursor = (!screen.hide_cursor()).then_some((column, row));
+    write!(text, "cursor {cursor:?}").expect("a string");
+    text
+}
+
+fn letter(cell: &vt100::Cell) -> char {
+    use ratatui::style::{Modifier, Style};
+    assert!(!cell.underline(), "nothing is underlined");
+    let attributes = [
+        (cell.inverse(), Modifier::REVERSED),
+        (cell.bold(), Modifier::BOLD),
+        (cell.dim(), Modifier::DIM),
+    ];
+    let set = attributes
+        .into_iter()
+        .filter(|(set, _)| *set)
+        .map(|(_, attribute)| attribute);
+    theme::letter(&Style::new().add_modifier(set.collect()))
+}
+
+/// The style of a blank only matters if it is reversed.
+fn write_row(text: &mut String, cells: &[(char, char)]) {
+    let row: String = cells.iter().map(|(character, _)| *character).collect();
+    let styles: String = cells
+        .iter()
+        .map(|&(character, style)| {
+            if character == ' ' && style != 'R' {
+                '.'
+            } else {
+                style
+            }
+        })
+        .collect();
+    writeln!(text, "{}\n{}", row.trim_end(), styles.trim_end_matches('.')).expect("a string");
 }

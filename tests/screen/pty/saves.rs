@@ -1,5 +1,5 @@
-//! Saving while another program holds the library: keys keep working, the status line says what the program waits for,
-//! and the end does not wait.
+//! Saving while another program holds the library, like a disk that hangs: keys keep working, the status line says what
+//! the program waits for, and the end does not wait.
 
 use std::fs::File;
 use std::path::Path;
@@ -83,23 +83,22 @@ fn ends_before_the_lock(keys: &[u8], signal: Option<Signal>, status: i32) {
     assert_eq!(taxels, [1]);
 }
 
+/// A reading waits behind the save; Esc drops it.
 #[test]
-fn a_deletion_also_waits_for_the_library() {
+fn esc_gives_up_what_is_read_late() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut program = Program::started(&Start {
-        library: Some(folder.path()),
-        ..Start::default()
-    });
-    program.types(b" sname\r");
-    program.shows("saved as name");
-    let lock = File::open(folder.path().join(".lock")).expect("a lock");
-    lock.lock().expect("it is free");
-    program.types(b":delete name\ry");
-    program.shows("Deleting name: waiting for another taxel to release the library");
-    program.types(b"\x1b[C ");
-    program.shows("NA 2 in all");
+    let (mut program, lock) = saving(folder.path());
+    program.types(b"l");
+    program.shows("the library is being read");
+    program.types(b"washe");
+    program.shows("filter: washe");
+    program.types(b"\x1b");
+    program.shows("Listing the shapes: stopped waiting");
     lock.unlock().expect("held");
-    program.shows("name deleted");
-    program.types(b"\x03y");
+    program.shows("? Help");
+    program.types(b"l");
+    program.types(b"washer\r");
+    program.shows("washer loaded");
+    program.types(b"q");
     program.ends_well(0);
 }

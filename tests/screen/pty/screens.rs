@@ -1,19 +1,14 @@
 //! The screen is the same as in a script, on every kind of terminal.
 
-use taxel::tui::app::message::Message;
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
 use taxel::tui::script::Session;
 
 use super::program::{Program, Start, TAXEL};
 
 pub(crate) fn session(ascii: bool, size: (u16, u16)) -> Session {
-    started(Options::plain(ascii), size)
-}
-
-/// Starts a session with other options.
-pub(crate) fn started(options: Options, size: (u16, u16)) -> Session {
     let world = taxel::tui::runtime::World::scratch().expect("a folder");
-    Session::new(&options, world, size.0, size.1)
+    Session::new(&Options::plain(ascii), world, size.0, size.1)
 }
 
 /// Keys in notation, and the bytes that a terminal sends for them.
@@ -94,35 +89,24 @@ fn keys_may_come_in_pieces() {
 
 #[test]
 fn every_kind_of_terminal_is_supported() {
-    let no_color = ("NO_COLOR", "1");
-    let utf8 = ("LANG", "C.UTF-8");
-    for (variables, ascii) in [
-        (vec![("TERM", "dumb"), utf8], true),
-        (vec![utf8], true),
-        (vec![("TERM", "vt100"), utf8], true),
-        (vec![("TERM", "linux"), utf8], false),
-        (vec![("TERM", "linux"), utf8, no_color], false),
-        (vec![("TERM", "xterm-256color"), utf8, no_color], false),
-        (
-            vec![("TERM", "xterm-256color"), utf8, ("COLORTERM", "truecolor")],
-            false,
-        ),
-        (vec![("TERM", "xterm-256color")], true),
-        (vec![("TERM", "tmux"), ("LANG", "C")], true),
+    let (no_color, utf8) = (("NO_COLOR", "1"), ("LANG", "C.UTF-8"));
+    for (term, other, ascii) in [
+        ("dumb", utf8, true),
+        ("vt100", utf8, true),
+        ("linux", utf8, false),
+        ("xterm-256color", no_color, true),
+        ("xterm-256color", ("COLORTERM", "truecolor"), true),
+        ("tmux", utf8, false),
     ] {
-        let term = variables
-            .iter()
-            .find(|(name, _)| *name == "TERM")
-            .map_or("", |(_, term)| term);
         let mut program = Program::started(&Start {
-            variables: &variables,
+            variables: &[("TERM", term), other],
             ..Start::default()
         });
         let mut script = session(ascii, (80, 24));
         program.types(b"f\x1b[C\t\r");
         program.shows("Region 1");
         script.keys("f<Right><Tab><CR>").expect("keys");
-        if term.is_empty() || term == "dumb" {
+        if term == "dumb" {
             program.agrees_plainly(&script);
         } else {
             program.agrees(&script);
@@ -131,57 +115,37 @@ fn every_kind_of_terminal_is_supported() {
         program.ends_well(0);
         let sent = String::from_utf8_lossy(&program.bytes).into_owned();
         let has = |text: &str| sent.contains(text);
-        assert!(
-            !has("[6n") && !has("[c") && !has("]1"),
-            "{term}: nothing is asked"
-        );
+        assert!(!has("[6n") && !has("[c"), "{term}: nothing is asked");
         assert!(!ascii || sent.is_ascii(), "{term}");
-        let colored = has("\x1b[32m") || has(";32m") || has("38;");
-        match term {
-            "" | "dumb" => assert!(!has("?") || !has("[?1"), "{term}: no modes"),
-            "vt100" => {
-                let bold = has("\x1b[1m") || has("\x1b[0;1m");
-                assert!(!colored && bold && !has("\x1b[?1"), "{term}");
-            }
-            "linux" => assert!(!has("38;5") && !has("?2026") && !has("?1000"), "{term}"),
-            _ => assert!(
-                has("\x1b[?2026h") && has("\x1b[?1000h") && !has("?1003"),
-                "{term}"
-            ),
-        }
-        if variables.contains(&no_color) || term == "dumb" {
-            assert!(!colored, "{term}");
-        } else if term == "linux" {
-            assert!(colored, "{term}");
+        let colored = has(";32m") || has("38;");
+        assert_eq!(
+            colored,
+            !matches!(term, "dumb" | "vt100") && other != no_color
+        );
+        let modes = [has("\x1b[?1049h"), has("\x1b[?2026h"), has("\x1b[?1000h")];
+        let expected = match term {
+            "dumb" | "vt100" => [false; 3],
+            "linux" => [true, false, false],
+            _ => [true; 3],
+        };
+        assert_eq!(modes, expected, "{term}");
+        if term == "dumb" {
+            only_moves(&program.bytes);
         }
     }
 }
 
-/// A terminal without other features gets only cursor moves and characters.
-#[test]
-fn a_dumb_terminal_gets_only_moves_and_characters() {
-    let mut program = Program::started(&Start {
-        variables: &[("TERM", "dumb")],
-        ..Start::default()
-    });
-    program.types(b"f\r?\x1b[6~qqy");
-    program.ends_well(0);
-    let mut rest = &program.bytes[..];
+/// Checks that the only sequences are moves, erasures, and the cursor hidden and shown.
+fn only_moves(mut rest: &[u8]) {
     while let Some(at) = rest.iter().position(|&byte| byte == 0x1b) {
         rest = &rest[at + 1..];
-        let end = rest
-            .iter()
-            .position(u8::is_ascii_alphabetic)
-            .expect("a sequence");
+        let end = rest.iter().position(u8::is_ascii_alphabetic);
+        let end = end.expect("a sequence");
+        let is_mode = matches!(rest[end], b'h' | b'l') && rest.starts_with(b"[?25");
         assert!(
-            b"ABCDHJKhl".contains(&rest[end]),
+            is_mode || b"ABCDHJK".contains(&rest[end]),
             "{:?}",
             String::from_utf8_lossy(&rest[..=end])
-        );
-        let mode = matches!(rest[end], b'h' | b'l');
-        assert!(
-            !mode || rest.starts_with(b"[?25"),
-            "only the cursor is hidden and shown"
         );
         rest = &rest[end..];
     }
@@ -189,11 +153,14 @@ fn a_dumb_terminal_gets_only_moves_and_characters() {
 
 #[test]
 fn a_terminal_without_a_size_gets_a_default_size() {
-    let mut program = Program::started(&Start {
+    let start = Start {
         size: (0, 0),
         ..Start::default()
-    });
+    };
+    let mut program = Program::started(&start);
     program.agrees(&session(false, (80, 24)));
+    program.resize((100, 30));
+    program.agrees(&session(false, (100, 30)));
     let variables = [
         ("TERM", "xterm"),
         ("LANG", "C.UTF-8"),
@@ -201,13 +168,10 @@ fn a_terminal_without_a_size_gets_a_default_size() {
         ("COLUMNS", "60"),
     ];
     let mut program = Program::start(&Start {
-        size: (0, 0),
         variables: &variables,
-        ..Start::default()
+        ..start
     });
-    program.shows("quit");
-    let script = session(false, (60, 20));
-    let rows = script.screen();
+    let rows = session(false, (60, 20)).screen();
     program.until("60 × 20", |program| program.rows() == rows.trim_end());
 }
 
@@ -238,4 +202,83 @@ fn standard_files_may_be_redirected() {
             && said.contains("'taxel script' drives"),
         "{said}"
     );
+}
+
+#[test]
+fn a_record_of_keys_shows_the_same_screen() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let record = folder.path().join("record.taxel");
+    let name = record.to_str().expect("a name");
+    let command = [
+        TAXEL,
+        "--record",
+        name,
+        "--columns",
+        "12",
+        "--rows",
+        "10",
+        "--ascii",
+    ];
+    let mut program = Program::started(&Start {
+        command: &command,
+        size: (72, 22),
+        ..Start::default()
+    });
+    program.types(b"fr\t3.57\x1b[D\x7f\r");
+    program.shows("rectangle length 3.70");
+    program.resize((90, 26));
+    program.types(b"\x1b[<0;4;3M\x1b[<32;14;3M\x1b[<32;14;7M\x1b[<0;14;7m");
+    program.shows("by hand");
+    let rows = program.rows();
+    program.types(b"qy");
+    program.ends_well(0);
+    let script = std::fs::read_to_string(&record).expect("a record");
+    let shown = script.replacen("Keys q\n", "Screen\nKeys q\n", 1) + "Quit\n";
+    std::fs::write(&record, shown).expect("written");
+    let output = std::process::Command::new(TAXEL)
+        .args(["script", name])
+        .env("LANG", "C.UTF-8")
+        .output()
+        .expect("it runs");
+    assert!(output.status.success(), "{output:?}\n{script}");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    let screen = printed.split_once('\n').map_or("", |(_, screen)| screen);
+    assert_eq!(screen.trim_end(), rows, "{script}");
+    // A record is never replaced.
+    let mut program = Program::start(&Start {
+        command: &command,
+        ..Start::default()
+    });
+    program.shows("already exists and is not replaced");
+}
+
+/// Reports of the mouse (SGR, positions from 1), and the text that goes to the terminal's clipboard.
+#[test]
+fn the_mouse_and_the_clipboard_work() {
+    let mut program = Program::started(&Start::default());
+    let mut script = session(false, (80, 24));
+    program.types(b"\x1b[<0;14;8M\x1b[<0;14;8m");
+    for kind in [MouseKind::Press, MouseKind::Release] {
+        let (column, row) = (13, 7);
+        script.send(Message::Mouse(Mouse { kind, column, row }));
+    }
+    program.agrees(&script);
+    program.types(b"Y");
+    program.shows("imprint sent to your terminal's clipboard (272 characters)");
+    program.until("the imprint", |program| {
+        program.count(b"\x1b]52;c;Li4u") == 1
+    });
+    program.types(b"qy");
+    program.ends_well(0);
+    // A terminal that would show the text does not get it.
+    let mut program = Program::started(&Start {
+        command: &[TAXEL, "--no-mouse"],
+        variables: &[("TERM", "linux"), ("LANG", "C.UTF-8")],
+        ..Start::default()
+    });
+    program.types(b"Y");
+    program.shows("! this terminal has no clipboard; s saves");
+    program.types(b"q");
+    program.ends_well(0);
+    assert_eq!(program.count(b"\x1b]52") + program.count(b"?1000h"), 0);
 }

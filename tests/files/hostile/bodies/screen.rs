@@ -238,7 +238,7 @@ fn work(commands: &[(usize, ScriptCommand)]) -> u64 {
 /// Keys that lead to different starting points, after a small model was used once: nothing, a ring drawn by hand, or a
 /// finished sweep of a few poses, whose ranges are remembered; on the matrix or on one of the pages. So even a short
 /// input reaches every part.
-const STARTS: [&str; 12] = [
+const STARTS: [&str; 11] = [
     "",
     "f<Enter>:explore --x0 5:5.5:0.5 --y0 5 --angle 0:90:45<Enter><Esc>",
     "S<C-u>8<Tab><C-u>8<Enter>f<Enter>:explore --x0 1 --y0 1:1.5:0.5 --angle 0<Enter><Esc>",
