@@ -10,6 +10,10 @@
 //! ```
 //! A [`script::Session`] replaces the terminal by text and a buffer; everything between is the same code.
 
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "the screen is no library: its messages say what is wrong"
+)]
 #![expect(
     clippy::trivially_copy_pass_by_ref,
     reason = "a theme is borrowed like all that views draw with, however small it is"

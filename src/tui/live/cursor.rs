@@ -9,14 +9,12 @@ use crate::tui::live::message::ProvisionalChange;
 use crate::tui::live::reading::hold;
 use crate::tui::live::refusal::LiveRefusal;
 
-/// The frames of the page, and the shown one.
 #[derive(Clone, Debug)]
 pub(super) struct FrameCursor {
     history: FrameHistory,
     /// The number in the history of the first frame since the source was watched again; 0 if it was not watched
     /// again.
     watched_from: u64,
-    /// The frame after those of the history, which is not confirmed yet.
     provisional: Option<Arc<Frame>>,
     /// The frame that the page stays at; None if the page follows the source.
     frozen: Option<NumberedFrame>,
@@ -24,18 +22,15 @@ pub(super) struct FrameCursor {
     held: Option<Arc<Frame>>,
 }
 
-/// A frame with its number in the history. One that is not confirmed yet has the number that it will have.
 #[derive(Clone, Debug)]
 pub(super) struct NumberedFrame {
     pub(super) number: u64,
-    /// The frame, which stays here after it has left the history.
     pub(super) frame: Arc<Frame>,
 }
 
 /// The outcome of a change of the frame that is not confirmed yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ProvisionalOutcome {
-    /// The shown frame is the same.
     Same,
     /// The shown frame may have changed.
     Changed,
@@ -60,7 +55,6 @@ impl FrameCursor {
         self.next_number() - self.watched_from
     }
 
-    /// Returns the number in the history that the next frame will have.
     pub(super) fn next_number(&self) -> u64 {
         self.history.next_number()
     }
@@ -70,7 +64,6 @@ impl FrameCursor {
         self.history.rate()
     }
 
-    /// Returns true if the page follows the source.
     pub(super) fn follows(&self) -> bool {
         self.frozen.is_none()
     }
@@ -81,7 +74,6 @@ impl FrameCursor {
         Some(self.next_number().saturating_sub(shown + 1))
     }
 
-    /// Returns true if the largest value of each cell is held.
     pub(super) fn holds_peak(&self) -> bool {
         self.held.is_some()
     }
@@ -114,9 +106,6 @@ impl FrameCursor {
     }
 
     /// Returns the shown frame if it came since the source was last watched anew.
-    ///
-    /// # Errors
-    /// Returns an error before the first frame, and for a frame that came before.
     pub(super) fn of_this_watch(&self) -> Result<NumberedFrame, LiveRefusal> {
         let shown = self.shown().ok_or(LiveRefusal::NoFrame)?;
         if shown.number < self.watched_from {
@@ -133,10 +122,6 @@ impl FrameCursor {
         Some(frozen.unwrap_or(newest).min(newest))
     }
 
-    /// Returns at most `count` confirmed frames up to the shown one that have its size, the last one first.
-    ///
-    /// # Errors
-    /// Returns an error before the first frame, and for a frame that has left the history.
     pub(super) fn up_to_shown(&self, count: usize) -> Result<Vec<Arc<Frame>>, LiveRefusal> {
         let shown = self.confirmed().ok_or(LiveRefusal::NoFrame)?;
         // Those before a change of the sensor have no part in it.
@@ -151,14 +136,12 @@ impl FrameCursor {
         Ok(frames)
     }
 
-    /// Returns at most `count` of the newest frames, the last one first.
     pub(super) fn newest(&self, count: usize) -> impl Iterator<Item = &Arc<Frame>> {
         let newest = self.history.newest();
         let frames = newest.map(|newest| self.history.back_from(newest, count));
         frames.into_iter().flatten()
     }
 
-    /// Adds a confirmed frame, also to the held peak.
     pub(super) fn push(&mut self, frame: &Arc<Frame>) {
         if let Some(held) = &mut self.held {
             hold(Arc::make_mut(held), frame);
@@ -202,7 +185,6 @@ impl FrameCursor {
         outcome
     }
 
-    /// Freezes the shown frame, or follows the source again.
     pub(super) fn freeze(&mut self) {
         self.frozen = match self.frozen {
             Some(_) => None,
@@ -210,8 +192,6 @@ impl FrameCursor {
         };
     }
 
-    /// Stays at the frame that is `by` frames later in the history, or earlier if `by` is negative. Returns false
-    /// before the first frame.
     pub(super) fn scrub(&mut self, by: i64) -> bool {
         let (Some(oldest), Some(newest)) = (self.history.oldest(), self.history.newest()) else {
             return false;
@@ -222,17 +202,14 @@ impl FrameCursor {
         true
     }
 
-    /// Stays at the oldest frame of the history.
     pub(super) fn stay_at_oldest(&mut self) {
         self.frozen = self.history.oldest().and_then(|oldest| self.at(oldest));
     }
 
-    /// Follows the source.
     pub(super) fn follow(&mut self) {
         self.frozen = None;
     }
 
-    /// Holds the largest value of each cell from now on, or no longer.
     pub(super) fn switch_peak(&mut self) {
         self.held = match self.held {
             Some(_) => None,

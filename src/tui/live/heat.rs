@@ -25,19 +25,15 @@ use crate::tui::widget::heat;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below, right_of};
 
-/// The heat map of a frame.
 pub(super) struct HeatMap<'a> {
     theme: &'a Theme,
     reading: &'a LiveReading,
     layer: HeatLayer,
-    /// The values of the first and of the last shade.
     range: (f64, f64),
-    /// The visible taxels, and their form.
     grid: HeatGrid,
 }
 
 impl<'a> HeatMap<'a> {
-    /// Creates the heat map of a frame in an area.
     pub(super) fn of(live: &Live, reading: &'a LiveReading, theme: &'a Theme, area: Rect) -> Self {
         let size = (reading.values.columns(), reading.values.rows());
         Self {
@@ -83,7 +79,6 @@ impl<'a> HeatMap<'a> {
         (!is_whole && columns.count > 0 && rows.count > 0).then(text)
     }
 
-    /// Draws the heat map.
     pub(super) fn draw(&self, buffer: &mut Buffer, area: Rect) {
         let area = area.intersection(*buffer.area());
         self.draw_rulers(buffer, area);
@@ -106,7 +101,6 @@ impl<'a> HeatMap<'a> {
         }
     }
 
-    /// Draws the numbers of columns and rows, if there are rulers.
     fn draw_rulers(&self, buffer: &mut Buffer, area: Rect) {
         let (left, above) = self.grid.rulers;
         if above > 0 {
@@ -134,7 +128,6 @@ impl<'a> HeatMap<'a> {
         value.map_or(f64::NAN, |value| (value - low) / (high - low))
     }
 
-    /// Returns the character and the style of a taxel.
     fn taxel(&self, column: u8, row: u8) -> (char, Style) {
         let share = self.share(column, row);
         match (self.layer, &self.reading.imprint) {
@@ -162,7 +155,6 @@ impl<'a> HeatMap<'a> {
             && imprint.is_some_and(|imprint| is_edge(imprint, column, row))
     }
 
-    /// Returns true if two taxels, this one and the one below, are not active but next to an active one.
     fn is_beside(&self, column: u8, row: u8) -> bool {
         let Some(imprint) = &self.reading.imprint else {
             return false;
@@ -305,7 +297,6 @@ fn near(reading: &LiveReading) -> (u8, u8) {
     middle.or_else(largest).map_or((0, 0), |at| at)
 }
 
-/// Returns true if a taxel is active and one of its four neighbours is not.
 fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {
     let is_inside = column > 0
         && row > 0
@@ -330,7 +321,6 @@ pub(super) fn scale(theme: &Theme, (low, high): (f64, f64), unit: &str) -> Strin
     format!("{} {shades} {}{unit}", measured(low, 7), measured(high, 7))
 }
 
-/// Returns the number of cells that have values.
 pub(super) fn cells(values: &Matrix<f64>) -> usize {
     values
         .values()

@@ -26,18 +26,14 @@ pub(super) fn is_same(one: &Frame, other: &Frame) -> bool {
             .all(|(one, other)| one.to_bits() == other.to_bits())
 }
 
-/// The most recent frames. Each has a number in the history, which counts all frames that have come.
 #[derive(Clone, Debug)]
 pub struct FrameHistory {
-    /// The frames, the oldest first.
     frames: VecDeque<Arc<Frame>>,
-    /// The number of the oldest frame that is still here.
     first: u64,
     /// The memory that the frames take, in bytes.
     bytes: usize,
     /// The memory that they may take, in bytes; the newest frame is kept even if it takes more.
     most: usize,
-    /// The frame rate.
     rate: FrameRate,
 }
 
@@ -53,8 +49,6 @@ impl FrameHistory {
         }
     }
 
-    /// Adds the newest frame, and removes the oldest ones if there is no memory for them. The newest one always
-    /// stays.
     pub fn push(&mut self, frame: Arc<Frame>) {
         match frame.time {
             Some(time) => self.rate.add(time),
@@ -76,7 +70,6 @@ impl FrameHistory {
         (length > 0).then(|| self.first + length - 1)
     }
 
-    /// Returns the number that the next frame will have.
     pub fn next_number(&self) -> u64 {
         self.first + self.frames.len() as u64
     }
@@ -92,7 +85,6 @@ impl FrameHistory {
         self.frames.get(usize::try_from(index).ok()?)
     }
 
-    /// Returns at most `count` frames that end with the given one, the last one first.
     pub fn back_from(&self, number: u64, count: usize) -> impl Iterator<Item = &Arc<Frame>> {
         let numbers = (self.first..=number).rev().take(count);
         numbers.filter_map(|number| self.get(number))

@@ -15,32 +15,24 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::layout::{AxisWindow, RULER};
 use crate::tui::widget::write::{below, right_of};
 
-/// The minimum number of columns for the numbers beside the heat map.
 const PANEL: u16 = 26;
 
-/// The minimum number of columns for the numbers on a narrow screen, where they are shortened.
 const NARROW_PANEL: u16 = 18;
 
 /// The number of columns for the numbers that must remain if taxels are enlarged.
 const WIDE_PANEL: u16 = 44;
 
-/// The number of columns between the heat map and the numbers.
 const GAP: u16 = 2;
 
 /// The number of lines for the numbers below the heat map; at most half of all lines.
 const LOW_PANEL: u16 = 7;
 
-/// The number of columns of a taxel that is shown as a number, with its mark and a space.
 pub(super) const NUMBER: u16 = 6;
 
-/// How a taxel is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CellForm {
-    /// Two columns and one line, or this many times that, both across and down.
     Wide(u16),
-    /// Two taxels, one above the other, in one character.
     Half,
-    /// A number.
     Number,
 }
 
@@ -56,7 +48,6 @@ impl CellForm {
     }
 }
 
-/// The visible taxels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeatGrid {
     /// The form of all taxels; it is the same within a map.
@@ -68,8 +59,6 @@ pub(super) struct HeatGrid {
 }
 
 impl HeatGrid {
-    /// Computes the visible taxels of a matrix in an area. If not all fit, they are as close to `near` as the edges
-    /// allow.
     pub(super) fn of(area: Rect, (columns, rows): (u8, u8), numbers: bool, near: (u8, u8)) -> Self {
         let times = (area.width / (2 * u16::from(columns))).min(area.height / u16::from(rows));
         let form = match times {
@@ -116,12 +105,10 @@ impl HeatGrid {
         }
     }
 
-    /// Returns the number of visible taxels.
     fn visible(&self) -> u16 {
         u16::from(self.columns.count) * u16::from(self.rows.count)
     }
 
-    /// Returns the columns of the screen that the visible taxels and their ruler take.
     fn width(&self) -> u16 {
         self.rulers.0 + u16::from(self.columns.count) * self.form.size().0
     }
@@ -138,19 +125,16 @@ fn ruler(taxels: u16, side: u16, ruler: u16, taxel: u16) -> u16 {
     }
 }
 
-/// The panes of the page.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LivePanes {
     /// The title line: the source and the frame.
     pub(super) title: Rect,
-    /// The taxels.
     pub(super) map: Rect,
     /// The numbers; a low screen shows only the first of them.
     pub(super) panel: Rect,
 }
 
 impl LivePanes {
-    /// Computes the panes for a matrix of this size. Before the first frame there is no size.
     pub(super) fn of(area: Rect, size: Option<(u8, u8)>, numbers: bool) -> Self {
         let title = Rect {
             height: area.height.min(1),
@@ -202,7 +186,6 @@ impl LivePanes {
 mod tests {
     use super::*;
 
-    /// Returns the number of visible taxels of 16 x 16 on a screen of this many columns and rows.
     fn visible(columns: u16, rows: u16, numbers: bool) -> u16 {
         // Menu, notice and hints have a line each.
         let area = Rect::new(0, 1, columns, rows - 3);

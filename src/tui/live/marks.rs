@@ -6,25 +6,19 @@
 use crate::formats::recording::FrameMark;
 use crate::frame::Frame;
 
-/// The marks of a source.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameMarks {
-    /// The marks set by keys, each with the frame's number in the history, in the order of these numbers.
     own: Vec<(u64, FrameMark)>,
-    /// The marks of the recording itself, by the labels of frames.
     recorded: Vec<FrameMark>,
     /// Whether the marks set by keys have changed since [`FrameMarks::take_change`] was called last.
     is_changed: bool,
 }
 
 impl FrameMarks {
-    /// Returns the marks set by keys, in the order in which their frames came.
     pub(super) fn own(&self) -> Vec<FrameMark> {
         self.own_from(0)
     }
 
-    /// Returns the marks set by keys on frames with this number in the history or a later one, in the order in which
-    /// their frames came.
     pub(super) fn own_from(&self, first: u64) -> Vec<FrameMark> {
         let own = self.own.iter().filter(|(number, _)| *number >= first);
         own.map(|(_, mark)| *mark).collect()
@@ -35,24 +29,20 @@ impl FrameMarks {
         std::mem::take(&mut self.is_changed)
     }
 
-    /// Takes the marks of the recording.
     pub(super) fn set_recorded(&mut self, recorded: &[FrameMark]) {
         self.recorded = recorded.to_vec();
     }
 
-    /// Returns the marks of the recording.
     pub(super) fn recorded(&self) -> &[FrameMark] {
         &self.recorded
     }
 
-    /// Returns true if a frame, given with its number in the history, is marked.
     pub(super) fn has(&self, number: u64, frame: &Frame) -> bool {
         let label = frame.label.and_then(|label| u64::try_from(label).ok());
         let is_recorded = |label: u64| self.recorded.iter().any(|mark| mark.number == label);
         self.index(number).is_ok() || label.is_some_and(is_recorded)
     }
 
-    /// Marks a frame, given with its number in the history, or removes its mark. Returns true if it is marked now.
     pub(super) fn switch(&mut self, number: u64, frame: &Frame) -> bool {
         let mark = FrameMark {
             number: frame.number,
@@ -67,7 +57,6 @@ impl FrameMarks {
         index.is_err()
     }
 
-    /// Removes the mark that a key has set on a frame, given by its number in the history.
     pub(super) fn take_off(&mut self, number: u64) {
         if let Ok(index) = self.index(number) {
             self.own.remove(index);
@@ -75,12 +64,10 @@ impl FrameMarks {
         }
     }
 
-    /// Removes the marks set by keys.
     pub(super) fn clear(&mut self) {
         self.own.clear();
     }
 
-    /// Returns the index of a mark by its number in the history, or the index to insert it at.
     fn index(&self, number: u64) -> Result<usize, usize> {
         self.own.binary_search_by_key(&number, |own| own.0)
     }

@@ -18,7 +18,6 @@ use crate::storage::ModelChoice;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::prompt::flags;
 
-/// A source of frames and how to read it. The user's settings apply to what is not given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedSource {
     /// The name: a path, `tcp://HOST:PORT`, or `-` for standard input.
@@ -34,7 +33,6 @@ pub struct NamedSource {
 }
 
 impl NamedSource {
-    /// The flags, each with the function that takes its value.
     const FLAGS: [(&'static str, Take); 9] = [
         ("--rows", |source, value| {
             source.rows = Some(value.side()?);
@@ -74,12 +72,10 @@ impl NamedSource {
         }),
     ];
 
-    /// Returns the names of the flags.
     pub fn flags() -> [&'static str; 9] {
         Self::FLAGS.map(|(name, _)| name)
     }
 
-    /// Creates a source without flags.
     pub fn new(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -87,10 +83,6 @@ impl NamedSource {
         }
     }
 
-    /// Reads a name, and the flags after it, each followed by its value.
-    ///
-    /// # Errors
-    /// Returns a sentence that says what is wrong with the text.
     pub fn read(text: &str) -> Result<Self, String> {
         let (name, rest) = text.split_at(flags_start(text).unwrap_or(text.len()));
         let mut source = Self::new(name.trim());
@@ -146,17 +138,14 @@ impl NamedSource {
     }
 }
 
-/// Takes the value of a flag.
 type Take = fn(&mut NamedSource, &FlagValue) -> Result<(), String>;
 
-/// A flag with its value, as they were typed.
 struct FlagValue<'a> {
     flag: &'a str,
     text: &'a str,
 }
 
 impl FlagValue<'_> {
-    /// Returns the message that the flag takes something else.
     fn refused(&self, expected: &dyn fmt::Display) -> String {
         let found = shortened(self.text);
         format!("{} takes {expected}, found {found}", self.flag)
@@ -173,7 +162,6 @@ impl FlagValue<'_> {
         number.ok_or_else(|| self.refused(&format!("{what} {}", bounds(range))))
     }
 
-    /// Returns the value as a number of rows or columns.
     fn side(&self) -> Result<u16, String> {
         self.within(&FrameSize::SIDES, "a whole number")
     }

@@ -8,7 +8,6 @@ use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::widget::number::other;
 
-/// The set in use, and those before it.
 #[derive(Clone, Debug)]
 pub struct ShapeNames {
     /// The set that was requested with the source; None if none was.
@@ -21,12 +20,10 @@ pub struct ShapeNames {
     before: Option<ModelChoice>,
     /// The set that could not be read last: the next step through the sets goes on from there.
     unreadable: Option<ModelChoice>,
-    /// Whether the names of the user's own models were asked for, to choose the next one.
     pub awaits_models: bool,
 }
 
 impl ShapeNames {
-    /// Names imprints by the requested set, as the work of this number.
     pub fn new(request: &WatchRequest, number: u64) -> Self {
         let mut names = Self {
             asked: request.model.clone(),
@@ -50,7 +47,6 @@ impl ShapeNames {
         self.naming.as_ref().map(|naming| &naming.request)
     }
 
-    /// Returns true if imprints are named by the work of this number.
     pub fn is_by(&self, number: u64) -> bool {
         self.request()
             .is_some_and(|request| request.number == number)
@@ -68,7 +64,6 @@ impl ShapeNames {
         });
     }
 
-    /// Names imprints by the same set again, as the work of this number.
     pub fn restart(&mut self, number: u64) {
         let choice = self.naming.take().map(|naming| naming.request.choice);
         self.begin(choice, number);
@@ -94,15 +89,12 @@ impl ShapeNames {
         self.begin(next, number);
     }
 
-    /// Returns true if an imprint is to be named now, and notes that it was asked for. Returns false if an answer is
-    /// still expected or already known, or if no taxel is active.
     pub fn ask(&mut self, imprint: &Imprint) -> bool {
         self.naming
             .as_mut()
             .is_some_and(|naming| naming.ask(imprint))
     }
 
-    /// Takes the answer of a model. Answers of work of another number are dropped.
     pub fn take(&mut self, number: u64, named: NamedImprint) {
         if self.is_by(number)
             && let Some(naming) = &mut self.naming

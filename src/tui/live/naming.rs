@@ -6,20 +6,14 @@ use crate::imprint::Imprint;
 use crate::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
 use crate::storage::ModelChoice;
 
-/// The answer of a model about an imprint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedImprint {
-    /// The imprint.
     pub imprint: Imprint,
-    /// How far the answer can be trusted.
     pub state: AnswerState,
     /// The likeliest shapes: one, several in a tie, or none for an imprint that no shape leaves.
     pub names: Vec<String>,
-    /// The probability of the likeliest shape.
     pub probability: Option<f64>,
-    /// The shape with the nearest imprint, and the number of taxels in which that imprint differs.
     pub nearest: Option<(String, u32)>,
-    /// The difference to the nearest imprint, if the noise does not explain it.
     pub unexplained: Option<UnexplainedDifference>,
 }
 
@@ -49,32 +43,24 @@ impl NamedImprint {
     }
 }
 
-/// A request to name the imprints of frames by a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamingRequest {
     /// The number of this request. Answers carry it, so late ones of an earlier model can be dropped.
     pub number: u64,
-    /// The set of shapes.
     pub choice: ModelChoice,
     /// The noise: how often a taxel flips.
     pub noise: Option<Noise>,
 }
 
-/// The model of the page, and its last answer.
 #[derive(Clone, Debug)]
 pub struct Naming {
-    /// The request that is answered.
     pub request: NamingRequest,
-    /// The last answer.
     pub answer: Option<Box<NamedImprint>>,
-    /// Why there are no answers.
     pub failure: Option<String>,
-    /// Whether an answer is on its way.
     asked: bool,
 }
 
 impl Naming {
-    /// Creates the state without any answer.
     pub fn new(request: NamingRequest) -> Self {
         Self {
             request,
@@ -84,7 +70,6 @@ impl Naming {
         }
     }
 
-    /// Returns true if an imprint is to be asked for now, and notes that it is.
     pub fn ask(&mut self, imprint: &Imprint) -> bool {
         let known = self
             .answer
@@ -95,13 +80,11 @@ impl Naming {
         asks
     }
 
-    /// Takes an answer.
     pub fn take(&mut self, answer: NamedImprint) {
         self.asked = false;
         self.answer = Some(Box::new(answer));
     }
 
-    /// Notes why there are no answers.
     pub fn fail(&mut self, reason: String) {
         self.asked = false;
         self.failure = Some(reason);

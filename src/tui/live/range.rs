@@ -7,9 +7,7 @@ use crate::tui::live::reading::{HeatLayer, LiveReading, round_up};
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ShadeRange {
     raw: Span,
-    /// The values after tare and gain.
     tared: Span,
-    /// Whether the shades cover only the values of the shown frame.
     pub(super) is_own: bool,
 }
 
@@ -19,7 +17,6 @@ struct Span {
     /// The largest value, rounded up to a round number; None as long as no value is above 0. The size of values
     /// depends on the sensor: one may measure thousands of pascals, another one fractions of a newton.
     top: Option<f64>,
-    /// The least value, at most 0.
     bottom: f64,
 }
 
@@ -43,7 +40,6 @@ impl Span {
 }
 
 impl ShadeRange {
-    /// Adds the values of a new frame, raw ones and those after tare and gain.
     pub(super) fn add(&mut self, [raw, tared]: [&Matrix<f64>; 2]) {
         self.raw.add(raw);
         self.tared.add(tared);
@@ -60,7 +56,6 @@ impl ShadeRange {
         self.tared.top()
     }
 
-    /// Returns the ends of the range for a layer.
     pub(super) fn ends(&self, layer: HeatLayer, reading: Option<&LiveReading>) -> (f64, f64) {
         let largest = reading
             .and_then(|reading| reading.shown_max)

@@ -7,19 +7,14 @@ use crate::frame::{Frame, FrameError, Processing};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
-/// The layer of a frame that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeatLayer {
-    /// The values as the sensor has sent them.
     Raw,
-    /// The values after tare and gain.
     Tared,
-    /// The active taxels.
     Imprint,
 }
 
 impl HeatLayer {
-    /// Returns the layer that is shown next.
     pub(super) fn next(self) -> Self {
         match self {
             Self::Raw => Self::Tared,
@@ -30,7 +25,6 @@ impl HeatLayer {
 }
 
 impl HeatLayer {
-    /// Returns the name on the screen.
     pub fn name(self) -> &'static str {
         match self {
             Self::Raw => "raw",
@@ -40,14 +34,11 @@ impl HeatLayer {
     }
 }
 
-/// A frame, processed, with its imprint and description.
 #[derive(Clone, Debug)]
 pub struct LiveReading {
-    /// The frame.
     pub frame: Arc<Frame>,
     /// The shown values; NaN if there is no cell.
     pub values: Matrix<f64>,
-    /// The sum of the values before tare and gain, in every layer, as `taxel frames` prints it.
     pub sum: f64,
     /// The largest value before tare and gain, and its column and row; None without cells.
     pub max: Option<(f64, (u8, u8))>,
@@ -55,23 +46,17 @@ pub struct LiveReading {
     pub shown_max: Option<(f64, (u8, u8))>,
     /// The largest value after tare and gain, which the threshold applies to; None without cells.
     pub tared_max: Option<f64>,
-    /// The least shown value, at most 0.
     pub least: f64,
     /// The active taxels; None without a threshold.
     pub imprint: Option<Imprint>,
     /// The active taxels of the main region; empty if there is none.
     pub main: Imprint,
-    /// The description of the main region.
     pub description: Option<Description>,
     /// The number of regions of the imprint: pieces and holes.
     pub regions: usize,
 }
 
 impl LiveReading {
-    /// Processes a frame, and keeps the values of a layer.
-    ///
-    /// # Errors
-    /// Returns an error if the processing does not fit the frame.
     pub(super) fn of(
         frame: Arc<Frame>,
         processing: &mut Processing,
@@ -116,7 +101,6 @@ fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
     largest
 }
 
-/// Raises the values of a frame to those of another one that are larger. Takes the other frame if its size differs.
 pub(super) fn hold(held: &mut Frame, frame: &Frame) {
     if held.size() == frame.size() {
         for (own, &other) in held.values_mut().iter_mut().zip(frame.values()) {
@@ -130,8 +114,6 @@ pub(super) fn hold(held: &mut Frame, frame: &Frame) {
     }
 }
 
-/// Rounds up to 1, 2, 5, 10, 20, 50 … or a tenth, hundredth … of these. Returns 1 for values that are not above 0,
-/// not finite, or too small to have tenths.
 pub(super) fn round_up(value: f64) -> f64 {
     if value < f64::MIN_POSITIVE || !value.is_finite() {
         return 1.0;

@@ -1,6 +1,5 @@
 //! The state of a recording: whether the frames of the live page are recorded, and if not, why.
 
-/// The running recording, and what became of requested ones.
 #[derive(Clone, Debug, Default)]
 pub struct RecordingState {
     /// The file that is written; None if nothing is recorded.
@@ -10,7 +9,6 @@ pub struct RecordingState {
     from: u64,
     /// Why nothing is recorded although it was requested.
     refusal: Option<String>,
-    /// Why the recording that was requested together with the source has failed.
     write_failure: Option<String>,
     /// Whether a recording ended because its source was left, which the user has not been told yet.
     was_stopped: bool,
@@ -22,7 +20,6 @@ impl RecordingState {
         self.name.as_deref()
     }
 
-    /// Returns the number in the history from which on frames may be recorded.
     pub(super) fn from(&self) -> u64 {
         self.from
     }
@@ -38,12 +35,10 @@ impl RecordingState {
         self.write_failure.as_deref()
     }
 
-    /// Notes that a recording is requested, before the frame with this number in the history.
     pub(super) fn request(&mut self, next_number: u64) {
         self.from = next_number;
     }
 
-    /// Notes that a recording has begun in the file `name`, or has ended.
     pub(super) fn set(&mut self, name: Option<String>) {
         self.name = name;
         self.refusal = None;
@@ -70,7 +65,6 @@ impl RecordingState {
         std::mem::take(&mut self.was_stopped)
     }
 
-    /// Forgets that a recording was refused.
     pub(super) fn forget_refusal(&mut self) {
         self.refusal = None;
     }

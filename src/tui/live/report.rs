@@ -19,7 +19,6 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) -
     None
 }
 
-/// Returns the page of the source with this number, if it is still watched.
 fn watched(app: &mut App, number: u64) -> Option<&mut Live> {
     watch::page(app).filter(|page| page.number() == number && !page.stopped())
 }
@@ -35,7 +34,6 @@ fn on_no_name(app: &mut App, source: u64, by: u64, reason: &str) -> Option<Effec
     returned
 }
 
-/// Handles any other report of the source.
 fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
     match event {
         LiveEvent::Recorded(name, RecordedFrames { frames: 0, .. }) => {

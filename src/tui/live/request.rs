@@ -10,14 +10,10 @@ use crate::storage::Existing;
 use crate::storage::ModelChoice;
 use crate::tui::live::history::HISTORY_BYTES;
 
-/// A source of frames and the settings that the page begins with.
 #[derive(Clone, Debug)]
 pub struct WatchRequest {
-    /// The name of the source.
     pub source: SourceName,
-    /// The options for reading the source.
     pub options: AcquireOptions,
-    /// Whether the bits per second were given for this source.
     pub baud_named: bool,
     /// The processing of frames: crop, flip, turn, mask and gain.
     pub processing: Processing,
@@ -25,11 +21,8 @@ pub struct WatchRequest {
     pub rule: Option<SetRule>,
     /// The number of first frames that a tare is made of; 0 for no tare.
     pub tare: u64,
-    /// Whether the tare in the recording's own metadata is used if `tare` is 0.
     pub own_tare: bool,
-    /// The file that all frames are recorded in from the start.
     pub write: Option<(PathBuf, Existing)>,
-    /// The set of shapes that imprints are compared with.
     pub model: Option<ModelChoice>,
     /// The noise for that comparison: how often a taxel flips.
     pub noise: Option<Noise>,
@@ -45,7 +38,6 @@ impl PartialEq for WatchRequest {
 }
 
 impl WatchRequest {
-    /// Creates a request for a source with default settings.
     pub fn new(source: impl AsRef<OsStr>) -> Self {
         Self {
             source: SourceName::new(source),
@@ -62,7 +54,6 @@ impl WatchRequest {
         }
     }
 
-    /// Returns a request with the same settings for another source.
     #[must_use]
     pub fn for_source(&self, source: impl AsRef<OsStr>) -> Self {
         Self {
@@ -71,7 +62,6 @@ impl WatchRequest {
         }
     }
 
-    /// Returns the noise, without the dead cells of the mask.
     pub fn noise(&self) -> Option<Noise> {
         let noise = self.noise?;
         Some(match self.processing.view.mask {
@@ -80,7 +70,6 @@ impl WatchRequest {
         })
     }
 
-    /// Returns the name of the source for display, without folders.
     pub fn name(&self) -> String {
         self.source.short()
     }

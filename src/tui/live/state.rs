@@ -19,51 +19,35 @@ use crate::tui::live::request::WatchRequest;
 use crate::tui::live::tare::LiveTare;
 use crate::tui::live::threshold;
 
-/// The maximum number of frames that a tare by key is made of.
 const TARED: usize = 30;
 
 /// The maximum number of frames that the range is computed from after a tare. It is limited because a key waits for
 /// it.
 const RANGED: usize = 1000;
 
-/// The state of the page.
 #[derive(Clone, Debug)]
 pub struct Live {
-    /// The source to watch, with its settings.
     request: Arc<WatchRequest>,
-    /// The number of the work that watches the source.
     number: u64,
     /// The processing of a frame before it is shown: view, tare, threshold.
     processing: Processing,
-    /// The threshold, and whether the file, an option or a key set it.
     rule: Option<SetRule>,
-    /// The rule that `%` set last, and the rule that it was converted from.
     converted: Option<(Rule, Rule)>,
     /// Whether the threshold or the tare has changed since they were last written into a recording.
     is_viewed_anew: bool,
-    /// The frames, and the shown one.
     pub(super) cursor: FrameCursor,
     status: FeedStatus,
-    /// The gaps between frames that the user has already seen.
     seen_gaps: SourceGaps,
-    /// The number of notes of the source that the user has already seen.
     seen_notes: u64,
-    /// Whether no more frames are taken from the source.
     stopped: bool,
-    /// The layer of the frame that is shown.
     pub(super) layer: HeatLayer,
-    /// How a frame is laid out.
     pub display: LiveDisplay,
-    /// The range of values that the shades cover.
     range: ShadeRange,
-    /// How the tare was made, or is being made.
     pub(super) tare: LiveTare,
     /// The number of frames that were never drawn, because others came before the screen was drawn again.
     not_drawn: u64,
     recording: RecordingState,
-    /// The marked frames.
     marks: FrameMarks,
-    /// The sets of shapes that name imprints.
     pub names: ShapeNames,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
     reading: Option<LiveReading>,
@@ -72,7 +56,6 @@ pub struct Live {
 }
 
 impl Live {
-    /// Creates a page that waits for the first frame.
     pub fn new(request: Arc<WatchRequest>, number: u64) -> Self {
         let mut live = Self {
             processing: request.processing.clone(),
@@ -101,17 +84,14 @@ impl Live {
         live
     }
 
-    /// Returns the source to watch, with its settings.
     pub fn request(&self) -> &Arc<WatchRequest> {
         &self.request
     }
 
-    /// Returns the number of the work that watches the source.
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// Returns the state of the source.
     pub fn status(&self) -> &FeedStatus {
         &self.status
     }
@@ -121,7 +101,6 @@ impl Live {
         self.cursor.arrived()
     }
 
-    /// Returns true if no more frames are taken from the source.
     pub fn stopped(&self) -> bool {
         self.stopped
     }
@@ -146,7 +125,6 @@ impl Live {
         self.tare.error().or(self.error.as_ref())
     }
 
-    /// Returns the reason why there is no imprint to take.
     pub fn no_imprint(&self) -> LiveRefusal {
         match (&self.error, self.tare.progress()) {
             _ if self.reading.is_some() && self.rule.is_none() => LiveRefusal::NoThreshold,
@@ -158,7 +136,6 @@ impl Live {
         }
     }
 
-    /// Returns the threshold.
     pub fn rule(&self) -> Option<SetRule> {
         self.rule
     }
@@ -168,12 +145,10 @@ impl Live {
         self.processing.tare.as_ref()
     }
 
-    /// Returns the number of frames that were not drawn.
     pub fn not_drawn(&self) -> u64 {
         self.not_drawn + self.status.overflowed
     }
 
-    /// Returns the state of the recording.
     pub fn recording(&self) -> &RecordingState {
         &self.recording
     }
@@ -184,7 +159,6 @@ impl Live {
         self.seen_notes = self.status.notes;
     }
 
-    /// Returns the note of the source, such as on an oddity of a recording, until the user has seen it.
     pub fn unseen_note(&self) -> Option<&str> {
         let is_new = self.status.notes > self.seen_notes;
         self.status.note.as_deref().filter(|_| is_new)
@@ -214,7 +188,6 @@ impl Live {
         self.marks.own()
     }
 
-    /// Returns the frames that were marked while the recording that is played was made, by their labels.
     pub fn recorded_marks(&self) -> &[FrameMark] {
         self.marks.recorded()
     }
@@ -231,17 +204,11 @@ impl Live {
         })
     }
 
-    /// Returns true if the shown frame is marked.
     pub fn is_marked(&self) -> bool {
         let shown = self.cursor.shown();
         shown.is_some_and(|shown| self.marks.has(shown.number, &shown.frame))
     }
 
-    /// Marks the shown frame, or removes its mark. Returns its number and whether it is marked now.
-    ///
-    /// # Errors
-    /// Returns an error before the first frame, and for a frame that came before the source was watched again: marks
-    /// belong to one recording, and that frame is not in it.
     pub fn mark(&mut self) -> Result<(u64, bool), LiveRefusal> {
         let shown = self.cursor.of_this_watch()?;
         let marked = self.marks.switch(shown.number, &shown.frame);
@@ -262,7 +229,6 @@ impl Live {
         unit.map_or(String::new(), |unit| format!(" {unit}"))
     }
 
-    /// Returns the ends of the range of values that the shades cover.
     pub fn range(&self) -> (f64, f64) {
         self.range.ends(self.layer, self.reading.as_ref())
     }
@@ -283,8 +249,6 @@ impl Live {
         self.cursor.rate().or_else(stated)
     }
 
-    /// Notes that frames are recorded in another file than the one in which the recording began. Returns a sentence
-    /// about that.
     pub(super) fn follow_recording(&mut self, status: &FeedStatus) -> Option<String> {
         let before = self.recording.name()?.to_owned();
         let name = status.recorded_in.clone().filter(|name| *name != before)?;
@@ -293,7 +257,6 @@ impl Live {
         Some(sentence)
     }
 
-    /// Takes new frames, and the state of the source.
     pub fn take(&mut self, batch: &FrameBatch) {
         let had_channel = self.status.channel.is_some();
         self.status = batch.status.clone();
@@ -323,7 +286,6 @@ impl Live {
         }
     }
 
-    /// Takes threshold, tare and marks from a recording's metadata of its channel.
     fn take_channel(&mut self, channel: &ChannelInfo) {
         if self.rule.is_none() {
             self.set_rule(channel.own_rule(self.processing.least));
@@ -332,7 +294,6 @@ impl Live {
         self.retare(|tare, processing| tare.take_own(channel, processing));
     }
 
-    /// Adds a new frame to the history, the held peak, the range and a tare that is being made.
     fn add(&mut self, frame: &Arc<Frame>) {
         if let Ok(values) = self.processing.values(frame) {
             self.range.add(values);
@@ -357,12 +318,6 @@ impl Live {
         done
     }
 
-    /// Subtracts the median of the last frames up to the shown one, as far as they are of its size. Returns the number
-    /// of these frames.
-    ///
-    /// # Errors
-    /// Returns an error before the first frame, for a frame that has left the history, and for one that does not fit
-    /// the crop.
     pub fn tare_now(&mut self) -> Result<u64, LiveRefusal> {
         let frames = self.cursor.up_to_shown(TARED)?;
         self.retare(|tare, processing| tare.of_last(&frames, processing))?;
@@ -370,14 +325,12 @@ impl Live {
         Ok(frames.len() as u64)
     }
 
-    /// Removes the tare. Returns false if there was none.
     pub fn drop_tare(&mut self) -> bool {
         let any = self.retare(LiveTare::give_up);
         self.read();
         any
     }
 
-    /// Sets the threshold, together with its origin, and processes frames by it from now on.
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.is_viewed_anew |= self.rule != rule;
         self.rule = rule;
@@ -389,7 +342,6 @@ impl Live {
         self.tare.origin().is_none() && self.processing.gain.is_none()
     }
 
-    /// Sets a rule that the user has chosen on the page, and reads the frame again.
     pub fn choose(&mut self, rule: Rule) {
         let (least, from) = (self.processing.least, RuleOrigin::Key);
         self.set_rule(Some(SetRule { rule, least, from }));
@@ -405,8 +357,6 @@ impl Live {
         }
     }
 
-    /// Converts the threshold from the sensor's unit to percent, or back, such that the imprint of the shown frame
-    /// stays about the same. Two conversions in a row restore the former threshold, even if it was above all values.
     pub fn switch_unit(&mut self) {
         // Rules apply to the tared values, whichever layer is shown.
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
@@ -424,14 +374,11 @@ impl Live {
         self.converted = other.ok().zip(rule);
     }
 
-    /// Freezes the shown frame, or follows the source again.
     pub fn freeze(&mut self) {
         self.cursor.freeze();
         self.read();
     }
 
-    /// Shows the frame that is `by` frames later in the history, or earlier if `by` is negative, and stays there.
-    /// Returns false if there is no frame further in that direction.
     pub fn scrub(&mut self, by: i64) -> bool {
         let before = self.cursor.shown().map(|shown| shown.number);
         if self.cursor.scrub(by) {
@@ -440,19 +387,16 @@ impl Live {
         self.cursor.shown().map(|shown| shown.number) != before
     }
 
-    /// Shows the oldest frame of the history, and stays there.
     pub fn to_oldest(&mut self) {
         self.cursor.stay_at_oldest();
         self.read();
     }
 
-    /// Follows the source.
     pub fn to_newest(&mut self) {
         self.cursor.follow();
         self.read();
     }
 
-    /// Shows the largest value of each cell from now on, or the present values again.
     pub fn switch_peak(&mut self) {
         self.cursor.switch_peak();
         self.read();
@@ -465,19 +409,15 @@ impl Live {
         self.layer
     }
 
-    /// Spreads the shades over the values of the shown frame, or over a fixed range. Returns true if over the frame's
-    /// values.
     pub fn switch_range(&mut self) -> bool {
         self.range.is_own = !self.range.is_own;
         self.range.is_own
     }
 
-    /// Notes that a recording of the frames to come is requested.
     pub(super) fn request_recording(&mut self) {
         self.recording.request(self.cursor.next_number());
     }
 
-    /// Notes that a recording has begun in the file `name`, or has ended.
     pub fn set_recording(&mut self, name: Option<String>) {
         self.recording.set(name);
         // These belong to the recording before.
@@ -492,7 +432,6 @@ impl Live {
         self.recording.fail(reason, asked.as_deref());
     }
 
-    /// Notes that no more frames are taken.
     pub fn stop(&mut self) {
         self.stopped = true;
         self.recording.stop();
@@ -504,7 +443,6 @@ impl Live {
         self.recording.take_stopped()
     }
 
-    /// Returns true if the source has come to its end. There is nothing to watch any more then, only the history.
     pub fn has_ended(&self) -> bool {
         self.status.state == SourceState::Ended
     }
@@ -516,17 +454,12 @@ impl Live {
         self.names.restart(number);
     }
 
-    /// Returns true if the source is a recording, whose frames come again when it is played again. A stream has no
-    /// channels.
     fn is_recording(&self) -> bool {
         self.status.channels > 0
     }
 
     /// Checks that the source can be watched again: a recording at any time unless it is still being written, any
     /// other source after its end.
-    ///
-    /// # Errors
-    /// Returns an error for a source that has not ended, and for standard input.
     pub fn check_again(&self) -> Result<(), LiveRefusal> {
         if self.request.source == SourceName::Standard {
             return Err(LiveRefusal::ReadOnce);
@@ -567,7 +500,6 @@ impl Live {
         self.names.restart(number);
     }
 
-    /// Reads the shown frame again.
     fn read(&mut self) {
         (self.reading, self.error) = match self.cursor.drawn() {
             Some(frame) => self.read_frame(frame),

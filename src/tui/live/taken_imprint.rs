@@ -51,7 +51,6 @@ pub(super) fn take(app: &mut App, page: Box<Live>, document: Document) {
     inform(app, text);
 }
 
-/// Shows why there is no imprint to take.
 pub(super) fn refuse_imprint(app: &mut App, page: &Live) {
     let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
     let text = match page.no_imprint() {

@@ -8,10 +8,8 @@ use crate::formats::value::counted;
 use crate::frame::{FirstFrames, Frame, FrameError, Processing, Tare, TareFrames};
 use crate::tui::live::request::WatchRequest;
 
-/// The origin of a tare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TareOrigin {
-    /// The number of frames that the tare was made of.
     pub frames: u64,
     /// The number of the last of these frames; None for a tare of another recording, or from before the source was
     /// watched again.
@@ -20,23 +18,18 @@ pub struct TareOrigin {
     pub time: Option<f64>,
 }
 
-/// How the tare of the page is made. The values to subtract are in the [`Processing`] of the page.
 #[derive(Clone, Debug)]
 pub(super) struct LiveTare {
     /// The number of first frames that a tare was requested of, until a key makes or removes a tare; 0 for none.
     wanted: u64,
-    /// The first frames, until there are enough for the requested tare.
     first: Option<FirstFrames>,
     /// The origin of the tare; None if nothing is subtracted.
     origin: Option<TareOrigin>,
-    /// Whether the tare in the recording's own metadata is used once that is known.
     takes_own: bool,
-    /// Why the tare that was requested at the start is missing.
     error: Option<FrameError>,
 }
 
 impl LiveTare {
-    /// Creates the state at the start, with the requested tare.
     pub(super) fn new(request: &WatchRequest) -> Self {
         Self {
             wanted: request.tare,
@@ -58,12 +51,10 @@ impl LiveTare {
         Some((first.wanted() - first.missing(), first.wanted()))
     }
 
-    /// Returns why the tare that was requested at the start is missing.
     pub(super) fn error(&self) -> Option<&FrameError> {
         self.error.as_ref()
     }
 
-    /// Uses the recording's own tare, if no other was requested and it fits.
     pub(super) fn take_own(&mut self, channel: &ChannelInfo, processing: &mut Processing) {
         let takes_own = std::mem::take(&mut self.takes_own);
         if let Some(tare) = channel.tare_for(&processing.view).filter(|_| takes_own) {
@@ -108,10 +99,6 @@ impl LiveTare {
         true
     }
 
-    /// Makes the tare of frames, the last one first. Without frames it stays as it is.
-    ///
-    /// # Errors
-    /// Returns an error if the frames are of different sizes; the tare stays as it is then, too.
     pub(super) fn of_last(
         &mut self,
         frames: &[Arc<Frame>],
@@ -129,7 +116,6 @@ impl LiveTare {
         Ok(())
     }
 
-    /// Uses a tare, and notes its last frame, by which its age is shown.
     fn end(&mut self, tare: Tare, last: &Frame, processing: &mut Processing) {
         self.origin = Some(TareOrigin {
             frames: tare.frames(),

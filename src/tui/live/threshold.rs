@@ -4,7 +4,6 @@ use crate::formats::value::{fitting, measured};
 use crate::frame::{FrameError, Rule};
 use crate::tui::live::reading::{nine_digits, round_up};
 
-/// Returns a threshold for display. `unit` is that of the values, with a space before it.
 pub(super) fn text(rule: Rule, unit: &str) -> String {
     match rule {
         Rule::AtLeast(threshold) => format!("{}{unit}", measured(threshold, 7)),
@@ -19,9 +18,6 @@ pub(super) fn text(rule: Rule, unit: &str) -> String {
 /// Moves the threshold up or down by a step: a hundredth of the top of the range, in round numbers. In percent the
 /// step is 5 %, in deviations of the noise it is 1. Without a threshold, it becomes half of the top of the range: above
 /// the noise of most sensors, and below most touches.
-///
-/// # Errors
-/// Returns an error if the threshold is out of range then.
 pub(super) fn step(rule: Option<Rule>, direction: i8, top: f64) -> Result<Rule, FrameError> {
     let by = f64::from(direction);
     let step = round_up(top / 100.0) * by;
@@ -47,10 +43,6 @@ fn stepped(value: f64, step: f64, (least, most): (f64, f64)) -> f64 {
     }
 }
 
-/// Converts a threshold from the sensor's unit to percent of the largest value, or back.
-///
-/// # Errors
-/// Returns an error if the threshold is out of range then.
 pub(super) fn other_unit(rule: Option<Rule>, largest: f64) -> Result<Rule, FrameError> {
     match rule {
         Some(Rule::Percent(percent)) => {

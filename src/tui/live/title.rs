@@ -29,7 +29,6 @@ pub(super) fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece>
     pieces
 }
 
-/// Returns the pieces about the frame and its channel.
 fn of_frame(live: &Live) -> Vec<TitlePiece> {
     let mut pieces = Vec::new();
     let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
@@ -93,7 +92,6 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
     pieces
 }
 
-/// A piece of the title.
 pub(super) struct TitlePiece {
     /// The text; it begins with two blanks, except for the name of the source.
     pub(super) text: String,
@@ -105,7 +103,6 @@ pub(super) struct TitlePiece {
 }
 
 impl TitlePiece {
-    /// Creates a piece that follows the name of the source.
     fn new(rank: u8, text: &str, role: Role) -> Self {
         Self {
             text: format!("  {text}"),
@@ -115,7 +112,6 @@ impl TitlePiece {
         }
     }
 
-    /// Returns the same piece with a shorter text.
     fn or(self, short: &str) -> Self {
         Self {
             short: Some(format!("  {short}")),

@@ -40,7 +40,6 @@ pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> 
     }
 }
 
-/// Sets the threshold of the source that was watched last, whether its page is open or not.
 fn set_threshold(app: &mut App, rule: Rule) {
     let Some(page) = watch::page(app) else {
         refuse(app, watch::NO_SOURCE);
@@ -150,7 +149,6 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
     None
 }
 
-/// Shows why nothing is recorded, and which keys watch the source again and record it, if that is possible.
 fn refuse_recording(app: &mut App, page: &Live, refused: &LiveRefusal) {
     let key = |action| app.keymap().label(Context::Live, action);
     let (again, record) = (key(&action::WATCH_AGAIN), key(&action::RECORD));
@@ -173,7 +171,6 @@ fn tare_of(page: &Live, frames: u64) -> String {
     }
 }
 
-/// Shows the next layer, and says why if it looks like the one before.
 fn next_layer(app: &mut App, page: &mut Live) {
     let reason = match page.next_layer() {
         HeatLayer::Tared if page.shows_raw() => "no tare: the values are the raw ones",
@@ -183,8 +180,6 @@ fn next_layer(app: &mut App, page: &mut Live) {
     inform(app, reason);
 }
 
-/// Names imprints by the next model, now that the names of the user's own models are known. Does nothing if the page
-/// did not ask for them.
 pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effect> {
     let number = app.works + 1;
     let page = topmost!(&mut app.dialogs, Live)?;
@@ -203,8 +198,6 @@ pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effe
     Some(effect)
 }
 
-/// Shows taxels further in a direction, if not all are visible. The first time, a notice says how to see the contact
-/// again.
 fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
     if page.display.only_panel {
         let key = app.keymap().label(Context::Live, &action::PANEL);
@@ -234,7 +227,6 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
     page.display.looked_at = next;
 }
 
-/// Marks the shown frame, or removes its mark.
 fn mark(app: &mut App, page: &mut Live) {
     match page.mark() {
         Ok((number, true)) => inform(app, format!("frame {number}: marked")),
@@ -258,9 +250,6 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
 
 /// Begins a recording, or ends it. The frames are written as they come, without view, tare or threshold; the
 /// metadata of the recording says how they were looked at last.
-///
-/// # Errors
-/// Returns an error after the end of the source.
 fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     if page.recording().name().is_some() {
         page.set_recording(None);

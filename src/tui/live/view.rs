@@ -36,10 +36,8 @@ use crate::tui::live::title::{fitting_title, title};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The number of columns for the labels of numbers.
 const LABEL: usize = 11;
 
-/// The keys of the shown descriptors.
 const SHOWN: [&str; 5] = ["na", "nae", "p", "f", "cg"];
 
 impl Page for Live {
@@ -137,7 +135,6 @@ fn at_end(live: &Live, keymap: &Keymap, area: Rect) -> Option<String> {
     Some(forms.into_iter().find(fits).unwrap_or("ended".to_owned()))
 }
 
-/// Returns the panes of the page.
 fn panes(live: &Live, area: Rect) -> LivePanes {
     let reading = live.reading().filter(|_| !live.display.only_panel);
     let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
@@ -164,16 +161,12 @@ pub(super) fn beyond(live: &Live, theme: &Theme, area: Rect, towards: Arrow) -> 
 
 /// A line of the panel: a number with its label.
 struct PanelLine {
-    /// The label.
     label: &'static str,
-    /// The number with its unit, or why there is none.
     text: String,
-    /// Shorter texts, longer ones first.
     shorter: Vec<String>,
 }
 
 impl PanelLine {
-    /// Creates a line that has no shorter form.
     fn new(label: &'static str, text: String) -> Self {
         Self {
             label,
@@ -193,7 +186,6 @@ impl PanelLine {
         }
     }
 
-    /// Creates a line with a shorter form, which ends before the first `mark`.
     fn up_to(label: &'static str, text: String, mark: &str) -> Self {
         let shorter = text.split_once(mark).map(|(head, _)| head.to_owned());
         let shorter = shorter.into_iter().collect();
@@ -277,7 +269,6 @@ fn described(reading: &LiveReading, descriptor: &'static Descriptor, theme: &The
     line
 }
 
-/// Returns the lines about the values of a frame.
 fn of_values(
     live: &Live,
     reading: &LiveReading,
@@ -346,8 +337,6 @@ fn recording(live: &Live) -> Vec<String> {
     ]
 }
 
-/// Returns the line with the number of regions. If there are several, the largest one is described above, and the
-/// line counts the active taxels of all.
 fn regions(reading: &LiveReading) -> PanelLine {
     let count = reading.regions.to_string();
     if reading.regions < 2 {
@@ -405,7 +394,6 @@ fn named(naming: &Naming, shown: Option<&Imprint>, theme: &Theme) -> [PanelLine;
     ]
 }
 
-/// Returns the name of the shape and how certain it is, longer forms first.
 fn answered(answer: &NamedImprint) -> [String; 3] {
     let name = answer.names.join(" or ");
     match answer.state {

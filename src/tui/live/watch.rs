@@ -16,14 +16,11 @@ use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork};
 
-/// The refusal before the first source.
 pub(super) const NO_SOURCE: &str =
     "no source yet: ':watch SOURCE' watches a sensor or plays a recording";
 
-/// The notice if the page of the last source is to be opened and is open.
 const OPEN_ALREADY: &str = "this is the watched source; ':watch SOURCE' watches another one";
 
-/// Returns the page of the source that was watched last, open or not.
 pub(in crate::tui) fn last_page(app: &App) -> Option<&Live> {
     let page = topmost!(&app.dialogs, Live).or(app.live.as_ref())?;
     Some(page)
@@ -41,7 +38,6 @@ pub(super) fn page(app: &mut App) -> Option<&mut Live> {
     Some(page)
 }
 
-/// Sets the open page aside for a command that acts on the matrix. The source keeps running, as after Enter.
 pub(in crate::tui) fn set_aside(app: &mut App) {
     if let Some(Dialog::Live(page)) = app
         .dialogs
@@ -85,7 +81,6 @@ pub(super) fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
     watched
 }
 
-/// Watches the source of a page. Its imprints are named as the page says.
 fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
     Effect::Frames(FrameWork::Watch {
         number: page.number(),
@@ -123,7 +118,6 @@ pub(super) fn open(app: &mut App) -> Option<Effect> {
     effect
 }
 
-/// Watches the source of the open page again, if that is possible now.
 pub(super) fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
     if let Err(refused) = page.check_again() {
         refuse(app, refused.to_string());
@@ -135,7 +129,6 @@ pub(super) fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
     Some(watch_source(page, None))
 }
 
-/// Says that a recording does not go on with the source that is watched again, if there was one.
 fn say_not_recording(app: &mut App, page: &mut Live) {
     if page.take_stopped_recording() {
         let record = app.keymap().label(Context::Live, &action::RECORD);
@@ -146,7 +139,6 @@ fn say_not_recording(app: &mut App, page: &mut Live) {
     }
 }
 
-/// Names the imprints of a page as it says.
 pub(super) fn name_by(page: &Live) -> Effect {
     let naming = page.names.request().cloned().map(Box::new);
     Effect::Frames(FrameWork::NameBy(page.number(), naming))

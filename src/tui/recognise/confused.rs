@@ -6,12 +6,10 @@ use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::recognition::{Evaluation, Model, ShapeCount};
 
-/// The most frequent imprint of a cell of the confusion matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Example {
     /// The imprint, cut to its box; None for a touch that leaves nothing.
     pub imprint: Option<Imprint>,
-    /// The shapes that leave it.
     counts: Vec<ShapeCount>,
 }
 

@@ -22,10 +22,8 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// The page of the confusion matrix.
 #[derive(Clone, Debug)]
 pub struct Confusion {
-    /// The model.
     trained: Arc<TrainedModel>,
     /// The cell under the cursor: the touching shape, the named shape.
     cell: (usize, usize),
@@ -33,14 +31,11 @@ pub struct Confusion {
     example: Option<Example>,
 }
 
-/// The width of a cell, in columns.
 const CELL: u16 = 7;
 
-/// The greatest width of a name, in columns.
 const NAME: usize = 12;
 
 impl Confusion {
-    /// Creates the page of a model, with the cursor on the pair of shapes that is confused most.
     pub fn new(trained: Arc<TrainedModel>) -> Self {
         let worst = worst_cell(&trained.evaluation);
         let mut page = Self {
@@ -52,7 +47,6 @@ impl Confusion {
         page
     }
 
-    /// Returns the number of shapes.
     fn count(&self) -> usize {
         self.trained.model.shapes().len()
     }
@@ -70,14 +64,12 @@ impl Confusion {
         format!("imprint of {touched}, named {named}")
     }
 
-    /// Puts the cursor onto a cell, or onto the nearest one if there is no such cell.
     fn go_to(&mut self, (row, column): (usize, usize)) {
         let last = self.count() - 1;
         self.cell = (row.min(last), column.min(last));
         self.example = (self.trained.examples).get(&self.trained.model, self.cell);
     }
 
-    /// Moves the cursor.
     pub fn take(&mut self, message: &Message) {
         let (row, column) = self.cell;
         let cell = match *message {
@@ -95,25 +87,17 @@ impl Confusion {
     }
 }
 
-/// The areas of the parts of the page.
 struct ConfusionPanes {
-    /// The headings of the columns.
     head: Rect,
-    /// The rows of the matrix.
     rows: Rect,
-    /// The width of a row's label, in columns.
     label: u16,
-    /// The first visible row and column.
     first: (usize, usize),
-    /// The number of visible columns of the matrix.
     columns: usize,
-    /// The description of the cell under the cursor.
     detail: Rect,
     /// The example imprint of that cell; None if there is no room beside the matrix.
     picture: Option<Rect>,
 }
 
-/// The number of lines for the description of the cell under the cursor.
 const DETAIL: u16 = 2;
 
 impl ConfusionPanes {
@@ -155,7 +139,6 @@ impl ConfusionPanes {
         }
     }
 
-    /// Returns the area of a cell in a row of the screen.
     fn cell(&self, row: Rect, index: usize) -> Rect {
         let x = row.x + self.label + narrow(index).saturating_mul(CELL);
         let cell = write::right_of(row, x);
@@ -240,7 +223,6 @@ impl Page for Confusion {
 }
 
 impl Confusion {
-    /// Returns how many rows are hidden above and below, and how many columns on the left and on the right.
     fn hidden(&self, panes: &ConfusionPanes) -> [usize; 4] {
         let (row, column) = panes.first;
         let after = |end: usize| self.count().saturating_sub(end);
@@ -248,7 +230,6 @@ impl Confusion {
         [row, below, column, after(column + panes.columns)]
     }
 
-    /// Draws the numbers of the columns.
     fn draw_head(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
         let column = panes.first.1;
         let last = column + panes.columns;
@@ -301,7 +282,6 @@ impl Confusion {
         cursor
     }
 
-    /// Draws the description of the cell under the cursor.
     fn draw_detail(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
         let (row, column) = self.cell;
         let confusion = &self.trained.evaluation.confusion;

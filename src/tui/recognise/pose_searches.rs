@@ -4,21 +4,15 @@
 
 use crate::tui::recognise::message::{PoseSearch, PoseSearchResult};
 
-/// The next step for the search that the page needs.
 #[derive(Clone, Debug)]
 pub enum SearchStep {
-    /// Begin the search.
     Begin(Box<PoseSearch>),
-    /// Stop the search in progress, which is for something else.
     Stop,
 }
 
-/// A search in progress.
 #[derive(Clone, Debug)]
 struct RunningSearch {
-    /// The number of the piece of work.
     number: u64,
-    /// The model and the imprint to search for.
     search: PoseSearch,
     /// Whether a stop was requested; then its result is dropped.
     stopping: bool,
@@ -30,7 +24,6 @@ struct RunningSearch {
 pub(super) struct PoseSearches {
     /// The last search and its result; None if it failed.
     ended: Option<(PoseSearch, Option<Box<PoseSearchResult>>)>,
-    /// The search in progress.
     running: Option<RunningSearch>,
 }
 
@@ -40,18 +33,15 @@ impl PoseSearches {
         self.running = None;
     }
 
-    /// Forgets the last result.
     pub(super) fn forget_result(&mut self) {
         self.ended = None;
     }
 
-    /// Returns the result of the needed search, once it is known.
     pub(super) fn found(&self, needed: Option<&PoseSearch>) -> Option<&PoseSearchResult> {
         let (search, found) = self.ended.as_ref()?;
         found.as_deref().filter(|_| needed == Some(search))
     }
 
-    /// Returns true if a search is in progress, or begins after this message.
     pub(super) fn is_searching(&self, needed: Option<&PoseSearch>) -> bool {
         let ended = self.ended.as_ref().map(|(search, _)| search);
         self.running.is_some() || ended != needed
@@ -84,8 +74,6 @@ impl PoseSearches {
         running.is_some_and(|running| !std::mem::replace(&mut running.stopping, true))
     }
 
-    /// Takes over the result of the search with this number. Returns the reason if it failed or is incomplete. The
-    /// result of a search that was stopped or forgotten is dropped.
     pub(super) fn take_result(
         &mut self,
         number: u64,

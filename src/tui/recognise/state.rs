@@ -17,90 +17,65 @@ use crate::tui::recognise::pose_searches::{PoseSearches, SearchStep};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::other;
 
-/// The state of the chosen set's model.
 #[derive(Clone, Debug)]
 pub enum ModelState {
     /// There is none: training was stopped, failed or was never begun.
     Missing,
-    /// The model is being trained or read.
     Preparing(Preparation),
-    /// The model is ready.
     Ready(Arc<TrainedModel>),
 }
 
-/// A model that is being trained or read.
 #[derive(Clone, Debug)]
 pub struct Preparation {
-    /// The number of the piece of work.
     pub number: u64,
     /// The number of poses of all shapes, once it is known; None for a model from a file.
     pub poses: Option<u64>,
-    /// The number of poses that are done.
     pub done: u64,
-    /// Whether a stop was requested.
     pub stopping: bool,
-    /// The request that is carried out once there is a model.
     request: Option<RecogniseMessage>,
     /// The model of the same set so far, which stays if the user gives up reading it again.
     known: Option<Arc<TrainedModel>>,
-    /// Whether the page was opened for this model.
     opened: bool,
     /// The set to return to if this one cannot be read.
     before: Option<Box<SetBefore>>,
 }
 
-/// The reason why there is no model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoModel {
-    /// The reason, as a sentence.
     pub reason: String,
     /// Whether the page closes, because it was opened for a set that cannot be read.
     pub closes: bool,
-    /// Whether the earlier set returned, whose model was being prepared and has to be prepared again.
     pub prepares_again: bool,
 }
 
-/// The set that was chosen before the present one.
 #[derive(Clone, Debug)]
 struct SetBefore {
-    /// The set.
     choice: ModelChoice,
     /// The model of the set; None if it had none.
     trained: Option<Arc<TrainedModel>>,
-    /// Whether its model was being prepared.
     preparing: bool,
 }
 
-/// The state of the page.
 #[derive(Clone, Debug)]
 pub struct Recognition {
-    /// The chosen set.
     choice: ModelChoice,
     /// The set that could not be read last: the next step through the sets goes on from there.
     unreadable: Option<ModelChoice>,
-    /// The names of stored models.
     stored: Vec<Name>,
-    /// The model of the set.
     state: ModelState,
-    /// The kept touches of the shape.
     kept: Vec<Imprint>,
-    /// The imprint on the matrix.
     present: Imprint,
     /// The shape that left it, in its pose; None if no shape did.
     source: Option<Source>,
     /// The threshold at which a shape touched the matrix; None if no shape does.
     threshold: Option<f64>,
-    /// The shape that left the last kept touch, if that is known.
     kept_source: Option<Source>,
-    /// Whether the last kept touch is the one on the matrix.
     present_kept: bool,
     /// The answer about all touches; None without a model or a touch.
     answer: Option<Answer>,
-    /// The searches for the poses that may have left the imprint on the matrix.
     searches: PoseSearches,
     /// Whether outlines of poses are shown; None shows them if taxels are large.
     outlines: Option<bool>,
-    /// The generator of random touches.
     pub(super) random: Pcg64,
 }
 
@@ -125,22 +100,18 @@ impl Recognition {
         }
     }
 
-    /// Chooses the first set, without a model.
     pub fn begin_with(&mut self, choice: ModelChoice) {
         self.choice = choice;
     }
 
-    /// Returns the chosen set.
     pub fn choice(&self) -> &ModelChoice {
         &self.choice
     }
 
-    /// Returns the state of the model.
     pub fn state(&self) -> &ModelState {
         &self.state
     }
 
-    /// Returns the model, once it is ready.
     pub fn trained(&self) -> Option<&Arc<TrainedModel>> {
         match &self.state {
             ModelState::Ready(trained) => Some(trained),
@@ -160,7 +131,6 @@ impl Recognition {
         other(all, &self.choice, self.unreadable.as_ref(), by)
     }
 
-    /// Returns true if the user has models besides the built-in ones.
     pub fn has_own_models(&self) -> bool {
         !self.stored.is_empty()
     }
@@ -201,7 +171,6 @@ impl Recognition {
         self.ask();
     }
 
-    /// Returns the preparation of the model, if it is the work with this number.
     fn preparation(&mut self, number: u64) -> Option<&mut Preparation> {
         match &mut self.state {
             ModelState::Preparing(preparation) if preparation.number == number => Some(preparation),
@@ -209,14 +178,12 @@ impl Recognition {
         }
     }
 
-    /// Records the number of poses of a training.
     pub fn take_poses(&mut self, number: u64, poses: u64) {
         if let Some(preparation) = self.preparation(number) {
             preparation.poses = Some(poses);
         }
     }
 
-    /// Records the progress of a training.
     pub fn take_progress(&mut self, number: u64, progress: SweepProgress) {
         if let Some(preparation) = self.preparation(number) {
             preparation.done = progress.poses;
@@ -252,12 +219,10 @@ impl Recognition {
         }
     }
 
-    /// Takes the request that waits for the model of the work with this number.
     pub fn take_request(&mut self, number: u64) -> Option<RecogniseMessage> {
         self.preparation(number)?.request.take()
     }
 
-    /// Takes over a prepared model. Returns the reason if there is none.
     pub fn take_model(&mut self, prepared: Prepared) -> Option<NoModel> {
         self.preparation(prepared.number)?;
         self.stored = prepared.stored;
@@ -274,8 +239,6 @@ impl Recognition {
         }
     }
 
-    /// Ends the preparation by the work with this number without a model. Returns the reason if that is the present
-    /// preparation.
     pub fn fail(&mut self, number: u64, reason: String) -> Option<NoModel> {
         let preparation = self.preparation(number)?;
         let (before, opened) = (preparation.before.take(), preparation.opened);
@@ -294,7 +257,6 @@ impl Recognition {
         Some(failed)
     }
 
-    /// Returns to the earlier set.
     fn take_back(&mut self, before: SetBefore) {
         self.unreadable = Some(std::mem::replace(&mut self.choice, before.choice));
         self.state = before
@@ -310,17 +272,14 @@ impl Recognition {
         self.kept.iter().copied().chain(present).collect()
     }
 
-    /// Returns the number of kept touches.
     pub fn kept(&self) -> usize {
         self.kept.len()
     }
 
-    /// Returns true if the touch on the matrix is a kept one.
     pub fn is_kept(&self) -> bool {
         self.present_kept
     }
 
-    /// Returns the imprint on the matrix.
     pub fn present(&self) -> &Imprint {
         &self.present
     }
@@ -330,7 +289,6 @@ impl Recognition {
         self.answer.as_ref()
     }
 
-    /// Returns the index of the shape that the answer names.
     fn named(&self) -> Option<usize> {
         self.answer().and_then(|answer| answer.shape)
     }
@@ -341,7 +299,6 @@ impl Recognition {
         self.searches.found(self.search().as_ref())
     }
 
-    /// Returns true if poses are searched for, or will be after this message.
     pub fn is_searching(&self) -> bool {
         self.searches.is_searching(self.search().as_ref())
     }
@@ -368,8 +325,6 @@ impl Recognition {
         self.threshold = threshold;
     }
 
-    /// Takes over the imprint on the matrix, and the shape that left it. In another pose it is another touch, even if
-    /// the imprint is the same.
     pub fn show(&mut self, imprint: Imprint, source: Option<&Source>) {
         if imprint != self.present || source != self.source.as_ref() {
             (self.present, self.source) = (imprint, source.cloned());
@@ -399,7 +354,6 @@ impl Recognition {
         any
     }
 
-    /// Computes the answer again.
     fn ask(&mut self) {
         let touches = self.touches();
         self.answer = match &self.state {
@@ -427,13 +381,10 @@ impl Recognition {
         self.outlines
     }
 
-    /// Shows or hides outlines of poses.
     pub fn show_outlines(&mut self, shown: bool) {
         self.outlines = Some(shown);
     }
 
-    /// Takes over the result of the search with this number. Returns the reason if it failed or is incomplete. The
-    /// result of a search that was stopped or forgotten is dropped.
     pub fn take_result(
         &mut self,
         number: u64,
@@ -447,7 +398,6 @@ impl Recognition {
 mod tests {
     use super::*;
 
-    /// Prepares a model by the work with this number.
     fn with_model(page: &mut Recognition, choice: ModelChoice, number: u64) {
         page.prepare(choice.clone(), number, false);
         let prepared = Prepared {

@@ -11,18 +11,13 @@ use crate::storage::{FileVersion, ModelChoice};
 use crate::touch::Plane;
 use crate::tui::recognise::confused::Examples;
 
-/// A model, with its evaluation.
 #[derive(Debug)]
 pub struct TrainedModel {
-    /// The set.
     pub choice: ModelChoice,
-    /// The model of the set.
     pub model: Model,
     /// The version of the file that it was read from; None for a model that was not read from a file.
     pub version: Option<FileVersion>,
-    /// The evaluation, which shows how well the model tells its shapes apart.
     pub evaluation: Evaluation,
-    /// An imprint for each cell of its confusion matrix.
     pub examples: Examples,
     /// The number of random poses in hundredths of a cell and whole degrees that leave an imprint which the model does
     /// not know, and the number that were tried, each counted with the weight of its shape; None if its grid is as
@@ -38,7 +33,6 @@ impl PartialEq for TrainedModel {
 }
 
 impl TrainedModel {
-    /// Evaluates a model, which was read from this version of its file, if it has one.
     pub fn new(choice: ModelChoice, model: Model, version: Option<FileVersion>) -> Self {
         Self {
             evaluation: Evaluation::of(&model),
@@ -142,7 +136,6 @@ fn grid_of(model: &Model, shape: usize, ranges: Ranges) -> Option<PoseGrid> {
     PoseGrid::new(source, *model.sensor(), model.anchor(), ranges).ok()
 }
 
-/// The number of poses that are tried per shape.
 const TRIED: u32 = 100;
 
 /// Returns the number of random poses in hundredths of a cell and whole degrees whose imprint the model does not know,
@@ -196,7 +189,6 @@ mod tests {
     use crate::pose::Anchor;
     use crate::recognition::{NamedShape, Training};
 
-    /// Returns the result for a bar and a disc with these weights.
     fn between(weights: [u32; 2]) -> (u64, u64) {
         let sensor = Sensor::default();
         let [bar, disc] = [Figure::rectangle(6.0, 2.0), Figure::ellipse(0.6, 0.6)];

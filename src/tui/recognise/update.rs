@@ -22,17 +22,14 @@ use crate::tui::recognise::state::{ModelState, NoModel};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::effect::{Effect, Work};
 
-/// Returns true for the page of recognition.
 fn is_page(dialog: &Dialog) -> bool {
     matches!(dialog, Dialog::Recognition)
 }
 
-/// Returns true if the page is open, perhaps under other pages.
 fn is_open(app: &App) -> bool {
     app.dialogs.iter().any(is_page)
 }
 
-/// Opens the page for a request. What needs a model waits for it.
 fn open_for(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
     let choice = match &asked {
         RecogniseMessage::Choose(choice) => Some(choice.clone()),
@@ -53,7 +50,6 @@ fn open_for(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
     }
 }
 
-/// Handles a request over the matrix, whether the page is open or not.
 pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
     // A command may come while the page is closed; its result must be visible.
     if !is_open(app) && !matches!(asked, RecogniseMessage::Seed(_)) {
@@ -147,7 +143,6 @@ fn wait_for_model(app: &mut App, asked: RecogniseMessage) {
     }
 }
 
-/// Carries out a request that needs the model, now or once it is ready.
 fn with_model(
     app: &mut App,
     asked: RecogniseMessage,
@@ -204,7 +199,6 @@ fn touch(app: &mut App, trained: &TrainedModel) {
     inform(app, format!("a random touch of {name}; {undo} undoes it"));
 }
 
-/// Forgets the kept touches.
 fn forget(app: &mut App) {
     if app.recognition.forget() {
         inform(app, "the kept touches are forgotten");
@@ -268,7 +262,6 @@ fn prepare_again(app: &mut App) -> Option<Effect> {
     None
 }
 
-/// Cleans up after the page, which is no longer on the stack. A search in progress is stopped.
 fn close(app: &mut App) -> Option<Effect> {
     let stops = app.recognition.stop_search();
     app.narrow_pane = NarrowPane::Matrix;
@@ -296,8 +289,6 @@ pub(in crate::tui) fn in_confusion(
     None
 }
 
-/// Handles a report from a worker. A request that has waited for the model is carried out now, if the page still has
-/// the keys.
 pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Option<Effect> {
     let has_keys = app.dialogs.last().is_some_and(is_page);
     let page = &mut app.recognition;
@@ -323,14 +314,11 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Optio
     None
 }
 
-/// Handles a training that failed unexpectedly. A page that waits for other work ignores it.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> Option<Effect> {
     let failed = app.recognition.fail(number, reason.to_owned());
     without_model(app, failed)
 }
 
-/// If there is no model, shows the reason. A page that was opened for it closes. A preparation that made way for it
-/// begins again.
 fn without_model(app: &mut App, failed: Option<NoModel>) -> Option<Effect> {
     let NoModel {
         reason,
@@ -346,13 +334,10 @@ fn without_model(app: &mut App, failed: Option<NoModel>) -> Option<Effect> {
     prepares_again.then(|| open(app, None)).flatten()
 }
 
-/// Handles the progress of a training.
 pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) {
     app.recognition.take_progress(number, progress);
 }
 
-/// Passes the imprint of the matrix to the page. Returns the search that its answer needs, or the request to stop one
-/// that it no longer needs.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     if !is_open(app) {
         return None;

@@ -38,10 +38,8 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The width of a percentage with its sign and the space before it, in columns.
 const PERCENT: usize = 9;
 
-/// The greatest width of a name, in columns.
 const NAME: usize = 14;
 
 /// The lines below the list of shapes that are always left free, so that the list has the same length for nearly all
@@ -147,12 +145,10 @@ struct Panel<'a> {
     keymap: &'a Keymap,
     buffer: &'a mut Buffer,
     area: Rect,
-    /// The next line, counted from the top of the area.
     line: usize,
 }
 
 impl Panel<'_> {
-    /// Writes a text over as many lines as it needs.
     fn text(&mut self, text: &str, role: Role) {
         let rest = write::below(self.area, narrow(self.line));
         if rest.height > 0 {
@@ -160,27 +156,22 @@ impl Panel<'_> {
         }
     }
 
-    /// Returns the number of lines that a text needs.
     fn lines_of(&self, text: &str) -> usize {
         write::broken(&self.theme.text(text), usize::from(self.area.width)).len()
     }
 
-    /// Leaves a line free if there is room.
     fn gap(&mut self) {
         self.line += self.gap_lines();
     }
 
-    /// Returns the number of lines of a gap.
     fn gap_lines(&self) -> usize {
         usize::from(self.area.height >= 16)
     }
 
-    /// Returns the name of an action's key on this page.
     fn key(&self, action: &'static action::Action) -> String {
         self.keymap.label(Context::Recognise, action)
     }
 
-    /// Writes the progress of a training.
     fn preparation(&mut self, preparation: &Preparation) {
         let Some(poses) = preparation.poses else {
             return self.text("being prepared", Role::Text);
@@ -231,14 +222,12 @@ impl Panel<'_> {
         }
     }
 
-    /// Says that the sensor on the matrix has another threshold than the model.
     fn threshold(&mut self, trained: &TrainedModel, threshold: f64) {
         let [trained, here] = [trained.model.sensor().threshold(), threshold].map(short);
         let text = format!("trained at threshold {trained}; here it is {here}");
         self.text(&text, Role::Text);
     }
 
-    /// Writes the answer, every shape that it may be, and the results of the search.
     fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
         let Some(answer) = page.answer() else {
             let touch = self.key(&action::RANDOM_TOUCH);
@@ -285,7 +274,6 @@ impl Panel<'_> {
         }
     }
 
-    /// Returns the lines about the nearest imprint and the pose.
     fn search_lines(
         &self,
         present: &Imprint,
@@ -321,7 +309,6 @@ impl Panel<'_> {
         lines
     }
 
-    /// Writes a shape with its bar.
     fn shape(&mut self, name: &str, width: usize, probability: f64) {
         let row = write::row(self.area, self.line);
         self.line += 1;
@@ -340,7 +327,6 @@ impl Panel<'_> {
         write::line(self.buffer, row, self.theme, pieces);
     }
 
-    /// Returns the lines about the kept touches.
     fn touches(&self, page: &Recognition) -> Vec<String> {
         let mut lines = Vec::new();
         if page.kept() > 0 {
@@ -352,7 +338,6 @@ impl Panel<'_> {
     }
 }
 
-/// Returns the answer in words.
 fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
     let state = answer.state.name();
     let names: Vec<&str> = match answer.state {
@@ -381,7 +366,6 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
     format!("{state}{what}{rim}")
 }
 
-/// Explains the marks of taxels on the matrix that differ from the nearest imprint, with their numbers.
 fn legend(present: &Imprint, nearest: &Nearest) -> String {
     let differing = present.differing(&nearest.imprint);
     let surplus = differing.active();
@@ -396,7 +380,6 @@ fn legend(present: &Imprint, nearest: &Nearest) -> String {
     }
 }
 
-/// The marks of surplus and of missing taxels.
 const MARKS: [char; 2] = ['+', '-'];
 
 /// Returns the line about the position of a shape: mean and spread over the poses that leave the imprint. `whose` is the
@@ -429,7 +412,6 @@ fn half_up(number: f64) -> f64 {
     (number + 0.5).floor()
 }
 
-/// Formats a share of a whole as percent.
 fn percent_of(part: u128, whole: u128) -> String {
     percent(share(part, whole))
 }

@@ -16,25 +16,17 @@ use crate::tui::app::message::Message;
 /// The sending end; each worker has a clone.
 #[derive(Clone, Debug)]
 pub struct Sender {
-    /// The queue.
     messages: mpsc::Sender<Message>,
     /// The socket; one byte in it wakes the loop.
     wakeup: Arc<UnixStream>,
 }
 
-/// The receiving end of the event loop.
 #[derive(Debug)]
 pub struct Mailbox {
-    /// The queue.
     messages: mpsc::Receiver<Message>,
-    /// The socket, which is readable after a message was sent.
     wakeup: UnixStream,
 }
 
-/// Returns a sender and its mailbox.
-///
-/// # Errors
-/// Returns an error if the process may not open more files.
 pub fn new() -> io::Result<(Sender, Mailbox)> {
     let (read, write) = UnixStream::pair()?;
     read.set_nonblocking(true)?;
@@ -53,7 +45,6 @@ pub fn new() -> io::Result<(Sender, Mailbox)> {
 }
 
 impl Sender {
-    /// Sends a message. It is lost if the program has ended.
     pub fn send(&self, message: Message) {
         if self.messages.send(message).is_ok() {
             // A full socket has woken the loop already.
@@ -63,12 +54,10 @@ impl Sender {
 }
 
 impl Mailbox {
-    /// Returns the file descriptor to wait for, which is readable while there are messages.
     pub(in crate::tui) fn fd(&self) -> BorrowedFd<'_> {
         self.wakeup.as_fd()
     }
 
-    /// Takes all messages.
     pub(in crate::tui) fn collect(&mut self) -> Vec<Message> {
         // Empty the socket first: a message that is sent after this wakes the loop again.
         let mut bytes = [0; 64];

@@ -54,25 +54,20 @@ use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork, TerminalEffect
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
 pub struct World {
-    /// The unsaved work that is offered, and the number of offers in all.
     orphan: Option<(Box<Orphan>, usize)>,
     /// The unsaved work that cannot be read and why, in a sentence; None if there is none.
     unreadable: Option<String>,
-    /// The writer of the journal, which keeps unsaved work.
     journal: JournalWriter,
     /// The reminders from run to run; None if nothing is remembered.
     reminders: Option<Reminders>,
     disk: DiskQueue,
-    /// Messages that come after the present one.
     later: VecDeque<Message>,
-    /// Sweeps and exports in progress.
     workers: Workers,
     /// The folder of a temporary library. The last field: it is dropped after the journal has been written.
     _scratch: Option<ScratchFolder>,
 }
 
 impl World {
-    /// Returns the world around a library. The newest unsaved work in it will be offered.
     pub fn new(library: Library) -> Self {
         Self {
             journal: JournalWriter::new(library.clone()),
@@ -99,10 +94,6 @@ impl World {
         }
     }
 
-    /// Returns a world with an empty library in a temporary folder, which is removed with it.
-    ///
-    /// # Errors
-    /// Returns an error if the system gives no temporary folder.
     pub fn scratch() -> io::Result<Self> {
         let folder = ScratchFolder::new()?;
         let world = Self::new(Library::open(folder.path().join("library")));
@@ -114,9 +105,6 @@ impl World {
 
     /// Returns a world with shapes in a temporary library, and with unsaved work of crashed programs, the newest
     /// last.
-    ///
-    /// # Errors
-    /// Returns the refusal of the system or the library, in a sentence.
     pub fn with_contents(
         shapes: &[&StoredShape],
         leftovers: &[&StoredShape],
@@ -156,14 +144,12 @@ impl World {
         self
     }
 
-    /// Stops each sweep and each training after this many poses, like a user who does not wait for it.
     #[must_use]
     pub fn with_pose_limit(mut self, poses: u64) -> Self {
         self.workers.stop_after(poses);
         self
     }
 
-    /// Keeps models that can be trained again in a cache.
     #[must_use]
     pub fn with_model_cache(mut self, cache: Option<ModelCache>) -> Self {
         if let Some(cache) = cache {
@@ -245,7 +231,6 @@ impl World {
         self.later.pop_front().or_else(|| self.answered(app))
     }
 
-    /// Returns the message for the next answer of the disk, if one has come that the top page may take.
     fn answered(&mut self, app: &App) -> Option<Message> {
         loop {
             let answer = self.disk.take(app.dialogs.len())?;
@@ -256,7 +241,6 @@ impl World {
         }
     }
 
-    /// Queues a message. Esc on the page that waits for the disk also stops waiting.
     fn receive(&mut self, app: &App, message: Message) {
         let esc = Message::Unknown(Key::Esc);
         let leaves = matches!(message, Message::Cancel | Message::Quit) || message == esc;
@@ -269,7 +253,6 @@ impl World {
         self.later.extend(dropped.map(Message::Worker));
     }
 
-    /// Begins work about a source of frames. Returns its event if it is known already.
     fn frames(&mut self, app: &App, work: FrameWork) -> Option<Message> {
         let event = match work {
             FrameWork::Watch {
@@ -309,7 +292,6 @@ impl World {
         event.map(Message::Worker)
     }
 
-    /// Stops watching, and finishes the recording.
     fn stop_watching(&mut self) {
         if let Some((number, recording)) = self.workers.frames.stop() {
             self.disk
@@ -317,7 +299,6 @@ impl World {
         }
     }
 
-    /// Returns true if frames have come, or other news about their source.
     pub(in crate::tui) fn has_frames(&self) -> bool {
         self.workers.frames.has_new()
     }
@@ -327,7 +308,6 @@ impl World {
         self.workers.frames.take().map(Message::Worker)
     }
 
-    /// Reads the next frames of a source that is not watched on a thread of its own, and returns a message for each.
     pub(in crate::tui) fn next_frames(&mut self, count: usize) -> Vec<Message> {
         let access = Arc::clone(&self.workers.access);
         let events = self.workers.frames.next(count, &access).into_iter();
@@ -339,7 +319,6 @@ impl World {
         self.disk.due()
     }
 
-    /// Returns the request to the disk that is waited for, if it takes long.
     pub(in crate::tui) fn waiting(&self) -> Option<String> {
         self.disk.status()
     }
@@ -431,7 +410,6 @@ impl World {
         self.answered(app)
     }
 
-    /// Reads something for the top page. Returns the answer if it comes within a moment.
     fn read(&mut self, app: &App, request: DiskRequest) -> Option<Message> {
         self.disk.read(request, app.dialogs.len());
         self.answered(app)
@@ -469,7 +447,6 @@ impl World {
         Some(Message::Library(answer))
     }
 
-    /// Begins a recording whose file has been created, or reports that there is none.
     fn recording(
         &mut self,
         number: u64,
@@ -487,7 +464,6 @@ impl World {
         Message::Worker(WorkerEvent::Live(number, event))
     }
 
-    /// Takes over the unsaved work that is offered. More of it is offered next.
     fn recover(&mut self) -> Message {
         let Some((orphan, _)) = self.orphan.take() else {
             return no_work_left();
@@ -499,7 +475,6 @@ impl World {
         Message::Library(LibraryEvent::Recovered(Box::new(shape)))
     }
 
-    /// Moves the unsaved work that is offered to the trash. Returns the answer if there is one within a moment.
     fn give_up(&mut self, app: &App) -> Option<Message> {
         match self.orphan.take() {
             Some((orphan, _)) => self.change(app, DiskRequest::ThrowAway(orphan)),
@@ -507,8 +482,6 @@ impl World {
         }
     }
 
-    /// Returns the event for unwanted work that was moved to the trash, like a deleted shape, or could not be. The
-    /// next work is offered then.
     fn given_up(
         &mut self,
         thrown: Result<String, LibraryError>,
@@ -522,7 +495,6 @@ impl World {
     }
 }
 
-/// Returns the answer if no unsaved work is offered any more.
 fn no_work_left() -> Message {
     Message::Library(LibraryEvent::Failed("no unsaved work is left".to_owned()))
 }

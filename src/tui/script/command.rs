@@ -23,40 +23,28 @@ use crate::tui::script::setting::ScriptSetting;
 /// A position on the screen: column, row.
 pub type ScreenPosition = (u16, u16);
 
-/// A command, as one line of a script gives it.
 #[derive(Clone, Debug)]
 pub enum ScriptCommand {
     /// Sets how the program starts, and with what; comes before every command that needs a screen.
     Set(ScriptSetting),
     /// Changes the size while the program runs, to these columns and rows.
     Resize(u16, u16),
-    /// Presses keys.
     Keys(Vec<Key>),
-    /// Types characters as they are.
     Type(String),
-    /// Pastes a text.
     Paste(String),
-    /// Clicks the left button at a position.
     Click(ScreenPosition),
-    /// Clicks the left button at the first position where a text stands.
     ClickText(String),
-    /// Presses the left button at the first position and drags it over the others.
     Drag(Vec<ScreenPosition>),
-    /// Turns the wheel at a position by a number of steps, up if negative.
     Scroll(ScreenPosition, i16),
-    /// Prints the screen, under a name.
     Screen(String),
-    /// Prints the state, or the part that a JSON pointer names.
     State(String),
     /// Fails unless the screen matches.
     Expect(Regex),
-    /// Fails if the screen matches.
     ExpectNot(Regex),
     /// Fails unless a text stands at a position.
     ExpectAt(ScreenPosition, String),
     /// Fails unless a character has a style, given by its letter.
     ExpectStyle(ScreenPosition, char),
-    /// Does what a signal of this name does.
     Signal(String),
     /// Waits for work to finish; it always has.
     Wait,
@@ -68,10 +56,8 @@ pub enum ScriptCommand {
     Frames(usize),
 }
 
-/// A function that reads the rest of a line after the name of its command.
 type ReadCommand = fn(&str) -> Result<ScriptCommand, String>;
 
-/// The names of all commands, and how the rest of their line is read.
 const COMMANDS: [(&str, ReadCommand); 21] = [
     ("Size", |text| {
         let (columns, rows) = stated_size(text)?;
@@ -116,7 +102,6 @@ const COMMANDS: [(&str, ReadCommand); 21] = [
     ("Quit", |text| alone("Quit", text, ScriptCommand::Quit)),
 ];
 
-/// The styles that a script can expect, and their letters in printed screens.
 const STYLES: [(&str, char); 4] = [
     ("plain", '.'),
     ("reverse", 'R'),
@@ -124,20 +109,16 @@ const STYLES: [(&str, char); 4] = [
     ("dim", 'D'),
 ];
 
-/// The signals that a script can send.
 const SIGNALS: [&str; 5] = ["HUP", "INT", "QUIT", "TERM", "TSTP"];
 
-/// The reason why a line is not a command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", line_name(*line))]
 pub struct ScriptError {
     /// The line number, from 1; 0 for keys from the command line (`-k`).
     pub line: usize,
-    /// The error, and what was expected instead.
     pub message: String,
 }
 
-/// Returns how messages name a line of a script.
 fn line_name(line: usize) -> String {
     if line == 0 {
         "-k: ".to_owned()
@@ -146,10 +127,6 @@ fn line_name(line: usize) -> String {
     }
 }
 
-/// Reads the commands of a script, each with its line number.
-///
-/// # Errors
-/// Returns an error for the first line that is not a command.
 pub fn read(script: &str) -> Result<Vec<(usize, ScriptCommand)>, ScriptError> {
     let lines = script
         .lines()
@@ -167,7 +144,6 @@ pub fn read(script: &str) -> Result<Vec<(usize, ScriptCommand)>, ScriptError> {
         .collect()
 }
 
-/// Reads one line.
 fn command(line: &str) -> Result<ScriptCommand, String> {
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let command = COMMANDS.iter().find(|(name, _)| *name == word);
@@ -183,7 +159,6 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
     read(rest.trim())
 }
 
-/// Returns a command that takes nothing.
 fn alone(name: &str, rest: &str, command: ScriptCommand) -> Result<ScriptCommand, String> {
     if rest.is_empty() {
         return Ok(command);
@@ -202,7 +177,6 @@ fn click(text: &str) -> Result<ScriptCommand, String> {
     position(text).map(ScriptCommand::Click)
 }
 
-/// Reads a name for a screen, which may be empty.
 fn screen(name: &str) -> Result<ScriptCommand, String> {
     if name.contains(char::is_control) {
         let found = shortened(name);
@@ -213,7 +187,6 @@ fn screen(name: &str) -> Result<ScriptCommand, String> {
     Ok(ScriptCommand::Screen(name.to_owned()))
 }
 
-/// Reads the name of a file with frames.
 fn source(name: &str) -> Result<ScriptCommand, String> {
     if name.is_empty() {
         return Err("expected the name of a file with frames".to_owned());
@@ -221,7 +194,6 @@ fn source(name: &str) -> Result<ScriptCommand, String> {
     Ok(ScriptCommand::Source(name.to_owned()))
 }
 
-/// Reads the name of a signal.
 fn signal(name: &str) -> Result<ScriptCommand, String> {
     if SIGNALS.contains(&name) {
         return Ok(ScriptCommand::Signal(name.to_owned()));
@@ -234,7 +206,6 @@ fn signal(name: &str) -> Result<ScriptCommand, String> {
     ))
 }
 
-/// Reads a number of frames.
 fn frames(text: &str) -> Result<usize, String> {
     let number = text
         .parse()
@@ -246,7 +217,6 @@ fn frames(text: &str) -> Result<usize, String> {
     })
 }
 
-/// Reads the seed of random touches.
 fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| {
         let found = shortened(text);
@@ -257,7 +227,6 @@ fn seed(text: &str) -> Result<u64, String> {
     })
 }
 
-/// Reads two or more positions.
 fn drag(text: &str) -> Result<ScriptCommand, String> {
     let positions: Result<Vec<_>, _> = text.split_whitespace().map(position).collect();
     let positions = positions?;
@@ -270,7 +239,6 @@ fn drag(text: &str) -> Result<ScriptCommand, String> {
     Ok(ScriptCommand::Drag(positions))
 }
 
-/// Reads a position and a number of steps of the wheel, downwards if positive.
 fn scroll(text: &str) -> Result<ScriptCommand, String> {
     let (at, turns) = two(text, "a number")?;
     let number = turns.parse().ok();
@@ -282,13 +250,11 @@ fn scroll(text: &str) -> Result<ScriptCommand, String> {
     Ok(ScriptCommand::Scroll(position(at)?, number))
 }
 
-/// Returns the name of a style, given by its letter.
 pub(in crate::tui::script) fn style_name(letter: char) -> &'static str {
     let style = STYLES.iter().find(|(_, own)| *own == letter);
     style.map_or("unknown", |(name, _)| name)
 }
 
-/// Returns the letter of a style.
 fn style(name: &str) -> Result<char, String> {
     let style = STYLES.iter().find(|(style, _)| *style == name);
     style.map(|(_, letter)| *letter).ok_or_else(|| {
@@ -302,7 +268,6 @@ fn style(name: &str) -> Result<char, String> {
     })
 }
 
-/// Splits a text into a position and the rest, which is `what`.
 fn two<'a>(text: &'a str, what: &str) -> Result<(&'a str, &'a str), String> {
     let (first, second) = text.split_once(char::is_whitespace).ok_or_else(|| {
         let found = shortened(text);
@@ -324,7 +289,6 @@ pub(crate) fn size(text: &str) -> Result<(u16, u16), &'static str> {
         .ok_or("expected a size like 80x24, from 1x1 to 1000x1000")
 }
 
-/// Reads the size in a line of a script.
 fn stated_size(text: &str) -> Result<(u16, u16), String> {
     size(text).map_err(|error| format!("{error}, found {:?}", shortened(text)))
 }
@@ -338,7 +302,6 @@ fn position(text: &str) -> Result<ScreenPosition, String> {
     numbers.ok_or_else(|| format!("expected column,row like 12,5, found {:?}", shortened(text)))
 }
 
-/// Reads a text in quotes, with the escapes of JSON.
 fn quoted(text: &str) -> Result<String, String> {
     serde_json::from_str(text).map_err(|_| {
         format!(
@@ -363,7 +326,6 @@ const LARGEST_PATTERN: usize = 1 << 16;
 /// The greatest length of a pattern in bytes; reading one takes a hundred times as much memory.
 const LONGEST_PATTERN: usize = 1 << 14;
 
-/// Reads a regular expression between slashes.
 fn pattern(text: &str) -> Result<Regex, String> {
     let inner = text
         .strip_prefix('/')

@@ -15,31 +15,20 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Palette, Theme};
 use crate::tui::widget::write;
 
-/// The width of a character's cell, in pixels.
 const WIDTH: u32 = 9;
-/// The height of a character's cell, in pixels.
 const HEIGHT: u32 = 18;
-/// The size of the font, in pixels.
 const FONT: u32 = 15;
-/// The distance from the top of a cell to the base line, in pixels.
 const BASE: u32 = 14;
-/// The width of the margin around the screen, in pixels.
 const MARGIN: u32 = 12;
 
-/// The style of a run of characters.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct TextStyle {
-    /// The colour of the text.
     ink: [u8; 3],
-    /// The colour of the background.
     paper: [u8; 3],
-    /// Whether it is bold.
     bold: bool,
-    /// Whether it is dim.
     dim: bool,
 }
 
-/// Returns the colours of text and background of a palette.
 fn colors(palette: Palette) -> ([u8; 3], [u8; 3]) {
     match palette {
         Palette::Dark => ([212, 212, 212], [28, 28, 28]),
@@ -111,7 +100,6 @@ impl TextStyle {
     }
 }
 
-/// Returns the width of a number of columns, in pixels.
 fn units(columns: usize) -> u32 {
     u32::from(narrow(columns)) * WIDTH
 }
@@ -200,7 +188,6 @@ fn block(symbol: &str) -> Option<(u32, u32, u8)> {
     }
 }
 
-/// Draws a filled rectangle.
 fn rectangle(
     svg: &mut String,
     (x, y): (u32, u32),
@@ -222,7 +209,6 @@ fn rectangle(
     );
 }
 
-/// Formats a colour as `#rrggbb`.
 fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }

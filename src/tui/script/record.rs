@@ -5,19 +5,16 @@ use crate::tui::app::message::{Mouse, MouseKind};
 use crate::tui::script::setting::ScriptSetting;
 use crate::tui::terminal::input::Input;
 
-/// Turns the inputs of a session into lines of a script, one after another.
 #[derive(Clone, Debug)]
 pub struct Recorder {
     /// The settings to write before the first line; empty after they were written.
     head: String,
-    /// Whether the first size has been written.
     sized: bool,
     /// The position where the button was pressed, and those to which it was dragged; empty while it is up.
     held: Vec<(u16, u16)>,
 }
 
 impl Recorder {
-    /// The script begins with the settings with which the program was started.
     pub fn new(start: &[ScriptSetting]) -> Self {
         let lines = start.iter().map(|setting| format!("{setting}\n"));
         Self {
@@ -52,7 +49,6 @@ impl Recorder {
         self.let_go()
     }
 
-    /// Returns the command for a mouse event. Presses and drags are held back until the button is released.
     fn mouse(&mut self, Mouse { kind, column, row }: Mouse) -> String {
         let here = (column, row);
         match kind {
@@ -74,7 +70,6 @@ impl Recorder {
         }
     }
 
-    /// Returns the command for the events held back.
     fn let_go(&mut self) -> String {
         let way = std::mem::take(&mut self.held);
         let positions: Vec<String> = (way.iter())

@@ -31,43 +31,29 @@ pub use crate::tui::script::start::ScriptOptions;
 use crate::tui::script::start::ScriptStart;
 use crate::tui::widget::write;
 
-/// The reason why a script ended before its last line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScriptFailure {
-    /// An expectation does not hold. The message contains the screen.
     #[error("line {line}: {message}\n{screen}")]
     Expectation {
         /// The line number, from 1.
         line: usize,
-        /// The message, which says what was expected and what is there.
         message: String,
-        /// The text of the screen.
         screen: String,
     },
-    /// A line is not a command.
     #[error(transparent)]
     Script(#[from] ScriptError),
     /// There is no folder for the script's own library, or its shapes cannot be put there.
     #[error("the script's own library: {0}")]
     World(String),
-    /// The output was closed.
     #[error("stopped: the output was closed")]
     Stopped,
-    /// The program ended before the script did.
     #[error("line {line}: the program had already ended")]
-    Ended {
-        /// The number of the first line that could not be carried out.
-        line: usize,
-    },
+    Ended { line: usize },
 }
 
 /// Runs a script in a world, after some keys. `print` gets the output piece by piece, and can stop the script.
 /// Without any command, the screen is printed. A script that sets a library or its shapes has a world of its own
 /// instead.
-///
-/// # Errors
-/// Returns an error for the first line that is malformed or fails, or if `print` stops the script. If a line is
-/// malformed, no line is carried out.
 pub fn run(
     script: &str,
     keys: &[Key],
@@ -81,19 +67,14 @@ pub fn run(
     })
 }
 
-/// An output of a script.
 #[derive(Debug)]
 pub enum ScriptOutput<'a> {
-    /// Text to print.
     Text(&'a str),
     /// The name of a screen, which may be empty, and the session that shows it; its text is printed next.
     Screen(&'a str, &'a Session),
 }
 
 /// Runs a script like [`run`], but passes each screen itself, too: [`Session::svg`] draws it.
-///
-/// # Errors
-/// Returns the errors of [`run`].
 pub fn run_shown(
     script: &str,
     keys: &[Key],
@@ -184,10 +165,6 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
     Ok(())
 }
 
-/// Reads and draws the next frames.
-///
-/// # Errors
-/// Returns a message if there are fewer than `count` frames; it says how many there are and why.
 fn take_frames(session: &mut Session, count: usize) -> Result<(), String> {
     let found = session.frames(count);
     if found == count {
@@ -198,7 +175,6 @@ fn take_frames(session: &mut Session, count: usize) -> Result<(), String> {
     Err(format!("expected {expected}, found {found}: {why}"))
 }
 
-/// Presses the mouse at the first position, moves it over the others and releases it at the last one.
 fn drag(session: &mut Session, way: &[ScreenPosition]) {
     for (index, &at) in way.iter().enumerate() {
         let kind = if index == 0 {
@@ -213,7 +189,6 @@ fn drag(session: &mut Session, way: &[ScreenPosition]) {
     }
 }
 
-/// Carries out a command that only reads the program. Returns false if the command is not one of these.
 fn observe(
     session: &Session,
     line: usize,
@@ -281,7 +256,6 @@ fn expect(session: &Session, command: &ScriptCommand) -> Option<Result<(), Strin
     Some(failure.map_or(Ok(()), Err))
 }
 
-/// Passes on the screen, first as a session, then as text.
 fn show_screen(
     session: &Session,
     name: &str,
@@ -292,7 +266,6 @@ fn show_screen(
     printed(show(ScriptOutput::Text(&screen(session, name, settings))))
 }
 
-/// Returns an error if the reader of the output has stopped the script.
 fn printed(flow: ControlFlow<()>) -> Result<(), ScriptFailure> {
     match flow {
         ControlFlow::Continue(()) => Ok(()),
@@ -305,7 +278,6 @@ fn wrong(line: usize, message: String) -> ScriptFailure {
     ScriptError { line, message }.into()
 }
 
-/// Returns the failure of an expectation, with the screen.
 fn fails(session: &Session, line: usize, message: String) -> ScriptFailure {
     let screen = session
         .screen()
@@ -319,18 +291,15 @@ fn fails(session: &Session, line: usize, message: String) -> ScriptFailure {
     }
 }
 
-/// Sends a mouse event at a position.
 fn mouse(session: &mut Session, kind: MouseKind, (column, row): ScreenPosition) {
     session.send(Message::Mouse(Mouse { kind, column, row }));
 }
 
-/// Presses and releases the button at a position.
 fn click(session: &mut Session, at: ScreenPosition) {
     mouse(session, MouseKind::Press, at);
     mouse(session, MouseKind::Release, at);
 }
 
-/// Returns the first position where a text stands.
 fn find(screen: &str, text: &str) -> Option<ScreenPosition> {
     screen.lines().enumerate().find_map(|(row, line)| {
         let column = write::width(&line[..line.find(text)?]);
@@ -353,7 +322,6 @@ fn line_of(grid: &str, row: u16) -> &str {
     grid.lines().nth(row.into()).unwrap_or("")
 }
 
-/// Returns the screen under its header, and its styles if they are asked for.
 fn screen(session: &Session, name: &str, settings: &ScriptOptions) -> String {
     let (columns, rows) = session.size();
     let cursor = session.cursor();
@@ -383,7 +351,6 @@ fn screen(session: &Session, name: &str, settings: &ScriptOptions) -> String {
     header + &session.screen() + &styles
 }
 
-/// Returns the document as JSON, with the answer of `taxel batch` for its imprint.
 fn state(session: &Session) -> Value {
     let app = session.app();
     let document = app.shown();

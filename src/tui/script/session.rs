@@ -32,21 +32,15 @@ use crate::tui::script::drawing;
 use crate::tui::widget::theme::letter;
 use crate::tui::widget::write;
 
-/// A running program on a screen of its own.
 #[derive(Debug)]
 pub struct Session {
-    /// The state of the program.
     app: App,
-    /// The library, the journal and the workers.
     world: World,
-    /// A screen in memory.
     screen: RefCell<DrawnScreen>,
 }
 
-/// A screen in memory, drawn when it is read.
 #[derive(Debug)]
 struct DrawnScreen {
-    /// The cells of the screen.
     buffer: Buffer,
     /// The position of the cursor; None if it is hidden.
     cursor: Option<Position>,
@@ -65,12 +59,10 @@ impl DrawnScreen {
 }
 
 impl Session {
-    /// Starts the program in a world, on a screen of `width × height` characters.
     pub fn new(options: &Options, world: World, width: u16, height: u16) -> Self {
         Self::of(App::new(options), world, width, height)
     }
 
-    /// Starts a program whose state exists already.
     pub fn of(app: App, world: World, width: u16, height: u16) -> Self {
         let screen = DrawnScreen {
             buffer: Buffer::empty(Rect::new(0, 0, width, height)),
@@ -90,10 +82,6 @@ impl Session {
         session
     }
 
-    /// Presses keys, given in notation.
-    ///
-    /// # Errors
-    /// Returns an error if a key is unknown; then none is pressed.
     pub fn keys(&mut self, text: &str) -> Result<(), KeyError> {
         for key in parse(text)? {
             self.press(key);
@@ -101,12 +89,10 @@ impl Session {
         Ok(())
     }
 
-    /// Presses a key.
     pub fn press(&mut self, key: Key) {
         self.send(self.app.meaning(key));
     }
 
-    /// Sends a message.
     pub fn send(&mut self, message: Message) {
         // Effects on a real terminal are ignored.
         let _ = self.world.handle(&mut self.app, message);
@@ -114,9 +100,6 @@ impl Session {
     }
 
     /// Watches a source of frames; reads no frame yet.
-    ///
-    /// # Errors
-    /// Returns why the source cannot be watched, as a sentence.
     pub fn watch(&mut self, name: &str) -> Result<(), String> {
         let number = |app: &App| last_page(app).map(Live::number);
         let before = number(&self.app);
@@ -130,7 +113,6 @@ impl Session {
         })
     }
 
-    /// Reads at most `count` of the next frames of the watched source. Returns how many there were.
     pub fn frames(&mut self, count: usize) -> usize {
         let mut frames = 0;
         for message in self.world.next_frames(count) {
@@ -142,7 +124,6 @@ impl Session {
         frames
     }
 
-    /// Returns why the watched source gives no more frames, in a few words.
     pub(super) fn end_of_frames(&self) -> String {
         let page = last_page(&self.app).filter(|page| !page.stopped());
         match page.map(|page| &page.status().state) {
@@ -159,18 +140,15 @@ impl Session {
         self.send(Message::Resized(width, height));
     }
 
-    /// Returns the screen, up to date.
     fn drawn(&self) -> Ref<'_, DrawnScreen> {
         self.screen.borrow_mut().draw(&self.app);
         self.screen.borrow()
     }
 
-    /// Returns the state of the program.
     pub fn app(&self) -> &App {
         &self.app
     }
 
-    /// Returns columns and rows of the screen.
     pub fn size(&self) -> (u16, u16) {
         let area = self.screen.borrow().buffer.area;
         (area.width, area.height)
@@ -181,7 +159,6 @@ impl Session {
         self.drawn().cursor
     }
 
-    /// Returns the text of the screen, one line per row, without blanks at line ends.
     pub fn screen(&self) -> String {
         self.rows(|_, symbol, row| row.push_str(symbol))
     }
@@ -191,13 +168,10 @@ impl Session {
         self.rows(|cell, _, row| row.push(letter(&cell.style())))
     }
 
-    /// Returns the screen as SVG, with a title. It has the theme's colours if the theme's depth is
-    /// [`crate::tui::widget::theme::ColorDepth::True`].
     pub fn svg(&self, title: &str) -> String {
         drawing::svg(&self.drawn().buffer, *self.app.theme(), title)
     }
 
-    /// Returns the rows of the screen. The function `add` gets each cell with its symbol, and the row to append to.
     fn rows(&self, add: impl Fn(&Cell, &str, &mut String)) -> String {
         let buffer = &self.drawn().buffer;
         let width = usize::from(buffer.area.width).max(1);

@@ -20,30 +20,20 @@ use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::tui::app::state::Options;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// A setting, as one line of a script gives it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ScriptSetting {
-    /// The size of the screen, in columns and rows.
     Size(u16, u16),
-    /// Whether to use ASCII characters only.
     Ascii(bool),
-    /// The number of colours.
     Color(ColorDepth),
-    /// The colours for a dark or a light background.
     Theme(Palette),
-    /// A parameter of the sensor and its value.
     Sensor(Parameter, f64),
-    /// The library's folder.
     Library(PathBuf),
-    /// The seed of random touches.
     Seed(u64),
-    /// A shape in the user's library.
     Shape(Box<StoredShape>),
     /// Unsaved work of a program that crashed.
     Leftover(Box<StoredShape>),
 }
 
-/// The names of what can be set.
 const NAMES: [&str; 10] = [
     "ascii",
     "color",
@@ -57,13 +47,8 @@ const NAMES: [&str; 10] = [
     "leftover",
 ];
 
-/// The words of a switch.
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
-/// Reads the text after `Set`.
-///
-/// # Errors
-/// Returns what is wrong with the text, and what was expected.
 pub fn read(text: &str) -> Result<ScriptSetting, String> {
     let (name, value) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
     let value = value.trim();
@@ -93,7 +78,6 @@ pub fn read(text: &str) -> Result<ScriptSetting, String> {
     }
 }
 
-/// Returns the meaning of one of several words.
 fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, String> {
     let choice = choices.iter().find(|(choice, _)| *choice == value);
     choice.map(|(_, meaning)| *meaning).ok_or_else(|| {
@@ -106,13 +90,11 @@ fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, 
     })
 }
 
-/// Reads a value of a parameter of the sensor.
 fn number(parameter: Parameter, value: &str) -> Result<ScriptSetting, ParameterError> {
     let value = Sensor::LARGEST.read(parameter, value)?;
     Ok(ScriptSetting::Sensor(parameter, value))
 }
 
-/// Reads a stored shape from JSON.
 fn shape(name: &str, value: &str) -> Result<Box<StoredShape>, String> {
     StoredShape::read(value.as_bytes())
         .map(Box::new)
@@ -120,7 +102,6 @@ fn shape(name: &str, value: &str) -> Result<Box<StoredShape>, String> {
 }
 
 impl fmt::Display for ScriptSetting {
-    /// Writes the line of a script.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Size(columns, rows) => write!(f, "Size {columns}x{rows}"),
@@ -139,13 +120,11 @@ impl fmt::Display for ScriptSetting {
     }
 }
 
-/// Returns the word for a value.
 fn name_of<T: Copy + PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'static str {
     let choice = choices.iter().find(|(_, meaning)| *meaning == value);
     choice.map_or("", |(name, _)| name)
 }
 
-/// Returns a shape as JSON in one line.
 fn in_a_line(shape: &StoredShape) -> String {
     json::text(shape)
 }

@@ -10,35 +10,26 @@ use crate::tui::runtime::World;
 use crate::tui::script::command::{ScriptCommand, ScriptError};
 use crate::tui::script::setting::ScriptSetting;
 
-/// The options with which a script is run.
 #[derive(Clone, Debug)]
 pub struct ScriptOptions {
-    /// The options with which the program starts.
     pub options: Options,
     /// Columns and rows of the screen, unless the script sets them.
     pub size: (u16, u16),
-    /// Whether printed screens have a grid of style letters.
     pub styles: bool,
-    /// Whether screens and states are printed as JSON lines.
     pub json: bool,
-    /// The keys and their actions.
     pub keymap: Keymap,
     /// The only folder below which the script may write; None if it may write anywhere and use any library.
     pub folder: Option<PathBuf>,
 }
 
-/// The start of a script.
 #[derive(Debug)]
 pub(super) struct ScriptStart<'a> {
     /// The options, changed by the script's settings.
     pub(super) settings: ScriptOptions,
-    /// The number of commands at the beginning that are settings.
     pub(super) lines: usize,
-    /// The line that sets a library, and that library.
     library: Option<(usize, Library)>,
     /// The shapes of the user's library; only the last of those with the same name.
     shapes: Vec<&'a StoredShape>,
-    /// Unsaved work, the newest last.
     leftovers: Vec<&'a StoredShape>,
 }
 
@@ -48,10 +39,6 @@ impl<'a> ScriptStart<'a> {
     ///
     /// `Set shape` may also come later in a script, because a recorder learns only then which shapes are used. These
     /// shapes, too, exist from the start.
-    ///
-    /// # Errors
-    /// Returns an error for a setting that cannot be used together with others, or that [`ScriptOptions::folder`]
-    /// forbids.
     pub(super) fn of(
         commands: &'a [(usize, ScriptCommand)],
         settings: &ScriptOptions,
@@ -92,7 +79,6 @@ impl<'a> ScriptStart<'a> {
         }
     }
 
-    /// Adds a shape, or replaces the one with the same name.
     fn put(&mut self, shape: &'a StoredShape) {
         let same = |own: &&StoredShape| own.name.same(shape.name.as_str());
         match self.shapes.iter().position(same) {
@@ -101,10 +87,6 @@ impl<'a> ScriptStart<'a> {
         }
     }
 
-    /// Applies a setting.
-    ///
-    /// # Errors
-    /// Returns what is wrong with the setting, as a sentence.
     fn set(&mut self, line: usize, setting: &'a ScriptSetting) -> Result<(), String> {
         let options = &mut self.settings.options;
         match setting {
@@ -133,9 +115,6 @@ impl<'a> ScriptStart<'a> {
     }
 
     /// Returns the world for the script: `own`, unless the script sets a library or its shapes.
-    ///
-    /// # Errors
-    /// Returns why the shapes cannot be stored, as a sentence.
     pub(super) fn world(&self, own: World) -> Result<World, String> {
         let world = match &self.library {
             Some((_, library)) => World::for_script(library.clone()),

@@ -12,7 +12,6 @@ use rustix::fs::{Mode, OFlags, open};
 use rustix::io::{Errno, read, write};
 use rustix::termios::{isatty, tcgetwinsize};
 
-/// How long the last write of the program waits if the terminal does not take it.
 const LAST_WRITE: Timespec = Timespec {
     tv_sec: 0,
     tv_nsec: 100_000_000,
@@ -21,16 +20,12 @@ const LAST_WRITE: Timespec = Timespec {
 /// The largest size, in columns and rows; a larger one is a mistake and would cost gigabytes.
 const LARGEST: (u16, u16) = (1000, 500);
 
-/// The terminal's files for input and output.
 #[derive(Debug)]
 pub(in crate::tui) struct Device {
-    /// The file from which keys are read.
     input: OwnedFd,
-    /// The file to which the screen is written.
     output: OwnedFd,
 }
 
-/// The result of a write.
 #[derive(Debug, PartialEq, Eq)]
 pub(in crate::tui) enum WriteOutcome {
     /// All bytes are written.
@@ -44,9 +39,6 @@ impl Device {
     ///
     /// The output is opened a second time, non-blocking, so that a line that takes nothing cannot keep the program
     /// from ending. If that is not allowed, as after `su`, the file is used as it is.
-    ///
-    /// # Errors
-    /// Returns an error if there is no terminal.
     pub(in crate::tui) fn open() -> io::Result<Self> {
         let input = match stdin() {
             file if isatty(&file) => file.as_fd().try_clone_to_owned()?,
@@ -65,7 +57,6 @@ impl Device {
         Ok(Self { input, output })
     }
 
-    /// Returns the file from which keys are read.
     pub(in crate::tui) fn input(&self) -> BorrowedFd<'_> {
         self.input.as_fd()
     }
@@ -165,7 +156,6 @@ impl Device {
         )
     }
 
-    /// Duplicates the descriptors of both files.
     pub(in crate::tui) fn try_clone(&self) -> io::Result<Self> {
         Ok(Self {
             input: self.input.try_clone()?,
@@ -174,7 +164,6 @@ impl Device {
     }
 }
 
-/// Opens the controlling terminal.
 fn controlling(access: OFlags) -> io::Result<OwnedFd> {
     let none = "there is no terminal here; 'taxel figure' and the other commands work without one, \
                 and 'taxel script' drives the screen without one";

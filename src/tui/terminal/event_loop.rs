@@ -41,15 +41,11 @@ use crate::tui::terminal::settings::TerminalSettings;
 use crate::tui::terminal::signals::{SignalEvent, SignalReceiver};
 use crate::tui::terminal::{job, session};
 
-/// The least time between two pictures of a source of frames (about 30 a second).
 const PICTURE: Duration = Duration::from_millis(34);
 
 /// Runs the program until it ends. The terminal is restored, even after an error, a signal or a panic, and unsaved
 /// work is in the journal at every point from which the program may not come back. `first` is the first message to the
 /// program; later ones come through the mailbox. `watch` is called with each input.
-///
-/// # Errors
-/// Returns an error if there is no terminal, or if it cannot be read or written.
 pub fn run(
     mut app: App,
     first: Option<Message>,
@@ -112,43 +108,28 @@ fn leave_on_panic() {
     }));
 }
 
-/// The loop between the terminal and the program.
 struct EventLoop<'a> {
-    /// Called with each input, to record it.
     watch: &'a mut dyn FnMut(&Input),
-    /// The state of the program.
     app: App,
-    /// The library, the journal and the workers.
     world: World,
-    /// The settings of the terminal.
     settings: TerminalSettings,
-    /// The terminal.
     device: Device,
-    /// The signals that have arrived.
     signals: SignalReceiver,
-    /// The messages of the workers.
     mailbox: Mailbox,
     /// Turns bytes into keys.
     reader: InputReader,
-    /// The screen.
     screen: Terminal<Screen>,
-    /// Whether mouse events are reported.
     mouse: bool,
     /// How the program ended; None while it runs.
     outcome: Option<Outcome>,
-    /// The message to handle at the start.
     first: Option<Message>,
-    /// The time of the last read.
     read_at: Instant,
     /// The time at which to take frames next; None if there are none.
     frames_due: Option<Instant>,
-    /// The time at which frames were last taken.
     frames_at: Option<Instant>,
-    /// Limits pictures to what the terminal can draw in time.
     pacing: PicturePacing,
 }
 
-/// The reasons why the loop was woken.
 #[derive(Default)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -157,21 +138,13 @@ struct EventLoop<'a> {
 struct Ready {
     /// There are bytes to read.
     input: bool,
-    /// Nothing came within the time limit.
     late: bool,
-    /// A signal arrived.
     signals: bool,
-    /// A worker sent a message.
     mail: bool,
-    /// The terminal is gone.
     gone: bool,
 }
 
 impl<'a> EventLoop<'a> {
-    /// Opens the terminal, handles signals from now on, and creates the loop.
-    ///
-    /// # Errors
-    /// Returns an error if there is no terminal, or if signals cannot be handled.
     fn open(
         watch: &'a mut dyn FnMut(&Input),
         app: App,
@@ -205,7 +178,6 @@ impl<'a> EventLoop<'a> {
         })
     }
 
-    /// Runs until the program ends.
     fn run(&mut self) -> io::Result<Outcome> {
         session::enter(&self.device, &self.settings, self.mouse)?;
         self.tell_size();
@@ -285,7 +257,6 @@ impl<'a> EventLoop<'a> {
         Ok(true)
     }
 
-    /// Sleeps until there is something to do, or for `patience`.
     fn wait(&self, patience: Option<Duration>) -> io::Result<Ready> {
         let timeout = patience.and_then(|patience| Timespec::try_from(patience).ok());
         let watched = [self.device.input(), self.signals.fd(), self.mailbox.fd()];
@@ -313,7 +284,6 @@ impl<'a> EventLoop<'a> {
         })
     }
 
-    /// Handles the signals that arrived.
     fn on_signals(&mut self) -> io::Result<()> {
         for said in self.signals.received() {
             match said {
@@ -329,7 +299,6 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
-    /// Handles the messages that workers have sent.
     fn collect(&mut self) -> io::Result<()> {
         let mut messages = self.mailbox.collect().into_iter();
         messages.try_for_each(|message| self.update(message))
@@ -372,13 +341,11 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
-    /// Returns true if nothing more came in time after an incomplete sequence.
     fn has_timed_out(&self) -> bool {
         let patience = self.reader.patience(self.pacing.is_waiting());
         patience.is_some_and(|patience| self.read_at.elapsed() >= patience)
     }
 
-    /// Handles a message, then its effect on the terminal.
     fn update(&mut self, message: Message) -> io::Result<()> {
         match self.world.handle(&mut self.app, message) {
             None => {}
@@ -446,7 +413,6 @@ impl<'a> EventLoop<'a> {
         }
     }
 
-    /// Reports the size to the state, which needs it to find what the mouse points at.
     fn tell_size(&mut self) {
         let Ok(size) = ratatui::backend::Backend::size(self.screen.backend());
         let input = Input::Size(size.width, size.height);
@@ -456,7 +422,6 @@ impl<'a> EventLoop<'a> {
             .handle(&mut self.app, Message::Resized(size.width, size.height));
     }
 
-    /// Gives the terminal back, stops, and takes it again when the shell continues the program.
     fn suspend(&mut self) -> io::Result<()> {
         if !job::has_shell() {
             self.refuse("there is no shell to go back to");
@@ -496,7 +461,6 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
-    /// Takes the terminal back after another program had it.
     fn resume(&mut self) -> io::Result<()> {
         session::enter(&self.device, &self.settings, self.mouse)?;
         // The other program has read the rest of a sequence or an answer.
@@ -516,7 +480,6 @@ fn size(device: &Device, settings: &TerminalSettings) -> Size {
     Size { width, height }
 }
 
-/// Returns true if an error means that the terminal is gone.
 fn is_lost(error: &io::Error) -> bool {
     let lost = [
         Errno::IO,

@@ -32,20 +32,15 @@ use std::time::Duration;
 use crate::tui::app::message::{Mouse, MouseKind};
 use crate::tui::keys::key::{Arrow, Key};
 
-/// An event that the terminal reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// A key.
     Key(Key),
-    /// Pasted text, with lines ending in `\n`.
     Paste(String),
-    /// A press, drag or release of the left button, or a turn of the wheel.
     Mouse(Mouse),
     /// The size of the screen, in columns and rows; it does not come from the keyboard.
     Size(u16, u16),
 }
 
-/// How long the reader waits for the rest of a sequence.
 const MOMENT: Duration = Duration::from_millis(50);
 /// How long the reader waits for the rest of a pasted text; some terminals never send its end.
 const PASTE_MOMENT: Duration = Duration::from_secs(1);
@@ -55,26 +50,18 @@ const LONGEST: usize = 64;
 /// The length at which pasted text is cut off, in bytes; the rest is dropped.
 const LONGEST_PASTE: usize = 1 << 20;
 
-/// The first byte of a sequence, and the byte of the key Esc.
 const ESC: u8 = 0x1b;
-/// The byte that ends an answer.
 const BEL: u8 = 0x07;
-/// The sequence that ends pasted text.
 const PASTE_END: &[u8] = b"\x1b[201~";
 
 /// The state of the reader: its place in a sequence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum InputState {
-    /// Between keys.
     #[default]
     Ground,
-    /// After ESC.
     Escape,
-    /// After an ESC that nothing has followed in time, while an answer about the status is pending.
     LateEscape,
-    /// After ESC O.
     Single,
-    /// After ESC [.
     Sequence,
     /// In a function key of the Linux console: ESC [ [, then one more byte.
     Function,
@@ -82,7 +69,6 @@ enum InputState {
     OldMouse,
     /// In an answer: ESC ] or ESC P up to BEL or ESC \.
     Answer,
-    /// In pasted text.
     Paste,
     /// In a character of several bytes, with the number of bytes still to come.
     Character(u8),
@@ -91,15 +77,11 @@ enum InputState {
 /// Reads keys, pastes and mouse events from bytes, as they arrive.
 #[derive(Debug, Default)]
 pub struct InputReader {
-    /// The place in a sequence.
     state: InputState,
     /// The bytes of the sequence so far.
     held: Vec<u8>,
-    /// Whether the sequence begins with a second ESC.
     doubled: bool,
-    /// The events that are read and not yet taken.
     found: Vec<Input>,
-    /// Whether the terminal has reported its status.
     has_status: bool,
 }
 
@@ -143,7 +125,6 @@ impl InputReader {
         std::mem::take(&mut self.found)
     }
 
-    /// Adds a key to the events.
     fn key(&mut self, key: Key) {
         self.found.push(Input::Key(key));
     }
@@ -154,7 +135,6 @@ impl InputReader {
         self.held.clear();
     }
 
-    /// Reads one byte.
     fn step(&mut self, byte: u8) {
         match self.state {
             InputState::Ground => self.plain(byte),
@@ -193,7 +173,6 @@ impl InputReader {
         }
     }
 
-    /// Skips a string that the terminal sends as an answer, up to its end, BEL or `ESC \`.
     fn in_answer(&mut self, byte: u8) {
         match (byte, self.held.pop()) {
             (BEL, _) | (b'\\', Some(ESC)) => self.ground(),
@@ -240,7 +219,6 @@ impl InputReader {
         }
     }
 
-    /// Reads the parameters after `ESC [`, up to a final byte.
     fn in_sequence(&mut self, byte: u8) {
         match byte {
             b'[' if self.held.is_empty() => self.state = InputState::Function,
@@ -260,7 +238,6 @@ impl InputReader {
         }
     }
 
-    /// Reads a byte between sequences.
     fn plain(&mut self, byte: u8) {
         match byte {
             ESC => {
@@ -285,7 +262,6 @@ impl InputReader {
         }
     }
 
-    /// Reads the byte after ESC. A byte that begins no sequence is a key of its own, after Esc.
     fn after_escape(&mut self, byte: u8) {
         self.ground();
         match byte {
@@ -304,7 +280,6 @@ impl InputReader {
         }
     }
 
-    /// Handles the sequence `ESC [ parameters final`.
     fn sequence(&mut self, parameters: &[u8], last: u8) {
         // Bytes that are not text are not parameters either.
         let Ok(text) = std::str::from_utf8(parameters) else {
@@ -359,7 +334,6 @@ impl InputReader {
         }
     }
 
-    /// Adds the key of a sequence that ends in a letter.
     fn letter(&mut self, letter: u8, shifted: bool) {
         let arrow = match letter {
             b'A' => Arrow::Up,
@@ -398,7 +372,6 @@ impl InputReader {
         }));
     }
 
-    /// Reads a byte of pasted text.
     fn in_paste(&mut self, byte: u8) {
         self.held.push(byte);
         if self.held.ends_with(PASTE_END) {
@@ -418,8 +391,6 @@ impl InputReader {
     }
 }
 
-/// Returns the function key of a number before `~`. The numbers have gaps, like those between the groups of keys of
-/// the VT220.
 fn function_key(number: u16) -> Option<Key> {
     let groups = [(11..=15, 10), (17..=21, 11), (23..=24, 12)];
     let (_, before) = groups

@@ -52,13 +52,10 @@ pub(in crate::tui) fn stop() -> rustix::io::Result<()> {
     kill_current_process_group(Signal::STOP)
 }
 
-/// Three numbers of a process.
 #[cfg(target_os = "linux")]
 #[derive(Debug, PartialEq)]
 struct Process {
-    /// The number of the parent process.
     parent: u32,
-    /// The number of the process group.
     group: u32,
     /// The device number of the controlling terminal; 0 if there is none.
     terminal: i32,

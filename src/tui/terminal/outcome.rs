@@ -2,16 +2,11 @@
 
 use signal_hook::consts::SIGHUP;
 
-/// How the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The user quit.
     Quit,
-    /// The user quit after the recording that the command line asked for had failed.
     RecordingFailed,
-    /// A signal with this number ended it.
     Signal(i32),
-    /// The terminal is gone.
     Hangup,
 }
 

@@ -13,10 +13,8 @@
 
 use std::time::{Duration, Instant};
 
-/// The question about the terminal's status.
 const QUESTION: &[u8] = b"\x1b[5n";
 
-/// The number of questions without any answer after which the terminal is taken not to answer.
 const TRIES: u32 = 3;
 
 /// How long the next picture waits for a first answer; it doubles with each question that is not answered. A slow
@@ -27,23 +25,17 @@ const FIRST_ANSWER: Duration = Duration::from_secs(1);
 /// lost, as on a noisy serial line, is there nothing to wait for.
 const NEXT_ANSWER: Duration = Duration::from_secs(10);
 
-/// Decides when the next picture of a source may be drawn.
 #[derive(Debug)]
 pub(in crate::tui) struct PicturePacing {
-    /// Whether the terminal answers.
     answers: Answers,
-    /// The number of questions whose answers are still to come.
     open: u32,
     /// The end of the wait for these answers; None if the next picture does not wait.
     deadline: Option<Instant>,
 }
 
-/// Whether a terminal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answers {
-    /// It was not asked, or only a few times.
     Unknown,
-    /// It has answered.
     Yes,
     /// It has not answered, and is not asked again unless a late answer comes.
     No,
@@ -76,7 +68,6 @@ impl PicturePacing {
         QUESTION
     }
 
-    /// Records that an answer has come.
     pub(in crate::tui) fn on_answer(&mut self) {
         self.answers = Answers::Yes;
         self.open = self.open.saturating_sub(1);
@@ -90,7 +81,6 @@ impl PicturePacing {
         (self.open, self.deadline) = (0, None);
     }
 
-    /// Returns true if the next picture waits for an answer.
     pub(in crate::tui) fn is_waiting(&self) -> bool {
         self.deadline.is_some()
     }
@@ -105,7 +95,6 @@ impl PicturePacing {
         self.deadline
     }
 
-    /// Takes the current time and ends the wait if its deadline has passed.
     pub(in crate::tui) fn on_time(&mut self, now: Instant) {
         if self.deadline.is_none_or(|deadline| deadline > now) {
             return;
@@ -123,7 +112,6 @@ impl PicturePacing {
 mod tests {
     use super::*;
 
-    /// Returns the question after a picture that is drawn as soon as it may be.
     fn next(pacing: &mut PicturePacing, now: Instant) -> &'static [u8] {
         pacing.on_time(pacing.deadline().unwrap_or(now));
         assert!(!pacing.is_waiting());

@@ -25,20 +25,16 @@ const END_SYNCHRONIZED: &[u8] = b"\x1b[?2026l";
 const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
 const SHOW_CURSOR: &[u8] = b"\x1b[?25h";
 
-/// A terminal's screen, as a backend of ratatui.
 #[derive(Debug)]
 pub struct Screen {
     size: Size,
     abilities: Abilities,
     /// The position of the terminal's cursor; None if it is not certain, as after the last column.
     at: Option<Position>,
-    /// The colours and attributes that are switched on.
     style: (Color, Color, Modifier),
-    /// Whether the terminal shows its cursor.
     visible: bool,
     /// The position at which to show the cursor; None to hide it.
     wanted: Option<Position>,
-    /// The position that ratatui set last and reads back.
     asked: Position,
     /// The bytes of the frame so far.
     out: Vec<u8>,
@@ -47,7 +43,6 @@ pub struct Screen {
 const PLAIN: (Color, Color, Modifier) = (Color::Reset, Color::Reset, Modifier::empty());
 
 impl Screen {
-    /// Creates an empty screen with a visible cursor.
     pub fn new(size: Size, abilities: Abilities) -> Self {
         Self {
             size,
@@ -192,7 +187,6 @@ impl Backend for Screen {
     }
 }
 
-/// The attributes that are sent, with their numbers.
 const ATTRIBUTES: [(Modifier, &str); 7] = [
     (Modifier::BOLD, "1"),
     (Modifier::DIM, "2"),
@@ -203,7 +197,6 @@ const ATTRIBUTES: [(Modifier, &str); 7] = [
     (Modifier::CROSSED_OUT, "9"),
 ];
 
-/// Returns the sequence that switches to a style from any other.
 fn sgr((fore, back, attributes): (Color, Color, Modifier)) -> String {
     let set = ATTRIBUTES
         .iter()
@@ -255,7 +248,6 @@ fn color_parameters(color: Color, base: u8) -> String {
     }
 }
 
-/// Returns true if every terminal gives the symbol one column.
 fn is_narrow(symbol: &str) -> bool {
     let mut characters = symbol.chars();
     let first = characters.next();
@@ -282,7 +274,6 @@ mod tests {
         height: 5,
     };
 
-    /// A column, a row, and a text to write there in a style.
     type Writing = (u16, u16, &'static str, Style);
 
     fn emulator(size: Size) -> vt100::Parser {
@@ -333,7 +324,6 @@ mod tests {
         }
     }
 
-    /// Asserts that the emulator shows a buffer, cell by cell.
     fn shows(screen: &vt100::Screen, buffer: &Buffer, frame: usize) {
         for position in buffer.area.positions() {
             let (expected, found) = (&buffer[position], screen.cell(position.y, position.x));
@@ -409,7 +399,6 @@ mod tests {
     }
 
     proptest! {
-        /// The terminal shows each frame that is drawn, independent of the frames before it.
         #[test]
         fn a_terminal_shows_what_is_drawn(
             frames in prop::collection::vec(

@@ -20,39 +20,26 @@ use crate::lock::locked;
 use crate::tui::terminal::device::Device;
 use crate::tui::terminal::settings::TerminalSettings;
 
-/// Reports buttons, and motion while one is down, with positions as numbers. Crossterm's own command reports every
-/// motion, which is a flood on a slow line.
 const MOUSE_ON: &str = "\x1b[?1000h\x1b[?1002h\x1b[?1006h";
-/// Ends the reports of the mouse.
 const MOUSE_OFF: &str = "\x1b[?1006l\x1b[?1002l\x1b[?1000l";
-/// Shows the part of an interrupted frame that the terminal has held back.
 const SHOW_FRAME: &str = "\x1b[?2026l";
-/// Starts to mark pasted text.
 const PASTE_ON: &str = "\x1b[?2004h";
-/// Ends the marks around pasted text.
 const PASTE_OFF: &str = "\x1b[?2004l";
-/// Ends all styles.
 const PLAIN: &str = "\x1b[m";
 /// Moves to the last row: terminals clamp 999 to it.
 const BELOW: &str = "\x1b[999;1H\r\n";
 
 /// The end of the terminal's answer about its status; its beginning may have been read already.
 const STATUS_END: &[u8] = b"0n";
-/// How long the program waits for that answer before it returns to the shell. At most one picture comes before it.
 const LAST_ANSWER: Duration = Duration::from_millis(500);
 
-/// The state to restore on leaving.
 #[derive(Debug)]
 struct SavedTerminal {
-    /// The terminal.
     device: Device,
     /// The attributes of the terminal before the program changed them.
     attributes: Termios,
-    /// The settings of the terminal.
     settings: TerminalSettings,
-    /// Whether mouse events are reported.
     mouse: bool,
-    /// The text to print to standard error when the shell has the terminal again.
     later: String,
 }
 
@@ -166,7 +153,6 @@ pub(in crate::tui) fn copied(text: &str) -> String {
 
 /// Encodes bytes in base64 (RFC 4648, section 4).
 fn base64(bytes: &[u8]) -> String {
-    /// The digits, by value.
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for group in bytes.chunks(3) {

@@ -7,21 +7,16 @@ use std::ffi::OsString;
 
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
-/// Kinds of terminals, from the poorest on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TerminalKind {
     /// Moves its cursor and clears its screen; has no styles and only ASCII characters.
     Dumb,
-    /// A video terminal, or a program that emulates one at the end of a serial line.
     Serial,
-    /// A text console.
     Console,
-    /// A window of a desktop, or a multiplexer.
     Window,
 }
 
 impl TerminalKind {
-    /// Returns the kind of terminal that the variable `TERM` names.
     fn of(term: &str) -> Self {
         let begins = |starts: &[&str]| starts.iter().any(|start| term.starts_with(start));
         match term {
@@ -34,7 +29,6 @@ impl TerminalKind {
         }
     }
 
-    /// Returns true if it has a second screen and can mark pasted text.
     pub fn has_modes(self) -> bool {
         self >= Self::Console
     }
@@ -56,48 +50,34 @@ impl TerminalKind {
 pub struct Flags {
     /// `--color`; None chooses automatically.
     pub color: Option<ColorDepth>,
-    /// `--theme`.
     pub palette: Option<Palette>,
     /// Whether characters are ASCII only; None decides by the kind of terminal.
     pub ascii: Option<bool>,
-    /// `--no-mouse`.
     pub no_mouse: bool,
     /// `--size`: columns and rows.
     pub size: Option<(u16, u16)>,
 }
 
-/// The abilities of a terminal beyond moving its cursor and clearing its screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Abilities {
-    /// Whether it shows bold, reversed and coloured text.
     pub styles: bool,
     /// Whether it can hold back a frame until all of it has arrived (mode 2026).
     pub synchronized: bool,
 }
 
-/// The settings that decide what is sent to the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TerminalSettings {
-    /// The kind of terminal.
     pub kind: TerminalKind,
-    /// Columns and rows that override those that the terminal reports.
     pub size: Option<(u16, u16)>,
-    /// Columns and rows to use if the terminal does not know them, as on serial lines.
     pub fallback: (u16, u16),
-    /// Whether mouse events are reported at the start.
     pub mouse: bool,
-    /// The number of colours.
     pub color: ColorDepth,
-    /// The colours for a dark or a light background.
     pub palette: Palette,
-    /// Whether to use ASCII characters only.
     pub ascii: bool,
-    /// The further abilities of the terminal.
     pub abilities: Abilities,
 }
 
 impl TerminalSettings {
-    /// Decides from the environment variables and from the command line, which takes precedence.
     pub fn from_environment(
         variable: impl Fn(&'static str) -> Option<OsString>,
         flags: &Flags,
@@ -137,7 +117,6 @@ impl TerminalSettings {
         }
     }
 
-    /// Returns the theme that fits the settings.
     pub fn theme(&self) -> Theme {
         Theme {
             ascii: self.ascii,
@@ -148,7 +127,6 @@ impl TerminalSettings {
     }
 }
 
-/// Returns the number of colours of a window.
 fn depth(term: &str, colorterm: &str) -> ColorDepth {
     let has = |ends: &[&str]| ends.iter().any(|end| term.contains(end));
     if matches!(colorterm, "truecolor" | "24bit") || has(&["direct", "truecolor"]) {

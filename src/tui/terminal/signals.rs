@@ -19,28 +19,22 @@ const RECEIVED: [i32; 14] = [
     SIGABRT, SIGTSTP, SIGCONT, SIGWINCH,
 ];
 
-/// A request that a signal makes to the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::tui) enum SignalEvent {
     /// End; with the number of the signal.
     End(i32),
-    /// Stop.
     Stop,
-    /// Go on.
     Continue,
     /// Check the size of the terminal, which has changed.
     Size,
 }
 
-/// Receives signals, from its creation on.
 #[derive(Debug)]
 pub(in crate::tui) struct SignalReceiver {
-    /// Delivers signals through a socket, which the loop waits for.
     delivery: SignalDelivery<UnixStream, SignalOnly>,
 }
 
 impl SignalReceiver {
-    /// Starts to receive signals.
     pub(in crate::tui) fn new() -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
@@ -49,7 +43,6 @@ impl SignalReceiver {
         Ok(Self { delivery })
     }
 
-    /// Returns a file descriptor that is readable after a signal has arrived.
     pub(in crate::tui) fn fd(&self) -> BorrowedFd<'_> {
         self.delivery.get_read().as_fd()
     }

@@ -21,10 +21,8 @@ use crate::tui::runtime::work::models::ModelStore;
 /// The largest size of a file that is opened, in bytes. One byte more is read at most, and the file is refused then.
 const MOST: u64 = imprint_file::MAX_BYTES as u64;
 
-/// The largest number of paths that are offered.
 const MOST_PATHS: usize = 500;
 
-/// Performs a request.
 pub(in crate::tui::runtime) fn perform(
     request: FileRequest,
     models: &ModelStore,
@@ -47,10 +45,6 @@ pub(in crate::tui::runtime) fn perform(
     }
 }
 
-/// Returns the request to watch a source, with the file of its model if the model is not a stored one.
-///
-/// # Errors
-/// Returns a sentence if the source cannot be watched like this, or if there is no such model.
 fn watchable(
     mut request: Arc<WatchRequest>,
     models: &ModelStore,
@@ -67,7 +61,6 @@ fn watchable(
     Ok(request)
 }
 
-/// Refuses bits per second for a source that is no serial line.
 fn refuse_baud(source: &FrameSource, request: &WatchRequest) -> Result<(), String> {
     match source.unused_baud() {
         Some(reason) if request.baud_named => Err(format!("--baud has no effect {reason}")),
@@ -75,7 +68,6 @@ fn refuse_baud(source: &FrameSource, request: &WatchRequest) -> Result<(), Strin
     }
 }
 
-/// Opens a file with a shape, or with an imprint in any format.
 fn open(name: &str) -> Result<OpenedFile, String> {
     let path = location::below_home(name).ok_or("no home folder, so ~ cannot be used")?;
     let sentence = |error: std::io::Error| format!("cannot read: {}", system_reason(&error));
@@ -94,14 +86,12 @@ fn open(name: &str) -> Result<OpenedFile, String> {
     }
 }
 
-/// Returns the content of a file, or its beginning if it is larger than a file that is opened.
 fn beginning(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// Refuses to watch a file with an imprint or a shape. A table of numbers may be both, and is watched.
 fn refuse_imprint(source: &FrameSource, request: &WatchRequest) -> Result<(), String> {
     let (FrameSource::File(path), None) = (source, request.options.format) else {
         return Ok(());
@@ -121,7 +111,6 @@ fn refuse_imprint(source: &FrameSource, request: &WatchRequest) -> Result<(), St
     Err(format!("{name}: {what}, not frames; :open opens it"))
 }
 
-/// Writes a file as a whole or not at all.
 fn write(path: &Path, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
     let written = FinishedFile::new(path, &content, existing).and_then(FinishedFile::persist);
     match written {

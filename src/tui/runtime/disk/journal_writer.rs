@@ -28,35 +28,27 @@ const GATHER: Duration = Duration::from_millis(400);
 /// The time after which work that could not be written is tried again: a full disk may have room by then.
 const RETRY: Duration = Duration::from_secs(5);
 
-/// The program's end of the channel to the thread.
 #[derive(Debug)]
 pub(in crate::tui) struct JournalWriter {
     /// The channel of requests. None for a writer that writes nothing, and while it is dropped.
     notes: Option<Sender<JournalRequest>>,
-    /// The thread, until it is joined.
     thread: Option<JoinHandle<()>>,
-    /// The work that was noted last.
     last: Vec<UnsavedWork>,
-    /// The reason why there is no thread, if the system gives none.
     refused: Option<String>,
     /// Whether the disk has not answered in time: then the program ends without waiting for it.
     hangs: Cell<bool>,
 }
 
-/// A request to the thread.
 enum JournalRequest {
-    /// Keep this unsaved work, and nothing else.
     Keep(Vec<UnsavedWork>),
     /// Keep this work of a program that crashed as well, and then remove it from that program's journal.
     Adopt(Box<Orphan>),
     /// Write now; the answer is whether everything is written.
     Flush(Sender<bool>),
-    /// Report errors to this sink.
     ReportTo(WorkerEventSink),
 }
 
 impl JournalWriter {
-    /// Starts a thread that writes to journals in a library.
     pub(in crate::tui) fn new(library: Library) -> Self {
         let (notes, inbox) = channel();
         let writer = JournalThread::new(library);
@@ -76,7 +68,6 @@ impl JournalWriter {
         }
     }
 
-    /// Returns a writer that writes nothing, for scripts.
     pub(in crate::tui) fn idle() -> Self {
         Self {
             notes: None,
@@ -87,7 +78,6 @@ impl JournalWriter {
         }
     }
 
-    /// Reports errors to `post` from now on.
     pub(in crate::tui) fn report_to(&self, post: WorkerEventSink) {
         if let Some(reason) = &self.refused {
             let message = format!("unsaved work cannot be kept: {reason}");
@@ -111,7 +101,6 @@ impl JournalWriter {
         self.send(JournalRequest::Adopt(Box::new(orphan)));
     }
 
-    /// Sends a request to the thread, if there is one.
     fn send(&self, note: JournalRequest) {
         if let Some(notes) = &self.notes {
             // The thread ends only after this end of the channel is dropped.
@@ -145,24 +134,19 @@ impl Drop for JournalWriter {
 
 /// The thread's end: gathers changes for a moment, then writes the latest.
 struct JournalThread {
-    /// The library that the journals are in.
     library: Library,
-    /// The journals, in no order, each with the work that it holds.
     journals: Vec<(Journal, UnsavedWork)>,
-    /// The unsaved work, a journal for each.
     works: Vec<UnsavedWork>,
     /// The time to write it; None if it is written.
     due: Option<Instant>,
     /// Work of programs that crashed, which stays in their journals until it is written here.
     adopted: Vec<Orphan>,
-    /// The receiver of errors.
     post: Option<WorkerEventSink>,
     /// Whether the present error has been reported: once is enough.
     reported: bool,
 }
 
 impl JournalThread {
-    /// Returns the state of a thread without work.
     fn new(library: Library) -> Self {
         Self {
             library,
@@ -175,7 +159,6 @@ impl JournalThread {
         }
     }
 
-    /// Serves requests until the program drops its end of the channel.
     fn run(mut self, inbox: &Receiver<JournalRequest>) {
         loop {
             let note = match self.due {
@@ -286,7 +269,6 @@ mod tests {
     use crate::sensor::Sensor;
     use std::fs;
 
-    /// Returns the work of a drawing with this many taxels.
     fn drawing(taxels: u8) -> UnsavedWork {
         let sensor = Sensor::default();
         let mut imprint = Imprint::empty(sensor.size());
@@ -299,7 +281,6 @@ mod tests {
         })
     }
 
-    /// A library with the thread's end of its journals, which the test drives.
     struct Journals {
         folder: tempfile::TempDir,
         thread: JournalThread,

@@ -24,7 +24,6 @@ use crate::tui::runtime::work::execution::{WorkerEventSink, caught, start};
 /// done.
 const QUICK: Duration = Duration::from_millis(100);
 
-/// The time after which the screen says what it waits for.
 const SLOW: Duration = Duration::from_millis(300);
 
 #[derive(Debug)]
@@ -34,7 +33,6 @@ pub(in crate::tui::runtime) struct DiskQueue {
     thread: Option<DiskThread>,
     /// The requests without an answer; the first is being carried out.
     pending: VecDeque<PendingRequest>,
-    /// The answers that were not taken yet, each with the number of pages at which it is taken.
     answers: VecDeque<(usize, DiskAnswer)>,
     /// The receiver of the event that there is an answer; None to work without a thread.
     post: Option<Post>,
@@ -42,20 +40,16 @@ pub(in crate::tui::runtime) struct DiskQueue {
 
 #[derive(Debug)]
 struct PendingRequest {
-    /// What is done, in a few words.
     words: String,
     since: Instant,
-    /// Whether it needs the lock of the library.
     locks: bool,
     reader: Reader,
 }
 
-/// Who waits for the answer to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reader {
     /// The whole program: it is a change.
     Program,
-    /// The page that was on top of this many.
     Page(usize),
     /// Nobody any more.
     Nobody,
@@ -72,7 +66,6 @@ impl std::fmt::Debug for Post {
 #[derive(Debug)]
 struct DiskThread {
     requests: Sender<DiskRequest>,
-    /// The answers, in the order of the requests.
     answers: Receiver<DiskAnswer>,
 }
 
@@ -88,7 +81,6 @@ impl DiskQueue {
         }
     }
 
-    /// Carries out requests on a thread from now on.
     pub(in crate::tui::runtime) fn post_to(&mut self, post: WorkerEventSink) {
         self.post = Some(Post(post));
     }
@@ -99,7 +91,6 @@ impl DiskQueue {
         self.wait_a_moment();
     }
 
-    /// Reads something for the page that is the top one of this many, and waits a moment for the answer.
     pub(in crate::tui::runtime) fn read(&mut self, request: DiskRequest, pages: usize) {
         self.ask(request, Reader::Page(pages));
         self.wait_a_moment();
@@ -110,7 +101,6 @@ impl DiskQueue {
         self.ask(request, Reader::Program);
     }
 
-    /// Gives a request to the thread. Without one, carries it out.
     fn ask(&mut self, request: DiskRequest, reader: Reader) {
         self.start_thread();
         self.pending.push_back(PendingRequest {
@@ -156,7 +146,6 @@ impl DiskQueue {
         while self.pending.front().is_some_and(is_quick) && self.wait(end) {}
     }
 
-    /// Waits for the next answer until `end`. Returns false if there is none.
     pub(in crate::tui::runtime) fn wait(&mut self, end: Instant) -> bool {
         let time = end.saturating_duration_since(Instant::now());
         let answer = self.thread.as_ref();
@@ -168,7 +157,6 @@ impl DiskQueue {
         is_there
     }
 
-    /// Keeps the answer to the first request, if somebody waits for it.
     fn take_over(&mut self, answer: DiskAnswer) {
         match self.pending.pop_front().map(|request| request.reader) {
             Some(Reader::Program) => self.answers.push_back((usize::MAX, answer)),
@@ -208,7 +196,6 @@ impl DiskQueue {
         (due > Instant::now()).then_some(due)
     }
 
-    /// Returns the description of the first request and of what it waits for, if it takes long.
     pub(in crate::tui::runtime) fn status(&self) -> Option<String> {
         let first = self.pending.front()?;
         let what = if self.waits_for_lock() {
@@ -223,7 +210,6 @@ impl DiskQueue {
         (first.since.elapsed() >= SLOW).then(|| format!("{}: waiting for {what}{end}", first.words))
     }
 
-    /// Returns true if the first request waits for another program rather than for the disk.
     fn waits_for_lock(&self) -> bool {
         let locks = self.pending.front().is_some_and(|first| first.locks);
         locks && self.library.waits_for_lock()

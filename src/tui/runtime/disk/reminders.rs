@@ -9,21 +9,15 @@ use crate::tui::app::state::App;
 use crate::tui::runtime::disk::queue::DiskQueue;
 use crate::tui::runtime::disk::request::DiskRequest;
 
-/// The remembered files, and their content as far as it is known.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct Reminders {
-    /// The file of the prompt's commands.
     commands: RememberedFile,
-    /// The number of the program's commands that are in that file already.
     remembered: usize,
-    /// The file of the set.
     set: RememberedFile,
-    /// The set in that file.
     chosen: Option<ModelChoice>,
 }
 
 impl Reminders {
-    /// Returns the reminders in the folder of a library.
     pub(in crate::tui::runtime) fn of(library: &Library) -> Self {
         Self {
             commands: RememberedFile::commands(library),
@@ -33,7 +27,6 @@ impl Reminders {
         }
     }
 
-    /// Gives the program the values that earlier runs remembered.
     pub(in crate::tui::runtime) fn remind(&mut self, app: &mut App) {
         app.commands = self.commands.read();
         self.remembered = app.commands.len();

@@ -18,7 +18,6 @@ use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::work::models::ModelStore;
 
-/// A request to the disk.
 #[derive(Debug)]
 pub(in crate::tui::runtime) enum DiskRequest {
     /// Read or change the library.
@@ -27,23 +26,16 @@ pub(in crate::tui::runtime) enum DiskRequest {
     FindWork,
     /// Move unsaved work of a program that crashed to the trash, and look for more of it.
     ThrowAway(Box<Orphan>),
-    /// Read or write a file, or list some.
     File(FileRequest),
     /// Remember lines for the next run, in place of those remembered before.
     Remember(RememberedFile, Vec<String>),
-    /// Remember further lines for the next run.
     RememberMore(RememberedFile, Vec<String>),
-    /// Create a file and record the frames of the source of that number in it.
     BeginRecording(u64, Box<RecordingMetadata>),
-    /// Write threshold, tare and marks into the metadata of a recording of the source of that number.
     WriteMetadata(u64, Arc<Recording>, Box<RecordedView>),
-    /// Write out all waiting frames of a recording of the source of that number.
     FlushRecording(u64, Arc<Recording>),
-    /// Finish a recording of the source of that number.
     EndRecording(u64, Arc<Recording>),
 }
 
-/// The outcome of a request.
 #[derive(Debug)]
 pub(in crate::tui::runtime) enum DiskAnswer {
     /// The shape that was to be saved; the stamp of its file, or the error.
@@ -53,20 +45,14 @@ pub(in crate::tui::runtime) enum DiskAnswer {
     /// The name of the unsaved work in the trash, or the error; and the next work to offer, with the number of
     /// offers.
     ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
-    /// The answer to a request about a file.
     File(FileEvent),
-    /// Any other answer of the library.
     Library(LibraryEvent),
-    /// The file name and the recording for the source of that number, or the reason why there is none.
     Recording(u64, Result<(String, Arc<Recording>), String>),
-    /// An event for the page of the source of that number.
     Live(u64, LiveEvent),
-    /// No answer is wanted.
     Nothing,
 }
 
 impl DiskRequest {
-    /// Returns a description of the request for a message, in a few words.
     pub(super) fn words(&self) -> String {
         match self {
             Self::Library(request) => request_words(request),
@@ -87,7 +73,6 @@ impl DiskRequest {
         }
     }
 
-    /// Returns true if the request needs the lock of the library, which another program may hold.
     pub(super) fn locks(&self) -> bool {
         match self {
             Self::Library(request) => request.is_change(),
@@ -96,7 +81,6 @@ impl DiskRequest {
         }
     }
 
-    /// Carries out the request.
     pub(super) fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
         match self {
             Self::Library(request) => answer(library, request),
@@ -127,7 +111,6 @@ impl DiskRequest {
     }
 }
 
-/// Returns a description of a request to the library for a message, in a few words.
 fn request_words(request: &LibraryRequest) -> String {
     match request {
         LibraryRequest::List => "Listing the shapes".to_owned(),
@@ -144,7 +127,6 @@ fn request_words(request: &LibraryRequest) -> String {
     }
 }
 
-/// Carries out a request to the library.
 fn answer(library: &Library, request: LibraryRequest) -> DiskAnswer {
     let sentence = |error| sentence(library, &error);
     DiskAnswer::Library(match request {
@@ -243,12 +225,10 @@ pub(in crate::tui::runtime) fn not_recorded(answer: &DiskAnswer) -> Option<Strin
     }
 }
 
-/// Returns an error of the library in a sentence, with the name that was probably meant.
 fn sentence(library: &Library, error: &LibraryError) -> String {
     format!("{error}{}", library.suggestion(error))
 }
 
-/// Restores the shape that was deleted last, of that name or of any.
 fn restore(library: &Library, name: Option<String>) -> Result<String, LibraryError> {
     name.map_or_else(|| library.restore_last(), |name| library.restore(&name))
 }
@@ -266,8 +246,6 @@ fn throw_away(library: &Library, orphan: Orphan) -> DiskAnswer {
     DiskAnswer::ThrownAway(thrown, next)
 }
 
-/// Returns the newest unsaved work, and the number of all such works. The others are offered after it, or by other
-/// programs.
 pub(in crate::tui::runtime) fn newest_orphan(library: &Library) -> Option<(Box<Orphan>, usize)> {
     let mut all = Orphan::all(library);
     let count = all.len();
@@ -279,7 +257,6 @@ mod tests {
     use super::*;
     use crate::storage::FileError;
 
-    /// The folder of a file system that went read-only after an error is still said to be writable.
     #[test]
     fn the_error_itself_says_that_a_library_is_read_only() {
         let folder = tempfile::tempdir().expect("a folder");

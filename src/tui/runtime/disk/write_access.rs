@@ -10,17 +10,14 @@ use std::sync::Mutex;
 use crate::lock::locked;
 use crate::storage::{Existing, location};
 
-/// The rule for where files may be written.
 #[derive(Debug, Default)]
 pub(in crate::tui) struct WriteAccess {
     /// The folder that a script is confined to; None for anywhere.
     folder: Option<PathBuf>,
-    /// The files that the script was allowed to create, which it may replace.
     written: Mutex<Vec<PathBuf>>,
 }
 
 impl WriteAccess {
-    /// Returns the rule of a script, which writes only below this folder.
     pub(in crate::tui::runtime) fn below(folder: PathBuf) -> Self {
         Self {
             folder: Some(folder),
@@ -28,16 +25,10 @@ impl WriteAccess {
         }
     }
 
-    /// Returns true for a script that may come from a stranger.
     pub(in crate::tui::runtime) fn is_confined(&self) -> bool {
         self.folder.is_some()
     }
 
-    /// Returns the path for a file of that name, which may begin with `~/`. For a script, a relative path is below
-    /// its folder.
-    ///
-    /// # Errors
-    /// Returns a sentence with the name if the file may not be written.
     pub(in crate::tui::runtime) fn path(
         &self,
         name: &str,
@@ -62,10 +53,6 @@ impl WriteAccess {
     }
 }
 
-/// Returns the path of a file below a folder, links resolved.
-///
-/// # Errors
-/// Returns a sentence if the file is elsewhere or hidden, or if a folder on the way does not exist.
 fn inside(folder: &Path, name: &str) -> Result<PathBuf, String> {
     let visible = |component: Component<'_>| match component {
         Component::Normal(name) => !name.as_encoded_bytes().starts_with(b"."),

@@ -24,7 +24,6 @@ use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::frames::source;
 use crate::tui::runtime::work::execution::caught;
 
-/// The frames that have come and were not taken yet, and their recording.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct FrameFeed {
     /// Locked while frames are added or taken, never while a file is written.
@@ -34,7 +33,6 @@ pub(in crate::tui::runtime) struct FrameFeed {
 }
 
 impl FrameFeed {
-    /// Returns the feed for the channel that is asked for.
     pub(in crate::tui::runtime) fn of(request: &WatchRequest) -> Self {
         Self {
             pending: Mutex::new(Pending::new(request.options.channel.as_deref())),
@@ -42,12 +40,10 @@ impl FrameFeed {
         }
     }
 
-    /// Returns the present recording.
     pub(in crate::tui::runtime) fn recording(&self) -> Option<Arc<Recording>> {
         locked(&self.recording).clone()
     }
 
-    /// Records in this recording from now on. Returns the one before.
     pub(in crate::tui::runtime) fn begin(
         &self,
         recording: Arc<Recording>,
@@ -55,7 +51,6 @@ impl FrameFeed {
         locked(&self.recording).replace(recording)
     }
 
-    /// Notes that frames are recorded.
     pub(in crate::tui::runtime) fn note_begun(&self) {
         let mut pending = locked(&self.pending);
         pending.status().record_error = None;
@@ -63,14 +58,12 @@ impl FrameFeed {
         pending.note_recorded(Ok(Some(RecordedFrames::default())));
     }
 
-    /// Continues the earlier recording, if there is one, and notes its state.
     pub(in crate::tui::runtime) fn go_on_with(&self, recording: Option<Arc<Recording>>) {
         *locked(&self.recording) = recording;
         let recorded = self.recorded(Recording::tick);
         locked(&self.pending).note_recorded(recorded);
     }
 
-    /// Stops recording. Returns the recording.
     pub(in crate::tui::runtime) fn end(&self) -> Option<Arc<Recording>> {
         let recording = locked(&self.recording).take()?;
         locked(&self.pending).note_recorded(Ok(None));
@@ -82,12 +75,10 @@ impl FrameFeed {
         self.change(|pending| pending.status().state = SourceState::Failed(reason));
     }
 
-    /// Returns true if there is something to take.
     pub(in crate::tui::runtime) fn has_new(&self) -> bool {
         locked(&self.pending).is_new()
     }
 
-    /// Writes to the recording, if there is one. Returns the number of recorded frames.
     fn recorded(
         &self,
         write: impl FnOnce(&Recording) -> Result<Option<RecordedFrames>, String>,
@@ -96,7 +87,6 @@ impl FrameFeed {
         recording.map_or(Ok(None), |recording| write(&recording))
     }
 
-    /// Creates the file of the recording that is asked for together with the source.
     pub(in crate::tui::runtime) fn begin_recording(
         &self,
         request: &WatchRequest,
@@ -192,7 +182,6 @@ impl FrameFeed {
         })
     }
 
-    /// Notes an event of the source. Returns true if it is to be shown and there was nothing to take before.
     fn take_in(&self, event: AcquireEvent<'_>, request: &WatchRequest) -> bool {
         match event {
             AcquireEvent::Channel(info) => self.change(|pending| pending.add_channel(info)),
@@ -255,7 +244,6 @@ mod tests {
     use crate::frame::FrameSize;
     use crate::tui::live::state::Live;
 
-    /// Returns the number of the frame that a page shows after an event of its source.
     fn after(page: &mut Live, feed: &FrameFeed, event: AcquireEvent<'_>) -> Option<u64> {
         feed.take_in(event, &WatchRequest::new("none"));
         if let Some(batch) = feed.take() {

@@ -7,10 +7,8 @@ use crate::formats::recording::RecordingError;
 use crate::formats::stream::{NoFrameReason, StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 
-/// The end of the message that says where to give the format.
 const FORMAT_HINT: &str = "; after Esc, add one to :watch, as in --format lines";
 
-/// The hint where to give rows and columns.
 const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --columns C";
 
 /// Returns the reason why a source cannot be read.
@@ -53,7 +51,6 @@ pub(super) fn reason_at_end(source: &FrameSource, counts: &StreamCounts) -> Opti
     Some(format!("{reason}{hint}"))
 }
 
-/// Returns the end of a message that says where to give what a stream needs.
 fn hint(source: &FrameSource, refusal: StreamRefusal) -> &'static str {
     match (refusal, source) {
         (StreamRefusal::Unknown, FrameSource::Standard) => {

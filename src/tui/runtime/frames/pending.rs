@@ -18,26 +18,19 @@ use crate::tui::live::message::{
 /// hardly waits.
 #[derive(Debug, Default)]
 pub(super) struct Pending {
-    /// The frames, and the state of the source.
     batch: FrameBatch,
-    /// The memory that those frames take.
     bytes: usize,
-    /// Whether there is something that was not taken yet.
     is_new: bool,
     /// The channels so far, and the one that is watched.
     channels: ChannelChoice,
-    /// Whether a frame of the watched channel has come.
     begun: bool,
-    /// The reason why a stream came to its end without a frame.
     no_frame_reason: Option<String>,
-    /// The time of the last frame.
     last_time: Option<f64>,
     /// The time for which the source has been lost since that frame; None if it was not lost.
     gap: Option<Duration>,
 }
 
 impl Pending {
-    /// Creates an empty one for the channel of that name, or for the first channel.
     pub(super) fn new(channel: Option<&str>) -> Self {
         Self {
             channels: ChannelChoice::new(channel),
@@ -50,12 +43,10 @@ impl Pending {
         &mut self.batch.status
     }
 
-    /// Returns true if there is something to take.
     pub(super) fn is_new(&self) -> bool {
         self.is_new
     }
 
-    /// Notes that there is something to take. Returns true if there was nothing before.
     pub(super) fn set_new(&mut self) -> bool {
         !std::mem::replace(&mut self.is_new, true)
     }
@@ -73,12 +64,10 @@ impl Pending {
         })
     }
 
-    /// Returns true if frames of the channel with that index are watched.
     pub(super) fn watches(&self, channel: usize) -> bool {
         self.channels.takes(channel)
     }
 
-    /// Adds a channel.
     pub(super) fn add_channel(&mut self, info: &ChannelInfo) {
         if self.channels.add(info) {
             self.batch.status.channel = Some(Arc::new(info.clone()));
@@ -91,13 +80,11 @@ impl Pending {
         self.batch.provisional = change;
     }
 
-    /// Notes that the source is lost, which begins a gap.
     pub(super) fn lose(&mut self, error: &io::Error) {
         self.gap.get_or_insert_default();
         self.batch.status.state = SourceState::Lost(AcquireEvent::lost(error));
     }
 
-    /// Notes that the source is back after a time.
     pub(super) fn back_after(&mut self, time: Duration) {
         self.batch.status.state = match &mut self.gap {
             None => SourceState::Waiting,
@@ -109,7 +96,6 @@ impl Pending {
         };
     }
 
-    /// Notes the end of a stream, and the reason why there was no frame.
     pub(super) fn end_stream(&mut self, counts: &StreamCounts, no_frame_reason: Option<String>) {
         self.batch.status.note_dropped(counts);
         self.no_frame_reason = no_frame_reason;
@@ -143,7 +129,6 @@ impl Pending {
         }
     }
 
-    /// Notes the state of the recording, or its error.
     pub(super) fn note_recorded(&mut self, recorded: Result<Option<RecordedFrames>, String>) {
         match recorded {
             Ok(recorded) => self.batch.status.recorded = recorded,
@@ -154,7 +139,6 @@ impl Pending {
         }
     }
 
-    /// Notes the time of a frame, which ends a gap.
     fn note_time(&mut self, time: Option<f64>) {
         let before = std::mem::replace(&mut self.last_time, time);
         if let (Some(gap), Some((before, now))) = (self.gap.take(), before.zip(time)) {

@@ -22,32 +22,24 @@ use crate::storage::Existing;
 use crate::tui::live::message::{LiveEvent, RecordedFrames};
 use crate::tui::runtime::disk::write_access::WriteAccess;
 
-/// A file that frames are recorded in, shared by the source's thread and the one that finishes it.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct Recording {
-    /// The path of the file. Locked only briefly.
     path: Mutex<PathBuf>,
     /// Whether the program chose the name, so that it may choose another one.
     is_name_chosen: bool,
     /// Locked while the disk writes metadata, and before `recorder`: the later metadata stays.
     metadata: Mutex<()>,
-    /// Locked while the disk writes frames.
     recorder: Mutex<RecorderState>,
 }
 
-/// The state of a recording.
 #[derive(Debug)]
 enum RecorderState {
-    /// The file has not been created yet.
     New,
-    /// Frames are written.
     Open(Box<FrameRecorder>),
-    /// The recording is finished or has failed.
     Closed,
 }
 
 impl Recording {
-    /// Returns a recording whose file has not been created yet.
     pub(in crate::tui::runtime) fn new(path: PathBuf) -> Arc<Self> {
         Arc::new(Self::unbegun(path))
     }
@@ -61,11 +53,6 @@ impl Recording {
         }
     }
 
-    /// Begins a recording in the first file `touch-1.npy`, `touch-2.npy` … that does not exist yet. Returns its name,
-    /// too. If another program has taken the name when the first frame comes, the next free one is used.
-    ///
-    /// # Errors
-    /// Returns the reason why there is none, in a sentence.
     pub(in crate::tui::runtime) fn in_free_file(
         access: &WriteAccess,
         metadata: &RecordingMetadata,
@@ -88,12 +75,10 @@ impl Recording {
         ))
     }
 
-    /// Returns the path of the file.
     pub(in crate::tui::runtime) fn path(&self) -> PathBuf {
         locked(&self.path).clone()
     }
 
-    /// Returns the name of the file if the program chose it.
     pub(in crate::tui::runtime) fn chosen_name(&self) -> Option<String> {
         let path = locked(&self.path);
         let name = path.file_name().filter(|_| self.is_name_chosen)?;
@@ -101,9 +86,6 @@ impl Recording {
     }
 
     /// Creates the file, unless the recording was finished before it could begin.
-    ///
-    /// # Errors
-    /// Returns the refusal of the system, in a sentence.
     pub(in crate::tui::runtime) fn begin(
         &self,
         existing: Existing,
@@ -121,9 +103,6 @@ impl Recording {
     }
 
     /// Adds a frame. Returns the number of recorded frames, None if nothing is recorded any more.
-    ///
-    /// # Errors
-    /// Returns a sentence. The recording ends then; the frames in it so far stay.
     pub(in crate::tui::runtime) fn add(
         &self,
         frame: &Frame,
@@ -160,26 +139,15 @@ impl Recording {
         Err(RecorderError::Exists { path: taken })
     }
 
-    /// Writes out the frames that have waited for long enough. Returns the number of recorded frames.
-    ///
-    /// # Errors
-    /// Returns a sentence. The recording ends then.
     pub(in crate::tui::runtime) fn tick(&self) -> Result<Option<RecordedFrames>, String> {
         self.write(FrameRecorder::tick)
     }
 
-    /// Writes out all waiting frames, and syncs them. Returns the number of recorded frames.
-    ///
-    /// # Errors
-    /// Returns a sentence. The recording ends then.
     pub(in crate::tui::runtime) fn flush(&self) -> Result<Option<RecordedFrames>, String> {
         self.write(FrameRecorder::flush)
     }
 
     /// Writes threshold, tare and marks into the metadata, in place of those before. Frames are added meanwhile.
-    ///
-    /// # Errors
-    /// Returns a sentence. The recording ends then.
     pub(in crate::tui::runtime) fn write_metadata(&self, view: RecordedView) -> Result<(), String> {
         let one_at_a_time = locked(&self.metadata);
         let Some(draft) = self.open(|recorder| recorder.set_view(view)) else {
@@ -197,7 +165,6 @@ impl Recording {
         })
     }
 
-    /// Does something with the recorder that needs no disk, if frames are still recorded.
     fn open<T>(&self, act: impl FnOnce(&mut FrameRecorder) -> T) -> Option<T> {
         match &mut *locked(&self.recorder) {
             RecorderState::Open(recorder) => Some(act(recorder)),
@@ -205,7 +172,6 @@ impl Recording {
         }
     }
 
-    /// Writes something, if frames are still recorded. Returns the number of recorded frames.
     fn write(
         &self,
         write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError>,
@@ -248,15 +214,12 @@ impl Recording {
     }
 }
 
-/// The most recordings in a folder whose names the program chooses.
 const MOST_CHOSEN: u64 = 10_000;
 
-/// Iterates over the names that the program chooses.
 fn chosen_names() -> impl Iterator<Item = String> {
     (1..=MOST_CHOSEN).map(|number| format!("touch-{number}.npy"))
 }
 
-/// Returns true if neither an array nor metadata has the name.
 fn is_free(path: &Path) -> bool {
     !path.exists() && !path.with_extension("json").exists()
 }

@@ -21,23 +21,16 @@ use crate::tui::runtime::frames::feed::FrameFeed;
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::work::execution::start;
 
-/// A source that is read from its beginning.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct ScriptSource {
-    /// The source.
     pub(in crate::tui::runtime) source: FrameSource,
-    /// The request, which says how the source is read.
     pub(in crate::tui::runtime) request: Arc<WatchRequest>,
-    /// The feed that takes the frames.
     pub(in crate::tui::runtime) feed: Arc<FrameFeed>,
-    /// The number of frames that were taken before, which are skipped.
     pub(in crate::tui::runtime) skipped: usize,
-    /// The recording of the frames after the skipped ones.
     pub(in crate::tui::runtime) recording: Option<Arc<Recording>>,
 }
 
 impl ScriptSource {
-    /// Reads the source to its end, or until `take` breaks off.
     fn read(&self, take: &mut dyn FnMut(FrameBatch) -> ControlFlow<()>) {
         let mut options = self.request.options.clone();
         options.playback = Playback::Once;
@@ -73,22 +66,15 @@ impl ScriptSource {
     }
 }
 
-/// A source that stays open.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct ScriptReader {
     /// The channel that lets the thread read on; dropped to end it.
     more: Option<Sender<()>>,
-    /// The batches that the thread has read.
     batches: Receiver<FrameBatch>,
-    /// The thread, until it is joined.
     thread: Option<JoinHandle<()>>,
 }
 
 impl ScriptReader {
-    /// Opens a source on a thread of its own.
-    ///
-    /// # Errors
-    /// Returns a sentence if the system gives no thread.
     pub(in crate::tui::runtime) fn open(source: ScriptSource) -> Result<Self, String> {
         let (more, wanted) = channel();
         let (sender, batches) = channel();

@@ -10,7 +10,6 @@ use crate::acquire::{FrameSource, SourceName};
 use crate::storage::location;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 
-/// Returns the source of a name, which may begin with `~`.
 pub(in crate::tui::runtime) fn named(name: &SourceName) -> FrameSource {
     let below = match name {
         SourceName::Path(path) => path.to_str().and_then(location::below_home),
@@ -21,9 +20,6 @@ pub(in crate::tui::runtime) fn named(name: &SourceName) -> FrameSource {
 
 /// Returns the source of a name. A script from a stranger reads files only: a serial line would be set up and its
 /// device reset, a connection made, a pipe waited for.
-///
-/// # Errors
-/// Returns a sentence with the name if the source may not or cannot be read.
 pub(in crate::tui::runtime) fn readable(
     name: &SourceName,
     access: &WriteAccess,
@@ -41,9 +37,6 @@ pub(in crate::tui::runtime) fn readable(
 
 /// Refuses a source that cannot be read even if one waits, and the terminal whose keys control the screen: its reader
 /// would take half of them.
-///
-/// # Errors
-/// Returns the reason, as a sentence without the source's name.
 pub fn check(source: &FrameSource) -> Result<(), String> {
     let is_own_terminal = match source {
         FrameSource::Standard => io::stdin().is_terminal(),
@@ -56,7 +49,6 @@ pub fn check(source: &FrameSource) -> Result<(), String> {
     source.check().map_err(|error| error.to_string())
 }
 
-/// Returns true if a device is the controlling terminal, or the terminal of a standard stream.
 fn is_own_terminal(path: &Path) -> bool {
     let device = |file: fs::Metadata| file.rdev();
     let Ok(own) = fs::metadata(path).map(device) else {

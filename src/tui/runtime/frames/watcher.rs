@@ -24,7 +24,6 @@ use crate::tui::runtime::frames::script::{ScriptReader, ScriptSource};
 use crate::tui::runtime::frames::source;
 use crate::tui::runtime::work::execution::{Execution, start, wait_until_finished};
 
-/// The watcher of a source of frames.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct FrameWatcher {
     /// The source; None before the first one and after the page was closed.
@@ -33,22 +32,15 @@ pub(in crate::tui::runtime) struct FrameWatcher {
     thread: Option<JoinHandle<()>>,
 }
 
-/// A source with the thread that reads it. The thread ends by itself when `stop` is set or the source ends.
 #[derive(Debug)]
 struct Watched {
-    /// The number of the piece of work, which its events carry.
     number: u64,
     /// The request: the source, the channel, and how frames are read.
     request: Arc<WatchRequest>,
-    /// The feed, shared with the thread that reads the source.
     feed: Arc<FrameFeed>,
-    /// The flag that ends that thread.
     stop: Arc<AtomicBool>,
-    /// The number of frames that a script has taken.
     taken: usize,
-    /// The reader of the next frames, while the source is open for a script.
     reader: Option<ScriptReader>,
-    /// Whether a file is being created for a recording.
     is_starting: bool,
 }
 
@@ -119,7 +111,6 @@ impl FrameWatcher {
         None
     }
 
-    /// Stops watching. Returns the recording, which is to be finished, and the number of the source.
     pub(in crate::tui::runtime) fn stop(&mut self) -> Option<(u64, Arc<Recording>)> {
         let recording = self.end_recording();
         if let Some(watched) = self.watched.take() {
@@ -128,10 +119,6 @@ impl FrameWatcher {
         recording
     }
 
-    /// Notes that a file is being created for a recording of the source. Returns the number of the source.
-    ///
-    /// # Errors
-    /// Returns a sentence if there is no source, or if another recording of it is starting.
     pub(in crate::tui::runtime) fn start_recording(&mut self) -> Result<u64, &'static str> {
         let watched = self.watched.as_mut().ok_or("no source is watched")?;
         if std::mem::replace(&mut watched.is_starting, true) {
@@ -158,7 +145,6 @@ impl FrameWatcher {
         watched.feed.begin(recording)
     }
 
-    /// Stops recording. Returns the recording, which is to be finished, and the number of the source.
     pub(in crate::tui::runtime) fn end_recording(&self) -> Option<(u64, Arc<Recording>)> {
         let watched = self.watched.as_ref()?;
         Some((watched.number, watched.feed.end()?))
@@ -170,7 +156,6 @@ impl FrameWatcher {
         Some((watched.number, watched.feed.recording()?))
     }
 
-    /// Returns true if there is something to take.
     pub(in crate::tui::runtime) fn has_new(&self) -> bool {
         let watched = self.watched.as_ref();
         watched.is_some_and(|watched| watched.feed.has_new())
@@ -231,10 +216,6 @@ impl Watched {
         batches
     }
 
-    /// Opens the source from its start, with a new feed that takes over the recording.
-    ///
-    /// # Errors
-    /// Returns the reason why it cannot be read, in a sentence; the feed stays then.
     fn open(&mut self, access: &WriteAccess) -> Result<ScriptReader, String> {
         let source = source::readable(&self.request.source, access)?;
         let feed = Arc::new(FrameFeed::of(&self.request));
@@ -296,14 +277,12 @@ mod tests {
         );
     }
 
-    /// Returns a recording of frames of 2 × 2, each full of its own number.
     fn frames(numbers: std::ops::Range<u32>) -> String {
         let line = |number| format!("{number},{number},{number},{number}\n");
         let lines = numbers.map(line).collect::<String>();
         "S0_0,S0_1,S1_0,S1_1\n".to_owned() + &lines
     }
 
-    /// Returns the numbers in the frames of events, `None` for an event without a frame.
     fn numbers(events: &[WorkerEvent]) -> Vec<Option<f64>> {
         let number = |event: &WorkerEvent| {
             let WorkerEvent::Live(7, LiveEvent::Arrived(batch)) = event else {

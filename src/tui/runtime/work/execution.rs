@@ -14,24 +14,17 @@ use crate::progress::{Progress, stop_if};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::message::SweepProgress;
 
-/// The longest time that the end of the program waits for the disk.
 pub(in crate::tui::runtime) const PATIENCE: Duration = Duration::from_millis(1500);
 
-/// The pause between two checks of a thread that is about to end.
 const PAUSE: Duration = Duration::from_millis(5);
 
-/// A way of doing work.
 #[derive(Clone)]
 pub(in crate::tui::runtime) enum Execution {
-    /// Work is done at once, before the next message, as a script needs it. Work with more poses than the limit is
-    /// stopped.
     AtOnce(PoseLimit),
-    /// Work is done on threads of its own, which give their events to this sink.
     OnThreads(WorkerEventSink),
 }
 
 impl Default for Execution {
-    /// Returns the execution at once, for any number of poses.
     fn default() -> Self {
         Self::AtOnce(PoseLimit::default())
     }
@@ -51,14 +44,12 @@ impl fmt::Debug for Execution {
 pub(in crate::tui::runtime) struct StopFlag(Arc<AtomicBool>);
 
 impl StopFlag {
-    /// Stops the work in progress. Returns the flag that stops the next work when it is set.
     pub(in crate::tui::runtime) fn renew(&mut self) -> Arc<AtomicBool> {
         self.stop();
         self.0 = Arc::default();
         Arc::clone(&self.0)
     }
 
-    /// Stops the work in progress.
     pub(in crate::tui::runtime) fn stop(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
@@ -70,10 +61,6 @@ impl Drop for StopFlag {
     }
 }
 
-/// Starts a thread.
-///
-/// # Errors
-/// Returns a sentence if the system gives no thread.
 pub(in crate::tui::runtime) fn start(
     body: impl FnOnce() + Send + 'static,
 ) -> Result<JoinHandle<()>, String> {
@@ -90,28 +77,19 @@ pub(in crate::tui::runtime) fn wait_until_finished(thread: &JoinHandle<()>, pati
     }
 }
 
-/// A receiver of workers' events, from any thread.
 pub type WorkerEventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
 
-/// Minimum interval between progress events.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A counter of the poses of several threads, which sends progress events.
 pub(in crate::tui::runtime) struct ProgressReporter<'a> {
-    /// The number of the work, which its events carry.
     number: u64,
-    /// The receiver of the events.
     post: &'a WorkerEventSink,
-    /// The time when the work began.
     start: Instant,
-    /// The number of poses done.
     poses: AtomicU64,
-    /// The time when progress was sent last.
     last: Mutex<Instant>,
 }
 
 impl<'a> ProgressReporter<'a> {
-    /// Returns the reporter for work that begins now.
     pub(in crate::tui::runtime) fn new(number: u64, post: &'a WorkerEventSink) -> Self {
         let start = Instant::now();
         Self {
@@ -123,7 +101,6 @@ impl<'a> ProgressReporter<'a> {
         }
     }
 
-    /// Counts poses that are done.
     fn add(&self, poses: u64) {
         let poses = self.poses.fetch_add(poses, Ordering::Relaxed) + poses;
         // A thread that finds the lock taken leaves the report to the other one.
@@ -140,10 +117,6 @@ impl<'a> ProgressReporter<'a> {
     }
 }
 
-/// Does a piece of work on a thread of its own, which gets the number and the sink of its events.
-///
-/// # Errors
-/// Returns the event that says so if the system gives no thread.
 pub(in crate::tui::runtime) fn on_a_thread(
     number: u64,
     post: &WorkerEventSink,
@@ -162,10 +135,6 @@ pub(in crate::tui::runtime) fn guarded(
     caught(work).unwrap_or_else(|message| WorkerEvent::Failed(number, message))
 }
 
-/// Turns a panic into an error.
-///
-/// # Errors
-/// Returns a sentence if the work panics.
 pub(in crate::tui::runtime) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let done = catch_unwind(AssertUnwindSafe(work));
     done.map_err(|_| "the work failed; this is a bug".to_owned())
@@ -179,7 +148,6 @@ pub(in crate::tui::runtime) struct PoseLimit(pub(in crate::tui::runtime) Option<
 pub(in crate::tui::runtime) struct WorkProgress<'a>(Box<dyn Progress + 'a>);
 
 impl<'a> WorkProgress<'a> {
-    /// Returns the progress of work that is done at once, and stopped after a number of poses.
     pub(in crate::tui::runtime) fn up_to(limit: PoseLimit) -> Self {
         let all = AtomicU64::new(0);
         Self(Box::new(move |poses| {
@@ -188,7 +156,6 @@ impl<'a> WorkProgress<'a> {
         }))
     }
 
-    /// Returns the progress of work that is stopped by a flag. The clock, if there is one, counts its poses.
     pub(in crate::tui::runtime) fn until(
         stop: &'a AtomicBool,
         clock: Option<&'a ProgressReporter<'a>>,
@@ -201,10 +168,6 @@ impl<'a> WorkProgress<'a> {
         }))
     }
 
-    /// Does work that reports its progress, and is stopped when memory runs short.
-    ///
-    /// # Errors
-    /// Returns a message if memory ran short.
     pub(in crate::tui::runtime) fn within<T>(
         &self,
         memory: &MemoryGuard,

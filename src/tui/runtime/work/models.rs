@@ -27,17 +27,13 @@ use crate::tui::runtime::work::execution::{
     Execution, ProgressReporter, StopFlag, WorkProgress, guarded, on_a_thread,
 };
 
-/// The places where models are stored.
 #[derive(Clone, Debug, Default)]
 pub(in crate::tui::runtime) struct ModelStore {
-    /// The folder of the user's own models.
     folder: Option<ModelFolder>,
-    /// The cache of models that can be trained again.
     cache: Option<ModelCache>,
 }
 
 impl ModelStore {
-    /// Returns the store of the models beside a library, without a cache.
     pub(in crate::tui::runtime) fn beside(library: &Library) -> Self {
         Self {
             folder: Some(ModelFolder::beside(library.folder())),
@@ -45,7 +41,6 @@ impl ModelStore {
         }
     }
 
-    /// Keeps trained models in a cache.
     pub(in crate::tui::runtime) fn keep_in(&mut self, cache: ModelCache) {
         self.cache = Some(cache);
     }
@@ -56,8 +51,6 @@ impl ModelStore {
         self.folder.iter().flat_map(names).collect()
     }
 
-    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training, which
-    /// reports to `progress`.
     pub(in crate::tui::runtime) fn model(
         &self,
         choice: &ModelChoice,
@@ -95,10 +88,6 @@ impl ModelStore {
         }
     }
 
-    /// Returns the file that a model is read from.
-    ///
-    /// # Errors
-    /// Returns a sentence if there is no such file, or if it is not a regular one.
     pub(in crate::tui::runtime) fn file(&self, choice: &ModelChoice) -> Result<PathBuf, String> {
         let name = match choice {
             ModelChoice::File(path) => path.to_string_lossy().into_owned(),
@@ -133,14 +122,10 @@ impl ModelStore {
     }
 }
 
-/// The thread that prepares a model.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct ModelWorker {
-    /// The store of models.
     pub(in crate::tui::runtime) store: ModelStore,
-    /// Stops the training in progress.
     stop: StopFlag,
-    /// The training in progress.
     thread: Option<JoinHandle<()>>,
 }
 
@@ -181,19 +166,16 @@ impl ModelWorker {
         None
     }
 
-    /// Stops the training in progress. A model that is being read comes all the same.
     pub(in crate::tui::runtime) fn stop(&self) {
         self.stop.stop();
     }
 
-    /// Stops for good. Returns the thread, which ends by itself.
     pub(in crate::tui::runtime) fn end(&mut self) -> Option<JoinHandle<()>> {
         self.stop.stop();
         self.thread.take()
     }
 }
 
-/// A function that is called with the number of poses before a training, and the progress of the training.
 type Calls<'a> = (&'a dyn Fn(u64), &'a WorkProgress<'a>);
 
 /// Reads a model from the cache or trains it, and evaluates it. The event also has the names of stored models, which

@@ -23,23 +23,16 @@ use crate::tui::runtime::work::execution::{
 };
 use crate::tui::runtime::work::models::ModelStore;
 
-/// A model that is used on the thread that waits for its answer.
 #[derive(Debug)]
 struct OwnModel {
-    /// The store that the model is read from.
     store: ModelStore,
-    /// The request to name imprints.
     naming: NamingRequest,
-    /// The limit to the poses of its training.
     limit: PoseLimit,
-    /// The model, or the reason why there is none.
     model: OnceCell<Result<Model, String>>,
 }
 
-/// A namer of imprints, by the model that was chosen last.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct ShapeNamer {
-    /// The number of the source whose frames are named.
     number: u64,
     /// The model to name by, if there is no thread; it is prepared when the first imprint comes.
     here: Option<OwnModel>,
@@ -143,10 +136,6 @@ impl ShapeNamer {
     }
 }
 
-/// Prepares a model, and names imprints by it until there are no more.
-///
-/// # Errors
-/// Returns the reason why there is no model.
 fn answer(
     store: &ModelStore,
     naming: &NamingRequest,

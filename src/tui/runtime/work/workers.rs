@@ -38,54 +38,38 @@ use crate::tui::runtime::work::models::{ModelStore, ModelWorker};
 use crate::tui::runtime::work::naming::ShapeNamer;
 use crate::tui::runtime::work::poses;
 
-/// The longest time that the end of the program waits for files that are being written.
 const WRITING: Duration = Duration::from_millis(400);
 
-/// An estimate is the best of all runs within this time.
 const MEASURED: Duration = Duration::from_millis(30);
 
-/// The work in progress, and how to stop it.
 #[derive(Debug, Default)]
 pub(in crate::tui) struct Workers {
-    /// The way in which work is done.
     execution: Execution,
-    /// The stop flag of the sweep or the export in progress.
     working: StopFlag,
-    /// The stop flag of the estimate in progress.
     measuring: StopFlag,
-    /// The stop flag of the search for poses in progress.
     finding_poses: StopFlag,
-    /// The thread that writes a file.
     writing: Option<JoinHandle<()>>,
-    /// The worker that prepares models.
     pub(in crate::tui::runtime) models: ModelWorker,
-    /// The watcher of a source of frames.
     pub(in crate::tui::runtime) frames: FrameWatcher,
-    /// The namer of the imprints of its frames.
     pub(in crate::tui::runtime) namer: ShapeNamer,
-    /// The rule for where files may be written.
     pub(in crate::tui::runtime) access: Arc<WriteAccess>,
 }
 
 impl Workers {
-    /// Returns workers that do their work at once, with these models.
     pub(in crate::tui::runtime) fn with(models: ModelStore) -> Self {
         let mut workers = Self::default();
         workers.models.store = models;
         workers
     }
 
-    /// Does work on threads of its own from now on, which send their events to `post`.
     pub(in crate::tui::runtime) fn post_to(&mut self, post: WorkerEventSink) {
         self.execution = Execution::OnThreads(post);
     }
 
-    /// Does work at once from now on, and stops each piece after this many poses.
     pub(in crate::tui::runtime) fn stop_after(&mut self, poses: u64) {
         self.execution = Execution::AtOnce(PoseLimit(Some(poses)));
     }
 
-    /// Begins a piece of work. Without threads, does it and returns its last event.
     pub(in crate::tui::runtime) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
             Work::Stop => {
@@ -119,8 +103,6 @@ impl Workers {
         }
     }
 
-    /// Watches a source of frames, recorded from the start or not, and names its imprints or not. The source before
-    /// has to be stopped first.
     pub(in crate::tui::runtime) fn watch(
         &mut self,
         number: u64,
@@ -165,7 +147,6 @@ impl Workers {
         )))
     }
 
-    /// Sweeps a grid, on a thread of its own if there is a receiver.
     fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
         let stop = self.begin();
         let post = match &self.execution {
@@ -182,7 +163,6 @@ impl Workers {
         thread.err()
     }
 
-    /// Finds the imprints of each angle, on a thread of its own if there is a receiver and the system has one to give.
     fn angles(&self, findings: Arc<Findings>, place: PoseIndex) -> Option<WorkerEvent> {
         let run = move || {
             let curve = caught(|| Arc::new(AngleCurve::of(&findings.sweep, place)));
@@ -197,7 +177,6 @@ impl Workers {
         Some(run())
     }
 
-    /// Writes the results of a sweep to a file, on a thread of its own if there is a receiver.
     fn write(
         &mut self,
         number: u64,
@@ -225,7 +204,6 @@ impl Workers {
         None
     }
 
-    /// Stops the work in progress and returns the stop flag of the next.
     fn begin(&mut self) -> Arc<AtomicBool> {
         self.measuring.stop();
         self.working.renew()
@@ -260,7 +238,6 @@ fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
     Duration::try_from_secs_f64(best * sample.factor).ok()
 }
 
-/// Sweeps a grid and returns the event with the results, also after a stop.
 fn sweep(number: u64, grid: &PoseGrid, progress: &WorkProgress<'_>) -> WorkerEvent {
     let memory = MemoryGuard::of_sweep();
     if let Err(message) = memory.check(grid) {
@@ -275,7 +252,6 @@ fn sweep(number: u64, grid: &PoseGrid, progress: &WorkProgress<'_>) -> WorkerEve
     }
 }
 
-/// Writes the results to a file and returns the event that tells whether that worked.
 fn write(
     number: u64,
     findings: &Findings,
