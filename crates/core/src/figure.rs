@@ -543,7 +543,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_figure() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let sensor = Sensor::default();
         let hexagon = Figure::default_of(FigureKind::Hexagon, &sensor);

@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() {
+    fn examples_of_imprint() {
         use crate::imprint::Imprint;
         let imprint: Imprint = ".##.\n#..#\n.##.".parse().unwrap();
         assert_eq!(

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_matrix() -> Result<(), Box<dyn std::error::Error>> {
         use crate::matrix::Matrix;
         use crate::sensor::MatrixSize;
         let mut heat = Matrix::filled(MatrixSize::new(3, 2)?, 0.0);

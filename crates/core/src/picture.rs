@@ -261,7 +261,7 @@ impl std::fmt::Display for Picture {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_picture() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let sensor = Sensor::default();
         let bar: Imprint = "###".parse().expect("a row of taxels");

@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_sensor() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let size = MatrixSize::new(12, 8)?;
         assert_eq!((size.columns(), size.rows(), size.cells()), (12, 8, 96));

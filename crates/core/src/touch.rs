@@ -291,7 +291,7 @@ pub fn reaches_beyond(solid: &impl Solid, sensor: &Sensor) -> bool {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_touch() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let mut plane = Plane::new(Sensor::default());
         let ring = Figure::ellipse(4.0, 4.0)

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() {
+    fn examples_of_feature() {
         use crate::atlas::features;
         let keys: Vec<&str> = features()
             .iter()

@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_histogram() -> Result<(), Box<dyn std::error::Error>> {
         use crate::atlas::{Histogram, features};
         use crate::prelude::*;
         let square = Source::Figure(Figure::default_of(

@@ -4,39 +4,26 @@
 //! occurrence among the poses (see [`crate::pose::PoseGrid`]); the numbers are the same for any number of threads.
 //! Descriptors are those of the main region. These are conventions of this project.
 
-mod packing;
-
 mod counter;
 
 mod feature;
 
-mod canonical;
-
-mod sums;
-
 mod values;
-
-mod variance;
 
 mod statistics;
 
 mod distinct;
 
-mod order;
-
 mod histogram;
 
 mod filter;
 
-pub(crate) use counter::ImprintCounter;
+pub(crate) use counter::{ImprintCounter, Layout};
 pub use distinct::{Atlas, AtlasEntry, DistinctClasses, ShiftedImprint};
 pub use feature::{Feature, ImprintSummary, feature_values, features};
-pub use filter::{AtlasFilter, FilterError};
+pub use filter::{AtlasFilter, FilterError, SortDirection, SortKey, sorted};
 pub use histogram::Histogram;
-pub use order::{SortDirection, SortKey, sorted};
-pub(crate) use packing::Layout;
 pub use statistics::mean_direction;
 pub(crate) use statistics::statistics;
 pub use statistics::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
-pub(crate) use values::Table;
-pub(crate) use variance::{OrientationSums, VarianceParts};
+pub(crate) use values::{OrientationSums, Table, VarianceParts};

@@ -5,9 +5,10 @@
 use rayon::prelude::*;
 
 use crate::atlas::feature::{Feature, features};
-use crate::atlas::sums::{ONE, Wide, mean, signed_mean};
-use crate::atlas::values::{FeatureRow, RowSums, Sum, Table, columns, row_width};
-use crate::atlas::variance::VarianceParts;
+use crate::atlas::values::{
+    FeatureRow, ONE, RowSums, Sum, Table, VarianceParts, Wide, columns, mean, row_width,
+    signed_mean,
+};
 use crate::index::lower_word;
 
 /// The statistics of a feature over all poses that have it, in the feature's own unit. If no pose has it, all values
@@ -247,7 +248,7 @@ pub(crate) fn statistics(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::atlas::sums::signed;
+    use crate::atlas::values::signed;
 
     fn of_directions(groups: &[&[f64]]) -> Statistic {
         let feature = features().iter().find(|feature| feature.circular);

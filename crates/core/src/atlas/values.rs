@@ -1,13 +1,16 @@
 //! A table of the values of all features of all imprints, from which statistics are computed.
 //!
-//! The values are fixed-point numbers ([`crate::atlas::sums`]), because each one is added once per orientation.
+//! The values are fixed-point numbers ([`crate::atlas::values`]), because each one is added once per orientation.
+
+use std::collections::BTreeMap;
+use std::ops::{AddAssign, Sub};
 
 use rayon::prelude::*;
 
 use crate::atlas::feature::{FEATURE_COUNT, ImprintSummary, feature_values, features};
-use crate::atlas::sums::{fixed, signed};
 use crate::geometry::Real;
-use crate::index::wide;
+use crate::index::{lower_word, wide};
+use crate::pose::MAX_VALUES;
 
 /// The number of rows in a part of a table. A single vector of all rows would be copied whenever it grows, and its
 /// memory filled on one thread.
@@ -244,5 +247,315 @@ impl RowSums {
             },
         };
         features.map(sum).collect()
+    }
+}
+
+// Sums of whole numbers, which are the same in any order, wide enough never to overflow.
+//
+// Threads, shards and symmetries change the order in which a sweep adds up, and sums of `f64` would change in their
+// last digits with it. So a value counts as the nearest multiple of 2⁻⁴⁰ (an error below 5e-13). Values are below 2¹⁸
+// and poses at most 10¹² < 2⁴⁰, so a sum of values takes 98 bits and a sum of squares 156.
+
+/// The number one in fixed point.
+pub(crate) const ONE: f64 = 1_099_511_627_776.0;
+
+/// Returns a number in [0, 2²³) in fixed point: the nearest multiple of 2⁻⁴⁰, as a whole number. Negative numbers
+/// become 0.
+#[expect(clippy::cast_possible_truncation, reason = "below 2^63")]
+pub(crate) fn fixed(value: f64) -> i64 {
+    // Not `round`, which is a function call unless the processor is known to have the instruction.
+    Real::max(value * ONE + 0.5, 0.0) as i64
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "at most 2^40")]
+pub(crate) fn signed(value: f64) -> i64 {
+    (value * ONE).round() as i64
+}
+
+/// Returns the mean of `count` fixed-point numbers with this sum.
+#[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
+pub(crate) fn mean(sum: u128, count: u64) -> f64 {
+    let (whole, rest) = (sum / u128::from(count), sum % u128::from(count));
+    (whole as f64 + rest as f64 / count as f64) / ONE
+}
+
+#[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
+pub(crate) fn signed_mean(sum: i128, count: u64) -> f64 {
+    sum as f64 / count as f64 / ONE
+}
+
+/// A whole number from 0 to 2¹⁹² − 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Wide {
+    high: u64,
+    low: u128,
+}
+
+impl Wide {
+    pub(crate) fn of(low: u128) -> Self {
+        Self { high: 0, low }
+    }
+
+    /// Creates the number `lower + upper · 2⁶⁴`.
+    pub(crate) fn joined([lower, upper]: [u128; 2]) -> Self {
+        let (low, carry) = (upper << 64).overflowing_add(lower);
+        // This is below 2⁶⁴, as the number is below 2¹⁹².
+        let high = (upper >> 64) + u128::from(carry);
+        Self {
+            high: lower_word(high),
+            low,
+        }
+    }
+
+    /// Returns the product of a number below 2¹²⁸ and one below 2⁶⁴.
+    pub(crate) fn product(value: u128, times: u64) -> Self {
+        if times < 1 << 12 && value < 1 << 116 {
+            return Self::of(value * u128::from(times));
+        }
+        let times = u128::from(times);
+        Self::joined([
+            (value & u128::from(u64::MAX)) * times,
+            (value >> 64) * times,
+        ])
+    }
+
+    pub(crate) fn times(self, times: u64) -> Self {
+        let low = Self::product(self.low, times);
+        Self {
+            high: low.high.wrapping_add(self.high.wrapping_mul(times)),
+            ..low
+        }
+    }
+
+    /// Returns `⌊sum² / count⌋`, for a sum of at most 2⁴⁰ numbers below 2⁵⁸.
+    ///
+    /// With `sum = count·m + r`, it is `count·m² + 2·m·r + ⌊r²/count⌋`.
+    pub(crate) fn square_over(sum: u128, count: u64) -> Self {
+        let (mean, rest) = (sum / u128::from(count), sum % u128::from(count));
+        let mut all = Self::product(mean * mean, count);
+        all += Self::of(2 * mean * rest);
+        all += Self::of(rest * rest / u128::from(count));
+        all
+    }
+
+    /// Returns the root of the mean of `count` squares of fixed-point numbers, whose sum this is.
+    #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
+    pub(crate) fn root_mean(self, count: u64) -> f64 {
+        let sum = self.high as f64 * 2_f64.powi(128) + self.low as f64;
+        (sum / count as f64).sqrt() / ONE
+    }
+
+    /// Rounds a number from 0 to 2¹²⁷.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "saturates"
+    )]
+    pub(crate) fn rounded(value: f64) -> Self {
+        Self::of(value.round() as u128)
+    }
+
+    /// Returns the mean of `count` fixed-point numbers, whose sum this is; it must be below 2¹²⁸.
+    pub(crate) fn mean(self, count: u64) -> f64 {
+        mean(self.low, count)
+    }
+
+    pub(crate) fn words(self) -> [u64; 3] {
+        [lower_word(self.low), lower_word(self.low >> 64), self.high]
+    }
+
+    pub(crate) fn from_words([first, second, high]: [u64; 3]) -> Self {
+        Self {
+            high,
+            low: u128::from(first) | u128::from(second) << 64,
+        }
+    }
+}
+
+impl AddAssign for Wide {
+    fn add_assign(&mut self, other: Self) {
+        let (low, carry) = self.low.overflowing_add(other.low);
+        self.low = low;
+        self.high = self
+            .high
+            .wrapping_add(other.high)
+            .wrapping_add(u64::from(carry));
+    }
+}
+
+impl Sub for Wide {
+    type Output = Self;
+    /// Returns the difference, or 0 if it is negative: the numbers may then only differ by what was rounded down.
+    fn sub(self, other: Self) -> Self {
+        let (low, borrow) = self.low.overflowing_sub(other.low);
+        let high = i128::from(self.high) - i128::from(other.high) - i128::from(borrow);
+        u64::try_from(high).map_or_else(|_| Self::default(), |high| Self { high, low })
+    }
+}
+
+// Sums per orientation, which show how much of a variance comes from the position and how much from the angle.
+//
+// As soon as all poses of an orientation have been added, only its contribution is stored. Incomplete orientations are
+// stored one by one.
+
+/// The sums of one orientation.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct OrientationSums {
+    poses: u64,
+    /// The number of orientations with the same imprints, including this one.
+    multiplicity: u64,
+    sums: Vec<Sum>,
+}
+
+impl OrientationSums {
+    /// Computes the sums over imprints; `counted` gives each imprint with the number of poses in one orientation that
+    /// leave it.
+    pub(crate) fn of(
+        table: &Table,
+        multiplicity: u64,
+        counted: impl Iterator<Item = (u32, u64)>,
+    ) -> Self {
+        let mut rows = RowSums::new();
+        for (id, count) in counted {
+            rows.add(table.row(wide(id)), count);
+        }
+        Self {
+            poses: rows.poses(),
+            multiplicity,
+            sums: rows.sums(),
+        }
+    }
+
+    /// Returns true if these sums are possible for an orientation of `full` poses. Other sums, from a damaged file,
+    /// could overflow later.
+    fn is_sound(&self, full: u64) -> bool {
+        let sound = |sum: &Sum| {
+            let most = u128::from(sum.poses) << 58;
+            sum.poses <= self.poses && sum.x.unsigned_abs() <= most && sum.y.unsigned_abs() <= most
+        };
+        self.poses <= full && self.multiplicity <= MAX_VALUES && self.sums.iter().all(sound)
+    }
+}
+
+/// The parts of each feature's variance that come from the position and from the orientation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct VarianceParts {
+    full: u64,
+    /// For each feature, over the complete orientations: the sum of sum²/poses, or of the vectors' lengths for a
+    /// circular feature.
+    between: Vec<Wide>,
+    /// The incomplete orientations, by their number.
+    open: BTreeMap<u64, OrientationSums>,
+}
+
+impl VarianceParts {
+    pub(crate) fn new(full: u64) -> Self {
+        Self {
+            full,
+            between: vec![Wide::default(); features().len()],
+            open: BTreeMap::new(),
+        }
+    }
+
+    /// Adds a part of an orientation. All parts of an orientation must have the same `multiplicity`.
+    pub(crate) fn add(&mut self, orientation: u64, part: OrientationSums) {
+        let sums = match self.open.remove(&orientation) {
+            Some(mut sums) => {
+                sums.poses += part.poses;
+                for (sum, other) in sums.sums.iter_mut().zip(&part.sums) {
+                    sum.merge(other);
+                }
+                sums
+            }
+            None => part,
+        };
+        if sums.poses >= self.full {
+            close(&mut self.between, &sums);
+        } else {
+            self.open.insert(orientation, sums);
+        }
+    }
+
+    pub(crate) fn merge(&mut self, other: Self) {
+        for (sum, other) in self.between.iter_mut().zip(other.between) {
+            *sum += other;
+        }
+        for (orientation, sums) in other.open {
+            self.add(orientation, sums);
+        }
+    }
+
+    /// Returns the parts as words: three per feature, then each incomplete orientation.
+    pub(crate) fn words(&self) -> Vec<u64> {
+        let halves = |sum: i128| {
+            let bits = sum.cast_unsigned();
+            [lower_word(bits), lower_word(bits >> 64)]
+        };
+        let mut words: Vec<u64> = self.between.iter().flat_map(|sum| sum.words()).collect();
+        for (&orientation, sums) in &self.open {
+            words.extend([orientation, sums.poses, sums.multiplicity]);
+            for sum in &sums.sums {
+                words.push(sum.poses);
+                words.extend(halves(sum.x));
+                words.extend(halves(sum.y));
+            }
+        }
+        words
+    }
+
+    /// Creates the parts from words; None if the number of words is wrong, or if they are not possible for orientations
+    /// of `full` poses.
+    pub(crate) fn from_words(full: u64, words: &[u64]) -> Option<Self> {
+        let count = features().len();
+        let (between, open) = words.split_at_checked(3 * count)?;
+        let whole =
+            |words: &[u64]| (u128::from(words[0]) | u128::from(words[1]) << 64).cast_signed();
+        let orientations = open.chunks_exact(3 + 5 * count);
+        if !orientations.remainder().is_empty() {
+            return None;
+        }
+        let orientation = |words: &[u64]| {
+            let sum = |words: &[u64]| Sum {
+                poses: words[0],
+                x: whole(&words[1..3]),
+                y: whole(&words[3..5]),
+            };
+            let sums = OrientationSums {
+                poses: words[1],
+                multiplicity: words[2],
+                sums: words[3..].chunks_exact(5).map(sum).collect(),
+            };
+            sums.is_sound(full).then_some((words[0], sums))
+        };
+        let wide = |words: &[u64]| Wide::from_words([words[0], words[1], words[2]]);
+        Some(Self {
+            full,
+            between: between.chunks_exact(3).map(wide).collect(),
+            open: orientations.map(orientation).collect::<Option<_>>()?,
+        })
+    }
+
+    /// Returns `between`, with every orientation taken as complete.
+    pub(crate) fn closed(&self) -> Vec<Wide> {
+        let mut between = self.between.clone();
+        for sums in self.open.values() {
+            close(&mut between, sums);
+        }
+        between
+    }
+}
+
+fn close(between: &mut [Wide], orientation: &OrientationSums) {
+    let features = between.iter_mut().zip(&orientation.sums).zip(features());
+    for ((between, sum), feature) in features {
+        if sum.poses == 0 {
+            continue;
+        }
+        let part = if feature.circular {
+            Wide::rounded(sum.length())
+        } else {
+            Wide::square_over(sum.total(), sum.poses)
+        };
+        *between += part.times(orientation.multiplicity);
     }
 }

@@ -8,9 +8,7 @@
 
 use glam::DVec2;
 
-use crate::description::chain::ChainSteps;
-use crate::description::exact::{ExactValue, direction, ratios, whole};
-use crate::description::measures::Description;
+use crate::description::measures::{ChainSteps, Description, ExactValue, direction, ratios, whole};
 use crate::description::region::RegionKind;
 use crate::imprint::Bounds;
 
@@ -422,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() {
+    fn examples_of_descriptor() {
         use crate::description::{DESCRIPTORS, Descriptor, RegionKind, Value};
         assert_eq!(
             (Value::Count(3).number(), Value::None.number()),

@@ -6,8 +6,6 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use crate::description::chain::{ChainSteps, OutlineCounts};
-use crate::description::exact::ratios;
 use crate::description::region::{Region, RegionKind};
 use crate::imprint::{Bounds, Imprint};
 
@@ -189,4 +187,117 @@ fn sums(taxels: &Imprint, bounds: Bounds) -> (u32, u32, u32) {
         rows += row * in_row;
     }
     (count, doubled / 2, rows)
+}
+
+/// The numbers of steps of a closed chain between the centres of the outline taxels of a filled region. They are whole,
+/// so the length is the same number on every machine.
+///
+/// They are counted in 2 × 2 windows of taxels: a window adds a straight step if exactly two neighbours in it belong to
+/// the region, a diagonal step if three taxels do, two diagonal steps if only two on a diagonal do, and none otherwise.
+/// So a part that is one taxel wide counts twice, out and back, and a single taxel has length 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct ChainSteps {
+    /// The number of steps to a taxel beside, above or below: length 1 each.
+    pub straight: u32,
+    /// The number of steps to a taxel across a corner: length √2 each.
+    pub diagonal: u32,
+}
+
+impl ChainSteps {
+    /// Returns the length of the closed chain, in cell sides.
+    pub fn length(&self) -> f64 {
+        f64::from(self.straight) + f64::from(self.diagonal) * std::f64::consts::SQRT_2
+    }
+}
+
+/// Returns masks of the 2 × 2 windows with these corners: three or four active taxels or only a diagonal; exactly
+/// three; only a diagonal.
+fn windows(upper_left: u64, upper_right: u64, lower_left: u64, lower_right: u64) -> [u64; 3] {
+    let (upper, lower) = (upper_left & upper_right, lower_left & lower_right);
+    let (either_upper, either_lower) = (upper_left ^ upper_right, lower_left ^ lower_right);
+    let three = upper & either_lower | lower & either_upper;
+    let across = either_upper & either_lower & (upper_left ^ lower_left);
+    [three | across | upper & lower, three, across]
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OutlineCounts {
+    pub(super) taxels: u32,
+    pub(super) rim: u32,
+    pub(super) steps: ChainSteps,
+}
+
+impl OutlineCounts {
+    pub(super) fn of(filled: &Imprint, bounds: Bounds) -> Self {
+        let words = bounds.words(filled);
+        let (mut taxels, mut inner, mut many, mut three, mut diagonals) = (0, 0, 0, 0, 0);
+        let mut above = 0;
+        for (row, &here) in words.iter().enumerate() {
+            // The windows below the last row add nothing: they contain at most two taxels, and those are neighbours.
+            let below = words.get(row + 1).copied().unwrap_or(0);
+            taxels += here.count_ones();
+            inner += (here & here << 1 & here >> 1 & above & below).count_ones();
+            // Bit i of the four words holds the corners of a window. One window lies left of column 0, so the words are
+            // shifted up, not down. The window to the right of column 63 is lost by this, and is added separately.
+            let beside = [above >> 63, 0, here >> 63, 0];
+            for [upper_left, upper_right, lower_left, lower_right] in
+                [[above << 1, above, here << 1, here], beside]
+            {
+                let own = windows(upper_left, upper_right, lower_left, lower_right);
+                let [own_many, own_three, own_diagonals] = own.map(u64::count_ones);
+                many += own_many;
+                three += own_three;
+                diagonals += own_diagonals;
+            }
+            above = here;
+        }
+        Self {
+            taxels,
+            rim: taxels - inner,
+            steps: ChainSteps {
+                // Each taxel is a corner of four windows. By Euler's formula, the number of windows with one taxel is
+                // four, plus the number with three, plus twice the number with a diagonal. So the number of windows
+                // with two neighbours, which have one step each, follows from the other kinds.
+                straight: 2 * taxels.saturating_sub(1 + many),
+                diagonal: three + 2 * diagonals,
+            },
+        }
+    }
+}
+
+/// The value of a descriptor as whole numbers, so that equal values compare as equal: ratios in lowest terms, lengths
+/// as numbers of steps. None if the value does not exist.
+pub type ExactValue = Option<[i64; 4]>;
+
+pub(super) fn whole<const N: usize>(numbers: [u32; N]) -> [i64; 4] {
+    let mut exact = [0; 4];
+    for (slot, number) in exact.iter_mut().zip(numbers) {
+        *slot = i64::from(number);
+    }
+    exact
+}
+
+/// Returns two ratios with the same positive denominator, each in lowest terms.
+pub(super) fn ratios(numerators: [i64; 2], denominator: i64) -> [i64; 4] {
+    let [one, other] = numerators.map(|numerator| {
+        // The divisor is 0 only if fields of the description were changed.
+        let common = gcd(numerator.unsigned_abs(), denominator.unsigned_abs()).max(1);
+        [numerator / common, denominator / common]
+    });
+    [one[0], one[1], other[0], other[1]]
+}
+
+/// Returns the direction of a vector in lowest terms; None if its length is 0.
+pub(super) fn direction([x, y]: [i64; 2]) -> ExactValue {
+    let common = gcd(x.unsigned_abs(), y.unsigned_abs());
+    (common > 0).then(|| [x / common, y / common, 0, 0])
+}
+
+/// Returns the greatest common divisor of numbers far below 2⁶³; 0 for two zeros.
+fn gcd(one: u64, other: u64) -> i64 {
+    let (mut one, mut other) = (one, other);
+    while other > 0 {
+        (one, other) = (other, one % other);
+    }
+    one.cast_signed()
 }

@@ -6,17 +6,11 @@
 
 mod region;
 
-mod chain;
-
-mod exact;
-
 mod measures;
 
 mod descriptor;
 
-pub use chain::ChainSteps;
 pub use descriptor::{ChangesUnder, DESCRIPTORS, Descriptor, Dimension, Value};
-pub use exact::ExactValue;
-pub use measures::Description;
+pub use measures::{ChainSteps, Description, ExactValue};
 pub(crate) use region::is_main;
 pub use region::{Region, RegionKind, each_region, main_region, regions};

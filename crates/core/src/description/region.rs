@@ -404,7 +404,7 @@ fn span(word: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples() {
+    fn examples_of_region() {
         use crate::prelude::*;
         let two: Imprint = "##.#".parse().unwrap();
         let mut counts = Vec::new();

@@ -22,37 +22,23 @@
 //! # Ok::<(), taxel_core::frame::FrameError>(())
 //! ```
 
-mod error;
-
-mod size;
-
 mod recorded;
 
 mod view;
 
 mod tare;
 
-mod first_frames;
-
 mod rule;
-
-mod set_rule;
 
 mod processing;
 
-mod peak;
-
 mod flips;
 
-pub use error::FrameError;
-pub use first_frames::FirstFrames;
 pub use flips::{FlipCounter, FlipReport};
-pub use peak::Peak;
-pub use processing::{Processed, Processing};
-pub use recorded::{Frame, LARGEST_VALUE};
-pub use rule::Rule;
-pub use set_rule::{RuleOrigin, SetRule};
-pub use size::MAX_FRAME_CELLS;
-pub use size::{FrameSize, FrameSizeError, MAX_FRAME_SIDE};
-pub use tare::{Tare, TareFrames};
+pub use processing::{Peak, Processed, Processing};
+pub use recorded::{
+    Frame, FrameError, FrameSize, FrameSizeError, LARGEST_VALUE, MAX_FRAME_CELLS, MAX_FRAME_SIDE,
+};
+pub use rule::{Rule, RuleOrigin, SetRule};
+pub use tare::{FirstFrames, Tare, TareFrames};
 pub use view::{Crop, View};

@@ -1,5 +1,9 @@
-use crate::frame::error::FrameError;
-use crate::frame::size::FrameSize;
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use crate::matrix::Matrix;
+use crate::parameter::number::{counted, short};
+use crate::sensor::MatrixSize;
 
 /// The largest value that a cell may have; the smallest is its negative. So the sum of a frame is always finite.
 pub const LARGEST_VALUE: f64 = 1e300;
@@ -121,6 +125,281 @@ impl Frame {
     }
 }
 
+/// The largest number of columns, and of rows, of a frame before it is cropped.
+pub const MAX_FRAME_SIDE: u16 = 512;
+
+/// The largest number of cells of a frame.
+pub const MAX_FRAME_CELLS: usize = MAX_FRAME_SIDE as usize * MAX_FRAME_SIDE as usize;
+
+/// The columns and rows of a frame before it is cropped: each from 1 to [`MAX_FRAME_SIDE`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FrameSize {
+    columns: u16,
+    rows: u16,
+}
+
+impl FrameSize {
+    /// The allowed numbers of columns, and of rows.
+    pub const SIDES: RangeInclusive<u16> = 1..=MAX_FRAME_SIDE;
+
+    /// One cell.
+    pub const SMALLEST: Self = Self {
+        columns: 1,
+        rows: 1,
+    };
+
+    /// Creates the size of a frame from its columns and rows.
+    ///
+    /// # Errors
+    /// Returns an error if a number is not from 1 to [`MAX_FRAME_SIDE`].
+    pub fn new(columns: u16, rows: u16) -> Result<Self, FrameSizeError> {
+        if Self::SIDES.contains(&columns) && Self::SIDES.contains(&rows) {
+            Ok(Self { columns, rows })
+        } else {
+            Err(FrameSizeError { columns, rows })
+        }
+    }
+
+    /// Returns the size of a frame; None if a side is unknown or not allowed.
+    pub fn of_sides(columns: Option<u16>, rows: Option<u16>) -> Option<Self> {
+        Self::new(columns?, rows?).ok()
+    }
+
+    /// Returns the number of columns.
+    pub fn columns(self) -> u16 {
+        self.columns
+    }
+
+    /// Returns the number of rows.
+    pub fn rows(self) -> u16 {
+        self.rows
+    }
+
+    /// Returns the number of cells.
+    pub fn cells(self) -> usize {
+        usize::from(self.columns) * usize::from(self.rows)
+    }
+
+    /// Returns the size in words: `4 rows of 5`.
+    pub fn in_words(self) -> String {
+        format!("{} of {}", counted(self.rows, "row"), self.columns)
+    }
+
+    #[cfg(test)]
+    pub(crate) fn of(columns: u16, rows: u16) -> Self {
+        Self::new(columns, rows).expect("1 to 512")
+    }
+}
+
+impl From<MatrixSize> for FrameSize {
+    fn from(size: MatrixSize) -> Self {
+        Self {
+            columns: size.columns().into(),
+            rows: size.rows().into(),
+        }
+    }
+}
+
+impl fmt::Display for FrameSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} × {}", self.columns, self.rows)
+    }
+}
+
+/// The error for a size that no frame can have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameSizeError {
+    /// The number of columns.
+    pub columns: u16,
+    /// The number of rows.
+    pub rows: u16,
+}
+
+impl fmt::Display for FrameSizeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { columns, rows } = self;
+        write!(
+            f,
+            "a frame of {columns} × {rows}, expected 1 to {MAX_FRAME_SIDE} columns and rows"
+        )
+    }
+}
+
+impl std::error::Error for FrameSizeError {}
+
+/// The error for a frame that cannot be processed, or for settings that do not fit it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FrameError {
+    /// More cells are left than an imprint can have.
+    Large {
+        /// The size of the visible part.
+        size: FrameSize,
+    },
+    /// A side of a frame is not from 1 to 512.
+    Sides(FrameSizeError),
+    /// The number of values differs from the number of cells.
+    Values {
+        /// The frame's size.
+        size: FrameSize,
+        /// The number of values.
+        found: usize,
+    },
+    /// The crop reaches beyond the frame.
+    Crop {
+        /// The frame's size.
+        size: FrameSize,
+    },
+    /// A mask, a gain or a tare differs in size from the visible part of the frame.
+    Size {
+        /// "mask", "gain" or "tare".
+        what: &'static str,
+        /// The size of the mask, gain or tare.
+        found: MatrixSize,
+        /// The size of the visible part of the frame.
+        expected: MatrixSize,
+    },
+    /// A threshold or a part of a tare is not a number, or out of range.
+    Rule {
+        /// The name of the value: its key in JSON.
+        what: &'static str,
+        /// The value.
+        found: f64,
+        /// The allowed range.
+        allowed: &'static str,
+    },
+    /// The lower of two thresholds is above the higher one.
+    Order {
+        /// The lower threshold.
+        low: f64,
+        /// The higher threshold.
+        high: f64,
+    },
+    /// A value times the gain of its cell is beyond ±[`LARGEST_VALUE`](crate::frame::LARGEST_VALUE).
+    Product {
+        /// The value, after the tare.
+        value: f64,
+        /// The gain of its cell.
+        gain: f64,
+    },
+    /// There are fewer frames than a tare needs.
+    Tare {
+        /// The number of frames so far.
+        frames: u64,
+        /// The number of frames that the tare needs.
+        wanted: u64,
+    },
+    /// The frames of a tare would take too much memory, by their number and size.
+    TareSize {
+        /// The largest possible number of frames of this size.
+        most: u64,
+    },
+    /// The noise rule is used without a tare that measures the noise.
+    NoTare,
+}
+
+impl FrameError {
+    /// Returns true if a frame of another size could be processed.
+    pub fn is_of_size(&self) -> bool {
+        matches!(
+            self,
+            Self::Large { .. } | Self::Crop { .. } | Self::Size { .. }
+        )
+    }
+}
+
+impl fmt::Display for FrameError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Large { size } => write!(
+                f,
+                "{size} cells are left, expected at most 64 × 64: crop the frame"
+            ),
+            Self::Sides(error) => error.fmt(f),
+            Self::Values { size, found } => {
+                let (found, expected) = (counted(*found as u64, "value"), size.cells());
+                write!(
+                    f,
+                    "found {found}, expected {expected} for a frame of {size}"
+                )
+            }
+            Self::Crop { size } => write!(
+                f,
+                "the crop reaches beyond the frame, which has {} and {}",
+                counted(size.columns(), "column"),
+                counted(size.rows(), "row")
+            ),
+            Self::Size {
+                what,
+                found,
+                expected,
+            } => write!(
+                f,
+                "the {what} has {} and {}, expected {} and {} as the frame has",
+                counted(found.columns(), "column"),
+                counted(found.rows(), "row"),
+                expected.columns(),
+                expected.rows()
+            ),
+            Self::Rule {
+                what,
+                found,
+                allowed,
+            } => {
+                let found = short(*found);
+                write!(f, "{what}: {found} is out of range (allowed: {allowed})")
+            }
+            Self::Order { low, high } => {
+                write!(f, "low {} is above high {}", short(*low), short(*high))
+            }
+            Self::Product { value, gain } => write!(
+                f,
+                "the value {value:e} times its gain {gain:e} is too large, expected at most 1e300"
+            ),
+            Self::Tare { frames, wanted } => f.write_str(&too_few(*frames, *wanted)),
+            Self::TareSize { most } => {
+                write!(
+                    f,
+                    "too many frames for a tare: expected at most {most} of this size"
+                )
+            }
+            Self::NoTare => {
+                f.write_str("a threshold from noise needs a tare of at least two frames")
+            }
+        }
+    }
+}
+
+fn too_few(frames: u64, wanted: u64) -> String {
+    let wanted = counted(wanted, "frame");
+    let verb = if frames == 1 { "is" } else { "are" };
+    format!("the tare needs {wanted}, but there {verb} only {frames}")
+}
+
+impl std::error::Error for FrameError {}
+
+impl From<FrameSizeError> for FrameError {
+    fn from(error: FrameSizeError) -> Self {
+        Self::Sides(error)
+    }
+}
+
+pub(super) fn check_size(
+    what: &'static str,
+    found: &Matrix<f64>,
+    values: &Matrix<f64>,
+) -> Result<(), FrameError> {
+    let (found, expected) = (found.size(), values.size());
+    if found == expected {
+        Ok(())
+    } else {
+        Err(FrameError::Size {
+            what,
+            found,
+            expected,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,8 +416,8 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::frame::{Frame, FrameSize};
+    fn examples_of_recorded() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::frame::Frame;
         let size = FrameSize::new(3, 2)?;
         let mut frame = Frame::from_values(size, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
         assert_eq!((frame.columns(), frame.rows(), frame.cells()), (3, 2, 5));
@@ -147,6 +426,19 @@ mod tests {
         assert_eq!(
             frame.set_values(&[0.0]).unwrap_err().to_string(),
             "found 1 value, expected 6 for a frame of 3 × 2"
+        );
+        Ok(())
+    }
+
+    #[test]
+    fn examples_of_size() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::frame::FrameSize;
+        let size = FrameSize::new(28, 64)?;
+        assert_eq!((size.columns(), size.rows(), size.cells()), (28, 64, 1792));
+        assert_eq!(size.to_string(), "28 × 64");
+        assert_eq!(
+            FrameSize::new(28, 0).unwrap_err().to_string(),
+            "a frame of 28 × 0, expected 1 to 512 columns and rows"
         );
         Ok(())
     }

@@ -1,6 +1,4 @@
-use crate::frame::error::FrameError;
-use crate::frame::recorded::{Frame, LARGEST_VALUE};
-use crate::frame::size::FrameSize;
+use crate::frame::recorded::{Frame, FrameError, FrameSize, LARGEST_VALUE};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::sensor::MatrixSize;

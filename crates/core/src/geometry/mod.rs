@@ -10,22 +10,13 @@ mod real;
 
 mod outline;
 
-mod ellipse_cuts;
-
-mod cell_grid;
-
-mod arcs;
+mod ellipse;
 
 mod overlap;
 
-mod regular;
-
-pub(crate) use cell_grid::Drawn;
-pub(crate) use outline::Moving;
 pub use outline::{Ellipse, Extent, Pen, Point, Polygon, Side, Solid, Turn};
-pub(crate) use overlap::Overlap;
+pub(crate) use outline::{MOST_CORNERS, Moving, RegularPolygon};
 pub use overlap::cell_area;
-pub(crate) use overlap::row_areas;
+pub(crate) use overlap::{Drawn, Overlap, row_areas};
 pub(crate) use real::nearest;
 pub use real::{Double, Real};
-pub(crate) use regular::{MOST_CORNERS, RegularPolygon};

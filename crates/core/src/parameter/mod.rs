@@ -8,16 +8,9 @@
 
 pub mod number;
 
-mod range;
-
 mod table;
 
 mod error;
 
-mod unknown_name;
-
-pub use error::ParameterError;
-pub use range::Range;
-pub use table::{PARAMETERS, Parameter, ParameterRow, Unit};
-pub use unknown_name::UnknownName;
-pub use unknown_name::named;
+pub use error::{ParameterError, UnknownName, named};
+pub use table::{PARAMETERS, Parameter, ParameterRow, Range, Unit};

@@ -115,7 +115,7 @@ pub fn differing(taxels: impl Into<u128>) -> String {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples() {
+    fn examples_of_number() {
         use crate::parameter::number;
         use crate::parameter::number::{counted, differing, grouped, time_in_words};
         assert_eq!(number::read(" 1.5 "), Some(1.5));

@@ -159,7 +159,7 @@ named!(Anchor, "anchor", &Anchor::ALL);
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_axis() -> Result<(), Box<dyn std::error::Error>> {
         use crate::pose::{Anchor, Axis, PoseIndex, Ranges};
         use std::collections::HashMap;
         let ranges = Ranges::default().with(Axis::X0, "5:6:0.5".parse()?);

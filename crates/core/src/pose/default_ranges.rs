@@ -11,10 +11,8 @@
 use crate::geometry::Extent;
 use crate::parameter::Parameter;
 use crate::pose::axis::{Anchor, Axis, PerAxis, Ranges};
-use crate::pose::grid::{GridError, PoseGrid};
-use crate::pose::placed::centre;
+use crate::pose::grid::{GridError, PoseGrid, centre, union};
 use crate::pose::range::DecimalRange;
-use crate::pose::reach::union;
 use crate::sensor::{MAX_SIDE, Sensor};
 use crate::source::Source;
 use crate::touch::DOUBTFUL;
@@ -447,7 +445,7 @@ fn hundredths(value: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_default_ranges() -> Result<(), Box<dyn std::error::Error>> {
         use crate::pose::{GivenRanges, default_ranges, figure_ranges, smallest_sensor};
         use crate::prelude::*;
         let sensor = Sensor::default();

@@ -1,12 +1,13 @@
-use crate::geometry::{Point, Real};
+use std::ops::Range;
+
+use crate::geometry::{Ellipse, Extent, Moving, Pen, Point, Real, Side, Solid};
 use crate::parameter::number::{grouped, to_decimals};
 use crate::parameter::{Parameter, ParameterError};
 use crate::pose::axis::{Anchor, Axis, Pose, PoseIndex, Ranges};
-use crate::pose::boundary::Boundary;
-use crate::pose::placed::{Placed, centre};
 use crate::pose::range::DecimalRange;
 use crate::sensor::Sensor;
 use crate::source::Source;
+use crate::touch::DOUBTFUL;
 
 /// The largest number of decimals of an angle in a range.
 const ANGLE_DECIMALS: i32 = 12;
@@ -334,6 +335,226 @@ pub enum GridError {
     },
 }
 
+/// A shape in a pose of a grid, ready for a touch ([`Plane::touch`](crate::touch::Plane::touch)).
+#[derive(Clone, Debug)]
+pub struct Placed {
+    rotated: Source,
+    /// The shape before rotation, and the position of its centre, if the anchor is the centre. Both shapes then have
+    /// their corner at the origin.
+    centred: Option<(Source, f64, f64)>,
+}
+
+impl Placed {
+    pub(crate) fn at_corner(rotated: Source) -> Self {
+        Self {
+            rotated,
+            centred: None,
+        }
+    }
+
+    /// Creates a placed shape with its centre at `centre`. Both given shapes have their corner at the origin.
+    pub(crate) fn at_centre(rotated: Source, upright: Source, centre: (f64, f64)) -> Self {
+        Self {
+            rotated,
+            centred: Some((upright, centre.0, centre.1)),
+        }
+    }
+}
+
+impl Solid for Placed {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        let Some((upright, x, y)) = &self.centred else {
+            return self.rotated.draw(pen);
+        };
+        let centre = centre::<T>(upright);
+        let by = Point::new(T::decimal(*x) - centre.x, T::decimal(*y) - centre.y);
+        self.rotated.draw(&mut Moving { by, pen });
+    }
+}
+
+/// Returns the centre of rotation of a shape that is not rotated, in cells.
+pub(crate) fn centre<T: Real>(upright: &Source) -> Point<T> {
+    let boundary = Boundary::of(upright);
+    match upright {
+        Source::Figure(_) => boundary.mean(),
+        Source::Picture(_) => boundary.middle(),
+    }
+}
+
+// The stored boundary of a shape: drawn once, and used for all positions that differ by a shift.
+//
+// Sweeps cut bands from it in `f64`; for cases that `f64` cannot decide, it is drawn as
+// [`Double`](crate::geometry::Double). The frame and the units are those of the plane; the anchor of the shape is at
+// the origin.
+
+/// The boundary of a shape: straight edges with the material on their right, and ellipses.
+#[derive(Clone, Debug)]
+pub(crate) struct Boundary<T> {
+    pub(crate) edges: Vec<(Point<T>, Point<T>)>,
+    pub(crate) ellipses: Vec<(Ellipse<T>, Side)>,
+}
+
+impl<T: Real> Boundary<T> {
+    pub(crate) fn of(solid: &impl Solid) -> Self {
+        let mut boundary = Self {
+            edges: Vec::new(),
+            ellipses: Vec::new(),
+        };
+        solid.draw(&mut boundary);
+        boundary
+    }
+
+    /// Draws the stored boundary, shifted.
+    pub(crate) fn draw(&self, by: Point<T>, pen: &mut impl Pen<T>) {
+        let mut pen = Moving { by, pen };
+        for &(from, to) in &self.edges {
+            pen.edge(from, to);
+        }
+        for (ellipse, material) in &self.ellipses {
+            pen.ellipse(ellipse, *material);
+        }
+    }
+
+    /// Returns the centre of a figure: that of its ellipse, or the mean of its corners. A concentric hole does not
+    /// change it.
+    pub(crate) fn mean(&self) -> Point<T> {
+        if let Some((ellipse, _)) = self.ellipses.first() {
+            return ellipse.centre;
+        }
+        let (mut sum, mut count) = (Point::new(T::ZERO, T::ZERO), 0);
+        for &(from, _) in &self.edges {
+            sum = sum.moved(from);
+            count += 1;
+        }
+        let count = T::whole(count.max(1));
+        Point::new(sum.x / count, sum.y / count)
+    }
+
+    /// Returns the middle of the bounding rectangle of the edges; the origin if there are none.
+    pub(crate) fn middle(&self) -> Point<T> {
+        let Some(&(first, _)) = self.edges.first() else {
+            return Point::new(T::ZERO, T::ZERO);
+        };
+        let (mut low, mut high) = (first, first);
+        for &(from, _) in &self.edges {
+            low = Point::new(low.x.min(from.x), low.y.min(from.y));
+            high = Point::new(high.x.max(from.x), high.y.max(from.y));
+        }
+        Point::new((low.x + high.x) * T::HALF, (low.y + high.y) * T::HALF)
+    }
+}
+
+impl Boundary<f64> {
+    pub(crate) fn extent(&self) -> Option<Extent> {
+        Extent::drawn(|pen| self.draw(Point::new(0.0, 0.0), pen))
+    }
+}
+
+impl<T: Real> Pen<T> for Boundary<T> {
+    fn edge(&mut self, from: Point<T>, to: Point<T>) {
+        self.edges.push((from, to));
+    }
+    fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
+        self.ellipses.push((*ellipse, material));
+    }
+}
+
+// The reach of a shape over all orientations of a grid. It tells which poses the sensor cuts off.
+//
+// The *reach* is the smallest upright rectangle around the shape in every orientation, relative to its anchor. A pose
+// is cut off if the shape then reaches beyond the sensor, by the rule of [`crate::touch::reaches_beyond`]. Units are
+// cell sides, and the frame is that of the plane.
+
+impl PoseGrid {
+    /// Returns the smallest upright rectangle around the shape in every orientation of the grid, with its anchor at the
+    /// origin; in cell sides. None if the shape has no boundary, like a picture of an empty imprint.
+    ///
+    /// The position of a picture that is placed by its corner is zoomed too. In such a pose, the rectangle has to be
+    /// moved by `zoom_x · x0`, `zoom_y · y0`.
+    ///
+    /// Takes time in proportion to the number of orientations.
+    pub fn reach(&self) -> Option<Extent> {
+        self.extents().flatten().reduce(union)
+    }
+
+    /// Returns the number of poses in which the shape reaches beyond the sensor and is cut off. A sweep of the grid
+    /// reports the same number.
+    ///
+    /// Takes time in proportion to the number of orientations.
+    pub fn poses_beyond_sensor(&self) -> u64 {
+        let extents = (0..).zip(self.extents());
+        let inside = extents.map(|(orientation, extent)| match extent {
+            Some(extent) => {
+                let columns = self.columns_inside(orientation, &extent);
+                let rows = self.rows_inside(orientation, &extent);
+                (columns.end - columns.start) * (rows.end - rows.start)
+            }
+            None => self.row_length() * self.rows_per_orientation(),
+        });
+        self.poses() - inside.sum::<u64>()
+    }
+
+    pub(super) fn extents(&self) -> impl Iterator<Item = Option<Extent>> + '_ {
+        (0..self.orientations()).map(|orientation| self.boundary::<f64>(orientation).extent())
+    }
+
+    /// Returns the indices of x0 at which the shape reaches beyond neither the left nor the right side of the sensor.
+    pub(crate) fn columns_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
+        let at = |index| self.offset::<f64>(orientation, index, 0).x;
+        inside(
+            self.row_length(),
+            at,
+            (extent.left, extent.right),
+            self.sensor().columns(),
+        )
+    }
+
+    /// The same for y0, the upper and the lower side.
+    pub(crate) fn rows_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
+        let at = |index| self.offset::<f64>(orientation, 0, index).y;
+        inside(
+            self.rows_per_orientation(),
+            at,
+            (extent.top, extent.bottom),
+            self.sensor().rows(),
+        )
+    }
+}
+
+/// Returns the indices of the positions at which the interval from `low` to `high` lies within `side`. Positions grow
+/// with their index.
+fn inside(count: u64, at: impl Fn(u64) -> f64, (low, high): (f64, f64), side: u8) -> Range<u64> {
+    let from = first(0..count, |index| low + at(index) >= -DOUBTFUL);
+    let to = first(from..count, |index| {
+        high + at(index) > f64::from(side) + DOUBTFUL
+    });
+    from..to
+}
+
+/// Returns the first number of a range for which a condition is true; it stays true from then on. The end of the range
+/// if it is never true.
+fn first(range: Range<u64>, is_true: impl Fn(u64) -> bool) -> u64 {
+    let Range { mut start, mut end } = range;
+    while start < end {
+        let middle = start + (end - start) / 2;
+        if is_true(middle) {
+            end = middle;
+        } else {
+            start = middle + 1;
+        }
+    }
+    start
+}
+
+pub(super) fn union(one: Extent, other: Extent) -> Extent {
+    Extent {
+        left: one.left.min(other.left),
+        top: one.top.min(other.top),
+        right: one.right.max(other.right),
+        bottom: one.bottom.max(other.bottom),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -441,7 +662,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_grid() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         // 6 × 3, with its corner at 5, 5 before it is turned.
         let rectangle = Source::Figure(Figure::default_of(
@@ -471,6 +692,31 @@ mod tests {
             (first.get(Parameter::X0), first.get(Parameter::Y0)),
             (Some(2.0), Some(3.5))
         );
+        Ok(())
+    }
+
+    #[test]
+    fn examples_of_reach() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(6.0, 2.0).on(&sensor)?;
+        let ranges = Ranges::default().with(Axis::Angle, "0:90:90".parse()?);
+        let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, ranges)?;
+        let reach = grid.reach().expect("it has a boundary");
+        // Upright it reaches from (0, 0) to (6, 2); turned about (3, 1), from (2, −2) to (4, 4).
+        assert_eq!(
+            (reach.left, reach.top, reach.right, reach.bottom),
+            (0.0, -2.0, 6.0, 4.0)
+        );
+        let sensor = Sensor::new(8, 8)?;
+        let square = Figure::rectangle(6.0, 6.0).on(&sensor)?;
+        let ranges = Ranges::default()
+            .with(Axis::X0, "0:3:0.5".parse()?)
+            .with(Axis::Y0, "1:2:1".parse()?)
+            .with(Axis::Angle, "0".parse()?);
+        let grid = PoseGrid::new(square.into(), sensor, Anchor::Corner, ranges)?;
+        // x0 of 2.5 and 3, at both values of y0.
+        assert_eq!(grid.poses_beyond_sensor(), 4);
         Ok(())
     }
 }

@@ -7,27 +7,20 @@ mod range;
 
 mod axis;
 
-mod boundary;
-
-mod placed;
-
 mod grid;
-
-mod reach;
 
 mod default_ranges;
 
 mod symmetry;
 
 pub use axis::{Anchor, Axis, PerAxis, Pose, PoseIndex, Ranges};
-pub(crate) use boundary::Boundary;
 pub use default_ranges::check_given;
 pub use default_ranges::{
     GivenRanges, common_ranges, default_ranges, figure_ranges, smallest_sensor,
 };
 pub use default_ranges::{Reach, SensorSides};
-pub use grid::{GridError, MAX_POSES, PoseGrid};
-pub use placed::Placed;
+pub(crate) use grid::Boundary;
+pub use grid::{GridError, MAX_POSES, Placed, PoseGrid};
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
 pub(crate) use symmetry::exact_period;
 pub(crate) use symmetry::{AngleClasses, period};

@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_range() -> Result<(), Box<dyn std::error::Error>> {
         use crate::pose::DecimalRange;
         let range: DecimalRange = "5:5.99:0.01".parse()?;
         assert_eq!(

@@ -1,11 +1,10 @@
 use crate::description::{RegionKind, regions};
 use crate::imprint::Imprint;
 use crate::parameter::named;
-use crate::recognition::likelihood::SearchMethod;
+use crate::recognition::likelihood::{NEGLIGIBLE, Noise, SearchMethod};
 use crate::recognition::model::Model;
-use crate::recognition::nearest::Nearest;
-use crate::recognition::noise::{NEGLIGIBLE, Noise};
 use crate::recognition::posterior::{Odds, Posterior};
+use crate::recognition::scan::Nearest;
 
 /// The state of an answer: how far it can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -497,7 +497,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_given() -> Result<(), Box<dyn std::error::Error>> {
         use crate::progress::ToTheEnd;
         use crate::recognition::{
             Evaluation, GivenDescriptors, GridSteps, Noise, NoisyTouches, Rounding,

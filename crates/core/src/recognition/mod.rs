@@ -25,15 +25,9 @@ mod key;
 
 mod model;
 
-mod merge;
-
 mod training;
 
-mod sets;
-
 mod pose_estimate;
-
-mod confusion;
 
 mod evaluation;
 
@@ -41,43 +35,30 @@ mod separation;
 
 mod given;
 
-mod nearest;
-
 mod posterior;
 
 mod answer;
 
-mod noise;
-
 mod likelihood;
-
-mod templates;
 
 mod classifiers;
 
-mod random;
-
 mod simulation;
-
-mod touches_until;
 
 mod scan;
 
 pub use answer::{Answer, AnswerState, Evidence};
 pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
-pub use confusion::ConfusionMatrix;
-pub use evaluation::{Certainty, Evaluation, PairConfusion};
+pub use evaluation::{Certainty, ConfusionMatrix, Evaluation, PairConfusion};
 pub use given::{ChosenDescriptor, GivenDescriptors, GivenError, Rounding, ShapeDescriptor};
 pub use key::{ImprintKey, KeyTable};
-pub use likelihood::{Distances, SearchMethod};
-pub use merge::ModelMerge;
-pub use model::{Model, ModelError, ModelHead, NamedShape, ShapeCount};
-pub use nearest::Nearest;
-pub use noise::{Noise, NoiseError, UnexplainedDifference};
+pub use likelihood::{Distances, Noise, NoiseError, SearchMethod, UnexplainedDifference};
+pub use model::{Model, ModelError, ModelHead, ModelMerge, NamedShape, ShapeCount};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
-pub use random::below;
+pub use scan::Nearest;
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
-pub use sets::{CellPositions, GridSteps, GridStepsError, default_figures, equal_figures};
-pub use simulation::{NoisyTouches, RecognitionRate};
-pub use touches_until::{MOST_TOUCHES, TouchesUntil};
-pub use training::{LEAST_SIDE, Training, TrainingError};
+pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil, below};
+pub use training::{
+    CellPositions, GridSteps, GridStepsError, LEAST_SIDE, Training, TrainingError, default_figures,
+    equal_figures,
+};

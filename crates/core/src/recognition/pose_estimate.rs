@@ -330,8 +330,7 @@ mod tests {
     use super::*;
     use crate::progress::ToTheEnd;
     use crate::recognition::model::ShapeCount;
-    use crate::recognition::sets::{GridSteps, equal_figures};
-    use crate::recognition::training::Training;
+    use crate::recognition::training::{GridSteps, Training, equal_figures};
     use crate::sensor::MatrixSize;
     use crate::sweep::Shard;
 
@@ -498,7 +497,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_pose_estimate() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         use crate::progress::ToTheEnd;
         use crate::recognition::{NamedShape, Training};

@@ -10,8 +10,7 @@ use crate::pose::{
 use crate::progress::Progress;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, NamedShape, check_shapes};
-use crate::recognition::sets::CellPositions;
-use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
+use crate::recognition::training::{CellPositions, LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -357,7 +356,7 @@ mod tests {
     use crate::picture::Picture;
     use crate::pose::Ranges;
     use crate::progress::{ToTheEnd, stop_if};
-    use crate::recognition::sets::equal_figures;
+    use crate::recognition::training::equal_figures;
 
     fn certain(limit: &Evaluation) -> Option<u128> {
         limit.certainty.map(|certainty| certainty.touches)
@@ -572,7 +571,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_separation() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         use crate::progress::ToTheEnd;
         use crate::recognition::{CellPositions, NamedShape, Separation, SizeAxis};

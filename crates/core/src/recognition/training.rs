@@ -2,14 +2,19 @@ use std::fmt;
 
 use rayon::prelude::*;
 
+use crate::figure::{Figure, FigureKind};
+use crate::parameter::Parameter;
 use crate::parameter::number::grouped;
-use crate::pose::{Anchor, GridError, PoseGrid, Ranges};
+use crate::pose::{
+    Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
+};
 use crate::progress::{Progress, ToTheEnd};
 use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::model::{
     Gathered, Model, ModelError, ModelHead, NamedShape, ShapeCount, check_shapes,
 };
 use crate::sensor::Sensor;
+use crate::source::Source;
 use crate::sweep::{CountedImprints, Shard, Sweep};
 
 /// The smallest side of a sensor that a training chooses by itself: the side of the paper's sensor.
@@ -244,4 +249,261 @@ fn keys_of(counted: &CountedImprints) -> (KeyTable, Vec<u64>) {
         counts[slot] += count;
     }
     (keys, counts)
+}
+
+/// Returns the seven figures at the default sizes of forms. They cover 7 to 77 cells, so their size alone already tells
+/// them apart.
+pub fn default_figures() -> Vec<NamedShape> {
+    let sensor = Sensor::default();
+    let figure =
+        |&kind: &FigureKind| NamedShape::new(kind.name(), Figure::default_of(kind, &sensor));
+    FigureKind::ALL.iter().map(figure).collect()
+}
+
+/// Sizes at which each of the seven figures covers about 30 cells.
+const EQUAL: [(FigureKind, &[(Parameter, f64)]); 7] = [
+    (
+        FigureKind::Ellipse,
+        &[(Parameter::RadiusX, 3.09), (Parameter::RadiusY, 3.09)],
+    ),
+    (
+        FigureKind::Rectangle,
+        &[(Parameter::Length, 6.0), (Parameter::Width, 5.0)],
+    ),
+    (FigureKind::Triangle, &[(Parameter::Side, 8.32)]),
+    (FigureKind::Pentagon, &[(Parameter::Side, 4.18)]),
+    (FigureKind::Hexagon, &[(Parameter::Side, 3.4)]),
+    (FigureKind::Heptagon, &[(Parameter::Side, 2.87)]),
+    (FigureKind::Octagon, &[(Parameter::Side, 2.49)]),
+];
+
+/// Returns the seven figures, each of about 30 cells: only their form tells them apart.
+#[expect(
+    clippy::missing_panics_doc,
+    reason = "the sizes are constants, and a test reads them all"
+)]
+pub fn equal_figures() -> Vec<NamedShape> {
+    let sensor = Sensor::default();
+    let shape = |(kind, sizes): (FigureKind, &[(Parameter, f64)])| {
+        let mut sizes = sizes.iter();
+        let default = Figure::default_of(kind, &sensor);
+        let figure = sizes.try_fold(default, |figure, &(parameter, value)| {
+            figure.with(parameter, value, &sensor)
+        });
+        let figure = figure.expect("the sizes in the table are in range");
+        NamedShape::new(kind.name(), figure)
+    };
+    EQUAL.map(shape).to_vec()
+}
+
+/// The number of positions within a cell in each direction: a divisor of 100, so that steps are whole hundredths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CellPositions(u8);
+
+impl CellPositions {
+    /// Hundredths of a cell, as in a sweep.
+    pub const FINE: Self = Self(100);
+
+    /// Tenths of a cell.
+    pub const COARSE: Self = Self(10);
+
+    /// Creates a number of positions.
+    ///
+    /// # Errors
+    /// Returns [`GridStepsError::Positions`] if it is not a divisor of 100.
+    pub fn new(count: u8) -> Result<Self, GridStepsError> {
+        if count > 0 && 100_u8.is_multiple_of(count) {
+            Ok(Self(count))
+        } else {
+            Err(GridStepsError::Positions { found: count })
+        }
+    }
+
+    /// Returns the number of positions.
+    pub fn get(self) -> u8 {
+        self.0
+    }
+
+    /// Returns the distance between two positions, in hundredths of a cell.
+    pub fn step(self) -> u32 {
+        100 / u32::from(self.0)
+    }
+}
+
+/// The steps of a grid of poses: one cell of positions, all angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct GridSteps {
+    positions: CellPositions,
+    degrees: u16,
+}
+
+/// The error for steps that do not make a grid.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GridStepsError {
+    /// Steps of a cell that are not whole hundredths.
+    #[error("{found} positions in a cell: expected a divisor of 100")]
+    Positions {
+        /// The given number of positions.
+        found: u8,
+    },
+    /// A step of the angle that does not divide 360.
+    #[error("steps of {found} degrees: expected a divisor of 360")]
+    Degrees {
+        /// The given step, in degrees.
+        found: u16,
+    },
+}
+
+impl GridSteps {
+    /// Hundredths of a cell and whole degrees, as in a sweep.
+    pub const FINE: Self = Self {
+        positions: CellPositions::FINE,
+        degrees: 1,
+    };
+
+    /// Tenths of a cell and every second degree: one in 200 poses of [`Self::FINE`].
+    pub const COARSE: Self = Self {
+        positions: CellPositions::COARSE,
+        degrees: 2,
+    };
+
+    /// Creates steps from the number of positions of a cell in each direction, a divisor of 100, and the degrees from
+    /// one angle to the next, a divisor of 360.
+    ///
+    /// # Errors
+    /// Returns an error if one is not a divisor.
+    pub fn new(positions: u8, degrees: u16) -> Result<Self, GridStepsError> {
+        let positions = CellPositions::new(positions)?;
+        if degrees == 0 || !360_u16.is_multiple_of(degrees) {
+            return Err(GridStepsError::Degrees { found: degrees });
+        }
+        Ok(Self { positions, degrees })
+    }
+
+    /// Returns the positions of a cell in each direction.
+    pub fn positions(self) -> CellPositions {
+        self.positions
+    }
+
+    /// Returns the degrees from one angle to the next.
+    pub fn degrees(self) -> u16 {
+        self.degrees
+    }
+
+    fn angles(self) -> DecimalRange {
+        let count = u64::from(360 / self.degrees);
+        DecimalRange::from_units(0, self.degrees.into(), 0, count)
+    }
+}
+
+impl Training<'_> {
+    /// Creates a training on the smallest square sensor, at least 16 × 16, that cuts off none of the shapes in any of
+    /// the poses: one cell of positions around its middle, all angles.
+    ///
+    /// # Errors
+    /// Returns [`TrainingError::Large`] if no sensor is large enough, or the errors of [`Training::new`].
+    pub fn fitting(
+        shapes: impl IntoIterator<Item = NamedShape>,
+        steps: GridSteps,
+    ) -> Result<Self, TrainingError> {
+        let shapes: Vec<NamedShape> = shapes.into_iter().collect();
+        let mut given = GivenRanges::default();
+        given[Axis::Angle] = Some(steps.angles());
+        let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
+        let reach = Reach::of_all(sources.iter().copied(), Anchor::Centre, &given);
+        let reach = reach.map_err(|error| TrainingError::Grid {
+            name: "the set".to_owned(),
+            error,
+        })?;
+        let fit = reach.smallest_sensor(
+            &sources,
+            &given,
+            SensorSides::at_least(LEAST_SIDE),
+            steps.positions().step(),
+        );
+        let (sensor, ranges) = fit.ok_or(TrainingError::Large)?;
+        Self::new(shapes, sensor, Anchor::Centre, ranges)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recognition::Evaluation;
+
+    #[test]
+    fn equal_figures_cover_thirty_cells_and_are_hard_to_tell_apart() {
+        let steps = GridSteps::new(10, 5).expect("divisors");
+        let training = Training::fitting(equal_figures(), steps).expect("they fit");
+        let grid = &training.grids()[0];
+        assert_eq!(grid.sensor().columns(), 16);
+        assert_eq!(grid.ranges()[Axis::X0].to_string(), "7:7.9:0.1");
+        assert_eq!(grid.ranges()[Axis::Angle].to_string(), "0:355:5");
+        let model = training.run().expect("not stopped");
+        assert_eq!((model.poses(), model.cut()), (7200, &[0; 7][..]));
+        let error = Evaluation::of(&model).error();
+        assert!((0.3..0.35).contains(&error), "{error}");
+        for shape in model.shapes() {
+            let grid = Training::fitting(vec![shape.clone()], steps).expect("it fits");
+            let grid = &grid.grids()[0];
+            let mut plane = crate::touch::Plane::new(*grid.sensor());
+            plane.touch(&grid.placed(0));
+            let area: f64 = plane.coverages().values().iter().sum();
+            assert!((area - 30.0).abs() < 0.2, "{}: {area}", shape.name);
+        }
+    }
+
+    #[test]
+    fn steps_that_are_not_divisors_are_refused() {
+        let error = |positions, degrees| {
+            let steps = GridSteps::new(positions, degrees);
+            steps.map_err(|error| error.to_string())
+        };
+        let positions = |found: u8| {
+            let expected = "expected a divisor of 100";
+            Err(format!("{found} positions in a cell: {expected}"))
+        };
+        assert_eq!(error(0, 1), positions(0));
+        assert_eq!(error(7, 1), positions(7));
+        assert_eq!(error(101, 1), positions(101));
+        for degrees in [0, 7, 361] {
+            assert_eq!(
+                GridSteps::new(10, degrees),
+                Err(GridStepsError::Degrees { found: degrees })
+            );
+        }
+        let steps = GridSteps::new(1, 360).expect("divisors");
+        assert_eq!(steps.angles().to_string(), "0");
+    }
+
+    /// On 16 × 16, the centre of a disc can move by a whole cell if its radius is 7.5, by 0.6 cells if it is 7.7, and
+    /// not at all if it is 8.
+    #[test]
+    fn the_sensor_is_just_large_enough_for_the_positions() {
+        let fit = |radius: f64, positions| {
+            let disc = Figure::ellipse(radius, radius).on(&Sensor::LARGEST);
+            let shapes = vec![NamedShape::new("disc", disc.expect("in range"))];
+            let steps = GridSteps::new(positions, 360).expect("divisors");
+            let training = Training::fitting(shapes, steps).expect("it fits");
+            let grid = &training.grids()[0];
+            let range = grid.ranges()[Axis::X0].to_string();
+            (grid.sensor().side(), range)
+        };
+        let found = |side, range: &str| (side, range.to_owned());
+        assert_eq!(fit(7.7, 100), found(17, "8:8.99:0.01"));
+        assert_eq!(fit(7.5, 5), found(16, "7.6:8.4:0.2"));
+        assert_eq!(fit(7.5, 2), found(16, "8:8.5:0.5"));
+        assert_eq!(fit(7.7, 2), found(17, "8:8.5:0.5"));
+        assert_eq!(fit(8.0, 2), found(17, "8:8.5:0.5"));
+        assert_eq!(fit(8.0, 1), found(16, "8"));
+        assert_eq!(fit(7.0, 1), found(16, "8"));
+    }
+
+    #[test]
+    fn figures_of_default_sizes_are_told_apart_by_any_touch() {
+        let steps = GridSteps::new(20, 3).expect("divisors");
+        let training = Training::fitting(default_figures(), steps).expect("they fit");
+        let model = training.run().expect("not stopped");
+        assert_eq!(Evaluation::of(&model).error(), 0.0);
+    }
 }

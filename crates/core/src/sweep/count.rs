@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_count() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let square = Source::Figure(Figure::default_of(
             FigureKind::Rectangle,

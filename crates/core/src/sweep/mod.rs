@@ -8,9 +8,7 @@
 //! **How a row is swept** (all x0 at one y0 and one angle):
 //! ```text
 //! polygon | ellipse   for each row of the sensor: the spans of x at which a taxel is active
-//!   isolate           the spans of an ellipse, slow but always right, if `ellipse` (which uses `track`) is not certain
 //! -> flips            the steps of x0 at which taxels become active or inactive
-//!   exact             decides with 32 digits where f64 cannot
 //! -> events -> runs   the runs of poses with the same imprint
 //! -> atlas            each imprint counted once per run, and described once per sweep
 //! ```
@@ -22,48 +20,23 @@
 //!
 //! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads or shards.
 
-mod point_symmetry;
-
 mod plan;
-
-mod exact;
-
-mod span;
 
 mod polygon;
 
-mod ellipse_band;
-
-mod isolate;
-
-mod track;
-
 mod ellipse;
-
-mod events;
 
 mod flips;
 
-mod reflected_rows;
-
 mod runs;
-
-mod ideal;
 
 mod result;
 
-mod merge;
-
 mod run;
-
-mod sample;
 
 mod count;
 
 pub use count::{CountedImprints, PoseRun};
-pub use merge::{MergeError, SweepMerge};
 pub use plan::{Shard, ShardError, ShardOrderError};
-pub use result::Parts;
-pub use result::{PartsError, SweepResult};
-pub use run::{Sweep, TakeRow};
-pub use sample::TimingSample;
+pub use result::{MergeError, Parts, PartsError, SweepMerge, SweepResult};
+pub use run::{Sweep, TakeRow, TimingSample};

@@ -11,7 +11,7 @@
 //! extrapolated, so steep pieces do no harm. The error is below 1e-11.
 
 use crate::geometry::{Point, Real};
-use crate::sweep::span::{DOUBT, Level, STEEP, Spans};
+use crate::sweep::flips::{DOUBT, Level, STEEP, Spans};
 
 /// An edge, from its upper end.
 #[derive(Clone, Copy, Debug)]

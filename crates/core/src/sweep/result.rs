@@ -1,16 +1,18 @@
 //! The result of a sweep: the atlas of distinct imprints, the statistics of their features, and the numbers that its
 //! file holds.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::atlas::{Atlas, ImprintCounter, Statistic, Table, VarianceParts, statistics};
+use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::imprint::Imprint;
 use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid, PoseIndex};
 use crate::progress::ToTheEnd;
-use crate::sweep::ideal::Ideal;
-use crate::sweep::plan::{Shard, SweepDetail, Task};
+use crate::source::Source;
+use crate::sweep::plan::{Shard, ShardOrderError, SweepDetail, Task};
 use crate::sweep::runs;
 
 /// The result of a sweep.
@@ -248,6 +250,219 @@ pub struct Parts {
 #[error("{0}")]
 pub struct PartsError(&'static str);
 
+// Merges the shards of a sweep.
+//
+// Shards are merged in the order of the grid, so first poses stay the first, and imprints have the same numbers as in
+// a single sweep. Memory holds only what is already merged and one shard.
+
+/// The shards of a sweep that were added so far.
+#[derive(Debug, Default)]
+pub struct SweepMerge(Option<Merged>);
+
+#[derive(Debug)]
+struct Merged {
+    grid: PoseGrid,
+    last: Shard,
+    atlas: Atlas,
+    variance_parts: VarianceParts,
+    poses: u64,
+    partly_off: u64,
+}
+
+impl Merged {
+    fn of(first: &SweepResult) -> Self {
+        let (grid, sensor) = (first.grid.clone(), first.grid.sensor());
+        Self {
+            last: first.shard,
+            atlas: Atlas::new(sensor.size()),
+            variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
+            grid,
+            poses: 0,
+            partly_off: 0,
+        }
+    }
+}
+
+impl SweepMerge {
+    /// Adds the next shard: the first, then the second, and so on.
+    ///
+    /// # Errors
+    /// Returns an error if it is incomplete, not the next one, or of another grid than the first. The merge then
+    /// stays unchanged.
+    pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
+        let shard = result.shard;
+        // Everything is checked before anything changes: after a refusal, the right shard can still be added.
+        if let Some(merged) = &self.0 {
+            let difference = if shard.of() == merged.last.of() {
+                difference(&result.grid, &merged.grid)
+            } else {
+                Some("the number of shards")
+            };
+            if let Some(difference) = difference {
+                return Err(MergeError::Foreign { shard, difference });
+            }
+        }
+        shard.check_after(self.0.as_ref().map(|merged| merged.last))?;
+        if !result.complete() {
+            return Err(MergeError::Incomplete { shard });
+        }
+        let merged = self.0.get_or_insert_with(|| Merged::of(&result));
+        merged.last = shard;
+        merged.atlas.add_all(&result.atlas);
+        merged.variance_parts.merge(result.variance_parts);
+        merged.poses += result.poses;
+        merged.partly_off += result.partly_off;
+        Ok(())
+    }
+
+    /// Returns the result of all shards together.
+    ///
+    /// # Errors
+    /// Returns an error if some are missing.
+    pub fn finish(self) -> Result<SweepResult, MergeError> {
+        let Merged {
+            grid,
+            last,
+            atlas,
+            variance_parts,
+            poses,
+            partly_off,
+        } = self.0.ok_or(ShardOrderError::Nothing)?;
+        last.check_last()?;
+        let mut table = Table::default();
+        table.extend(atlas.summaries());
+        let poses = (poses, partly_off);
+        Ok(SweepResult::new(
+            grid,
+            Shard::WHOLE,
+            poses,
+            atlas,
+            &table,
+            variance_parts,
+        ))
+    }
+}
+
+/// Returns what differs between two grids; None if they are equal. The source lies where its ranges begin, so it is
+/// compared last.
+fn difference(one: &PoseGrid, other: &PoseGrid) -> Option<&'static str> {
+    if one == other {
+        None
+    } else if one.sensor() != other.sensor() {
+        Some("its sensor")
+    } else if (one.ranges(), one.anchor()) != (other.ranges(), other.anchor()) {
+        Some("its ranges or their anchor")
+    } else {
+        Some("its shape")
+    }
+}
+
+/// The error of a merge.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MergeError {
+    /// Shards that are missing, or given twice.
+    #[error(transparent)]
+    Order(#[from] ShardOrderError),
+    /// A shard of another grid than the first one, or of another number of shards.
+    #[error("shard {shard} differs from the first one in {difference}")]
+    Foreign {
+        /// The shard.
+        shard: Shard,
+        /// The difference: "its shape", for example.
+        difference: &'static str,
+    },
+    /// A shard whose sweep was stopped early.
+    #[error("shard {shard} was stopped early, run it again")]
+    Incomplete {
+        /// The shard.
+        shard: Shard,
+    },
+}
+
+// The descriptors that a figure would have on a sensor of infinitely many, infinitely small cells.
+//
+// Only some descriptors have such a value: `na` is the figure's area, `nae` its area with the hole, and `p` the length
+// of its outer outline; `f` and `roundness` follow from these. Units are cells and cell sides. Pictures have none,
+// because their pieces and zooms do not give a single value.
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Ideal {
+    area: f64,
+    filled: f64,
+    outline: f64,
+}
+
+impl Ideal {
+    /// Computes the ideal of a figure; None for a picture.
+    pub(crate) fn of(source: &Source) -> Option<Self> {
+        let Source::Figure(figure) = source else {
+            return None;
+        };
+        let mut ideal = Self::default();
+        figure.draw(&mut ideal);
+        Some(ideal)
+    }
+
+    pub(crate) fn get(&self, key: &str) -> Option<f64> {
+        match key {
+            "na" => Some(self.area),
+            "nae" => Some(self.filled),
+            "p" => Some(self.outline),
+            "f" => Some(self.outline * self.outline / self.filled),
+            "roundness" => Some(4.0 * PI * self.filled / (self.outline * self.outline)),
+            _ => None,
+        }
+    }
+
+    fn add(&mut self, area: f64, outline: f64, material: Side) {
+        if material == Side::Inside {
+            self.area += area;
+            self.filled += area;
+            self.outline += outline;
+        } else {
+            self.area -= area;
+        }
+    }
+}
+
+impl Pen<f64> for Ideal {
+    /// Does nothing: figures draw rings and ellipses only.
+    fn edge(&mut self, _from: Point<f64>, _to: Point<f64>) {}
+
+    fn ring(&mut self, points: &[Point<f64>], material: Side) {
+        let next = points.iter().cycle().skip(1);
+        let (mut doubled, mut length) = (0.0, 0.0);
+        for (one, other) in points.iter().zip(next) {
+            doubled += one.x * other.y - other.x * one.y;
+            length += libm::hypot(other.x - one.x, other.y - one.y);
+        }
+        self.add(f64::abs(doubled) / 2.0, length, material);
+    }
+
+    fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
+        let length = |vector: Point<f64>| libm::hypot(vector.x, vector.y);
+        let (one, other) = (length(ellipse.across), length(ellipse.along));
+        self.add(PI * one * other, perimeter(one, other), material);
+    }
+}
+
+/// Returns the perimeter of an ellipse by the arithmetic-geometric mean (Gauss): with `c² = a² − b²` at each step,
+/// `2π·(a₀² − Σ 2ⁿ⁻¹·cₙ²) / M`.
+fn perimeter(one: f64, other: f64) -> f64 {
+    let (mut a, mut b) = (one.max(other), one.min(other));
+    let mut sum = a * a;
+    let mut power = 0.5;
+    while (a - b) > 1e-16 * a {
+        sum -= power * (a - b) * (a + b);
+        (a, b) = (f64::midpoint(a, b), (a * b).sqrt());
+        power *= 2.0;
+        if power > 64.0 {
+            break;
+        }
+    }
+    2.0 * PI * sum / a
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::{AtomicU64, Ordering};
@@ -256,10 +471,9 @@ mod tests {
     use crate::atlas::features;
     use crate::figure::{Figure, FigureKind};
     use crate::picture::Picture;
-    use crate::pose::{Anchor, Axis, DecimalRange, Ranges};
+    use crate::pose::{Anchor, DecimalRange, Ranges};
     use crate::progress::stop_if;
     use crate::sensor::Sensor;
-    use crate::source::Source;
     use crate::sweep::run::Sweep;
     use crate::touch::Plane;
 
@@ -385,7 +599,7 @@ mod tests {
     }
 
     #[test]
-    fn examples() -> Result<(), Box<dyn std::error::Error>> {
+    fn examples_of_result() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let square = Source::Figure(Figure::default_of(
             FigureKind::Rectangle,
@@ -399,6 +613,28 @@ mod tests {
             result.ids(PoseIndex::new([0; 5]), 49..52, 0..1),
             [Some(0), Some(1), Some(2)]
         );
+        Ok(())
+    }
+
+    #[test]
+    fn examples_of_merge() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::prelude::*;
+        use crate::sweep::{Shard, SweepMerge};
+        let square = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
+        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
+        let mut merge = SweepMerge::default();
+        for number in 1..=2 {
+            merge.add(
+                Sweep::new(&grid)
+                    .with_shard(Shard::new(number, 2).unwrap())
+                    .run(),
+            )?;
+        }
+        assert_eq!(merge.finish()?, Sweep::new(&grid).run());
         Ok(())
     }
 }

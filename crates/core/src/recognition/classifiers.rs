@@ -1,0 +1,788 @@
+//! Classifiers that use descriptors of the imprint, as the paper does, and their results compared with the limit of
+//! one touch.
+
+use std::collections::{BTreeMap, HashMap};
+
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+
+use crate::atlas::{feature_values, features};
+use crate::description::{Description, Descriptor, ExactValue, Value};
+use crate::imprint::Imprint;
+use crate::parameter::named;
+use crate::parameter::number::share;
+use crate::progress::Progress;
+use crate::recognition::evaluation::{ConfusionMatrix, Evaluation};
+use crate::recognition::given::{GivenTable, ShapeDescriptor};
+use crate::recognition::model::{Model, float};
+use crate::recognition::simulation::Draw;
+
+/// A classifier that uses descriptors or samples. The best classifier is the model itself.
+///
+/// All of them name the same touches as the [`Evaluation`] of the model counts, in which a pose counts with the weight
+/// of its shape. They learn from poses, of which each shape has equally many: a weight does not change the mean, the
+/// sample or the templates of a shape. They name the nearest shape, however likely it is.
+///
+/// Means and deviations are those of all poses, exact except for rounding; samples are drawn with a seed.
+/// Features are numbers of the main region that do not change under shifts, each in units of its deviation over all
+/// touches. A direction counts as its cosine and its sine, both 0 if it does not exist. Other features that do not
+/// exist for some imprint, constants, and copies of others (NA and NAE of solid shapes) are left out.
+///
+/// Source: R. O. Duda, P. E. Hart and D. G. Stork, *Pattern Classification*, 2001, chapters 2 to 4.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Classifier {
+    /// The nearest class mean, in units of each class's standard deviation.
+    Z,
+    /// The nearest touches of a sample.
+    Knn,
+    /// The nearest of the most frequent imprints, by the number of taxels that differ.
+    Template,
+}
+
+impl Classifier {
+    /// All classifiers.
+    pub const ALL: &'static [Self] = &[Self::Z, Self::Knn, Self::Template];
+
+    /// Returns the name used on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Z => "z",
+            Self::Knn => "knn",
+            Self::Template => "template",
+        }
+    }
+}
+
+named!(Classifier, "classifier", Classifier::ALL);
+
+/// The settings of classifiers: which descriptors and how many samples they use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClassifierSettings {
+    /// The descriptors that the features come from; None for all descriptors that do not change under shifts.
+    pub descriptors: Option<Vec<ShapeDescriptor>>,
+    /// The number of neighbours of [`Classifier::Knn`] that vote.
+    pub neighbours: usize,
+    /// The number of poses of each shape that [`Classifier::Knn`] draws.
+    pub sample: usize,
+    /// The seed for drawing these poses.
+    pub seed: u64,
+    /// The number of imprints of each shape that [`Classifier::Template`] compares with.
+    pub templates: usize,
+}
+
+impl Default for ClassifierSettings {
+    fn default() -> Self {
+        Self {
+            descriptors: None,
+            neighbours: 1,
+            sample: 2000,
+            seed: 0,
+            templates: 100,
+        }
+    }
+}
+
+/// The result of a classifier on a model's touches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClassifierEvaluation {
+    /// The classifier.
+    pub classifier: Classifier,
+    /// The counts, as for the best classifier. `information_bits` is the information that the given name has about the
+    /// shape.
+    pub evaluation: Evaluation,
+    /// The features that the classifier used; empty for [`Classifier::Template`].
+    pub features: Vec<String>,
+    /// The features that were left out, with the reason.
+    pub dropped: Vec<(String, &'static str)>,
+    /// The poses that [`Classifier::Knn`] drew at random; None for the other classifiers.
+    pub sample: Option<PoseSample>,
+}
+
+type Scores = Vec<f64>;
+
+impl Classifier {
+    /// Trains the classifier on a model's touches and classifies all of them.
+    ///
+    /// Ties go to the first shape in the order of the set. `progress` is called from time to time, from any thread,
+    /// with the number of keys of the model that were classified since the last call, and stops the evaluation by
+    /// returning `Break`. Returns None if it was stopped.
+    pub fn evaluate(
+        self,
+        model: &Model,
+        settings: &ClassifierSettings,
+        progress: &dyn Progress,
+    ) -> Option<ClassifierEvaluation> {
+        let evaluate =
+            |scores: &(dyn Fn(usize) -> Scores + Sync)| evaluate(model, scores, progress);
+        let features = || FeatureTable::new(model, settings.descriptors.as_deref());
+        let sample = PoseSample {
+            per_shape: settings.sample,
+            seed: settings.seed,
+        };
+        let (evaluation, table) = match self {
+            Self::Z => {
+                let table = features();
+                let classes = ClassMean::all(model, &table);
+                let scores = |key| {
+                    let row = table.row(key);
+                    classes.iter().map(|class| class.distance(row)).collect()
+                };
+                (evaluate(&scores)?, Some(table))
+            }
+            Self::Knn => {
+                let table = features();
+                let touches = Sample::new(model, sample);
+                let scores = |key| touches.scores(&table, settings.neighbours.max(1), key);
+                (evaluate(&scores)?, Some(table))
+            }
+            Self::Template => {
+                let templates = Templates::new(model, settings.templates.max(1));
+                (evaluate(&|key| templates.scores(model, key))?, None)
+            }
+        };
+        // For templates, imprints are compared, not features.
+        let (features, dropped) = table
+            .map(|table| (table.names, table.dropped))
+            .unwrap_or_default();
+        Some(ClassifierEvaluation {
+            classifier: self,
+            evaluation,
+            features,
+            dropped,
+            sample: (self == Self::Knn && sample.is_drawn(model)).then_some(sample),
+        })
+    }
+}
+
+/// The mean of each feature over the poses of a class, and its variance.
+struct ClassMean(Vec<(f64, f64)>);
+
+impl ClassMean {
+    fn all(model: &Model, table: &FeatureTable) -> Vec<Self> {
+        let poses = u128::from(model.poses());
+        let mut classes: Vec<_> = (model.shapes().iter())
+            .map(|_| Self(vec![(0.0, LEAST_VARIANCE); table.names.len()]))
+            .collect();
+        let mut each = |add: fn(&mut (f64, f64), f64, f64)| {
+            for key in 0..model.keys().len() {
+                for count in model.counts(key) {
+                    let part = share(count.poses.into(), poses);
+                    let class = &mut classes[usize::from(count.shape)].0;
+                    for (own, &value) in class.iter_mut().zip(table.row(key)) {
+                        add(own, part, value);
+                    }
+                }
+            }
+        };
+        each(|(mean, _), part, value| *mean += part * value);
+        each(|(mean, variance), part, value| *variance += part * (value - *mean) * (value - *mean));
+        classes
+    }
+
+    /// Returns the square of the distance of a key's features from the mean, in standard deviations.
+    fn distance(&self, row: &[f64]) -> f64 {
+        let parts = row.iter().zip(&self.0);
+        parts
+            .map(|(value, (mean, variance))| (value - mean) * (value - mean) / variance)
+            .sum()
+    }
+}
+
+fn evaluate(
+    model: &Model,
+    scores: &(dyn Fn(usize) -> Scores + Sync),
+    progress: &dyn Progress,
+) -> Option<Evaluation> {
+    let ranked = (0..model.keys().len()).into_par_iter().map(|key| {
+        let ranked = first_two(&scores(key));
+        progress.add(1).is_continue().then_some(ranked)
+    });
+    let ranked: Vec<[Option<usize>; 3]> = ranked.collect::<Option<_>>()?;
+    let mut evaluation = Evaluation::new(model);
+    evaluation.keys = model.keys().len();
+    for (key, [named, second, tie]) in ranked.into_iter().enumerate() {
+        for &count in model.counts(key) {
+            let (shape, touches) = (usize::from(count.shape), model.weighted(count));
+            let Some(named) = named else { continue };
+            evaluation.confusion.add(shape, named, touches);
+            if named == shape {
+                evaluation.right += touches;
+            }
+            if named == shape || second == Some(shape) {
+                evaluation.right_in_top_two += touches;
+            }
+            if tie.is_some() {
+                evaluation.tied += touches;
+            }
+        }
+    }
+    evaluation.information_bits = information(&evaluation.confusion);
+    Some(evaluation.finished())
+}
+
+/// Returns the shape with the lowest score, the one with the second lowest, and the second one again if the two are
+/// tied.
+fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
+    let lowest = |without: Option<usize>| {
+        let open = (0..scores.len()).filter(|&shape| Some(shape) != without);
+        open.reduce(|best, next| {
+            if scores[next] < scores[best] {
+                next
+            } else {
+                best
+            }
+        })
+    };
+    let first = lowest(None);
+    let second = lowest(first);
+    let tie = first
+        .zip(second)
+        .filter(|&(one, other)| scores[one] == scores[other]);
+    [first, second, tie.map(|(_, second)| second)]
+}
+
+fn information(confusion: &ConfusionMatrix) -> f64 {
+    let shapes = 0..confusion.shapes();
+    let rows: Vec<u128> = (shapes.clone())
+        .map(|shape| confusion.touches_of(shape))
+        .collect();
+    let columns: Vec<u128> = shapes.map(|shape| confusion.touches_named(shape)).collect();
+    let total = rows.iter().sum();
+    let bits = confusion.cells().map(|(touched, named, touches)| {
+        let ratio = share(touches, rows[touched]) / share(columns[named], total);
+        share(touches, total) * libm::log2(ratio)
+    });
+    bits.sum()
+}
+
+/// The number added to single variances, which only have to differ from 0.
+const LEAST_VARIANCE: f64 = 1e-9;
+
+/// The features of all keys, in units of their deviation.
+struct FeatureTable {
+    names: Vec<String>,
+    dropped: Vec<(String, &'static str)>,
+    /// A row of features for each key.
+    values: Vec<f64>,
+}
+
+impl FeatureTable {
+    fn new(model: &Model, descriptors: Option<&[ShapeDescriptor]>) -> Self {
+        let table = GivenTable::new(model);
+        let keys = table.descriptions().len();
+        let wanted =
+            |key: &str| descriptors.is_none_or(|own| own.iter().any(|one| one.key() == key));
+        let (mut names, mut dropped) = (Vec::new(), Vec::new());
+        let mut kept: Vec<(Vec<f64>, f64, f64)> = Vec::new();
+        for (name, descriptor, column) in columns(table.descriptions()) {
+            if descriptor.changes_under.shift || !wanted(descriptor.key) {
+                continue;
+            }
+            let (mean, variance) = moments(model, &column);
+            let reason = if column.iter().any(|value| value.is_nan()) {
+                "does not exist for some imprints"
+            } else if variance <= LEAST_VARIANCE * (1.0 + mean * mean) {
+                "constant"
+            } else if kept.iter().any(|(own, ..)| *own == column) {
+                "a copy of another"
+            } else {
+                names.push(name);
+                kept.push((column, mean, variance));
+                continue;
+            };
+            dropped.push((name, reason));
+        }
+        let mut values = vec![0.0; keys * kept.len()];
+        for (index, (column, mean, variance)) in kept.iter().enumerate() {
+            for (key, value) in column.iter().enumerate() {
+                values[key * kept.len() + index] = (value - mean) / variance.sqrt();
+            }
+        }
+        Self {
+            names,
+            dropped,
+            values,
+        }
+    }
+
+    fn row(&self, key: usize) -> &[f64] {
+        &self.values[key * self.names.len()..][..self.names.len()]
+    }
+}
+
+/// Returns the features with their names and descriptors, and the value of each for every key, NaN where it does not
+/// exist.
+fn columns(
+    descriptions: &[Option<Description>],
+) -> impl Iterator<Item = (String, &'static Descriptor, Vec<f64>)> {
+    // Counts of an empty imprint are 0; other features of it do not exist.
+    let of_nothing = features().iter().map(|feature| {
+        if feature.descriptor.of_nothing == Value::None {
+            f64::NAN
+        } else {
+            0.0
+        }
+    });
+    let mut columns: Vec<_> = of_nothing
+        .map(|value| vec![value; descriptions.len()])
+        .collect();
+    for (key, description) in descriptions.iter().enumerate() {
+        if let Some(description) = description {
+            feature_values(description, |feature, value| columns[feature][key] = value);
+        }
+    }
+    for (feature, column) in features().iter().zip(&mut columns) {
+        equalise(column, descriptions, feature.descriptor);
+    }
+    let all = features().iter().zip(columns);
+    all.flat_map(|(feature, column)| {
+        let descriptor = feature.descriptor;
+        if !feature.circular {
+            return vec![(feature.key.clone(), descriptor, column)];
+        }
+        let part = |suffix: &str, of: fn(f64) -> f64| {
+            let values = column.iter().map(|degrees| {
+                if degrees.is_nan() {
+                    0.0
+                } else {
+                    of(degrees.to_radians())
+                }
+            });
+            let name = format!("{}_{suffix}", feature.key);
+            (name, descriptor, values.collect())
+        };
+        vec![part("cos", libm::cos), part("sin", libm::sin)]
+    })
+}
+
+/// Makes the values of a feature equal where its descriptor is exactly equal: computed from other sums, they differ by a
+/// rounding error, and nearest neighbours would then not be equally near.
+fn equalise(
+    column: &mut [f64],
+    descriptions: &[Option<Description>],
+    descriptor: &'static Descriptor,
+) {
+    let mut known: HashMap<ExactValue, f64> = HashMap::new();
+    for (value, description) in column.iter_mut().zip(descriptions) {
+        if let Some(description) = description {
+            *value = *known
+                .entry((descriptor.exact)(description))
+                .or_insert(*value);
+        }
+    }
+}
+
+fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
+    let touches = u128::from(model.poses()) * model.weights();
+    let mean_of = |value: &dyn Fn(f64) -> f64| {
+        let keys = column.iter().enumerate().map(|(key, &own)| {
+            let counts = model.counts(key).iter();
+            let weight: u128 = counts.map(|&count| model.weighted(count)).sum();
+            share(weight, touches) * value(own)
+        });
+        keys.sum::<f64>()
+    };
+    let mean = mean_of(&|value| value);
+    (mean, mean_of(&|value| (value - mean) * (value - mean)))
+}
+
+/// Poses that a classifier drew at random.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PoseSample {
+    /// The number of poses of each shape.
+    pub per_shape: usize,
+    /// The seed for drawing these poses.
+    pub seed: u64,
+}
+
+impl PoseSample {
+    /// Returns true if poses are drawn, because these are fewer than each shape has.
+    fn is_drawn(self, model: &Model) -> bool {
+        (self.per_shape as u64) < model.poses()
+    }
+}
+
+/// The touches that vote: a random sample, or all touches.
+struct Sample {
+    touches: Vec<SampledTouches>,
+    shapes: usize,
+}
+
+/// Touches of one shape that leave the same key.
+struct SampledTouches {
+    key: usize,
+    shape: usize,
+    /// The number of the touches, each of which is a vote.
+    votes: u64,
+}
+
+impl Sample {
+    fn new(model: &Model, sample: PoseSample) -> Self {
+        let shapes = model.shapes().len();
+        let touches = if sample.is_drawn(model) {
+            Self::drawn(model, sample)
+        } else {
+            let own = |key| {
+                let counts = model.counts(key).iter();
+                counts.map(move |count| SampledTouches {
+                    key,
+                    shape: usize::from(count.shape),
+                    votes: count.poses,
+                })
+            };
+            (0..model.keys().len()).flat_map(own).collect()
+        };
+        Self { touches, shapes }
+    }
+
+    /// Draws touches. Returns them in the order of their keys.
+    fn drawn(model: &Model, sample: PoseSample) -> Vec<SampledTouches> {
+        let mut random = Pcg64::seed_from_u64(sample.seed);
+        let mut votes = BTreeMap::new();
+        for (shape, draw) in Draw::all(model, |_| 1).iter().enumerate() {
+            for key in (0..sample.per_shape).filter_map(|_| draw.key(&mut random)) {
+                *votes.entry((key, shape)).or_insert(0) += 1;
+            }
+        }
+        let votes = votes.into_iter();
+        votes
+            .map(|((key, shape), votes)| SampledTouches { key, shape, votes })
+            .collect()
+    }
+
+    /// Returns minus the votes of each shape. All touches as near as the last neighbour vote too, since many touches
+    /// have the same features.
+    fn scores(&self, table: &FeatureTable, neighbours: usize, key: usize) -> Vec<f64> {
+        let row = table.row(key);
+        let mut last = (usize::MAX, 0.0);
+        let mut distances: Vec<(f64, usize, u64)> = Vec::with_capacity(self.touches.len());
+        for touches in &self.touches {
+            if touches.key != last.0 {
+                let parts = row.iter().zip(table.row(touches.key));
+                let distance = parts.map(|(one, two)| (one - two) * (one - two)).sum();
+                last = (touches.key, distance);
+            }
+            distances.push((last.1, touches.shape, touches.votes));
+        }
+        let mut scores = vec![0.0; self.shapes];
+        let Some(rank) = neighbours.min(distances.len()).checked_sub(1) else {
+            return scores;
+        };
+        let order = |one: &(f64, usize, u64), other: &(f64, usize, u64)| one.0.total_cmp(&other.0);
+        // Each entry has at least one vote, so the first `neighbours` entries include the last neighbour.
+        distances.select_nth_unstable_by(rank, order);
+        distances[..=rank].sort_unstable_by(order);
+        let mut nearer = 0;
+        let last = distances[..=rank].iter().find(|(_, _, votes)| {
+            nearer += u128::from(*votes);
+            nearer >= neighbours as u128
+        });
+        let farthest = last.unwrap_or(&distances[rank]).0;
+        for (_, shape, votes) in distances.iter().filter(|own| own.0 <= farthest) {
+            scores[*shape] -= float(*votes);
+        }
+        scores
+    }
+}
+
+pub(super) struct Templates(Vec<Vec<Template>>);
+
+/// An imprint, and how many of its taxels lie above each row and left of each column. An empty imprint has no rows.
+struct Template {
+    words: Vec<u64>,
+    above: Vec<u32>,
+    left: Vec<u32>,
+}
+
+impl Templates {
+    pub(super) fn new(model: &Model, most: usize) -> Self {
+        let mut all: Vec<Vec<(std::cmp::Reverse<u64>, usize)>> =
+            vec![Vec::new(); model.shapes().len()];
+        for key in 0..model.keys().len() {
+            for count in model.counts(key) {
+                all[usize::from(count.shape)].push((std::cmp::Reverse(count.poses), key));
+            }
+        }
+        let templates = |mut own: Vec<(std::cmp::Reverse<u64>, usize)>| {
+            own.sort_unstable();
+            let first = own.iter().take(most);
+            let imprints = first.map(|&(_, key)| model.keys().imprint(key));
+            imprints
+                .map(|imprint| Template::of(imprint.as_ref()))
+                .collect()
+        };
+        Self(all.into_iter().map(templates).collect())
+    }
+
+    /// Returns, for each shape, the least number of taxels that differ from a key, over all templates of the shape
+    /// and all their shifts.
+    pub(super) fn scores(&self, model: &Model, key: usize) -> Vec<f64> {
+        let touch = Template::of(model.keys().imprint(key).as_ref());
+        let own = |templates: &Vec<Template>| {
+            let least = templates.iter().fold(None, |least, template| {
+                Some(touch.distance(template, least.unwrap_or(u32::MAX)))
+            });
+            least.map_or(f64::INFINITY, f64::from)
+        };
+        self.0.iter().map(own).collect()
+    }
+}
+
+impl Template {
+    fn of(imprint: Option<&Imprint>) -> Self {
+        let words = imprint.map_or(Vec::new(), |imprint| imprint.words().to_vec());
+        let columns = imprint.map_or(0, Imprint::columns);
+        let in_row = |word: &u64| word.count_ones();
+        let in_column = |column| {
+            words
+                .iter()
+                .map(|word| u32::from(word >> column & 1 == 1))
+                .sum()
+        };
+        Self {
+            above: sums_before(words.iter().map(in_row)),
+            left: sums_before((0..columns).map(in_column)),
+            words,
+        }
+    }
+
+    fn count(&self) -> u32 {
+        self.above[self.words.len()]
+    }
+
+    /// Returns the least number of taxels in which two imprints differ, over all shifts of one against the other;
+    /// `most` if it is not below that.
+    fn distance(&self, other: &Self, most: u32) -> u32 {
+        let sum = self.count() + other.count();
+        // Only shifts at which more taxels than this coincide matter. Rows and columns alone rule out most shifts.
+        let mut shared = sum.saturating_sub(most) / 2;
+        let mut least = most.min(sum);
+        for down in shifts(&self.above, &other.above) {
+            if in_common(&self.above, &other.above, down) <= shared {
+                continue;
+            }
+            let (first, skipped) = starts(down);
+            let pairs = || self.words[first..].iter().zip(&other.words[skipped..]);
+            for across in shifts(&self.left, &other.left) {
+                if in_common(&self.left, &other.left, across) <= shared {
+                    continue;
+                }
+                let (right, left) = starts(across);
+                let common = pairs()
+                    .map(|(own, word)| (own & (word >> left) << right).count_ones())
+                    .sum();
+                if common > shared {
+                    shared = common;
+                    least = least.min(sum - 2 * shared);
+                }
+            }
+        }
+        least
+    }
+}
+
+fn sums_before(values: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut sum = 0;
+    let after = values.map(|value| {
+        sum += value;
+        sum
+    });
+    std::iter::once(0).chain(after).collect()
+}
+
+/// Returns the shifts at which rows, or columns, of two imprints meet.
+fn shifts(own: &[u32], other: &[u32]) -> std::ops::Range<isize> {
+    2 - other.len().cast_signed()..own.len().cast_signed() - 1
+}
+
+/// Returns the first rows, or columns, of the two imprints that meet at a shift.
+fn starts(shift: isize) -> (usize, usize) {
+    let start = |shift: isize| shift.max(0).unsigned_abs();
+    (start(shift), start(-shift))
+}
+
+/// Returns the most taxels that two imprints can have in common at a shift, by the rows or columns that meet there.
+fn in_common(own: &[u32], other: &[u32], shift: isize) -> u32 {
+    let (first, skipped) = starts(shift);
+    let length = (own.len() - first).min(other.len() - skipped) - 1;
+    let within = |sums: &[u32], start: usize| sums[start + length] - sums[start];
+    within(own, first).min(within(other, skipped))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    use super::*;
+    use crate::figure::Figure;
+    use crate::progress::{ToTheEnd, stop_if};
+    use crate::recognition::model::NamedShape;
+    use crate::recognition::training::{GridSteps, Training};
+    use crate::sensor::{MatrixSize, Sensor};
+
+    #[test]
+    fn a_sample_larger_than_the_poses_takes_all_poses() {
+        let sensor = Sensor::default();
+        let shapes = [
+            ("square", Figure::rectangle(3.0, 3.0).on(&sensor)),
+            ("bar", Figure::rectangle(6.0, 3.0).on(&sensor)),
+        ];
+        let shapes = shapes.map(|(name, figure)| NamedShape::new(name, figure.expect("in range")));
+        let steps = GridSteps::new(10, 45).expect("divisors");
+        let training = Training::fitting(shapes.to_vec(), steps).expect("they fit");
+        let model = training.run().expect("not stopped");
+        let reached = |sample, seed| {
+            let settings = ClassifierSettings {
+                sample,
+                seed,
+                neighbours: 3,
+                ..ClassifierSettings::default()
+            };
+            let reached = Classifier::Knn.evaluate(&model, &settings, &ToTheEnd);
+            reached.expect("not stopped")
+        };
+        let all = reached(usize::MAX, 0);
+        assert_eq!((&all, all.sample), (&reached(usize::MAX, 1), None));
+        let some = reached(5, 0);
+        assert_eq!(some.sample.map(|sample| sample.per_shape), Some(5));
+        assert_ne!(some.evaluation, all.evaluation);
+    }
+
+    #[test]
+    fn every_classifier_reports_all_keys_and_can_be_stopped() {
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(6.0, 3.0).on(&sensor).expect("in range");
+        let steps = GridSteps::new(4, 45).expect("divisors");
+        let training = Training::fitting(vec![NamedShape::new("bar", bar)], steps);
+        let model = training.expect("it fits").run().expect("not stopped");
+        for &classifier in Classifier::ALL {
+            let keys = AtomicU64::new(0);
+            let settings = ClassifierSettings::default();
+            let add = |more| {
+                keys.fetch_add(more, Ordering::Relaxed);
+                stop_if(false)
+            };
+            assert!(classifier.evaluate(&model, &settings, &add).is_some());
+            assert_eq!(keys.into_inner(), model.keys().len() as u64);
+            assert_eq!(
+                classifier.evaluate(&model, &settings, &|_| stop_if(true)),
+                None
+            );
+        }
+    }
+
+    #[test]
+    fn ties_go_to_the_first() {
+        assert_eq!(first_two(&[2.0, 1.0, 1.0]), [Some(1), Some(2), Some(2)]);
+        assert_eq!(first_two(&[2.0, 1.0, 3.0]), [Some(1), Some(0), None]);
+        assert_eq!(first_two(&[2.0]), [Some(0), None, None]);
+    }
+
+    #[test]
+    fn examples_of_classifiers() -> Result<(), Box<dyn std::error::Error>> {
+        use crate::progress::ToTheEnd;
+        use crate::recognition::{
+            Classifier, ClassifierSettings, Evaluation, GridSteps, Training, equal_figures,
+        };
+        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+        let settings = ClassifierSettings::default();
+        let result = Classifier::Knn
+            .evaluate(&model, &settings, &ToTheEnd)
+            .expect("not stopped");
+        // No classifier of one touch is better than the model.
+        assert!(result.evaluation.right <= Evaluation::of(&model).right);
+        Ok(())
+    }
+
+    #[test]
+    fn an_empty_imprint_does_not_remove_counts_from_the_features() {
+        let sensor = Sensor::default();
+        let shapes = [
+            ("tri", Figure::triangle(1.2).on(&sensor)),
+            ("bar", Figure::rectangle(6.0, 3.0).on(&sensor)),
+        ];
+        let shapes = shapes.map(|(name, figure)| NamedShape::new(name, figure.expect("in range")));
+        let steps = GridSteps::new(10, 45).expect("divisors");
+        let training = Training::fitting(shapes.to_vec(), steps).expect("they fit");
+        let model = training.run().expect("not stopped");
+        let table = FeatureTable::new(&model, None);
+        let empty = GivenTable::new(&model);
+        assert!(empty.descriptions().iter().any(Option::is_none));
+        for count in ["na", "nae", "ce", "area"] {
+            let kept = table.names.iter().any(|name| name == count);
+            let copy = table.dropped.iter();
+            let copy =
+                copy.filter(|(name, reason)| name == count && *reason == "a copy of another");
+            assert!(kept || copy.count() == 1, "{count}: {:?}", table.dropped);
+        }
+    }
+
+    #[test]
+    fn distances_take_the_best_shift() {
+        let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
+        for (one, other, expected) in [
+            ("##.#", "#.#", 1),
+            ("#.\n##", "##\n.#\n.#", 3),
+            ("#", "###\n###", 5),
+            ("#..\n...\n..#", "#..\n...\n..#", 0),
+        ] {
+            let (one, other) = (
+                Template::of(Some(&read(one))),
+                Template::of(Some(&read(other))),
+            );
+            assert_eq!(one.distance(&other, u32::MAX), expected);
+            assert_eq!(other.distance(&one, u32::MAX), expected);
+            // The result never exceeds the given bound.
+            assert_eq!(one.distance(&other, expected + 1), expected);
+            assert_eq!(one.distance(&other, expected), expected);
+            assert_eq!(one.distance(&other, 0), 0);
+        }
+        let (nothing, four) = (Template::of(None), Template::of(Some(&read("##\n##"))));
+        assert_eq!(nothing.distance(&four, u32::MAX), 4);
+        assert_eq!(four.distance(&nothing, 3), 3);
+        assert_eq!(nothing.distance(&nothing, 9), 0);
+    }
+
+    /// Compares with all shifts one by one, taxel by taxel.
+    #[test]
+    fn no_shift_is_missed() {
+        let mut word = 0x9E37_79B9_7F4A_7C15_u64;
+        let mut random = |below: u64| {
+            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (word >> 33) % below
+        };
+        for _ in 0..300 {
+            let mut imprint = || {
+                let side = |random: u64| u8::try_from(random + 1).expect("small");
+                let (columns, rows) = (side(random(9)), side(random(9)));
+                let mut imprint = Imprint::empty(MatrixSize::of(columns, rows));
+                for row in 0..rows {
+                    for column in 0..columns {
+                        imprint.set(column, row, random(3) > 0);
+                    }
+                }
+                imprint
+            };
+            let (one, other) = (imprint(), imprint());
+            let taxels = |imprint: &Imprint| {
+                let active = imprint.active();
+                active
+                    .map(|(x, y)| (i16::from(x), i16::from(y)))
+                    .collect::<Vec<_>>()
+            };
+            let (own, others) = (taxels(&one), taxels(&other));
+            let shifts = (-9..=9).flat_map(|down| (-9..=9).map(move |across| (across, down)));
+            let common = |(across, down)| {
+                let moved = others.iter().map(|&(x, y)| (x + across, y + down));
+                moved.filter(|taxel| own.contains(taxel)).count()
+            };
+            let most = shifts.map(common).max().expect("there are shifts");
+            let expected = u32::try_from(own.len() + others.len() - 2 * most).expect("small");
+            let (one, other) = (Template::of(Some(&one)), Template::of(Some(&other)));
+            assert_eq!(one.distance(&other, u32::MAX), expected);
+            assert_eq!(one.distance(&other, expected + 1), expected);
+            assert_eq!(one.distance(&other, expected), expected);
+        }
+    }
+}
