@@ -22,13 +22,13 @@ TAXEL = os.environ.get("TAXEL", os.path.join(HERE, "../target/release/taxel"))
 QUERIES = int(sys.argv[1]) if len(sys.argv) > 1 else 500
 SIDE = 16
 FIGURES = [
-    "disc=ellipse radius_x=3.09 radius_y=3.09",
-    "block=rectangle length=6 width=5",
-    "triangle=triangle side=8.32",
-    "pentagon=pentagon side=4.18",
-    "hexagon=hexagon side=3.4",
-    "heptagon=heptagon side=2.87",
-    "octagon=octagon side=2.49",
+    '{"name":"disc","figure":"ellipse","radius_x":3.09,"radius_y":3.09}',
+    '{"name":"block","figure":"rectangle","length":6,"width":5}',
+    '{"name":"triangle","figure":"triangle","side":8.32}',
+    '{"name":"pentagon","figure":"pentagon","side":4.18}',
+    '{"name":"hexagon","figure":"hexagon","side":3.4}',
+    '{"name":"heptagon","figure":"heptagon","side":2.87}',
+    '{"name":"octagon","figure":"octagon","side":2.49}',
 ]
 
 try:
@@ -45,10 +45,9 @@ except ImportError:
 
 def train(path):
     ranges = ["--x0", "10:10.99:0.01", "--y0", "10:10.99:0.01", "--angle", "0:359:1", "--anchor", "corner"]
-    shapes = [word for figure in FIGURES for word in ("--shape", figure)]
     sensor = ["--columns", "32", "--rows", "32"]
-    subprocess.run([TAXEL, "model", "train", *shapes, *sensor, *ranges, "--out", path, "--quiet"],
-                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([TAXEL, "model", "train", "-", *sensor, *ranges, "--out", path, "--quiet"],
+                   check=True, text=True, input="\n".join(FIGURES), stdout=subprocess.DEVNULL)
 
 
 def templates(path):

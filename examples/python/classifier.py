@@ -52,9 +52,11 @@ def main():
     rows = np.arange(len(shape))
     of_others, of_all = error(learn, test), error(rows, rows)
 
-    named = [f"{name}=rectangle length={length} width={width}" for name, (length, width) in SHAPES.items()]
-    shapes = [word for shape in named for word in ("--shape", shape)]
-    taxel("model", "train", *shapes, *GRID, "--out", "model.npz", "--quiet")
+    with open("shapes.jsonl", "w") as lines:
+        for name, (length, width) in SHAPES.items():
+            shape = {"name": name, "figure": "rectangle", "length": length, "width": width}
+            lines.write(json.dumps(shape) + "\n")
+    taxel("model", "train", "shapes.jsonl", *GRID, "--out", "model.npz", "--quiet")
     limit = json.loads(taxel("model", "confusion", "model.npz", "--json"))
     given = json.loads(taxel("model", "confusion", "model.npz", "--given", ",".join(DESCRIPTORS), "--json"))
     assert limit["touches"] == count.sum(), "the atlases and the model are of the same touches"

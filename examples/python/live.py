@@ -15,7 +15,10 @@ import tempfile
 import threading
 
 TAXEL = os.environ.get("TAXEL", "taxel")
-SHAPES = ["--shape", "disc=ellipse radius_x=3 radius_y=3", "--shape", "bar=rectangle length=9 width=2"]
+SHAPES = [
+    {"name": "disc", "figure": "ellipse", "radius_x": 3, "radius_y": 3},
+    {"name": "bar", "figure": "rectangle", "length": 9, "width": 2},
+]
 
 
 def made_up(stream, frames=24, side=16):
@@ -39,8 +42,9 @@ def made_up(stream, frames=24, side=16):
 def main(source):
     with tempfile.TemporaryDirectory() as folder:
         model = os.path.join(folder, "model.npz")
-        train = [TAXEL, "model", "train", *SHAPES, "--positions", "20", "--angle", "0:355:5", "--out", model, "--quiet"]
-        subprocess.run(train, check=True, stdout=subprocess.DEVNULL)
+        train = [TAXEL, "model", "train", "-", "--positions", "20", "--angle", "0:355:5", "--out", model, "--quiet"]
+        lines = "".join(json.dumps(shape) + "\n" for shape in SHAPES)
+        subprocess.run(train, check=True, text=True, input=lines, stdout=subprocess.DEVNULL)
         watch = [TAXEL, "watch", source or "-", "--json", "--at-least", "10", "--model", model]
         if source is None:
             watch += ["--format", "lines", "--once"]

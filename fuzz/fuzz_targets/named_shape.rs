@@ -1,4 +1,4 @@
-//! A shape of a set, as JSON and in words, from any bytes.
+//! A shape of a set from any bytes.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("named_shape", bytes));

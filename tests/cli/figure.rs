@@ -217,13 +217,17 @@ fn a_word_that_is_not_a_figure_is_refused_with_a_tip() {
         ),
         (
             "model|train|hexagon|--out|no.npz",
-            "no shape named \"hexagon\"; \"hexagon\" is a figure: --shape 'hexagon=hexagon side=4'",
+            "no shape named \"hexagon\"; \"hexagon\" is a figure: a file of lines may have {\"name\":\"hexagon\",\"figure\":\"hexagon\",\"side\":4}",
         ),
     ] {
         refused(&shelf.run(line, ""), 1, message);
     }
     let out = shelf.file("hexagon.npz", "");
-    let shape = "--shape|hexagon=hexagon side=4|--x0|7|--y0|7|--angle|0";
+    let shape = shelf.file(
+        "set.jsonl",
+        "{\"name\":\"hexagon\",\"figure\":\"hexagon\",\"side\":4}\n",
+    );
+    let shape = format!("{shape}|--x0|7|--y0|7|--angle|0");
     shelf.does(
         &format!("model|train|washer|{shape}|--out|{out}|--force|--quiet"),
         "",

@@ -366,15 +366,13 @@ fn models_can_be_named_listed_and_shown() {
     );
 }
 
-/// Shapes of a set come from anywhere: a file, standard input, the library, words.
+/// Shapes of a set come from anywhere: files, standard input, the library.
 #[test]
-fn shapes_come_from_files_words_and_the_library() {
+fn shapes_come_from_files_and_the_library() {
     let place = Place::new();
     place.done("library save mine washer");
-    let line = format!(
-        "model train rectangles.jsonl - mine --shape 'big disc=ellipse radius_x=5 radius_y=5' \
-         --shape 'key=picture key' {COARSE} --out all.npz"
-    );
+    place.write("more.jsonl", "{\"name\":\"big disc\",\"figure\":\"ellipse\",\"radius_x\":5,\"radius_y\":5}\n{\"name\":\"key\",\"picture\":\"key\"}\n");
+    let line = format!("model train rectangles.jsonl - mine more.jsonl {COARSE} --out all.npz");
     let run = place.run(
         &line,
         "{\"name\":\"corner\",\"imprint\":[\"##\",\"#.\"],\"weight\":2}\r\n",
@@ -435,18 +433,20 @@ fn similar_names_are_suggested() {
             "model train gaer --out m.npz",
             "no shape named \"gaer\"; did you mean \"gear\"?",
         ),
-        (
-            "model train --shape 'disc=elipse' --out m.npz",
-            "--shape disc: figure: \"elipse\" is unknown, expected one of ellipse, rectangle, triangle, \
-             pentagon, hexagon, heptagon, octagon; did you mean \"ellipse\"?",
-        ),
-        (
-            "model train --shape 'disc=circle' --out m.npz",
-            "--shape disc: figure: \"circle\" is unknown, expected one of ellipse, rectangle, triangle, \
-             pentagon, hexagon, heptagon, octagon; a circle is an ellipse with equal radii",
-        ),
     ] {
         refused(&place.run(line, ""), 1, message);
+    }
+    for (figure, meant) in [
+        ("elipse", "did you mean \"ellipse\"?"),
+        ("circle", "a circle is an ellipse with equal radii"),
+    ] {
+        let shape = format!("{{\"name\":\"disc\",\"figure\":{figure:?}}}\n");
+        let run = place.run("model train - --out m.npz", &shape);
+        let message = format!(
+            "standard input: line 1: figure: {figure:?} is unknown, expected one of ellipse, rectangle, triangle, \
+             pentagon, hexagon, heptagon, octagon; {meant}"
+        );
+        refused(&run, 1, &message);
     }
 }
 
@@ -497,15 +497,14 @@ fn meaningless_sets_are_refused_in_one_sentence() {
         );
         assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
     }
-    refused(
-        &train("--shape 'disc=ellipse radius_x'", ""),
-        1,
-        "--shape disc: \"radius_x\": expected KEY=NUMBER, such as radius_x=3",
-    );
     let run = train("no-such-shape", "");
     assert!(run.stderr.contains("no-such-shape"), "{}", run.stderr);
     // Poses that the sensor cuts off are refused unless they are allowed.
-    let cut = "model train --shape 't=triangle side=11.77' --x0 5:5.9:0.1 --y0 5:5.9:0.1 \
+    place.write(
+        "t.jsonl",
+        "{\"name\":\"t\",\"figure\":\"triangle\",\"side\":11.77}\n",
+    );
+    let cut = "model train t.jsonl --x0 5:5.9:0.1 --y0 5:5.9:0.1 \
                --angle 0:350:10 --columns 16 --rows 16 --quiet --out cut.npz";
     refused(
         &place.run(cut, ""),
@@ -518,7 +517,10 @@ fn meaningless_sets_are_refused_in_one_sentence() {
     assert_eq!(place.run(&named, "").status, Some(1));
     assert!(!place.0.path().join("models").exists(), "it would be empty");
     refused(
-        &train("--shape 'huge=ellipse radius_x=40 radius_y=40'", ""),
+        &train(
+            "-",
+            "{\"name\":\"huge\",\"figure\":\"ellipse\",\"radius_x\":40,\"radius_y\":40}\n",
+        ),
         1,
         "huge: the 64 × 64 sensor cuts off 7,200 of 7,200 poses; use smaller shapes, or allow it with --allow-cut",
     );
@@ -544,7 +546,11 @@ fn meaningless_sets_are_refused_in_one_sentence() {
 #[test]
 fn training_chooses_missing_sides_of_the_sensor() {
     let place = Place::new();
-    let disc = "model train --shape 'a=ellipse radius_x=9 radius_y=9' --positions 2 --angle 0 --json --quiet --out m.npz";
+    place.write(
+        "a.jsonl",
+        "{\"name\":\"a\",\"figure\":\"ellipse\",\"radius_x\":9,\"radius_y\":9}\n",
+    );
+    let disc = "model train a.jsonl --positions 2 --angle 0 --json --quiet --out m.npz";
     for (given, columns, rows) in [
         ("", 19, 19),
         ("--columns 40", 40, 19),
@@ -568,8 +574,11 @@ fn training_chooses_missing_sides_of_the_sensor() {
 #[test]
 fn if_every_sensor_cuts_poses_off_the_message_says_what_helps() {
     let place = Place::new();
-    let square =
-        "model train --shape 'a=rectangle length=3 width=3' --x0 0 --y0 0 --quiet --out m.npz";
+    place.write(
+        "square.jsonl",
+        "{\"name\":\"a\",\"figure\":\"rectangle\",\"length\":3,\"width\":3}\n",
+    );
+    let square = "model train square.jsonl --x0 0 --y0 0 --quiet --out m.npz";
     let cut = |line: &str, cut: &str, remedy: &str| {
         let message = format!("a: the {cut}; {remedy}, or allow it with --allow-cut");
         refused(&place.run(line, ""), 1, &message);
@@ -585,8 +594,11 @@ fn if_every_sensor_cuts_poses_off_the_message_says_what_helps() {
         (&sensor["columns"], &sensor["rows"]),
         (&16.into(), &16.into())
     );
-    let disc =
-        "model train --shape 'a=ellipse radius_x=9 radius_y=9' --angle 0 --quiet --out disc.npz";
+    place.write(
+        "a.jsonl",
+        "{\"name\":\"a\",\"figure\":\"ellipse\",\"radius_x\":9,\"radius_y\":9}\n",
+    );
+    let disc = "model train a.jsonl --angle 0 --quiet --out disc.npz";
     for (given, cut_off, remedy) in [
         (
             "--columns 8",
@@ -647,8 +659,6 @@ fn a_shape_of_a_set_has_no_pose() {
         let at = format!("standard input: line 1: {key}");
         refused_at("model train -", &format!("{{{shape}}}\n"), &at);
     }
-    let words = "model train --shape 'a=ellipse radius_x=3 radius_y=2 x0=1'";
-    refused_at(words, "", "--shape a: x0");
     // The pose of a stored shape belongs to its figure, so it is accepted.
     place.done(&format!("model train washer {COARSE} --out washer.npz"));
 }
@@ -890,11 +900,8 @@ fn the_table_of_pairs_is_limited() {
 #[test]
 fn identical_shapes_have_no_number_of_touches_until_certainty() {
     let place = Place::new();
-    let disc = "ellipse radius_x=2 radius_y=2";
-    let bar = "rectangle length=6 width=3";
-    place.done(&format!(
-        "model train --shape 'a={disc}' --shape 'b={disc}' --shape 'c={bar}' --out t.npz {COARSE}"
-    ));
+    place.write("abc.jsonl", "{\"name\":\"a\",\"figure\":\"ellipse\",\"radius_x\":2,\"radius_y\":2}\n{\"name\":\"b\",\"figure\":\"ellipse\",\"radius_x\":2,\"radius_y\":2}\n{\"name\":\"c\",\"figure\":\"rectangle\",\"length\":6,\"width\":3}\n");
+    place.done(&format!("model train abc.jsonl --out t.npz {COARSE}"));
     let text = place.done("model touches t.npz --runs 5 --quiet");
     assert!(
         text.contains("a                 –  5 of 5 runs took more than 10,000 touches\n"),
@@ -915,27 +922,11 @@ fn the_name_of_a_built_in_set_is_preferred_to_a_file_of_that_name() {
     assert!(!text.is_empty());
     let run = place.run("recognise washer --model ./figures", "");
     refused(&run, 1, "./figures: cannot read: not a regular file");
-    let train = format!("model train --shape a=hexagon {COARSE} --name");
+    let train = format!("model train parts.jsonl {COARSE} --name");
     for name in ["figures", "Figures-30", "shapes"] {
         let run = place.run(&format!("{train} {name}"), "");
         let message = format!("{name} is the name of a built-in model; choose another name");
         refused(&run, 1, &message);
-    }
-}
-
-#[test]
-fn meaningless_words_of_a_shape_are_refused() {
-    let place = Place::new();
-    let words = [
-        ("a=hexagon side=3 side=4", "--shape a: side: given twice"),
-        (
-            "a=hexagon weight=2",
-            "--shape a: \"weight\": not a parameter of the figure hexagon, which has side, thickness; weights are given in JSON",
-        ),
-    ];
-    for (shape, message) in words {
-        let run = place.run(&format!("model train --shape '{shape}' --out no.npz"), "");
-        refused(&run, 1, message);
     }
 }
 

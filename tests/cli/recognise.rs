@@ -161,10 +161,8 @@ fn an_imprint_smaller_than_any_of_the_model_is_unknown_at_any_noise() {
 #[test]
 fn the_exit_status_says_whether_the_answer_was_expected() {
     let place = place();
-    place.done(&format!(
-        "model train --shape 'one=rectangle length=4 width=4' --shape 'two=rectangle length=4 width=4' \
-         {COARSE} --name twins"
-    ));
+    place.write("twins.jsonl", "{\"name\":\"one\",\"figure\":\"rectangle\",\"length\":4,\"width\":4}\n{\"name\":\"two\",\"figure\":\"rectangle\",\"length\":4,\"width\":4}\n");
+    place.done(&format!("model train twins.jsonl {COARSE} --name twins"));
     for (line, found) in [
         ("square.txt --model r --expect d", None),
         (
@@ -370,8 +368,11 @@ fn a_pose_is_given_in_cells_degrees_and_mm() {
             .ends_with("no pose: the shape leaves this imprint in no pose of the model\n")
     );
     // So far beside the centres of the taxels, a tiny disc leaves nothing.
-    let tiny = "'tiny=ellipse radius_x=0.1 radius_y=0.1'";
-    place.done(&format!("model train --shape {tiny} {COARSE} --name tiny"));
+    place.write(
+        "tiny.jsonl",
+        "{\"name\":\"tiny\",\"figure\":\"ellipse\",\"radius_x\":0.1,\"radius_y\":0.1}\n",
+    );
+    place.done(&format!("model train tiny.jsonl {COARSE} --name tiny"));
     let empty = place.run("recognise - --model tiny --pose", "....\n....\n");
     let said = "no pose: an empty imprint does not tell where the shape lies\n";
     assert!(empty.stdout.ends_with(said), "{}", empty.stdout);
@@ -393,10 +394,11 @@ fn a_pose_is_given_in_cells_degrees_and_mm() {
 #[test]
 fn a_single_degree_is_said_once() {
     let place = Place::new();
-    let bar = "bar=rectangle length=6 width=3";
-    place.done(&format!(
-        "model train --shape '{bar}' --positions 2 --angle 0:345:15 --out b.npz"
-    ));
+    place.write(
+        "b.jsonl",
+        "{\"name\":\"bar\",\"figure\":\"rectangle\",\"length\":6,\"width\":3}\n",
+    );
+    place.done("model train b.jsonl --positions 2 --angle 0:345:15 --out b.npz");
     let touched = place.done(
         "figure rectangle --length 6 --width 3 --x0 5 --y0 5 --angle 30 --export - --format txt",
     );
@@ -412,9 +414,7 @@ fn a_single_degree_is_said_once() {
 #[test]
 fn the_angle_of_a_cross_is_known_modulo_a_quarter_turn() {
     let place = Place::new();
-    place.done(
-        "model train --shape 'cross=picture cross' --positions 2 --angle 0:345:15 --out c.npz",
-    );
+    place.done("model train cross --positions 2 --angle 0:345:15 --out c.npz");
     let cross = place.done("picture cross --angle 15 --json");
     let run = place.run("recognise - --model c.npz --pose", &cross);
     let answer = answer(&run);
@@ -447,10 +447,11 @@ fn a_heptagon_repeats_every_seventh_of_a_turn() {
     assert!((number("period") - 360.0 / 7.0).abs() < 1e-9, "{angle}");
     assert!(number("degrees") <= 52.0, "{angle}");
     // An angle that is practically unknown has neither a deviation nor an interval.
-    let dot = "dot=rectangle length=1.2 width=1";
-    place.done(&format!(
-        "model train --shape '{dot}' --positions 4 --name dot"
-    ));
+    place.write(
+        "dot.jsonl",
+        "{\"name\":\"dot\",\"figure\":\"rectangle\",\"length\":1.2,\"width\":1}\n",
+    );
+    place.done("model train dot.jsonl --positions 4 --name dot");
     let dot = place.run("recognise - --model dot --pose", "....\n.#..\n....\n");
     let any = "\nangle any (repeats every 180°)\n";
     assert!(dot.stdout.contains(any), "{}", dot.stdout);

@@ -36,9 +36,8 @@ fn the_error_falls_with_the_size_as_in_separate_trainings() {
     place.done(&format!(
         "model train rectangles.jsonl {COARSE} --out m.npz"
     ));
-    let twice = "--shape 'a=rectangle length=12 width=6' --shape 'b=rectangle length=12 width=6.4' \
-                 --shape 'c=rectangle length=12.4 width=6' --shape 'd=rectangle length=8.4 width=8.4'";
-    place.done(&format!("model train {twice} {COARSE} --out twice.npz"));
+    place.write("twice.jsonl", "{\"name\":\"a\",\"figure\":\"rectangle\",\"length\":12,\"width\":6}\n{\"name\":\"b\",\"figure\":\"rectangle\",\"length\":12,\"width\":6.4}\n{\"name\":\"c\",\"figure\":\"rectangle\",\"length\":12.4,\"width\":6}\n{\"name\":\"d\",\"figure\":\"rectangle\",\"length\":8.4,\"width\":8.4}\n");
+    place.done(&format!("model train twice.jsonl {COARSE} --out twice.npz"));
     for (file, point) in [("m.npz", &points[0]), ("twice.npz", &points[2])] {
         let limit = place.json(&format!("model confusion {file} --json"));
         for key in ["touches", "right", "certain", "keys", "error"] {

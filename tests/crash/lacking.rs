@@ -126,10 +126,8 @@ pub(crate) fn printed() -> String {
     let train = [
         "model",
         "train",
-        "--shape",
-        "disc=ellipse radius_x=4 radius_y=4",
-        "--shape",
-        "bar=rectangle length=6 width=3",
+        "washer",
+        "key",
         "--positions",
         "2",
         "--angle",

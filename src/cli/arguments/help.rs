@@ -261,8 +261,6 @@ sensor would cut off, since a cut imprint depends on where the rim is;
 Examples:
   taxel model train parts.jsonl --name parts
   taxel model train washer key gear --out shipped.npz
-  taxel model train --shape 'bar=rectangle length=6 width=3' \\
-      --shape 'disc=ellipse radius_x=2.4 radius_y=2.4' --out two.npz
   taxel model train parts.jsonl --shard 1/4 --out part-1.npz";
 
 /// `taxel model show`: what a card says.

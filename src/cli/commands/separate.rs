@@ -173,11 +173,8 @@ fn set(
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<(Separation, f64), CliError> {
-    if let ([what], [], false) = (
-        &asked.set.what[..],
-        &asked.set.shapes[..],
-        asked.set.library_all,
-    ) && is_model(what, shelf)
+    if let ([what], false) = (&asked.set.what[..], asked.set.library_all)
+        && is_model(what, shelf)
     {
         let model = model::find(what, shelf)?;
         let model = model.ready(&|poses| ProgressDisplay::new(poses, asked.quiet, charset))?;

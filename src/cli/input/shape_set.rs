@@ -1,11 +1,5 @@
-//! The shapes of a set: from files of lines, from the library, and as text.
+//! The shapes of a set: from files of lines of JSON ([`named_shape`]), and from the library.
 //!
-//! A line is a JSON object with a name and either a figure with its sizes, a stored shape, or an imprint. `--shape`
-//! takes the same as text:
-//! ```text
-//! {"name":"disc","figure":"ellipse","radius_x":3,"radius_y":3}
-//! --shape 'disc=ellipse radius_x=3 radius_y=3'
-//! ```
 //! An argument is a file if it ends in `.jsonl` or `.json`, if it has a `/`, or if there is such a file but no shape
 //! of that name. Otherwise it is the name of a stored shape, which is taken as it was stored.
 
@@ -21,9 +15,8 @@ use crate::figure::Figure;
 use crate::formats::file::has_ending;
 use crate::formats::file::system_reason;
 use crate::formats::file::without_mark;
-use crate::formats::{NamedShapeError, ShapeLookup, named_shape, named_shape_of_words};
+use crate::formats::{NamedShapeError, ShapeLookup, named_shape};
 use crate::picture::Picture;
-use crate::quote::shortened;
 use crate::recognition::NamedShape;
 use crate::sensor::Sensor;
 use crate::storage::LibraryError;
@@ -54,24 +47,14 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
             shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
         }
     }
-    for words in &asked.shapes {
-        let shape = named_shape_of_words(words, &lookup);
-        shapes.push(shape.map_err(|error| CliError::Set {
-            place: format!(
-                "--shape {}",
-                shortened(words.split('=').next().unwrap_or(words))
-            ),
-            error: error.to_string(),
-        })?);
-    }
     if asked.library_all {
         shapes.extend(library_shapes(shelf)?);
     }
     Ok(shapes)
 }
 
-/// Returns the message about an argument that is not the name of a shape. For the name of a figure, it shows how
-/// `--shape` gives one; a folder of that name is mentioned.
+/// Returns the message about an argument that is not the name of a shape. For the name of a figure, it shows
+/// the line that gives one; a folder of that name is mentioned.
 fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     let kind = match &error {
         LibraryError::Unknown { name } => name.parse().ok(),
@@ -89,10 +72,13 @@ fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     let figure = Figure::default_of(kind, &Sensor::default());
     let sizes = kind.sizes().iter().filter_map(|&size| {
         let value = figure.get(size)?;
-        Some(format!(" {}={value}", size.row().key))
+        Some(format!(",\"{}\":{value}", size.row().key))
     });
     let sizes: String = sizes.collect();
-    let near = format!("; {0:?} is a figure: --shape '{0}={0}{sizes}'", kind.name());
+    let name = kind.name();
+    let near = format!(
+        "; {name:?} is a figure: a file of lines may have {{\"name\":{name:?},\"figure\":{name:?}{sizes}}}"
+    );
     CliError::NoShape { error, near }
 }
 

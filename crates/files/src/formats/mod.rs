@@ -53,4 +53,4 @@ pub use model::{
     FORMAT as MODEL_FORMAT, header as model_header, read as read_model, write as write_model,
 };
 
-pub use named_shape::{NamedShapeError, ShapeLookup, named_shape, named_shape_of_words};
+pub use named_shape::{NamedShapeError, ShapeLookup, named_shape};

@@ -1,20 +1,16 @@
-//! The shapes of a set: one JSON object each, or a few words on the command line.
+//! The shapes of a set: one JSON object each.
 
-use std::borrow::Cow;
 use std::num::NonZeroU32;
 
 use serde::de::{Deserialize, Deserializer, MapAccess};
 
-use crate::figure::FigureKind;
 use crate::formats::json::message_of_line;
 use crate::formats::record::{
-    ImprintOrName, KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
+    KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
 };
 use crate::imprint::Imprint;
-use crate::parameter::{PARAMETERS, Parameter, number};
 use crate::picture::Picture;
 use crate::pose::Axis;
-use crate::quote::shortened;
 use crate::recognition::NamedShape;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -36,27 +32,6 @@ pub enum NamedShapeError {
     /// A value that has no meaning.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// Words that are not a shape.
-    #[error("expected NAME=KIND KEY=NUMBER … or NAME=picture SHAPE")]
-    Words,
-    /// A word of a figure that is not a value.
-    #[error("{found:?}: expected KEY=NUMBER, such as radius_x=3")]
-    Word {
-        /// The word that was given.
-        found: String,
-    },
-    /// A key that is not a parameter; a weight can be given in JSON only.
-    #[error(
-        "{found:?}: not a parameter of the figure {}, which has {}; weights are given in JSON",
-        figure.name(),
-        keys(*figure)
-    )]
-    Key {
-        /// The key that was given.
-        found: String,
-        /// The figure.
-        figure: FigureKind,
-    },
     /// A position, an angle or a zoom.
     #[error(
         "{key}: a shape of a set has no pose of its own; it is touched in all poses of the grid"
@@ -65,19 +40,6 @@ pub enum NamedShapeError {
         /// The key of the parameter.
         key: &'static str,
     },
-    /// A parameter that is given twice.
-    #[error("{key}: given twice")]
-    Twice {
-        /// The key of the parameter.
-        key: &'static str,
-    },
-}
-
-/// Returns the keys of a figure's parameters that matter in a set: not those of its position and angle.
-fn keys(figure: FigureKind) -> String {
-    let sizes = figure.sizes().iter().chain([&Parameter::Thickness]);
-    let keys = sizes.map(|parameter| parameter.row().key);
-    keys.collect::<Vec<_>>().join(", ")
 }
 
 /// A function that finds the imprint of a stored shape.
@@ -115,57 +77,6 @@ pub fn named_shape(line: &[u8], lookup: &ShapeLookup<'_>) -> Result<NamedShape, 
     let source = source(line.record, lookup)?;
     let weight = line.weight.map_or(1, NonZeroU32::get);
     Ok(NamedShape::new(name, source).weighted(weight))
-}
-
-/// Reads a shape of a set from words, `disc=ellipse radius_x=3 radius_y=3` or `ring=picture washer`: a name, the kind
-/// of a figure and its sizes, or a picture, which `lookup` finds. The weight is 1.
-///
-/// # Errors
-/// Returns an error that says in one sentence what is wrong.
-///
-/// ```
-/// use taxel_files::formats::named_shape_of_words;
-/// let no_shapes = |name: &str| Err(format!("no shape {name}"));
-/// let disc = named_shape_of_words("disc=ellipse radius_x=3 radius_y=3", &no_shapes).unwrap();
-/// assert_eq!(disc.name, "disc");
-/// let error = named_shape_of_words("disc=ellipse radius_x", &no_shapes).unwrap_err();
-/// assert_eq!(error.to_string(), r#""radius_x": expected KEY=NUMBER, such as radius_x=3"#);
-/// ```
-pub fn named_shape_of_words(
-    text: &str,
-    lookup: &ShapeLookup<'_>,
-) -> Result<NamedShape, NamedShapeError> {
-    let (name, rest) = text.split_once('=').ok_or(NamedShapeError::Words)?;
-    let rest = rest.trim();
-    let (kind, values) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
-    if name.trim().is_empty() || kind.is_empty() {
-        return Err(NamedShapeError::Words);
-    }
-    let mut record = Record::default();
-    if kind == "picture" {
-        record.picture = Some(ImprintOrName::Name(Cow::Borrowed(values.trim())));
-    } else {
-        record.figure = Some(Cow::Borrowed(kind));
-    }
-    if let Ok(figure) = kind.parse::<FigureKind>() {
-        for word in values.split_whitespace() {
-            let error = || NamedShapeError::Word {
-                found: shortened(word),
-            };
-            let (key, value) = word.split_once('=').ok_or_else(error)?;
-            let value = number::read(value).ok_or_else(error)?;
-            let row = PARAMETERS.iter().find(|row| row.key == key);
-            let row = row.ok_or_else(|| NamedShapeError::Key {
-                found: shortened(key),
-                figure,
-            })?;
-            if record.values.get(row.parameter).is_some() {
-                return Err(NamedShapeError::Twice { key: row.key });
-            }
-            record.values.set(row.parameter, value);
-        }
-    }
-    Ok(NamedShape::new(name.trim(), source(record, lookup)?))
 }
 
 /// Makes the shape of a record, which must have no pose, at the origin.

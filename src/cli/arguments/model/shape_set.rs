@@ -1,16 +1,15 @@
 //! The shapes of a set and their positions, for `model train` and `model separate`.
 //!
-//! A set combines shapes from three sources, at least one of which must be given:
+//! A set combines shapes from two sources, at least one of which must be given:
 //! ```text
 //! taxel model train shapes.jsonl washer      lines of JSON, '-' for standard input; names of the library
-//!                   --shape 'disc=ellipse radius_x=3 radius_y=3'
 //!                   --library-all            all shapes of the library
 //! ```
 //! [`input::shape_set`](crate::cli::input::shape_set) reads them.
 
 use std::ffi::OsString;
 
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches};
+use clap::{Arg, ArgGroup, ArgMatches};
 
 use crate::cli::arguments::flags::{name_or_path, option, switch};
 use crate::recognition::CellPositions;
@@ -18,40 +17,32 @@ use crate::recognition::CellPositions;
 #[derive(Clone, Debug)]
 pub(crate) struct SetArguments {
     pub(crate) what: Vec<OsString>,
-    pub(crate) shapes: Vec<String>,
     pub(crate) library_all: bool,
 }
 
 impl SetArguments {
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let what = matches.get_many::<OsString>("set").into_iter().flatten();
-        let shapes = matches.get_many::<String>("shape").into_iter().flatten();
         Self {
             what: what.cloned().collect(),
-            shapes: shapes.cloned().collect(),
             library_all: matches.get_flag("library-all"),
         }
     }
 }
 
-pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 3] {
+pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 2] {
     let what = Arg::new("set")
         .value_name(value)
         .num_args(0..)
         .value_parser(name_or_path())
         .help(help);
-    let shape = option(
-        "shape",
-        "NAME=KIND...",
-        "A shape, such as\n'disc=ellipse radius_x=3 radius_y=3'",
-    );
     let all = switch("library-all", "All shapes of the library");
-    [what, shape.action(ArgAction::Append), all]
+    [what, all]
 }
 
 pub(super) fn group() -> ArgGroup {
     ArgGroup::new("shapes")
-        .args(["set", "shape", "library-all"])
+        .args(["set", "library-all"])
         .multiple(true)
         .required(true)
 }

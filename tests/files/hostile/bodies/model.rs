@@ -4,7 +4,7 @@ use std::cell::LazyCell;
 use std::io::Cursor;
 
 use taxel::figure::Figure;
-use taxel::formats::{named_shape, named_shape_of_words, read_model, write_model};
+use taxel::formats::{named_shape, read_model, write_model};
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;
 use taxel::pose::{Anchor, Axis, Ranges};
@@ -35,33 +35,23 @@ pub(crate) fn model_arrays(bytes: &[u8]) -> bool {
     changed.is_some_and(|changed| model(&changed))
 }
 
-/// Reads a shape of a set, as a line of JSON and in words.
+/// Reads a shape of a set.
 pub(crate) fn named(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
         "corner" => Ok("##\n#.".parse().expect("rows")),
         _ => Err("no such shape".to_owned()),
     };
-    let read = [
-        Some(named_shape(bytes, &lookup)),
-        std::str::from_utf8(bytes)
-            .ok()
-            .map(|text| named_shape_of_words(text, &lookup)),
-    ];
-    let mut is_read = false;
-    for read in read.into_iter().flatten() {
-        match read {
-            Ok(shape) => {
-                is_read = true;
-                let sensor = Sensor::LARGEST;
-                let trained = Training::new([shape], sensor, Anchor::Centre, one_pose());
-                if let Err(error) = trained {
-                    is_short(&error.to_string());
-                }
+    match named_shape(bytes, &lookup) {
+        Ok(shape) => {
+            let sensor = Sensor::LARGEST;
+            let trained = Training::new([shape], sensor, Anchor::Centre, one_pose());
+            if let Err(error) = trained {
+                is_short(&error.to_string());
             }
-            Err(error) => is_short(&error.to_string()),
+            true
         }
+        Err(error) => refused(&error.to_string()),
     }
-    is_read
 }
 
 /// Returns ranges with a single pose: the centre of the largest sensor.
