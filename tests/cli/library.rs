@@ -262,7 +262,7 @@ fn unsaved_work_that_cannot_be_read_is_checked_as_damaged() {
     let folder = shelf.folder.display().to_string();
     let said = run.stdout.replace(&folder, "FOLDER");
     let findings = "other file: FOLDER/.journal/4712-0.json: unsaved work, of a running program or of one that died\n\
-        damaged: unsaved work: FOLDER/.journal/4711-0.json: line 1, column 1: the text ends, expected a value\n";
+        damaged: unsaved work: FOLDER/.journal/4711-0.json: line 1, column 1: EOF while parsing a value\n";
     assert!(said.starts_with(findings), "{said}");
     let error = "error: 1 file of unsaved work cannot be read\n".to_owned();
     assert_eq!((run.status, run.stderr), (Some(1), error));

@@ -1149,9 +1149,7 @@ fn a_folder_and_a_fifo_in_place_of_a_set_are_told_apart() {
         let line = format!("{{\"name\":\"a\",\"imprint\":[\"#\"],\"weight\":{weight}}}\n");
         place.write("w.jsonl", &line);
         let run = place.run(&train("w.jsonl"), "");
-        let said = format!(
-            "weight: found the number {weight}, expected a whole number from 1 to 4294967295\n"
-        );
+        let said = format!("weight: invalid value: integer `{weight}`, expected a nonzero u32\n");
         assert!(run.stderr.ends_with(&said), "{}", run.stderr);
     }
     let run = place.run("sweep rectangle --x0 5 --y0 5 --atlas none/a.npz", "");

@@ -112,7 +112,7 @@ fn a_batch_reports_unknown_names() {
         answers[2]
     );
     assert!(
-        answers[3].contains("bad.json: line 1, column 1: the text ends"),
+        answers[3].contains("bad.json: line 1, column 1: EOF"),
         "{}",
         answers[3]
     );

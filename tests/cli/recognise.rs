@@ -298,10 +298,10 @@ fn lines_are_answered_in_their_order() {
     assert!(two > one, "two touches tell more than one");
     assert_eq!(read(lines[4])["state"], "unknown");
     let expected = "expected an object with an imprint, touches or a frame";
-    for (other, found) in [("5", "the number 5"), ("[[\"#\"]]", "a list")] {
+    for (other, found) in [("5", "integer `5`"), ("[[\"#\"]]", "sequence")] {
         let lines = format!("{{\"imprint\":[\"#\"]}}\n{other}\n");
         let run = place.run("recognise - --model r --json", &lines);
-        let message = format!("found {found}, {expected}");
+        let message = format!("invalid type: {found}, {expected}");
         assert!(run.stdout.contains(&message), "{}", run.stdout);
     }
     // The answers of a batch are such lines.

@@ -561,7 +561,7 @@ fn the_description_of_a_recording_is_read_with_it() {
         ),
         (
             "{\"format\":\"taxel-touch/1\",\"ru",
-            "touch.json: line 1, column 29: the text ends ",
+            "touch.json: line 1, column 29: EOF ",
         ),
         (
             "{\"format\":\"taxel-touch/2\"}",

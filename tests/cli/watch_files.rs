@@ -765,7 +765,7 @@ fn the_message_says_why_lines_of_json_are_not_frames() {
     for (input, reason) in [
         (
             text.repeat(3),
-            "found the number 1.5, expected a whole number",
+            "invalid type: floating point `1.5`, expected",
         ),
         (
             format!("{text}{{\"frame\":[[1,2],[3]]}}\n"),

@@ -1071,7 +1071,10 @@ fn a_broken_description_beside_a_recording_is_reported() {
     page.frames(1);
     shows(
         &page,
-        &["frame 0", "a.json: line 1, column 34: found the number 3"],
+        &[
+            "frame 0",
+            "a.json: line 1, column 34: invalid type: integer `3`",
+        ],
     );
 }
 

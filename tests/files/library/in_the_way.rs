@@ -248,13 +248,9 @@ fn broken_files_are_listed_and_reported_without_affecting_others() {
         (
             "cut",
             &good[..good.len() / 2],
-            "line 15, column 20: imprint: the text ends inside a string, expected a closing quote",
+            "line 15, column 20: imprint: EOF while parsing a string",
         ),
-        (
-            "empty",
-            "",
-            "line 1, column 1: the text ends, expected a value",
-        ),
+        ("empty", "", "line 1, column 1: EOF while parsing a value"),
         (
             "newer",
             &good.replace("shape/1", "shape/2"),

@@ -41,7 +41,7 @@ fn unsaved_work_that_cannot_be_read_is_reported_and_stays() {
     let file = journal.join("4711-0.json");
     std::fs::write(&file, "").expect("written");
     let said = "! unsaved work cannot be read and stays where it is:";
-    let reason = "line 1, column 1: the text ends, expected a value";
+    let reason = "line 1, column 1: EOF while parsing a value";
     let later = session_on(folder.path(), "");
     let screen = later.screen().replace('\n', " ");
     for text in [said, "4711-0.json", reason] {

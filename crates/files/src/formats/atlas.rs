@@ -125,7 +125,7 @@ pub const FORMAT: &str = "taxel-atlas/1";
 
 /// The header of an atlas: written from a source and a sensor, read as records that are then checked.
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object")]
 struct ArchiveHeader<Shape, Size> {
     /// [`FORMAT`].
     format: String,

@@ -116,7 +116,8 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
         _ => {}
     }
     let text = str::from_utf8(without_mark(bytes)).ok();
-    let text = text.filter(|text| !text.contains('\0'));
+    let is_plain = |sign: char| !sign.is_control() || matches!(sign, '\t' | '\r' | '\n');
+    let text = text.filter(|text| text.chars().all(is_plain));
     let text = text.ok_or(ImprintFormatError::Unknown)?;
     if is_table(text.as_bytes()) {
         table::read(text).map_err(named("CSV"))

@@ -1,5 +1,4 @@
-//! Values as JSON text, Python's `NaN`, and the messages of the parser without positions, which callers report
-//! themselves.
+//! Values as JSON text, objects read from it, Python's `NaN`.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -125,144 +124,20 @@ impl<'a> WithoutNan<'a> {
     }
 }
 
-/// Returns what is wrong with a JSON text, in words that require no knowledge of the parser, and without the
-/// position, which callers report.
+/// Returns what is wrong with a JSON text, without the position, which callers report.
 pub fn message(error: &serde_json::Error) -> String {
-    shortened_message(&plain(&error.to_string()))
+    let text = error.to_string();
+    let end = text.rfind(" at line ").unwrap_or(text.len());
+    shortened_message(&text[..end])
 }
 
 /// Returns what is wrong with a line that should be a JSON object: its [`message`], or that it is not JSON at all.
 /// `expected` describes the object.
-pub fn message_of_line(line: &[u8], error: &serde_json::Error, expected: &str) -> String {
-    match message(error) {
-        text if text == VALUE && !line.trim_ascii_start().starts_with(b"{") => {
-            format!("not JSON, expected {expected}")
-        }
-        text => text,
+pub(crate) fn message_of_line(line: &[u8], error: &serde_json::Error, expected: &str) -> String {
+    if error.is_syntax() && !line.trim_ascii_start().starts_with(b"{") {
+        return format!("not JSON, expected {expected}");
     }
-}
-
-/// Rewrites a message of the parser in our words. Messages that are ours already are returned as they are.
-pub fn plain(text: &str) -> String {
-    let text = text.rfind(" at line ").map_or(text, |end| &text[..end]);
-    let known = PARSER.iter().find(|(theirs, _)| *theirs == text);
-    if let Some((_, ours)) = known {
-        return (*ours).to_owned();
-    }
-    let quoted = |start: &str| text.strip_prefix(start)?.strip_suffix('`');
-    if let Some(key) = quoted("duplicate field `") {
-        return format!("{key}: given twice");
-    }
-    if let Some(key) = quoted("missing field `") {
-        return format!("{key}: missing");
-    }
-    let types = ["invalid type: ", "invalid value: "];
-    let mismatch = types.into_iter().find_map(|start| text.strip_prefix(start));
-    match mismatch.and_then(|rest| rest.rsplit_once(", expected ")) {
-        Some((found, expected)) => {
-            format!("found {}, expected {}", noun(found), kind(expected))
-        }
-        None => text.to_owned(),
-    }
-}
-
-/// The parser's messages for text that is not JSON, and ours.
-const PARSER: [(&str, &str); 20] = [
-    ("expected ident", VALUE),
-    ("expected value", VALUE),
-    (
-        "EOF while parsing a value",
-        "the text ends, expected a value",
-    ),
-    (
-        "EOF while parsing a string",
-        "the text ends inside a string, expected a closing quote",
-    ),
-    (
-        "EOF while parsing an object",
-        "the text ends inside an object, expected '}'",
-    ),
-    (
-        "EOF while parsing a list",
-        "the text ends inside a list, expected ']'",
-    ),
-    ("expected `:`", "expected ':' after a key"),
-    ("expected `,` or `}`", "expected ',' or '}'"),
-    ("expected `,` or `]`", "expected ',' or ']'"),
-    ("expected `\"`", "expected a string in double quotes"),
-    (
-        "expected double quote",
-        "expected a string in double quotes",
-    ),
-    ("key must be a string", "expected a key in double quotes"),
-    (
-        "trailing comma",
-        "expected another value after the comma, or no comma",
-    ),
-    (
-        "trailing characters",
-        "more text after the end, expected one object",
-    ),
-    ("invalid number", "expected a number such as 3, 0.5 or 1e-3"),
-    ("number out of range", "a number too large"),
-    (
-        "invalid escape",
-        "an escape that JSON does not have, expected one such as \\n or \\u00e9",
-    ),
-    (
-        "invalid unicode code point",
-        "not UTF-8, or an escape of no character",
-    ),
-    (
-        "control character (\\u0000-\\u001F) found while parsing a string",
-        "a control character in a string, expected an escape such as \\n",
-    ),
-    (
-        "recursion limit exceeded",
-        "lists or objects nested too deeply",
-    ),
-];
-
-/// The message for a missing value.
-const VALUE: &str = "expected a value: a string in double quotes, a number, a list or an object";
-
-/// Returns the name of a found value in plain words: `string "3"` becomes `the string "3"`.
-fn noun(found: &str) -> String {
-    let value = |start: &str| found.strip_prefix(start)?.strip_suffix('`');
-    let number = value("integer `").or_else(|| value("floating point `"));
-    if let Some(number) = number {
-        return format!("the number {number}");
-    }
-    if let Some(truth) = value("boolean `") {
-        return truth.to_owned();
-    }
-    match found {
-        "map" => "an object".to_owned(),
-        "sequence" => "a list".to_owned(),
-        "unit value" => "null".to_owned(),
-        _ => match found.strip_prefix("string ") {
-            Some(text) => format!("the string {text}"),
-            None => found.to_owned(),
-        },
-    }
-}
-
-/// Returns the name of an expected value in plain words; types have plain names, and other words stay as they are.
-fn kind(expected: &str) -> &str {
-    match expected {
-        "f64" | "f32" => "a number",
-        "u8" => "a whole number from 0 to 255",
-        "u32" => "a whole number from 0 to 4294967295",
-        "a nonzero u32" => "a whole number from 1 to 4294967295",
-        "u16" | "u64" | "usize" => "a whole number, 0 or more",
-        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
-        "a borrowed string" => "a string",
-        "a boolean" => "true or false",
-        "a sequence" => "a list",
-        "a map" => "an object",
-        other if other.starts_with("struct ") => "an object",
-        other => other,
-    }
+    message(error)
 }
 
 /// Reads an object. A type that serde derives would take a list, too, as its keys in the order of the source code.
@@ -310,57 +185,6 @@ mod tests {
     use std::collections::BTreeMap;
 
     #[test]
-    fn messages_are_in_our_words() {
-        let object = |text: &str| {
-            let read = serde_json::from_str::<BTreeMap<String, f64>>(text);
-            message(&read.expect_err("no object of numbers"))
-        };
-        for (text, expected) in [
-            ("", "the text ends, expected a value"),
-            ("nonsense", VALUE),
-            ("{\"a\":nonsense}", VALUE),
-            ("{\"a\":x}", VALUE),
-            ("{", "the text ends inside an object, expected '}'"),
-            (
-                "{\"a",
-                "the text ends inside a string, expected a closing quote",
-            ),
-            ("{\"a\" 1}", "expected ':' after a key"),
-            ("{\"a\":1 2}", "expected ',' or '}'"),
-            ("{1:2}", "expected a key in double quotes"),
-            (
-                "{\"a\":1,}",
-                "expected another value after the comma, or no comma",
-            ),
-            ("{} {}", "more text after the end, expected one object"),
-            ("{\"a\":1.}", "expected a number such as 3, 0.5 or 1e-3"),
-            ("{\"a\":1e999}", "a number too large"),
-            ("{\"a\":\"3\"}", "found the string \"3\", expected a number"),
-            ("{\"a\":null}", "found null, expected a number"),
-            ("{\"a\":true}", "found true, expected a number"),
-            ("{\"a\":[1]}", "found a list, expected a number"),
-            ("{\"a\":{}}", "found an object, expected a number"),
-            ("3", "found the number 3, expected an object"),
-            ("-3.5", "found the number -3.5, expected an object"),
-            (
-                "{\"a\n\":1}",
-                "a control character in a string, expected an escape such as \\n",
-            ),
-            (
-                "{\"a\\q\":1}",
-                "an escape that JSON does not have, expected one such as \\n or \\u00e9",
-            ),
-        ] {
-            assert_eq!(object(text), expected, "{text}");
-        }
-        let list = serde_json::from_str::<Vec<u8>>("[1").expect_err("no list");
-        assert_eq!(message(&list), "the text ends inside a list, expected ']'");
-        assert_eq!(
-            plain("side: 99 is out of range"),
-            "side: 99 is out of range"
-        );
-    }
-    #[test]
     fn a_value_without_a_json_form_is_an_error_object() {
         let no_text_key = BTreeMap::from([((1, 2), 3)]);
         assert_eq!(text(&no_text_key), r#"{"error":"key must be a string"}"#);
@@ -370,6 +194,7 @@ mod tests {
     #[test]
     fn a_list_is_not_an_object() {
         #[derive(Debug, PartialEq, Deserialize)]
+        #[serde(expecting = "an object")]
         struct Keys {
             name: String,
         }
@@ -377,14 +202,11 @@ mod tests {
         let name = "a".to_owned();
         assert_eq!(keys("{\"name\":\"a\"} "), Ok(Keys { name }));
         for (text, expected) in [
-            ("[\"a\"]", "found a list, expected an object"),
-            ("[]", "found a list, expected an object"),
-            ("3", "found the number 3, expected an object"),
-            ("{}", "name: missing"),
-            (
-                "{\"name\":\"a\"}]",
-                "more text after the end, expected one object",
-            ),
+            ("[\"a\"]", "invalid type: sequence, expected an object"),
+            ("[]", "invalid type: sequence, expected an object"),
+            ("3", "invalid type: integer `3`, expected an object"),
+            ("{}", "missing field `name`"),
+            ("{\"name\":\"a\"}]", "trailing characters"),
         ] {
             assert_eq!(keys(text), Err(expected.to_owned()), "{text}");
         }

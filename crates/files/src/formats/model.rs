@@ -24,7 +24,7 @@ pub const FORMAT: &str = "taxel-model/1";
 
 /// The header of a model: written from sources and a sensor, read as records that are then checked.
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object")]
 struct ModelHeader<Shape, Size> {
     /// [`FORMAT`].
     format: String,
@@ -48,7 +48,7 @@ struct ModelHeader<Shape, Size> {
 
 /// A shape of the set.
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object")]
 struct ShapeHeader<Shape> {
     /// The name.
     name: String,

@@ -210,6 +210,7 @@ pub struct ArchiveKind {
 /// Returns an error if it is not an archive with such a header.
 pub fn kind_of(input: impl Read + Seek) -> Result<ArchiveKind, ArchiveError> {
     #[derive(Deserialize)]
+    #[serde(expecting = "an object")]
     struct Part {
         shard: String,
     }
@@ -223,6 +224,7 @@ pub fn kind_of(input: impl Read + Seek) -> Result<ArchiveKind, ArchiveError> {
 /// Returns the format in a header, without checking the other keys.
 fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
     #[derive(Deserialize)]
+    #[serde(expecting = "an object")]
     struct Format {
         format: String,
     }

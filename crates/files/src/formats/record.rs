@@ -9,7 +9,6 @@ use std::marker::PhantomData;
 use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 use crate::figure::{Figure, FigureKind};
-use crate::formats::json::plain;
 use crate::imprint::{Imprint, ImprintRows};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
@@ -362,11 +361,8 @@ pub(crate) fn value_of<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
     key: &str,
     map: &mut A,
 ) -> Result<T, A::Error> {
-    map.next_value().map_err(|error: A::Error| {
-        let text = error.to_string();
-        let position = text.rfind(" at line ").map_or("", |start| &text[start..]);
-        A::Error::custom(format_args!("{key}: {}{position}", plain(&text)))
-    })
+    map.next_value()
+        .map_err(|error: A::Error| A::Error::custom(format_args!("{key}: {error}")))
 }
 
 /// Stores the value of a key.

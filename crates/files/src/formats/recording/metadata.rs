@@ -78,7 +78,7 @@ pub struct RecordingMetadata {
 
 /// The metadata as a JSON object.
 #[derive(Debug, Default, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, expecting = "an object")]
 struct Described {
     format: String,
     source: String,
@@ -171,6 +171,7 @@ impl RecordingMetadata {
     /// Returns an error if the metadata is damaged, or of another version; it names the line and column, or the key.
     pub fn read(bytes: &[u8]) -> Option<Result<Self, MetadataError>> {
         #[derive(Deserialize)]
+        #[serde(expecting = "an object")]
         struct Format {
             format: String,
         }
@@ -414,11 +415,14 @@ mod tests {
             "format: \"taxel-touch/2\" is unknown to this version, which reads \"taxel-touch/1\""
         );
         let unit = wrong("\"unit\":3");
-        let expected = "line 1, column 34: found the number 3, expected a string";
+        let expected = "line 1, column 34: invalid type: integer `3`, expected a string";
         assert_eq!(unit, expected);
         let list = format!("[\"{FORMAT}\",\"a source\"]");
         let read = RecordingMetadata::read(list.as_bytes()).expect("it names the format");
         let error = read.expect_err("a list").to_string();
-        assert_eq!(error, "line 1, column 1: found a list, expected an object");
+        assert_eq!(
+            error,
+            "line 1, column 1: invalid type: sequence, expected an object"
+        );
     }
 }

@@ -142,7 +142,7 @@ mod tests {
             ("[[[1]]]", "a list inside a row, expected a number or null"),
             (
                 "[\"1\"]",
-                "found the string \"1\", expected a number or null",
+                "invalid type: string \"1\", expected a number or null",
             ),
         ] {
             assert_eq!(cells(text), Err(error.to_owned()), "{text}");
