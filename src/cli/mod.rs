@@ -32,8 +32,6 @@ mod error;
 
 mod signals;
 
-mod threads;
-
 mod output;
 
 mod input;
@@ -49,26 +47,24 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use arguments::definitions;
-use arguments::form::Form;
+use arguments::flags::Form;
 use arguments::frames::FramesArguments;
-use arguments::kept::Kept;
 use arguments::library::LibraryCommand;
 use arguments::model::ModelRequest;
 use arguments::request::{self, Invocation, Request};
 use arguments::sweep::{SweepArguments, Swept};
-use commands::Summary;
+use arguments::touch::Kept;
 use commands::export::Exported;
 use commands::frames::FramesOutput;
-use commands::naming::FrameNamer;
+use commands::recognise::FrameNamer;
 use commands::{
-    batch, confusion, describe, export, frames, library, man, merge, model, noise, recognise,
-    screen, script, separate, sweep, touch, watch,
+    Summary, confusion, export, frames, library, man, model, noise, recognise, screen, script,
+    separate, sweep, touch, watch,
 };
 use error::CliError;
 use input::lines::LineInput;
 use input::shapes::Shelf;
-use output::charset::Charset;
-use output::note::note;
+use output::charset::{Charset, note};
 use output::progress::ProgressDisplay;
 use settings::resolved::Effective;
 
@@ -149,7 +145,7 @@ impl Surroundings {
                 self.touch(&picture, sensor, form, &kept)?;
             }
             Request::Describe(what, form) => {
-                print(&describe::content(&shelf.find(&what)?, form, charset))?;
+                print(&touch::content(&shelf.find(&what)?, form, charset))?;
             }
             Request::Export(what, export, pitch) => {
                 match export::export(shelf, &what, &export, pitch)? {
@@ -163,11 +159,11 @@ impl Surroundings {
                     Some(path) => LineInput::at(path)?,
                     None => LineInput::standard()?,
                 };
-                batch::answer_lines(sensor, jobs, &by_name, input, io::stdout().lock())?;
+                touch::answer_lines(sensor, jobs, &by_name, input, io::stdout().lock())?;
             }
             Request::Sweep(asked) => self.sweep(*asked)?,
             Request::Merge(files, wanted) => {
-                print_summary(merge::merge(&files, &wanted, charset)?)?;
+                print_summary(sweep::merge(&files, &wanted, charset)?)?;
             }
             Request::Model(request) => self.model(request)?,
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
@@ -231,7 +227,7 @@ impl Surroundings {
 
     /// Runs `taxel frames`. If an error occurs, the answers made before it are still printed.
     fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
-        let processing = input::processing::processing(&asked.processing)?;
+        let processing = input::recording::processing(&asked.processing)?;
         let model = asked.naming.find(&self.shelf)?;
         let recording = frames::open(asked)?;
         let progress = |poses| ProgressDisplay::new(poses, false, self.charset);

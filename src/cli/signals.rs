@@ -5,6 +5,7 @@ use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 
@@ -97,4 +98,18 @@ impl Signals {
     pub(crate) fn status(&self) -> u8 {
         STOPPING[self.last.load(Ordering::Relaxed)].1
     }
+}
+
+/// Returns the number of threads for `--jobs`. For 0, not given, it is that of `RAYON_NUM_THREADS`, or else one per
+/// core.
+pub(crate) fn count(jobs: usize) -> usize {
+    match jobs {
+        0 => rayon::current_num_threads(),
+        jobs => jobs,
+    }
+}
+
+pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, CliError> {
+    let pool = ThreadPoolBuilder::new().num_threads(jobs).build();
+    pool.map_err(|error| CliError::System(io::Error::other(error)))
 }

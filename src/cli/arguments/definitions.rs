@@ -1,12 +1,4 @@
-//! The program with all its commands and flags, for clap.
-//!
-//! Each command is defined in the file that also reads its arguments; see the list of this folder. Flags of parameters
-//! are made from the table of parameters ([`parameters`](super::parameters)), so their ranges and defaults are written
-//! nowhere else. Values are parsed into their types there: a file name that is not an atlas, or a range that goes
-//! backwards, is a usage error.
-//!
-//! The order of the calls is the order in the help. Headings (`Figure`, `Sensor`, `Grid`, …) divide longer lists of
-//! flags.
+//! The program with all its commands and flags, for clap. The order of the calls is the order in the help.
 
 use std::path::PathBuf;
 
@@ -17,7 +9,7 @@ use crate::cli::arguments::help::{ABOUT, EXAMPLES};
 use crate::cli::arguments::program::{
     ascii, completions, config, config_file, look, man, record, script, size,
 };
-use crate::cli::arguments::{export, frames, library, model, recognise, sweep, touch, watch};
+use crate::cli::arguments::{flags, frames, library, model, recognise, sweep, touch};
 
 /// Defines the program with all its commands. Completions and manual pages are made from this too, so a new command
 /// appears in them by itself.
@@ -33,14 +25,14 @@ pub(crate) fn all() -> Command {
         .subcommand(touch::figure())
         .subcommand(touch::picture())
         .subcommand(touch::describe())
-        .subcommand(export::command())
+        .subcommand(touch::export())
         .subcommand(touch::batch())
         .subcommand(sweep::command())
         .subcommand(sweep::merge_command())
         .subcommand(model::command())
         .subcommand(recognise::command())
         .subcommand(frames::command())
-        .subcommand(watch::command())
+        .subcommand(frames::watch())
         .subcommand(library::command())
         .subcommand(script())
         .subcommand(config().args(sensor()))
@@ -93,11 +85,61 @@ fn folder() -> Arg {
         .help_heading("Library")
 }
 
+const GROUPS: [(&str, &[&str]); 5] = [
+    (
+        "Touch",
+        &["figure", "picture", "describe", "export", "batch"],
+    ),
+    ("Recognise", &["sweep", "merge", "model", "recognise"]),
+    ("Sensors", &["frames", "watch"]),
+    ("Library", &["library"]),
+    (
+        "Program",
+        &["script", "config", "completions", "man", "help"],
+    ),
+];
+
+const COLUMN: usize = 13;
+
+const WIDTH: usize = 65;
+
+/// Makes the help list the commands by groups. It is used only for reading arguments: it hides the commands, and
+/// completions and the manual would leave out hidden ones.
+pub(crate) fn grouped(mut all: Command) -> Command {
+    let mut template = String::from("{about-with-newline}\n{usage-heading} {usage}\n");
+    all.build();
+    for (heading, commands) in GROUPS {
+        template += &format!("\n{heading}:\n");
+        for name in commands {
+            let about = all.find_subcommand(name).and_then(Command::get_about);
+            if let Some(about) = about {
+                let about = flags::wrapped(&about.to_string(), WIDTH);
+                let indent = format!("\n  {:COLUMN$}", "");
+                template += &format!("  {name:<COLUMN$}{}\n", about.replace('\n', &indent));
+            }
+        }
+    }
+    template += "\n{all-args}{after-help}";
+    let names: Vec<String> = all
+        .get_subcommands()
+        .map(|command| command.get_name().to_owned())
+        .collect();
+    let usage = all.render_usage().to_string();
+    let usage = usage.trim_start_matches("Usage: ").to_owned();
+    for name in names {
+        all = all.mut_subcommand(name, |command| command.hide(true));
+    }
+    all.help_template(template).override_usage(usage)
+}
+
 #[cfg(test)]
 mod tests {
     use clap::builder::NonEmptyStringValueParser;
     use clap::error::{ContextKind, ContextValue, ErrorKind};
     use clap::{Arg, Command, Error};
+
+    use super::GROUPS;
+    use crate::cli::arguments::definitions;
 
     fn innermost(command: &Command) -> Vec<Command> {
         let own: Vec<_> = command.get_subcommands().collect();
@@ -166,5 +208,14 @@ mod tests {
             }
         }
         assert!(needy > 30, "{needy}");
+    }
+
+    #[test]
+    fn every_command_is_in_one_group() {
+        for command in definitions::all().get_subcommands() {
+            let name = command.get_name();
+            let lists = GROUPS.iter().filter(|(_, own)| own.contains(&name)).count();
+            assert_eq!(lists, 1, "{name}");
+        }
     }
 }

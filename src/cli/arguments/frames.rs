@@ -1,6 +1,6 @@
-//! The arguments of `taxel frames`, and the flags about processing that `taxel watch` has too.
+//! The arguments of `taxel frames` and `taxel watch`.
 //!
-//! There are three groups of flags, which are applied to frames in this order:
+//! Flags about processing are applied to frames in this order:
 //! ```text
 //! --frame N | --label L | --peak | --all             which frames; none of them: a listing
 //! --crop --flip --turn --mask --tare --gain          from the recording's values to those that count
@@ -11,14 +11,18 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+use taxel_files::acquire::{AcquireOptions, Playback};
+use taxel_files::formats::stream::StreamFormat;
+use taxel_files::storage::Existing;
 
 use crate::cli::arguments::flags::{
-    json, name_or_path, of_sensor, option, parse_number, required, switch, whole,
+    self, json, name_or_path, of_sensor, option, parse_number, required, switch, whole,
 };
-use crate::cli::arguments::help::FRAMES_EXAMPLES;
+use crate::cli::arguments::help::{FRAMES_EXAMPLES, WATCH_EXAMPLES};
 use crate::cli::arguments::recognise::parse_noise;
-use crate::cli::arguments::{kept, parameters};
+use crate::cli::arguments::{program, touch};
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::{LEAST, SensorSettings};
 use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule, View};
@@ -104,7 +108,7 @@ pub(crate) fn command() -> Command {
                 .map(|arg| arg.requires("choice").conflicts_with("noise-report")),
         )
         .args(keeping())
-        .group(kept::group())
+        .group(touch::keeping_group())
         .args([json().conflicts_with("heat"), heat()])
 }
 
@@ -119,16 +123,16 @@ fn heat() -> Arg {
 /// Defines the flags that keep frames. With `--export`, each frame gets its own file. `--save` stores a single
 /// shape, so it excludes `--all`, and fails for a label that several frames have.
 fn keeping() -> [Arg; 4] {
-    kept::flags().map(|arg| match arg.get_id().as_str() {
+    touch::keeping().map(|arg| match arg.get_id().as_str() {
         "save" => arg
             .requires("choice")
             .conflicts_with_all(["all", "noise-report"]),
-        "export" => arg.requires("choice").help(parameters::wrapped(
+        "export" => arg.requires("choice").help(flags::wrapped(
             "Write the imprint, or a drawing of it, with the frame's number in the name, such as touch-0.svg for touch.svg; \
              with --noise-report the mask",
             52,
         )),
-        "force" => arg.help(parameters::wrapped(
+        "force" => arg.help(flags::wrapped(
             "Replace existing shapes and files, but never the recording",
             52,
         )),
@@ -418,4 +422,106 @@ fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
         .or_else(|| made("percent", Rule::percent))
         .or_else(|| made("deviations", Rule::noise))
         .transpose()
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct WatchArguments {
+    /// A serial line, a FIFO, `tcp://HOST:PORT`, a recording, or `-` for standard input; which one is decided when it
+    /// is opened.
+    pub(crate) source: OsString,
+    pub(crate) options: AcquireOptions,
+    pub(crate) baud_named: bool,
+    pub(crate) processing: ProcessingArguments,
+    pub(crate) naming: NamingArguments,
+    pub(crate) write: Option<PathBuf>,
+    pub(crate) existing: Existing,
+    /// The memory for the history of the page, in bytes.
+    pub(crate) history_bytes: usize,
+    /// Whether to print a line of JSON for each frame, even on a terminal.
+    pub(crate) json: bool,
+}
+
+pub(crate) fn watch() -> Command {
+    let source = Arg::new("source")
+        .value_name("SOURCE")
+        .required(true)
+        .value_parser(name_or_path())
+        .help("Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input");
+    let names: Vec<&str> = StreamFormat::ALL.iter().map(|own| own.name()).collect();
+    let what = format!("Format of the stream: auto, {}", names.join(", "));
+    let format = option("format", "FORMAT", flags::wrapped(&what, 52))
+        .value_parser(PossibleValuesParser::new(
+            std::iter::once("auto").chain(names),
+        ))
+        .hide_possible_values(true);
+    let baud = option("baud", "BAUD", "Speed of a serial line; default 115200")
+        .value_parser(whole::<u32>(AcquireOptions::BAUDS));
+    let once = switch("once", "Read to the end as fast as possible, then stop")
+        .conflicts_with_all(["loop", "speed"]);
+    let again = switch("loop", "Start a recording again when it ends");
+    let speed = option(
+        "speed",
+        "FACTOR",
+        "Play a recording at FACTOR times its speed",
+    )
+    .value_parser(parse_speed);
+    let write = option(
+        "write",
+        "FILE.npy",
+        "Record all frames, for numpy and 'taxel frames'",
+    )
+    .value_parser(flags::npy());
+    Command::new("watch")
+        .about("Show or describe the frames of a sensor, live or played back")
+        .after_help(WATCH_EXAMPLES)
+        .arg(source)
+        .args([format, baud, once, again, speed].map(|arg| arg.help_heading("Source")))
+        .args(processing())
+        .args(rules())
+        .args(naming())
+        .args([write, flags::replace().requires("write"), json()])
+        .args(program::look().map(|arg| arg.conflicts_with("json")))
+}
+
+fn parse_speed(text: &str) -> Result<f64, String> {
+    let speed = parse_number(text)?;
+    let allowed = Playback::allows(speed).then_some(speed);
+    allowed.ok_or_else(|| format!("expected {}", Playback::SPEEDS))
+}
+
+fn playback(matches: &ArgMatches) -> Playback {
+    if matches.get_flag("once") {
+        return Playback::Once;
+    }
+    let speed = matches.get_one("speed").copied().unwrap_or(1.0);
+    Playback::paced(speed, matches.get_flag("loop"))
+}
+
+impl WatchArguments {
+    pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
+        let source = required(matches, "source")?;
+        let processing = ProcessingArguments::of(matches, settings)?;
+        let format = matches.get_one::<String>("format");
+        let mut options = AcquireOptions::default();
+        settings.apply(&mut options);
+        if let Some(name) = format {
+            options.format = name.parse().ok();
+            options.stream_format = None;
+        }
+        options.size = processing.size;
+        options.channel.clone_from(&processing.channel);
+        options.baud = matches.get_one("baud").copied().unwrap_or(options.baud);
+        options.playback = playback(matches);
+        Ok(Self {
+            source,
+            options,
+            baud_named: matches.contains_id("baud"),
+            processing,
+            naming: NamingArguments::of(matches),
+            write: matches.get_one::<PathBuf>("write").cloned(),
+            existing: flags::existing(matches),
+            history_bytes: settings.history_bytes(),
+            json: matches.get_flag("json"),
+        })
+    }
 }

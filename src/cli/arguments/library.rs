@@ -5,14 +5,13 @@ use std::ffi::OsString;
 use clap::{ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    existing, force, json, name, of_sensor, required, unhandled_subcommand, what,
+    Form, existing, force, json, name, of_sensor, required, unhandled_subcommand, what,
 };
-use crate::cli::arguments::form::Form;
 use crate::cli::arguments::help::{
     CHECK_EXAMPLES, DELETE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, PATH_EXAMPLES,
     RESTORE_EXAMPLES, SAVE_EXAMPLES, SHOW_EXAMPLES,
 };
-use crate::cli::arguments::kept::Saving;
+use crate::cli::arguments::touch::Saving;
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::Effective;
 use crate::formats::Name;

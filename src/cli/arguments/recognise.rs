@@ -1,10 +1,4 @@
-//! The flags of `taxel recognise NAME|FILE`, and how they are read.
-//!
-//! The input is one imprint, or lines of JSON with one or more touches each, which are answered line by line:
-//! ```text
-//! taxel recognise imprint.txt --model mine --top 3
-//! taxel frames grip.csv --all --at-least 20 --json | taxel recognise - --reject 0.9 --json
-//! ```
+//! The flags of `taxel recognise NAME|FILE`.
 
 use std::ffi::OsString;
 

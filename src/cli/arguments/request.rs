@@ -4,31 +4,28 @@
 //! Settings are resolved here, since they provide defaults: the sensor of a figure, the pitch of a table.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::error::ErrorKind;
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command};
 use clap_complete::Shell;
+use taxel_core::figure::FigureKind;
+use taxel_core::quote::{as_argument, joined};
+use taxel_files::formats::file::has_ending;
 
-use crate::cli::arguments::advice::with_tips;
-use crate::cli::arguments::export::Export;
-use crate::cli::arguments::flags::{self, misused, required, unhandled_subcommand};
-use crate::cli::arguments::form::{self, Form};
-use crate::cli::arguments::frames::FramesArguments;
-use crate::cli::arguments::kept::Kept;
+use crate::cli::arguments::flags::{self, Form, Given, misused, required, unhandled_subcommand};
+use crate::cli::arguments::frames::{FramesArguments, WatchArguments};
 use crate::cli::arguments::library::LibraryCommand;
 use crate::cli::arguments::model::ModelRequest;
-use crate::cli::arguments::parameters::Given;
 use crate::cli::arguments::program::Script;
 use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::arguments::sweep::{SweepArguments, Wanted};
-use crate::cli::arguments::watch::WatchArguments;
-use crate::cli::arguments::{definitions, groups, touch};
+use crate::cli::arguments::touch::{Export, Kept};
+use crate::cli::arguments::{definitions, touch};
 use crate::cli::error::CliError;
-use crate::cli::settings::flags::Chosen;
-use crate::cli::settings::pitch::Pitch;
-use crate::cli::settings::resolved::{Effective, Loaded};
+use crate::cli::settings::resolved::{Chosen, Effective, Loaded, Pitch};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -77,7 +74,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     let is_short = has("-h") && !has("--help");
     let all = definitions::all();
     let all = if is_short { without_notes(all) } else { all };
-    let mut command = groups::grouped(all);
+    let mut command = definitions::grouped(all);
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => {
@@ -218,7 +215,7 @@ fn request(
         "model" => Request::Model(ModelRequest::of(own)?),
         "recognise" => Request::Recognise(Box::new(RecogniseArguments::of(
             own,
-            form::pitch_of(own, settings)?.of(None),
+            flags::pitch_of(own, settings)?.of(None),
         ))),
         "batch" => {
             let file = own.get_one::<PathBuf>("file").cloned();
@@ -227,4 +224,84 @@ fn request(
         }
         other => return Err(unhandled_subcommand(other)),
     })
+}
+
+/// Extensions of files that contain frames. `.txt` and `.json` are left out: such files may be imprints and shapes.
+const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy", "npz"];
+
+pub(super) fn with_tips(mut error: Error) -> Error {
+    let tips = match error.kind() {
+        ErrorKind::InvalidSubcommand => for_recording(&error),
+        ErrorKind::InvalidValue => for_no_figure(&error),
+        ErrorKind::MissingRequiredArgument => for_missing(&error),
+        _ => Vec::new(),
+    };
+    if !tips.is_empty() {
+        // A misspelt word is less likely then: a circle is not a misspelt rectangle.
+        error.remove(ContextKind::SuggestedValue);
+        let tips = tips.into_iter().map(StyledStr::from).collect();
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+    }
+    error
+}
+
+fn quoted(error: &Error, kind: ContextKind) -> Option<&str> {
+    match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text),
+        _ => None,
+    }
+}
+
+fn for_recording(error: &Error) -> Vec<String> {
+    let Some(given) = quoted(error, ContextKind::InvalidSubcommand) else {
+        return Vec::new();
+    };
+    let path = Path::new(given);
+    let is_recording = RECORDINGS.iter().any(|ending| has_ending(path, ending));
+    if !is_recording || !path.is_file() {
+        return Vec::new();
+    }
+    let typed = as_argument(given);
+    vec![
+        format!("taxel frames {typed} lists what is in it"),
+        format!("taxel watch {typed} plays it"),
+    ]
+}
+
+fn for_no_figure(error: &Error) -> Vec<String> {
+    let argument = quoted(error, ContextKind::InvalidArg);
+    let given = quoted(error, ContextKind::InvalidValue).filter(|given| !given.is_empty());
+    let (Some(argument), Some(given)) = (argument, given) else {
+        return Vec::new();
+    };
+    let is_kind = ["<KIND>", "[KIND]"].contains(&argument);
+    if let Some(known) = FigureKind::of_other_name(given).filter(|_| is_kind) {
+        return vec![known.to_owned()];
+    }
+    if error.get(ContextKind::SuggestedValue).is_some() {
+        return Vec::new();
+    }
+    let shape = as_argument(given);
+    match argument {
+        // 'sweep' also takes a stored shape, so its kind is optional.
+        "[KIND]" => vec![format!("for a stored shape, use --picture {shape}")],
+        "<KIND>" => vec![format!("for a stored shape, use taxel picture {shape}")],
+        _ => Vec::new(),
+    }
+}
+
+fn for_missing(error: &Error) -> Vec<String> {
+    let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else {
+        return Vec::new();
+    };
+    let lacks = |word: &str| missing.iter().any(|argument| argument.contains(word));
+    let mut tips = Vec::new();
+    if lacks("KIND") {
+        let kinds = joined(FigureKind::names(), "or");
+        tips.push(format!("KIND is {kinds}"));
+    }
+    if lacks("--peak") {
+        tips.push("to describe frames, choose some, such as '--peak' or '--all'".to_owned());
+    }
+    tips
 }

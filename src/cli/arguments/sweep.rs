@@ -7,11 +7,10 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, anchor, jobs, json, memory, misused, name_or_path, npy, option, quiet, range, replace,
-    sensor_of_imprints, shard,
+    self, Given, anchor, jobs, json, memory, misused, name_or_path, npy, option, quiet, range,
+    replace, sensor_of_imprints, shard,
 };
 use crate::cli::arguments::help::{MERGE_EXAMPLES, SWEEP_EXAMPLES};
-use crate::cli::arguments::parameters::{self, Given};
 use crate::cli::arguments::touch;
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::Effective;
@@ -56,12 +55,12 @@ pub(crate) enum Swept {
 pub(super) fn command() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
-        .value_parser(parameters::one_of::<FigureKind, _>(FigureKind::names()))
+        .value_parser(flags::one_of::<FigureKind, _>(FigureKind::names()))
         .hide_possible_values(true)
         .help("Kind of figure, as in 'taxel figure'; or --picture");
     let picture =
         option("picture", "NAME|FILE", "Sweep a stored shape instead").value_parser(name_or_path());
-    let sizes = parameters::figure_parameters()
+    let sizes = flags::figure_parameters()
         .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
     let poses = option("poses", "FILE.npy", "Write which imprint each pose leaves")
         .value_parser(npy())
@@ -76,7 +75,7 @@ pub(super) fn command() -> Command {
                 .args(["kind", "picture"])
                 .required(true),
         )
-        .args(sizes.map(|parameter| parameters::arg(parameter).help_heading("Figure")))
+        .args(sizes.map(|parameter| flags::arg(parameter).help_heading("Figure")))
         .args(Axis::ALL.map(|axis| match axis {
             Axis::X0 | Axis::Y0 => range(axis, "one cell in which nothing is cut off"),
             _ => range(axis, ""),
@@ -145,7 +144,7 @@ impl SweepArguments {
     ) -> Result<Self, CliError> {
         let given = Given::of(matches);
         let what = if let Some(picture) = matches.get_one::<OsString>("picture") {
-            let size = parameters::figure_parameters().find(|&parameter| given.has(parameter));
+            let size = flags::figure_parameters().find(|&parameter| given.has(parameter));
             if let Some(size) = size {
                 let message = format!("'--{}' does not belong to a picture", size.flag());
                 return Err(misused(command, "sweep", &message));

@@ -9,15 +9,14 @@ use std::path::Path;
 use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
-use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
+use crate::cli::arguments::model::{ConfusionArguments, Evaluated};
 use crate::cli::commands::export::{put, written};
 use crate::cli::commands::model::{self, FoundModel};
 use crate::cli::commands::noise;
 use crate::cli::error::{CliError, MOST_PAIRED};
 use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::Charset;
+use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
-use crate::cli::output::note::note;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
 use crate::formats::file::has_ending;

@@ -8,12 +8,11 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use crate::cli::arguments::export::{Export, ExportFormat};
-use crate::cli::arguments::kept::{Kept, Saving};
+use crate::cli::arguments::touch::{Export, ExportFormat, Kept, Saving};
 use crate::cli::error::CliError;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
-use crate::cli::settings::pitch::Pitch;
+use crate::cli::settings::resolved::Pitch;
 use crate::formats::{Content, Drawing, Name, StoredShape};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;

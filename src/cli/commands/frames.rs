@@ -23,23 +23,22 @@ use std::io::Write;
 use std::ops::{ControlFlow, Range};
 use std::slice;
 
-use crate::cli::arguments::export::Export;
-use crate::cli::arguments::form::Form;
+use crate::cli::arguments::flags::Form;
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
-use crate::cli::arguments::kept::Kept;
+use crate::cli::arguments::touch::{Export, Kept};
 use crate::cli::commands::export::{Begun, Exported};
-use crate::cli::commands::naming::FrameNamer;
-use crate::cli::commands::noise_report;
+use crate::cli::commands::recognise::FrameNamer;
+use crate::cli::commands::recording_scan;
 use crate::cli::commands::recording_scan::Scan;
 use crate::cli::error::{CliError, frame_advice};
-use crate::cli::input::processing;
+use crate::cli::input::recording;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::heat_map::heat_map;
+use crate::cli::output::plot::heat_map;
 use crate::cli::output::recording_list::{self, ListedChannel};
 use crate::cli::output::report;
-use crate::cli::settings::pitch::Pitch;
+use crate::cli::settings::resolved::Pitch;
 use crate::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, RecordingError};
 use crate::formats::value::counted;
 use crate::formats::{Name, StoredShape, json};
@@ -104,7 +103,7 @@ pub(crate) fn frames(
     };
     let channel = scan.channel(&recording, wanted)?;
     let listed = &scan.channels[channel];
-    let tare = processing::unused_tare(&asked.processing, &listed.info, &processing.view);
+    let tare = recording::unused_tare(&asked.processing, &listed.info, &processing.view);
     tare.inspect(|unused| (output.notes)(&format!("warning: {}: {unused}", recording.name())));
     let selected = Selection::new(asked, choice, processing, &mut recording, (channel, listed));
     let (selection, mut processing) = match selected {
@@ -112,7 +111,7 @@ pub(crate) fn frames(
         // If frames are missing, the damage is the reason.
         Err(error) => return Err(damage.unwrap_or(error)),
     };
-    if let Some(unknown) = processing::unknown_step(&processing) {
+    if let Some(unknown) = recording::unknown_step(&processing) {
         (output.notes)(&format!("warning: {}: {unknown}", recording.name()));
     }
     let answered = if choice == FrameChoice::NoiseReport {
@@ -157,7 +156,7 @@ fn report_noise(
 ) -> Result<bool, CliError> {
     let export = output.kept.export.as_ref();
     export.map_or(Ok(()), |export| export.check(recording))?;
-    let found = noise_report::gather(recording, channel, processing)?;
+    let found = recording_scan::gather(recording, channel, processing)?;
     let found = found.map(|found| write_noise(&found, recording.name(), output));
     Ok(found.transpose()?.is_some())
 }
@@ -179,9 +178,9 @@ fn write_noise(
         if let Some(said) = said {
             (output.notes)(&said);
         }
-        return output.write(noise_report::json(found));
+        return output.write(recording_scan::json(found));
     }
-    let text = said.map_or(String::new(), |said| said + "\n") + &noise_report::text(found);
+    let text = said.map_or(String::new(), |said| said + "\n") + &recording_scan::text(found);
     output.write(output.charset.lines(&text))
 }
 
@@ -241,19 +240,19 @@ impl Selection {
             let given = asked.processing.size;
             return Err(recording.damaged(RecordingError::unshaped(listed.values, given)));
         }
-        let rule = processing::rule(recording, &asked.processing, &listed.info)?;
+        let rule = recording::rule(recording, &asked.processing, &listed.info)?;
         processing.rule = Some(rule.rule);
         processing.least = rule.least;
         match asked.processing.tare {
             Some(0) => {}
             Some(wanted) => {
                 let asked = &asked.processing;
-                processing::tare(recording, (channel, wanted), asked, &mut processing)?;
+                recording::tare(recording, (channel, wanted), asked, &mut processing)?;
             }
             None => processing.tare = listed.info.tare_for(&processing.view).cloned(),
         }
         let number = match choice {
-            FrameChoice::Peak => processing::peak(recording, channel, listed, &mut processing)?,
+            FrameChoice::Peak => recording::peak(recording, channel, listed, &mut processing)?,
             FrameChoice::Number(number) => Some(number),
             FrameChoice::Label(_) | FrameChoice::All | FrameChoice::NoiseReport => None,
         };

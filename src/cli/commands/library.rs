@@ -1,13 +1,4 @@
 //! `taxel library`: lists, shows, stores, deletes, restores and checks shapes.
-//!
-//! `list` prints a line for each shape. For a damaged shape, the reason takes the place
-//! of the numbers:
-//! ```text
-//! name           origin      size   NA  pieces  holes
-//! oval ring      shipped  16 × 16   52       1      1
-//! washer         shipped  16 × 16   36       1      1
-//! zigzag         broken   …/zigzag.json: sensor: missing
-//! ```
 
 use std::ffi::OsStr;
 use std::fmt::{self, Write};
@@ -18,9 +9,9 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
-use crate::cli::arguments::form::Form;
-use crate::cli::arguments::kept::Saving;
-use crate::cli::commands::describe;
+use crate::cli::arguments::flags::Form;
+use crate::cli::arguments::touch::Saving;
+use crate::cli::commands::touch;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
@@ -157,7 +148,7 @@ pub(crate) fn show(
 ) -> Result<String, CliError> {
     let loaded = shelf.readable().load(name);
     let shape = loaded.map_err(|error| shelf.refused(error))?.shape;
-    Ok(describe::content(&Content::Shape(shape), form, charset))
+    Ok(touch::content(&Content::Shape(shape), form, charset))
 }
 
 /// Stores a shape of the library or of a file under another name. An imprint without a sensor gets one of its own

@@ -1,25 +1,14 @@
-//! The commands, one file each.
-//!
-//! A command takes its checked arguments and returns its answer as text or bytes, which [`crate::cli::run`] prints.
-//! `batch`, `recognise`, `frames`, `watch` and `script`, whose answers come one by one, write them themselves. Notes
-//! and progress go to standard error meanwhile. Files that a command writes are complete or do not exist: they get
-//! their names last.
+//! The commands. Each takes its checked arguments and returns its answer as text or bytes, which [`crate::cli::run`]
+//! prints; answers that come one by one are written at once. Files that a command writes are complete or do not exist:
+//! they get their names last.
 
 pub(super) mod export;
-
-pub(super) mod describe;
 
 pub(super) mod touch;
 
 pub(super) mod library;
 
-pub(super) mod batch;
-
 pub(super) mod sweep;
-
-pub(super) mod merge;
-
-pub(super) mod training_grid;
 
 pub(super) mod model;
 
@@ -31,13 +20,9 @@ pub(super) mod separate;
 
 pub(super) mod recognise;
 
-pub(super) mod naming;
-
 pub(super) mod frames;
 
 pub(super) mod recording_scan;
-
-pub(super) mod noise_report;
 
 pub(super) mod watch;
 

@@ -1,36 +1,26 @@
 //! `taxel model`: trains, shows, lists and deletes models of shapes.
 //!
-//! A model is the file of a training: every imprint that some shapes leave on a grid of poses, and how often each
-//! shape leaves it. `show` prints a description, the model's card:
-//! ```text
-//! 16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2 cells, y0 7:7.8:0.2 cells, angle 0:355:5°
-//!   disc: ellipse radius_x 2.40, radius_y 2.40, named right in 96.0 % of its touches
-//!   block: rectangle length 4.50, width 4.30, named right in 99.1 % of its touches
-//! 1,800 poses each
-//! …
-//! hash 2888dcc5d50ce3389fbcb40d256ae2ab
-//! ```
-//! The hash is that of the content: two trainings of one set on one grid have the same hash on any machine.
+//! A model is the file of a training: every imprint that some shapes leave on a grid of poses, and how often each shape
+//! leaves it. Its hash is that of the content: two trainings of one set on one grid have the same hash on any machine.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
+use taxel_core::pose::{GivenRanges, Reach, SensorSides, check_given};
+use taxel_core::recognition::{CellPositions, LEAST_SIDE};
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
-use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
-use crate::cli::commands::training_grid::TrainingGrid;
+use crate::cli::arguments::model::{ModelTarget, TrainArguments};
 use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
-use crate::cli::input::shape_set;
-use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::Charset;
+use crate::cli::input::shapes::{self, Shelf};
+use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::evaluation::{self, NamedBy};
-use crate::cli::output::note::note;
 use crate::cli::output::progress::ProgressDisplay;
-use crate::cli::output::ranges::ranges_in_words;
+use crate::cli::output::sweep_summary::ranges_in_words;
+use crate::cli::signals;
 use crate::cli::signals::Signals;
-use crate::cli::threads;
 use crate::formats::value::{counted, grouped, percent};
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
@@ -53,7 +43,7 @@ pub(crate) fn train(
     charset: Charset,
 ) -> Result<Summary, CliError> {
     let path = path_of(&asked.to, shelf)?;
-    let shapes = shape_set::read(&asked.set, shelf)?;
+    let shapes = shapes::read_set(&asked.set, shelf)?;
     let grid = TrainingGrid::of(asked, &shapes)?;
     let (sensor, anchor, ranges) = (grid.sensor, grid.anchor, grid.ranges);
     let signals = Signals::catch()?;
@@ -91,7 +81,7 @@ fn run(
     charset: Charset,
 ) -> Result<Model, CliError> {
     let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
-    let pool = threads::pool(asked.jobs)?;
+    let pool = signals::pool(asked.jobs)?;
     let display = ProgressDisplay::new(training.poses(), asked.quiet, charset);
     let model = memory.limit(&signals.progress(&display), |progress| {
         pool.install(|| training.with_progress(progress).run())
@@ -469,6 +459,60 @@ pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
             })
         }
         deleted => Ok(format!("deleted {}\n", deleted?)),
+    }
+}
+
+pub(super) struct TrainingGrid {
+    pub(super) sensor: Sensor,
+    pub(super) anchor: Anchor,
+    pub(super) ranges: Ranges,
+    pub(super) remedy: &'static str,
+}
+
+impl TrainingGrid {
+    /// Returns the grid for some shapes. If neither x0 nor y0 is given, the anchor is the centre, since a shape's
+    /// centre stays in place when it turns: one cell is then enough for all positions.
+    pub(super) fn of(asked: &TrainArguments, shapes: &[NamedShape]) -> Result<Self, CliError> {
+        let given = &asked.ranges;
+        let placed = given[Axis::X0].is_some() || given[Axis::Y0].is_some();
+        let usual = if placed {
+            Anchor::Corner
+        } else {
+            Anchor::Centre
+        };
+        let anchor = asked.anchor.unwrap_or(usual);
+        check_given(given, &asked.sides.largest())?;
+        let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
+        let reach = Reach::of_all(sources.iter().copied(), anchor, given)?;
+        let step = asked.positions.unwrap_or(CellPositions::FINE).step();
+        let (sensor, ranges) = reach.best_sensor(&sources, given, asked.sides, step);
+        let holds = |sides: SensorSides, given: &GivenRanges| {
+            let sensor = reach.smallest_sensor(&sources, given, sides, step);
+            sensor.is_some()
+        };
+        Ok(Self {
+            sensor: asked.given.sensor(sensor)?,
+            anchor,
+            ranges,
+            remedy: remedy(asked, holds),
+        })
+    }
+}
+
+/// Returns advice in case the sensor cuts off poses. `holds` tells whether some sensor with these sides holds the
+/// shapes at these positions.
+fn remedy(
+    asked: &TrainArguments,
+    holds: impl Fn(SensorSides, &GivenRanges) -> bool,
+) -> &'static str {
+    let any = SensorSides::at_least(LEAST_SIDE);
+    let elsewhere = asked.ranges.with(Axis::X0, None).with(Axis::Y0, None);
+    match (holds(any, &asked.ranges), holds(asked.sides, &elsewhere)) {
+        (true, true) => "use a larger sensor or other positions",
+        (true, false) => "use a larger sensor",
+        (false, true) => "use other positions",
+        (false, false) if holds(any, &elsewhere) => "use a larger sensor and other positions",
+        (false, false) => "use smaller shapes",
     }
 }
 

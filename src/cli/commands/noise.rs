@@ -1,4 +1,4 @@
-//! The cost of noise: `taxel model confusion --noise` and `taxel model touches`.
+//! The cost of noise: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
 //!
 //! Noise flips each taxel independently with the same probability. Dead taxels are inactive; they are drawn anew for
 //! each touch. The tables look like this:
@@ -20,15 +20,13 @@ use std::iter;
 use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
-use crate::cli::arguments::model::confusion::{ConfusionArguments, NoiseArguments};
-use crate::cli::arguments::model::touches::TouchesArguments;
+use crate::cli::arguments::model::{ConfusionArguments, NoiseArguments, TouchesArguments};
 use crate::cli::commands::export::put;
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::Charset;
+use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::evaluation::{self, bar};
-use crate::cli::output::note::note;
 use crate::cli::output::plot;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;

@@ -1,13 +1,7 @@
 //! `taxel recognise`: names the shape that left an imprint, or the shapes that left many.
 //!
 //! An imprint is answered in words or by a JSON object. Lines of JSON are answered by a line each, with or without
-//! `--json`. Keys that tell where a touch comes from are copied to the beginning of the answer:
-//! ```text
-//! {"imprint":["....",".##.",".##.","...."],"frame":3}
-//! {"frame":3,"answer":null,"state":"unknown","method":"exact","noise":null,"at_rim":false,"ranking":[],…}
-//! {"imprint":["##","#"]}
-//! {"error":"line 2: imprint: row 2 has 1 character, expected 2 as in the first row"}
-//! ```
+//! `--json`. Keys that tell where a touch comes from are copied to the beginning of the answer.
 
 use std::ffi::OsStr;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
@@ -17,23 +11,21 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
+use crate::cli::arguments::frames::NamingArguments;
 use crate::cli::arguments::recognise::RecogniseArguments;
-use crate::cli::commands::model;
+use crate::cli::commands::model::{self, FoundModel};
 use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::lines::{self, LineInput, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
-use crate::cli::output::answer::{AnswerJson, AnswerText};
-use crate::cli::output::charset::Charset;
-use crate::cli::output::note::note;
-use crate::cli::output::pose::PoseReport;
+use crate::cli::output::answer::{AnswerJson, AnswerText, PoseReport};
+use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::progress::ProgressDisplay;
-use crate::formats::Content;
 use crate::formats::file::without_mark;
 use crate::formats::framed::{FrameRows, RuleRecord};
-use crate::formats::json;
 use crate::formats::record::Text;
 use crate::formats::value::counted;
+use crate::formats::{Content, json};
 use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
 use crate::progress::ToTheEnd;
@@ -435,6 +427,77 @@ impl RecogniseLine {
             .iter()
             .map(|(key, value)| (*key, &**value))
             .collect()
+    }
+}
+
+impl NamingArguments {
+    pub(crate) fn find(&self, shelf: &Shelf) -> Result<Option<FoundModel>, CliError> {
+        let model = self.model.as_ref();
+        model.map(|model| model::find(model, shelf)).transpose()
+    }
+}
+
+#[derive(Debug)]
+pub(crate) struct FrameNamer<'a> {
+    model: &'a Model,
+    noise: Option<Noise>,
+}
+
+impl<'a> FrameNamer<'a> {
+    pub(crate) fn new(model: &'a Model, noise: Option<&Noise>) -> Self {
+        Self {
+            model,
+            noise: noise.copied(),
+        }
+    }
+
+    fn evidence<'b>(&'b self, touches: &'b [Imprint]) -> Evidence<'b> {
+        Evidence::of(touches).under(self.noise.as_ref())
+    }
+
+    /// Adds the key `recognition` to the end of a frame's line of JSON: the answer of `taxel recognise` to the
+    /// imprint, or null if no taxel is active.
+    pub(crate) fn extend(&self, line: &mut Vec<u8>, imprint: Option<&Imprint>) {
+        let Some(end) = line.iter().rposition(|&byte| byte == b'}') else {
+            return;
+        };
+        line.truncate(end);
+        line.extend(b",\"recognition\":");
+        match imprint.filter(|imprint| !imprint.is_empty()) {
+            None => line.extend(b"null"),
+            Some(imprint) => {
+                let touches = [*imprint];
+                let evidence = self.evidence(&touches);
+                let answer = AnswerJson {
+                    model: self.model,
+                    answer: &self.model.recognise(evidence),
+                    noise: self.noise,
+                    nearest: self.model.nearest_of(evidence),
+                    top: None,
+                    asks_pose: false,
+                    pose: None,
+                    copied: Vec::new(),
+                };
+                json::extend_ascii(line, &answer);
+            }
+        }
+        line.extend(b"}\n");
+    }
+
+    pub(crate) fn text(&self, imprint: &Imprint, charset: Charset) -> String {
+        if imprint.is_empty() {
+            return String::new();
+        }
+        let touches = [*imprint];
+        let answer = self.model.recognise(self.evidence(&touches));
+        let text = AnswerText {
+            model: self.model,
+            touch: imprint,
+            answer: &answer,
+            top: None,
+            noise: self.noise,
+        };
+        text.text(charset)
     }
 }
 

@@ -12,8 +12,7 @@ use std::sync::Arc;
 
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::Charset;
-use crate::cli::output::note::note;
+use crate::cli::output::charset::{Charset, note};
 use crate::cli::settings::resolved::Effective;
 use crate::formats::file::system_reason;
 use crate::storage::ModelCache;

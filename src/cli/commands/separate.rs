@@ -10,18 +10,17 @@
 use std::ffi::{OsStr, OsString};
 
 use crate::cli::arguments::flags::EvaluationForm;
-use crate::cli::arguments::model::separate::SeparateArguments;
+use crate::cli::arguments::model::SeparateArguments;
 use crate::cli::commands::export::{put, written};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
-use crate::cli::input::shape_set;
+use crate::cli::input::shapes;
 use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::Charset;
-use crate::cli::output::note::note;
+use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::separation;
+use crate::cli::signals;
 use crate::cli::signals::Signals;
-use crate::cli::threads;
 use crate::formats::Name;
 use crate::formats::file::has_ending;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
@@ -59,7 +58,7 @@ pub(crate) fn separate(
     let points = (sizes.len() as u64 + more) * thresholds.len() as u64;
     let display = ProgressDisplay::new(separation.touches() * points, asked.quiet, charset);
     let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
-    let pool = threads::pool(asked.jobs)?;
+    let pool = signals::pool(asked.jobs)?;
     let curves = memory.limit(&signals.progress(&display), |progress| {
         pool.install(|| curves(asked, &separation, (&sizes, &thresholds), progress))
     });
@@ -197,7 +196,7 @@ fn set(
             error: "a model; give one model or several shapes, not both".to_owned(),
         });
     }
-    let mut separation = Separation::new(shape_set::read(&asked.set, shelf)?)?
+    let mut separation = Separation::new(shapes::read_set(&asked.set, shelf)?)?
         .with_angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));
     if let Some(positions) = asked.positions {
         separation = separation.with_positions(positions);

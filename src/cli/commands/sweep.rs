@@ -10,19 +10,30 @@
 //! The result of a sweep: `--atlas` writes every distinct imprint with its number of poses, `--poses` writes the
 //! number of its imprint for each pose, and standard output gets a summary.
 
+use std::collections::HashSet;
+use std::fmt;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use taxel_core::recognition::{Evaluation, Model, ModelError, ModelMerge, TrainingError};
+use taxel_core::sweep::{MergeError, ShardOrderError, SweepMerge};
+use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
+use taxel_files::storage::{load_atlas, load_model, open_archive, save_model};
+
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
+use crate::cli::arguments::model::model_file;
 use crate::cli::arguments::sweep::Wanted;
+use crate::cli::commands::confusion::fits_in_table;
 use crate::cli::commands::export::written;
 use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
-use crate::cli::output::charset::Charset;
-use crate::cli::output::note::note;
+use crate::cli::output::charset::{Charset, note};
+use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::sweep_summary::SweepSummary;
+use crate::cli::signals;
 use crate::cli::signals::Signals;
-use crate::cli::threads;
 use crate::formats::value::{counted, grouped};
 use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, default_ranges, figure_ranges};
@@ -93,7 +104,7 @@ pub(crate) fn sweep(
     if let Some(file) = &wanted.atlas {
         file.check(wanted.existing)?;
     }
-    let pool = threads::pool(jobs)?;
+    let pool = signals::pool(jobs)?;
     let memory = MemoryGuard::new(wanted.memory, TOO_LITTLE_MEMORY);
     memory.check(grid).map_err(CliError::Memory)?;
     let new = |path| PoseFile::new(path, grid, wanted.existing);
@@ -167,4 +178,208 @@ fn text(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset)
     } else {
         summary.text(charset)
     }
+}
+
+struct Part {
+    path: PathBuf,
+    format: String,
+    shard: Shard,
+}
+
+impl Part {
+    fn of(path: &Path) -> Result<Self, ArchiveFileError> {
+        let refused = |error| ArchiveFileError::new(path, error);
+        let file = open_archive(path)?;
+        let kind = archive_kind(BufReader::new(file)).map_err(refused)?;
+        Ok(Self {
+            path: path.to_owned(),
+            format: kind.format,
+            shard: kind.shard,
+        })
+    }
+
+    fn refused(&self, error: &dyn fmt::Display) -> CliError {
+        CliError::Shard {
+            path: self.path.clone(),
+            reason: error.to_string(),
+        }
+    }
+
+    fn other_study(&self, first: &Self) -> CliError {
+        self.refused(&format_args!(
+            "shard {}, but {} is shard {}: not the same study",
+            self.shard,
+            first.path.display(),
+            first.shard
+        ))
+    }
+}
+
+/// Refuses to replace one of the shards by the result: the shards could not be merged again.
+fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
+    let written = wanted.atlas.as_ref().map(AtlasFile::path);
+    let written = written.into_iter().chain(wanted.poses.as_deref());
+    for written in written.filter_map(|path| path.canonicalize().ok()) {
+        let own = |path: &&PathBuf| path.canonicalize().is_ok_and(|path| path == written);
+        if let Some(path) = files.iter().find(own) {
+            return Err(CliError::Shard {
+                path: path.clone(),
+                reason: "one of the shards; write to another file".to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
+const MOST_LISTED: usize = 10;
+
+fn check_one_kind(parts: &[Part]) -> Result<(), CliError> {
+    let noun = |part: &Part| match part.format.as_str() {
+        MODEL_FORMAT => "a model",
+        _ => "an atlas",
+    };
+    let Some((first, others)) = parts.split_first() else {
+        return Ok(());
+    };
+    match others.iter().find(|part| noun(part) != noun(first)) {
+        Some(other) => Err(other.refused(&format_args!(
+            "{}, but {} is {}; give the shards of one sweep or of one training",
+            noun(other),
+            first.path.display(),
+            noun(first),
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Refuses shards of which two or more are missing, and lists these. The merge names a single one, and reports shards
+/// of different numbers of shards.
+fn check_all_there(parts: &[Part]) -> Result<(), CliError> {
+    let Some(of) = parts.first().map(|part| part.shard.of()) else {
+        return Ok(());
+    };
+    if parts.iter().any(|part| part.shard.of() != of) {
+        return Ok(());
+    }
+    let given: HashSet<u32> = parts.iter().map(|part| part.shard.number()).collect();
+    let count = u64::from(of) - given.len() as u64;
+    // The merge also names a shard that is given twice.
+    if count < 2 || given.len() < parts.len() {
+        return Ok(());
+    }
+    let missing = (1..=of).filter(|number| !given.contains(number));
+    let mut numbers: Vec<String> = missing.take(MOST_LISTED).map(|it| it.to_string()).collect();
+    if count > MOST_LISTED as u64 {
+        numbers.push("…".to_owned());
+    }
+    let numbers = numbers.join(", ");
+    Err(CliError::MissingShards { count, of, numbers })
+}
+
+pub(crate) fn merge(
+    files: &[PathBuf],
+    wanted: &Wanted,
+    charset: Charset,
+) -> Result<Summary, CliError> {
+    let start = Instant::now();
+    if let Some(file) = &wanted.atlas {
+        file.check(wanted.existing)?;
+    }
+    check_no_shard(files, wanted)?;
+    let parts = files.iter().map(|path| Part::of(path));
+    let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
+    let is_model = parts
+        .first()
+        .is_some_and(|part| part.format == MODEL_FORMAT);
+    check_one_kind(&parts)?;
+    if is_model {
+        check_model_file(wanted)?;
+    }
+    parts.sort_by_key(|part| part.shard.number());
+    check_all_there(&parts)?;
+    let memory = MemoryGuard::new(
+        wanted.memory,
+        "allow more (--memory), or merge on a machine that has more",
+    );
+    let summary = if is_model {
+        leave_model(&models(&parts, wanted, &memory)?, wanted)?
+    } else {
+        let result = sweeps(&parts, &memory)?;
+        // Until here nothing is written, so a signal may just end the program.
+        let signals = Signals::catch()?;
+        leave(&result, start, wanted, Ok(None), charset, &signals)?
+    };
+    wanted.note_written(&summary, charset);
+    Ok(summary)
+}
+
+fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
+    match &wanted.atlas {
+        Some(file) => model_file(file.path()),
+        None => Ok(()),
+    }
+}
+
+fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError> {
+    let mut merge = SweepMerge::default();
+    for part in parts {
+        let shard = load_atlas(&part.path)?;
+        merge.add(shard).map_err(|error| match error {
+            MergeError::Foreign { .. } if part.shard.of() != parts[0].shard.of() => {
+                part.other_study(&parts[0])
+            }
+            MergeError::Foreign { difference, .. } => part.refused(&format_args!(
+                "differs from {} in {difference}",
+                parts[0].path.display()
+            )),
+            MergeError::Order(ShardOrderError::Twice { .. }) => part.refused(&error),
+            other => other.into(),
+        })?;
+        memory.check_merge().map_err(CliError::Memory)?;
+    }
+    Ok(merge.finish()?)
+}
+
+/// Merges the shards of a training. They are refused at the first one if the result has too many shapes for what is to
+/// be printed.
+fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model, CliError> {
+    let mut merge = ModelMerge::default();
+    for part in parts {
+        let model = load_model(&part.path)?;
+        if wanted.json {
+            fits_in_table("confusion matrix", model.shapes().len())?;
+        }
+        merge.add(&model).map_err(|error| match error {
+            ModelError::Foreign { .. } if part.shard.of() != parts[0].shard.of() => {
+                part.other_study(&parts[0])
+            }
+            ModelError::Foreign { .. } => part.refused(&format_args!(
+                "belongs to another training than {}",
+                parts[0].path.display()
+            )),
+            ModelError::Shards(ShardOrderError::Twice { .. }) => part.refused(&error),
+            other => TrainingError::from(other).into(),
+        })?;
+        memory.check_merge().map_err(CliError::Memory)?;
+    }
+    Ok(merge.finish().map_err(TrainingError::from)?)
+}
+
+fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
+    let signals = Signals::catch()?;
+    let saved = wanted.atlas.as_ref().map_or(Ok(()), |file| {
+        let saved = save_model(model, file.path(), wanted.existing, &signals.stopped);
+        saved.map_err(|error| signals.failure_or(error.into()))
+    });
+    let written = unless_stopped(saved)?;
+    let limit = Evaluation::of(model);
+    let text = if wanted.json {
+        json::ascii(&EvaluationJson {
+            evaluation: &limit,
+            classifier: None,
+        }) + "\n"
+    } else {
+        evaluation::summary(&limit, evaluation::NamedBy::Imprint)
+    };
+    Ok(Summary { text, written })
 }

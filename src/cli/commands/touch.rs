@@ -2,17 +2,20 @@
 //! stores the shape too, and `--export` writes it to a file.
 
 use std::ffi::OsStr;
+use std::io::Write;
 
-use crate::cli::arguments::export::Export;
-use crate::cli::arguments::form::Form;
-use crate::cli::arguments::kept::Kept;
-use crate::cli::arguments::parameters::Given;
+use taxel_core::imprint::Imprint;
+use taxel_core::quote::shortened_message;
+use taxel_files::formats::{DescribedImprint, Job};
+
+use crate::cli::arguments::flags::{Form, Given};
+use crate::cli::arguments::touch::{Export, Kept};
 use crate::cli::error::CliError;
+use crate::cli::input::lines::{self, LineInput};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
-use crate::formats::Content;
-use crate::formats::StoredShape;
+use crate::formats::{Content, StoredShape};
 use crate::picture::Picture;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -88,4 +91,55 @@ pub(crate) fn picture(
     let sensor = given.sensor(sensor)?;
     let picture = given.picture(picture, &sensor)?;
     Ok((Source::Picture(picture), sensor))
+}
+
+/// Returns the answer: one line of JSON, or the matrix and a table of its regions. For a stored shape, its name,
+/// source and sensor come before the table.
+pub(crate) fn content(content: &Content, form: Form, charset: Charset) -> String {
+    let imprint = content.imprint();
+    let Form::Table(pitch) = form else {
+        return report::json(imprint);
+    };
+    let sensor = match content {
+        Content::Imprint(_) => None,
+        Content::Shape(shape) => Some(&shape.sensor),
+    };
+    let pitch = pitch.of(sensor);
+    let mut made = Vec::new();
+    match content {
+        Content::Imprint(_) => made.push(report::size(imprint, None, pitch)),
+        Content::Shape(shape) => {
+            made.push(shape.name.to_string());
+            if let Some(source) = &shape.source {
+                made.push(source.to_string());
+                made.extend(report::beyond(source, &shape.sensor));
+            }
+            made.push(report::size(imprint, sensor, pitch));
+        }
+    }
+    report::table(imprint, &made, pitch, charset)
+}
+
+pub(crate) fn answer_lines(
+    sensor: Sensor,
+    jobs: usize,
+    lookup: &(dyn Fn(&str) -> Result<Imprint, String> + Sync),
+    input: LineInput,
+    output: impl Write,
+) -> Result<(), CliError> {
+    lines::answer_all(jobs, input, output, "pose", || {
+        let (mut plane, mut other) = (Plane::new(sensor), Plane::new(sensor));
+        move |line: &[u8], answer: &mut Vec<u8>| {
+            let job = Job::read(line, sensor, lookup);
+            let job = job.map_err(|error| shortened_message(&error.to_string()))?;
+            let plane = match &job {
+                // A line with a sensor of its own does not replace the plane of the others.
+                Job::Touch(own, _) if *own != sensor => &mut other,
+                _ => &mut plane,
+            };
+            let imprint = job.imprint(plane);
+            serde_json::to_writer(answer, &DescribedImprint(&imprint))
+                .map_err(|error| error.to_string())
+        }
+    })
 }

@@ -1,18 +1,25 @@
 //! Opens recordings: files, or standard input; a pipe is copied to a temporary file because a recording is read
 //! several times.
 
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
 use std::os::fd::AsFd;
+use std::os::unix::fs::FileExt;
 use std::path::Path;
 
+use taxel_core::frame::{FrameError, Peak, Processing, Rule, SetRule, TareFrames, View};
+use taxel_core::matrix::Matrix;
+use taxel_core::sensor::MatrixSize;
+use taxel_files::formats::file::system_reason;
+use taxel_files::formats::recording::ChannelInfo;
+
 use crate::acquire::metadata_beside;
-use crate::cli::error::CliError;
-use crate::cli::input::content;
-use crate::cli::input::content::{InputError, InputSource};
-use crate::cli::input::spool::SpooledInput;
+use crate::cli::arguments::frames::ProcessingArguments;
+use crate::cli::error::{CliError, frame_advice};
+use crate::cli::input::content::{self, InputError, InputSource};
+use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{
     ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, format_of,
     read, read_rows,
@@ -232,6 +239,254 @@ fn spooled(input: impl Read + 'static) -> io::Result<Box<dyn ReadAgain>> {
     Ok(Box::new(SpooledInput::new(input)?))
 }
 
+/// The most that is copied, in bytes, so that an endless input does not fill the disk.
+const MOST: u64 = 4 << 30;
+
+pub(crate) struct SpooledInput {
+    /// The input that has not been read yet; None at its end.
+    rest: Option<Box<dyn Read>>,
+    copy: File,
+    /// The length of the copy, in bytes.
+    length: u64,
+    /// The position at which reading continues, in bytes.
+    place: u64,
+    /// The most that is copied, in bytes.
+    most: u64,
+}
+
+impl SpooledInput {
+    pub(crate) fn new(input: impl Read + 'static) -> io::Result<Self> {
+        Ok(Self {
+            rest: Some(Box::new(input)),
+            copy: tempfile::tempfile().map_err(|error| not_copied(&error))?,
+            length: 0,
+            place: 0,
+            most: MOST,
+        })
+    }
+
+    fn advance(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let Some(rest) = &mut self.rest else {
+            return Ok(0);
+        };
+        let count = rest.read(bytes)?;
+        if count == 0 && !bytes.is_empty() {
+            self.rest = None;
+        }
+        let copied = self.copy.write_all_at(&bytes[..count], self.length);
+        copied.map_err(|error| not_copied(&error))?;
+        self.length += count as u64;
+        if self.length > self.most {
+            return Err(io::Error::other(
+                "more than 4 GiB; save it to a file and read that, or use taxel watch for endless input",
+            ));
+        }
+        Ok(count)
+    }
+}
+
+fn not_copied(error: &io::Error) -> io::Error {
+    let folder = std::env::temp_dir();
+    let text = format!(
+        "cannot keep a copy in {} (TMPDIR): {}",
+        folder.display(),
+        system_reason(error)
+    );
+    io::Error::new(error.kind(), text)
+}
+
+impl Debug for SpooledInput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SpooledInput")
+            .field("length", &self.length)
+            .field("place", &self.place)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Read for SpooledInput {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = if self.place < self.length {
+            self.copy.read_at(bytes, self.place)?
+        } else {
+            self.advance(bytes)?
+        };
+        self.place += count as u64;
+        Ok(count)
+    }
+}
+
+impl Seek for SpooledInput {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let present = self.place;
+        let place = |length: u64| match to {
+            SeekFrom::Start(place) => Some(place),
+            SeekFrom::Current(by) => present.checked_add_signed(by),
+            SeekFrom::End(by) => length.checked_add_signed(by),
+        };
+        let mut wanted = place(self.length);
+        let mut bytes = vec![0; 1 << 16];
+        while self.rest.is_some()
+            && (matches!(to, SeekFrom::End(_)) || wanted.is_some_and(|to| to > self.length))
+        {
+            self.advance(&mut bytes)?;
+            wanted = place(self.length);
+        }
+        self.place = wanted.ok_or(io::ErrorKind::InvalidInput)?;
+        Ok(self.place)
+    }
+}
+
+/// Returns the processing of the flags, without tare and rule, which need the recording. Crop, flips, turn and mask
+/// are applied in this order, then the tare, then the gain.
+pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliError> {
+    let mut processing = Processing::default();
+    processing.view = View {
+        mask: asked.mask.as_deref().map(dead_cells).transpose()?,
+        ..asked.view.clone()
+    };
+    if let Some(path) = &asked.gain {
+        processing.gain = Some(gain(path)?);
+    }
+    Ok(processing)
+}
+
+/// Reads a table of factors, in any format of recordings with one frame. Reading stops at a second frame, which is an
+/// error. The table must have the size of the cropped frames, which is checked when the first of them is processed.
+fn gain(path: &Path) -> Result<Matrix<f64>, CliError> {
+    let opened = RecordingFile::open(path, ReadOptions::default());
+    let mut file = opened.map_err(|error| error.of_flag("--gain"))?;
+    file.prefix_name("--gain ");
+    let mut gain = Matrix::filled(MatrixSize::SMALLEST, 1.0);
+    let (mut found, mut is_recording) = (None, false);
+    let mut take = |event: RecordingEvent<'_>| {
+        if let RecordingEvent::Frame(frame) = event {
+            // Of a second frame, only its existence matters.
+            is_recording = found.is_some();
+            found.get_or_insert_with(|| View::default().apply_to(frame, &mut gain));
+        }
+        if is_recording {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let read = match file.read(&mut take) {
+        // Either each line was read as a frame; or the file did not look like a table, because a single column has no
+        // separators. In both cases it is one table of factors.
+        Err(error) if error.is_of_size() || matches!(error, RecordingError::Unknown) => {
+            match file.read_table(&mut take) {
+                Err(RecordingError::Unknown) => Err(error),
+                read => read,
+            }
+        }
+        read => read.map(drop),
+    };
+    read.map_err(|error| match error {
+        error if error.is_of_size() => file.refused(&"expected a table: a line for each row"),
+        error => file.damaged(error),
+    })?;
+    if is_recording {
+        return Err(file.refused(&"a recording of several frames, expected a table of factors"));
+    }
+    let found = found.ok_or_else(|| file.refused(&"no frame, expected a table of factors"))?;
+    found.map_err(|error| file.refused(&error))?;
+    Ok(gain)
+}
+
+/// Returns the rule of the flags, or else that of the recording. A recording's threshold is the one with which its
+/// maker's program draws pictures; values that reach it are active. There is no default: the meaning of values differs from
+/// sensor to sensor.
+pub(crate) fn rule(
+    recording: &RecordingFile,
+    asked: &ProcessingArguments,
+    info: &ChannelInfo,
+) -> Result<SetRule, CliError> {
+    let own = asked.set_rule().or_else(|| info.own_rule(asked.least));
+    own.ok_or_else(|| {
+        recording.refused(
+            "the recording has no threshold of its own: set one with --at-least, --percent, \
+             --low and --high, or --deviations",
+        )
+    })
+}
+
+/// Returns the message that the recording's tare is not used, because its size differs from that of the visible part
+/// of the frames. None if it is used, if the flags set a tare, or if the recording has none.
+pub(crate) fn unused_tare(
+    asked: &ProcessingArguments,
+    info: &ChannelInfo,
+    view: &View,
+) -> Option<String> {
+    if asked.tare.is_some() || info.tare_for(view).is_some() {
+        return None;
+    }
+    let tare = info.tare.as_ref()?;
+    let baseline = tare.baseline();
+    Some(format!(
+        "the recording's tare of {} × {} cells is not used; to use it, give the --crop and --turn of the recording",
+        baseline.columns(),
+        baseline.rows()
+    ))
+}
+
+/// Returns the warning that the threshold is one of noise, but the tare shows neither noise nor a step of the values,
+/// so that 1 is used; None otherwise.
+pub(crate) fn unknown_step(processing: &Processing) -> Option<&'static str> {
+    let tare = processing.tare.as_ref();
+    let is_noise = matches!(processing.rule, Some(Rule::Noise(_)));
+    tare.filter(|tare| is_noise && tare.step().is_none())
+        .map(|_| {
+        "all values of the tare are equal, so their step is unknown; a cell counts as active if it exceeds its tare by 1 \
+         in the sensor's unit"
+    })
+}
+
+/// Computes the tare from the channel's first frames. The median of each cell over these frames is its value at rest,
+/// which is subtracted from then on.
+pub(crate) fn tare(
+    recording: &mut RecordingFile,
+    (channel, wanted): (usize, u64),
+    asked: &ProcessingArguments,
+    processing: &mut Processing,
+) -> Result<(), CliError> {
+    let mut frames = TareFrames::new(wanted);
+    let view = &processing.view;
+    // Damage after the tare's frames does not matter here.
+    let added = recording.frames_again(channel, |frame| {
+        frames.add_frame(frame, view)?;
+        Ok::<_, FrameError>(match frames.missing() {
+            0 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        })
+    })?;
+    let tare = added.and_then(|()| frames.finish());
+    let refused = |error| recording.refused(&asked.tare_refused(&error));
+    processing.tare = Some(tare.map_err(refused)?);
+    Ok(())
+}
+
+/// Returns the frame with the greatest sum of tared values, the first one of several; None if no frame has a value.
+/// Without tare and gain the listing has it already; otherwise the recording is read once more.
+pub(crate) fn peak(
+    recording: &mut RecordingFile,
+    channel: usize,
+    listed: &ListedChannel,
+    processing: &mut Processing,
+) -> Result<Option<u64>, CliError> {
+    if processing.tare.is_none() && processing.gain.is_none() {
+        return Ok(listed.peak.number());
+    }
+    let mut peak = Peak::default();
+    let added = recording.frames_again(channel, |frame| {
+        let processed = processing.run(frame)?;
+        peak.add(frame.number, processed.tared_sum);
+        Ok::<_, FrameError>(ControlFlow::Continue(()))
+    })?;
+    added.map_err(|error| recording.refused(&(error.to_string() + frame_advice(&error))))?;
+    Ok(peak.number())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -282,5 +537,32 @@ mod tests {
             taken(two_channels, false, 3.0),
             (vec![1.0, 3.0], Ok(Err(3.0)))
         );
+    }
+
+    /// Input that comes in pieces can be read again from any place, and no more is read than requested.
+    #[test]
+    fn input_can_be_read_again() {
+        let input = (&b"abc"[..]).chain(&b"defg"[..]).chain(&b"hij"[..]);
+        let mut input = SpooledInput::new(input).expect("a file");
+        let mut read = |to: SeekFrom, count: usize| {
+            let place = input.seek(to).expect("sought");
+            let mut bytes = vec![0; count];
+            input.read_exact(&mut bytes).expect("read");
+            (place, String::from_utf8(bytes).expect("text"), input.length)
+        };
+        let start = SeekFrom::Start(0);
+        assert_eq!(read(start, 2), (0, "ab".to_owned(), 2));
+        assert_eq!(read(start, 4), (0, "abcd".to_owned(), 4));
+        assert_eq!(read(SeekFrom::Current(-1), 2), (3, "de".to_owned(), 5));
+        assert_eq!(read(SeekFrom::Start(8), 1), (8, "i".to_owned(), 10));
+        assert_eq!(read(SeekFrom::End(-3), 3), (7, "hij".to_owned(), 10));
+    }
+
+    #[test]
+    fn an_endless_input_is_refused() {
+        let mut input = SpooledInput::new(io::repeat(b'1')).expect("a file");
+        input.most = 1 << 20;
+        let read = io::copy(&mut input, &mut io::sink());
+        assert!(read.is_err_and(|error| error.to_string().contains("more than 4 GiB")));
     }
 }

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::iter;
 
 use crate::quote::is_invisible;
@@ -97,6 +98,11 @@ impl Charset {
             Self::Unicode => !character.is_control() && !is_invisible(character),
         }
     }
+}
+
+/// Writes a note to standard error. If it cannot be written, it is dropped: it is not part of the answer.
+pub(crate) fn note(text: &str, charset: Charset) {
+    let _ = writeln!(io::stderr().lock(), "{}", charset.line(text));
 }
 
 #[cfg(test)]

@@ -1,19 +1,5 @@
-//! Evaluations of models: as a table for people, as comma-separated values, and as a line of JSON.
-//!
-//! The text of `taxel model confusion` consists of a summary, the matrix and the worst pair:
-//! ```text
-//! 5,400 touches of 3 shapes, 845 distinct imprints up to shifts
-//! right                   5,312   98.4 %
-//! wrong                      88    1.6 %  the limit: no method does better
-//! …
-//!             1      2      3    recall
-//! 1 bar   [1800]     ·      ·   100.0 %
-//! 2 disc      ·  [1728]    72    96.0 %
-//! 3 block     ·     16  [1784]   99.1 %
-//!   precision 100%    99%    96%
-//! most confused: disc and block (1.6 %)
-//! ```
-//! Rows are the true shapes, columns the names they are given. All numbers are counted touches, not estimates.
+//! Evaluations of models: as a table for people, as comma-separated values, and as a line of JSON. Rows are the true shapes,
+//! columns the names they are given. All numbers are counted touches, not estimates.
 
 use std::fmt::Write;
 use std::iter;

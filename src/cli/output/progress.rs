@@ -1,11 +1,5 @@
-//! The progress of a sweep, on standard error.
-//!
-//! On a terminal it is a bar; otherwise, as in the log of a job, a line every ten seconds; with `--quiet` nothing. This
-//! is the only place of the command line that writes escape codes, and only to a terminal. A line in a log looks like
-//! this:
-//! ```text
-//! 250 of 1,000 poses, 25 %, 30 s left
-//! ```
+//! The progress of a sweep, on standard error: a bar on a terminal; otherwise, as in the log of a job, a line every ten
+//! seconds; with `--quiet` nothing. This is the only place of the command line that writes escape codes.
 
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;

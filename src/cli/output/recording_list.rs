@@ -1,17 +1,5 @@
-//! The list of a recording: its channels, each with what the recording states about it.
-//!
-//! ```text
-//! csv, 1 channel
-//!
-//! frames    4
-//! size      2 rows × 2 columns, 4 cells
-//! time      0 to 2 s, goes back at frame 2
-//! peak      frame 2
-//! ```
-//! A line is left out if the recording does not state it. As JSON, there is one object for the recording:
-//! ```text
-//! {"format":"csv","channels":[{"name":null,"frames":4,"rows":2,"columns":2,"cells":4,"unit":null,…,"peak":2}]}
-//! ```
+//! The list of a recording: its channels, each with what the recording states about it. A line is left out if the recording
+//! does not state it.
 
 use std::fmt;
 

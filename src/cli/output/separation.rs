@@ -1,13 +1,8 @@
 //! The errors of a set at several sizes and thresholds: as a table and a plot for people, and as JSON.
 //!
-//! ```text
-//! scale     threshold    error  certain   imprints  sensor
-//! 0.5             0.5   44.9 %   12.5 %         20  16 × 16
-//! 1               0.5    6.0 %   77.3 %        117  16 × 16
-//! ```
-//! Each row is a training of its own: all shapes at this scale, or in cells of this pitch, on the smallest sensor
-//! that holds them. A plot has the error on the y axis, from 0, and the size on the x axis, or the threshold if there
-//! is only one size.
+//! Each row is a training of its own: all shapes at this scale, or in cells of this pitch, on the smallest sensor that
+//! holds them. A plot has the error on the y axis, from 0, and the size on the x axis, or the threshold if there is only
+//! one size.
 
 use std::fmt::Write;
 

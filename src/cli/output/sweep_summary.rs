@@ -1,25 +1,13 @@
-//! The summary of a sweep: as text, and as one line of JSON.
-//!
-//! The text gives the counts, then a line per feature and a column per statistic. `–` marks a value that does not
-//! exist:
-//! ```text
-//! 10,000 poses: x0 5:5.99:0.01 cells, y0 5:5.99:0.01 cells, angle 0°
-//! 393 distinct imprints, 376 up to shifts, 58 up to quarter turns and mirror images too
-//! 0 poses cut off by the sensor, 0 poses without an imprint; 0.03 s
-//!
-//!                         min       mean        max         sd  …
-//! na                  35.0000    37.6952    40.0000     1.2792  …
-//! ```
-//! The keys of the JSON are described in `docs/files.md`.
+//! The summary of a sweep: as text, and as one line of JSON. `–` marks a value that does not exist.
 
 use std::fmt::Write;
 use std::time::Duration;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
+use taxel_core::pose::Ranges;
 
 use crate::atlas::{DistinctClasses, STATISTIC_COLUMNS, Statistic, StatisticColumn};
 use crate::cli::output::charset::Charset;
-use crate::cli::output::ranges::ranges_in_words;
 use crate::formats::json;
 use crate::formats::value::{counted, grouped};
 use crate::pose::{Axis, PoseGrid};
@@ -150,4 +138,12 @@ impl Serialize for FeatureStatistics<'_> {
         let value = |column: &StatisticColumn| (column.key, (column.value)(self.0));
         serializer.collect_map(STATISTIC_COLUMNS.iter().map(value))
     }
+}
+
+pub(crate) fn ranges_in_words(axes: impl Iterator<Item = Axis>, ranges: &Ranges) -> String {
+    let words = axes.map(|axis| {
+        let unit = axis.parameter().row().unit;
+        format!("{} {}", axis.name(), unit.after(&ranges[axis].to_string()))
+    });
+    words.collect::<Vec<_>>().join(", ")
 }

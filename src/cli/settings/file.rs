@@ -15,7 +15,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::cli::settings::flags::Choice;
+use crate::cli::settings::resolved::Choice;
 use crate::cli::settings::sensors::{
     FormatSetting, SENSOR_SETTINGS, SensorSetting, SensorSettings, SettingKind,
 };

@@ -9,10 +9,12 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use clap::ArgMatches;
+
+use crate::cli::arguments::flags::Given;
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, Wrong};
-use crate::cli::settings::flags::{Choice, Chosen};
 use crate::cli::settings::sensors::{SENSOR_SETTINGS, SensorSettings, TABLES};
 use crate::formats::file::{is_missing, system_reason};
 use crate::parameter::Parameter;
@@ -268,4 +270,102 @@ fn quoted(text: &str, charset: Charset) -> String {
         }
     }
     quoted + "\""
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Choice<T> {
+    /// `auto`: the program chooses, even if the file says otherwise.
+    Auto,
+    Made(T),
+}
+
+impl<T> Choice<T> {
+    pub(crate) fn made(self) -> Option<T> {
+        match self {
+            Self::Auto => None,
+            Self::Made(value) => Some(value),
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Chosen {
+    pub(crate) theme: Option<Choice<Palette>>,
+    pub(crate) color: Option<Choice<ColorDepth>>,
+    pub(crate) ascii: bool,
+    pub(crate) no_mouse: bool,
+    pub(crate) library: Option<PathBuf>,
+    pub(crate) sensor: Given,
+}
+
+impl Chosen {
+    pub(crate) fn of(matches: &ArgMatches) -> Self {
+        let chosen = |name: &str| {
+            let chosen = matches.try_get_one::<String>(name).ok().flatten();
+            chosen.map(String::as_str)
+        };
+        let switched = |name: &str| {
+            let switch = matches.try_get_one::<bool>(name).ok().flatten();
+            switch.copied().unwrap_or(false)
+        };
+        Self {
+            theme: chosen("theme").map(|name| value_of(&Palette::NAMES, name)),
+            color: chosen("color").map(|name| value_of(&ColorDepth::NAMES, name)),
+            ascii: switched("ascii"),
+            no_mouse: switched("no-mouse"),
+            library: matches.get_one::<PathBuf>("library").cloned(),
+            sensor: Given::of(matches),
+        }
+    }
+}
+
+fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Choice<T> {
+    let found = names.iter().find(|(own, _)| *own == name);
+    found.map_or(Choice::Auto, |(_, value)| Choice::Made(*value))
+}
+
+/// The sources of the pitch in mm that are known before a stored shape is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Pitch {
+    pub(crate) given: Option<f64>,
+    pub(crate) usual: Option<f64>,
+}
+
+impl Pitch {
+    /// Returns the pitch in effect, in mm: that of the flag, or else of a stored shape's sensor, or else of the
+    /// settings; None if none of them sets one.
+    ///
+    /// A sensor with the default pitch counts as not setting one: shapes stored without a pitch have it too.
+    pub(crate) fn of(self, sensor: Option<&Sensor>) -> Option<f64> {
+        let own = sensor.map(Sensor::pitch_mm);
+        let own = own.filter(|&pitch| pitch != Sensor::default().pitch_mm());
+        self.given.or(own).or(self.usual)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use taxel_core::parameter::Parameter;
+
+    use super::*;
+
+    #[test]
+    fn a_flag_overrides_the_sensor_which_overrides_the_settings() {
+        let fine = Sensor::default().with(Parameter::Pitch, 2.5);
+        let (plain, fine) = (Sensor::default(), fine.expect("in range"));
+        let none = Pitch::default();
+        assert_eq!((none.of(None), none.of(Some(&plain))), (None, None));
+        assert_eq!(none.of(Some(&fine)), Some(2.5));
+        let usual = Pitch {
+            usual: Some(4.0),
+            ..none
+        };
+        assert_eq!(usual.of(Some(&plain)), Some(4.0));
+        assert_eq!(usual.of(Some(&fine)), Some(2.5));
+        let given = Pitch {
+            given: Some(1.0),
+            ..usual
+        };
+        assert_eq!(given.of(Some(&fine)), Some(1.0));
+    }
 }

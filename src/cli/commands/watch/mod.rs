@@ -24,32 +24,25 @@
 
 mod answers;
 
-mod channel_gate;
-
-mod check;
-
 mod recording;
 
-mod reports;
-
-mod tare_queue;
-
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use taxel_core::quote::as_argument;
+use taxel_files::acquire::Playback;
+use taxel_files::formats::recording::{ChannelChoice, ReadOptions, no_channel};
+
 use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, acquire};
-use crate::cli::arguments::watch::WatchArguments;
+use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::commands::model;
-use crate::cli::commands::naming::FrameNamer;
-use crate::cli::commands::watch::answers::Answers;
-use crate::cli::commands::watch::channel_gate::ChannelGate;
-use crate::cli::commands::watch::check::{check, check_readable};
-use crate::cli::commands::watch::recording::WatchRecording;
-use crate::cli::commands::watch::reports::SourceReports;
-use crate::cli::commands::watch::tare_queue::TareQueue;
+use crate::cli::commands::recognise::FrameNamer;
+use crate::cli::commands::watch::answers::{Answers, TareQueue};
+use crate::cli::commands::watch::recording::{SourceReports, WatchRecording};
 use crate::cli::error::CliError;
-use crate::cli::input::processing;
+use crate::cli::input::recording::{self as input_recording, RecordingFile};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::line_writer::LineWriter;
@@ -59,6 +52,7 @@ use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::stream::StreamCounts;
 use crate::frame::{Frame, FrameSize, Processing, SetRule};
 use crate::tui::live::request::WatchRequest;
+use crate::tui::runtime::check_source;
 
 struct Watcher<'a> {
     asked: &'a WatchArguments,
@@ -90,7 +84,7 @@ pub(crate) fn watch(
         check_readable(&source)?;
     }
     let signals = Signals::catch()?;
-    let processing = processing::processing(&asked.processing)?;
+    let processing = input_recording::processing(&asked.processing)?;
     check(&source, asked)?;
     // Errors in these are reported before a recording begins.
     let lines = line_writer(asked, &processing, shelf, &signals.stopped)?;
@@ -154,7 +148,7 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
     }
     let mut request = WatchRequest::new(&asked.source);
     request.options = asked.options.clone();
-    request.processing = processing::processing(&asked.processing)?;
+    request.processing = input_recording::processing(&asked.processing)?;
     request.rule = asked.processing.set_rule();
     request.history_bytes = asked.history_bytes;
     request.processing.least = asked.processing.least;
@@ -205,7 +199,7 @@ impl Watcher<'_> {
         if self.asked.processing.tare.is_none() {
             let view = &self.processing.view;
             self.processing.tare = info.tare_for(view).cloned();
-            if let Some(unused) = processing::unused_tare(&self.asked.processing, info, view) {
+            if let Some(unused) = input_recording::unused_tare(&self.asked.processing, info, view) {
                 self.reports.warn(&unused);
             }
         }
@@ -298,7 +292,7 @@ impl Watcher<'_> {
             recording.describe(|metadata| metadata.tare = Some(tare.clone()))
         })?;
         self.processing.tare = Some(tare);
-        if let Some(unknown) = processing::unknown_step(&self.processing) {
+        if let Some(unknown) = input_recording::unknown_step(&self.processing) {
             self.reports.warn(unknown);
         }
         waiting.iter().try_for_each(|frame| self.answer(frame))
@@ -357,5 +351,174 @@ impl Watcher<'_> {
         }
         let reason = self.gate.no_frame_reason()?;
         Some(self.reports.refused(&reason))
+    }
+}
+
+/// Refuses a source that cannot be read even if one waits, and the user's own terminal.
+fn check_readable(source: &FrameSource) -> Result<(), CliError> {
+    check_source(source).map_err(|message| CliError::Frames {
+        name: source.name(),
+        message,
+    })
+}
+
+/// Refuses flags that have no effect for a source: those of serial lines for others, those of playing for a stream,
+/// and a channel that a recording does not have.
+fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
+    if let Some(reason) = source.unused_baud().filter(|_| asked.baud_named) {
+        let flag = "baud";
+        return Err(CliError::Unused { flag, reason });
+    }
+    // A source that cannot be read is reported when it is watched.
+    if let Playback::Paced { repeat, .. } = asked.options.playback
+        && matches!(source.recording(&asked.options), Ok(None))
+    {
+        let flag = if repeat { "loop" } else { "speed" };
+        let reason = "on a stream: it is for recordings".to_owned();
+        return Err(CliError::Unused { flag, reason });
+    }
+    check_channel(source, asked)
+}
+
+/// Refuses a channel that a recording does not have, by reading the recording until the channel occurs. Otherwise the
+/// recording would be played to its end without an answer.
+fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
+    let (FrameSource::File(path), None, Some(wanted)) =
+        (source, asked.options.format, &asked.processing.channel)
+    else {
+        return Ok(());
+    };
+    let (names, is_whole) = channels(path, asked, Some(wanted))?;
+    // A stream, or a damage, which is reported when the source is watched.
+    if names.contains(wanted) || !is_whole {
+        return Ok(());
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Err(CliError::Frames {
+        name: source.name(),
+        message: no_channel(wanted, &names),
+    })
+}
+
+fn channels(
+    path: &Path,
+    asked: &WatchArguments,
+    up_to: Option<&str>,
+) -> Result<(Vec<String>, bool), CliError> {
+    let options = ReadOptions {
+        size: asked.options.size,
+        ..ReadOptions::default()
+    };
+    Ok(RecordingFile::open(path, options)?.channel_names(up_to))
+}
+
+/// A gate that lets the frames of one channel pass.
+///
+/// If no channel is named, the first frame of a recording is held back until the next one comes: a second channel
+/// before that is an error, a later one is left out.
+struct ChannelGate<'a> {
+    asked: &'a WatchArguments,
+    source: &'a FrameSource,
+    choice: ChannelChoice,
+    channels: Vec<ChannelInfo>,
+    first: FirstFrame,
+}
+
+enum FirstFrame {
+    Missing,
+    Came { held: Option<(Frame, Option<f64>)> },
+}
+
+impl<'a> ChannelGate<'a> {
+    fn new(source: &'a FrameSource, asked: &'a WatchArguments) -> Self {
+        Self {
+            asked,
+            source,
+            choice: ChannelChoice::new(asked.processing.channel.as_deref()),
+            channels: Vec::new(),
+            first: FirstFrame::Missing,
+        }
+    }
+
+    fn wanted(&self) -> Option<&'a str> {
+        self.asked.processing.channel.as_deref()
+    }
+
+    fn has_channels(&self) -> bool {
+        !self.channels.is_empty()
+    }
+
+    fn name(&self, channel: usize) -> Option<&str> {
+        self.channels.get(channel)?.name.as_deref()
+    }
+
+    /// Adds a channel. Returns true if it is the watched one. Other channels that appear once frames are answered are
+    /// left out.
+    fn add(
+        &mut self,
+        info: &ChannelInfo,
+        reports: &mut SourceReports<'_>,
+    ) -> Result<bool, CliError> {
+        self.channels.push(info.clone());
+        let is_chosen = self.choice.add(info);
+        let names = self.choice.names();
+        if self.wanted().is_some() || names.len() == 1 {
+            return Ok(is_chosen);
+        }
+        if matches!(self.first, FirstFrame::Came { held: None }) {
+            let (own, other) = (&names[0], info.shown_name());
+            let flag = as_argument(other);
+            reports.say(&format!(
+                "channel {other} is left out, since {own} came first; --channel {flag} takes it"
+            ));
+            return Ok(false);
+        }
+        let all = match self.source {
+            FrameSource::File(path) => channels(path, self.asked, None)?.0,
+            _ => names.to_vec(),
+        };
+        let names = all.join(", ");
+        let message = format!("several channels, choose one with --channel: {names}");
+        Err(reports.refused(&message))
+    }
+
+    fn admits(
+        &mut self,
+        frame: &Frame,
+        time: Option<f64>,
+        reports: &mut SourceReports<'_>,
+    ) -> bool {
+        if !self.choice.takes(frame.channel) {
+            return false;
+        }
+        if !matches!(self.first, FirstFrame::Missing) {
+            return true;
+        }
+        let held = (self.wanted().is_none() && self.has_channels()).then(|| (frame.clone(), time));
+        let passes = held.is_none();
+        self.first = FirstFrame::Came { held };
+        if let (Some(wanted), false) = (self.wanted(), self.has_channels()) {
+            reports.say(&format!(
+                "no channel named {wanted:?}: a stream has none, and all frames are taken"
+            ));
+        }
+        passes
+    }
+
+    fn release(&mut self) -> Option<(Frame, Option<f64>)> {
+        match &mut self.first {
+            FirstFrame::Missing => None,
+            FirstFrame::Came { held } => held.take(),
+        }
+    }
+
+    fn no_frame_reason(&self) -> Option<String> {
+        let is_missing = matches!(self.first, FirstFrame::Missing);
+        let reason = || {
+            self.choice
+                .missing()
+                .unwrap_or_else(|| "no frames".to_owned())
+        };
+        is_missing.then(reason)
     }
 }

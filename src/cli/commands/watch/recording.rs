@@ -1,11 +1,15 @@
 //! The recording of a watched source, in the file of `--write`.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
+
+use taxel_files::acquire::{AcquireError, AcquireEvent, AcquireOptions};
+use taxel_files::formats::recording::RecordingError;
+use taxel_files::formats::stream::{NoFrameReason, StreamCounts, StreamFormat, StreamRefusal};
 
 use crate::acquire::{FrameRecorder, FrameSource, RecorderError};
-use crate::cli::arguments::watch::WatchArguments;
-use crate::cli::commands::watch::reports::SourceReports;
-use crate::cli::error::CliError;
+use crate::cli::arguments::frames::WatchArguments;
+use crate::cli::error::{CliError, note_advice, stream_advice};
 use crate::formats::recording::RecordingMetadata;
 use crate::formats::value::counted;
 use crate::frame::Frame;
@@ -95,5 +99,188 @@ impl<'a> WatchRecording<'a> {
             reports.say(&format!("no frame came, so {path} was not written"));
         }
         Ok(())
+    }
+}
+
+const REPORT: Duration = Duration::from_secs(1);
+
+/// The reports about a source: lines that begin with its name, warnings with the word before it.
+pub(super) struct SourceReports<'a> {
+    source: &'a FrameSource,
+    /// The format of streams that the settings name; None if a flag names one.
+    format: Option<StreamFormat>,
+    note: &'a mut dyn FnMut(&str),
+    dropped: u64,
+    reported: Option<Instant>,
+}
+
+impl<'a> SourceReports<'a> {
+    pub(super) fn new(
+        source: &'a FrameSource,
+        options: &AcquireOptions,
+        note: &'a mut dyn FnMut(&str),
+    ) -> Self {
+        Self {
+            source,
+            format: options.stream_format,
+            note,
+            dropped: 0,
+            reported: None,
+        }
+    }
+
+    pub(super) fn say(&mut self, text: &str) {
+        let line = format!("{}: {text}", self.source.name());
+        (self.note)(&line);
+    }
+
+    pub(super) fn warn(&mut self, text: &str) {
+        let line = format!("warning: {}: {text}", self.source.name());
+        (self.note)(&line);
+    }
+
+    pub(super) fn remark(&mut self, event: AcquireEvent<'_>) {
+        let text = match event {
+            AcquireEvent::Silent(silence) => silence.reason(self.source.unused_baud().is_none()),
+            AcquireEvent::Lost(error) => AcquireEvent::lost(error),
+            AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
+            AcquireEvent::Note(note) => {
+                return self.warn(&format!("{note}{}", note_advice(note)));
+            }
+            AcquireEvent::Anew(how) => how.to_string(),
+            _ => return,
+        };
+        self.say(&text);
+    }
+
+    pub(super) fn refused(&self, reason: &impl ToString) -> CliError {
+        CliError::Frames {
+            name: self.source.name(),
+            message: reason.to_string(),
+        }
+    }
+
+    pub(super) fn damage(&self, error: AcquireError) -> CliError {
+        match error {
+            AcquireError::Recording(error) => self.damaged(error),
+            AcquireError::NotStream { .. } => {
+                // A pipe does not bring its bytes again.
+                let advice = match self.source {
+                    source if !source.is_in_file() => {
+                        "save it to a file, then type taxel frames FILE"
+                    }
+                    FrameSource::Standard => "read it with taxel frames -",
+                    _ => "watch it again when it is complete",
+                };
+                self.refused(&format!("{error}; {advice}"))
+            }
+            error => self.refused(&error),
+        }
+    }
+
+    fn damaged(&self, error: RecordingError) -> CliError {
+        CliError::Recording {
+            name: self.source.name(),
+            error,
+        }
+    }
+
+    /// Reports dropped frames, unless that was done a moment ago.
+    pub(super) fn tick(&mut self, counts: &StreamCounts) {
+        if self.reported.is_none_or(|last| last.elapsed() >= REPORT) {
+            self.report_dropped(counts);
+        }
+    }
+
+    fn report_dropped(&mut self, counts: &StreamCounts) {
+        if counts.dropped <= self.dropped {
+            return;
+        }
+        self.dropped = counts.dropped;
+        self.reported = Some(Instant::now());
+        let dropped = counted(counts.dropped, "frame");
+        let mut text = format!("{dropped} dropped so far (torn, short, long or garbled)");
+        if let Some(sample) = &counts.sample {
+            text += &format!(", the last: {sample}");
+        }
+        if let Some(reason) = &counts.reason {
+            text += &format!(" ({reason})");
+        }
+        self.warn(&text);
+    }
+
+    pub(super) fn check_shape(&self, counts: &StreamCounts) -> Result<(), CliError> {
+        match counts.refusal() {
+            // An echo that leaves out values of some messages is refused too, since the others are not all frames.
+            None if counts.cut => Err(self.undecoded(StreamRefusal::Cut)),
+            None => Ok(()),
+            Some(refusal) => Err(self.undecoded(refusal)),
+        }
+    }
+
+    /// Returns the error for a stream that cannot be decoded without more flags; it says which flags help. An unknown
+    /// format is an error of recordings for a file, and of streams for any other source.
+    fn undecoded(&self, refusal: StreamRefusal) -> CliError {
+        match (refusal, self.source) {
+            (StreamRefusal::Unknown, FrameSource::File(_)) => self.damaged(RecordingError::Unknown),
+            _ => self.refused(&format!(
+                "{refusal}{}{}",
+                stream_advice(refusal),
+                self.format_advice()
+            )),
+        }
+    }
+
+    pub(super) fn end(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
+        self.check_shape(counts)?;
+        self.report_dropped(counts);
+        match counts.no_frame_reason() {
+            None => Ok(()),
+            Some(NoFrameReason::Empty) => Err(CliError::Empty {
+                name: self.source.name(),
+            }),
+            Some(NoFrameReason::Refused(refusal)) => Err(self.undecoded(refusal)),
+            Some(reason @ NoFrameReason::Undecoded { reason: None, .. }) => {
+                let advice = "check --rows, --columns and --format";
+                Err(self.refused(&format!("{reason}; {advice}{}", self.format_advice())))
+            }
+            Some(reason) => Err(self.refused(&format!("{reason}{}", self.format_advice()))),
+        }
+    }
+
+    fn format_advice(&self) -> String {
+        self.format.map_or_else(String::new, |format| {
+            format!(
+                "; the settings say format {:?}, which --format overrides",
+                format.name()
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use taxel_files::formats::recording::RecordingFormat;
+
+    use super::*;
+
+    #[test]
+    fn a_recording_that_is_not_a_stream_comes_with_advice_for_its_source() {
+        for (source, expected) in [
+            (
+                FrameSource::Fifo("pipe".into()),
+                "pipe: a recording (npy), not a stream; save it to a file, then type taxel frames FILE",
+            ),
+            (
+                FrameSource::File("a.npy".into()),
+                "a.npy: a recording (npy), not a stream; watch it again when it is complete",
+            ),
+        ] {
+            let mut note = |_: &str| ();
+            let reports = SourceReports::new(&source, &AcquireOptions::default(), &mut note);
+            let format = RecordingFormat::Npy;
+            let error = reports.damage(AcquireError::NotStream { format });
+            assert_eq!(error.to_string(), expected);
+        }
     }
 }
