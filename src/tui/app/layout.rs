@@ -6,7 +6,6 @@
 
 use ratatui::layout::Rect;
 
-use crate::description::DESCRIPTORS;
 use crate::imprint::Imprint;
 use crate::tui::app::page::Slot;
 use crate::tui::matrix::layout::{RULER, TaxelSize};
@@ -14,9 +13,6 @@ use crate::tui::widget::write::{below, right_of};
 
 /// The smallest width of the panel; with less room it has the screen to itself.
 const PANEL: u16 = 30;
-
-/// The width of a column of descriptors with the longest values, where there are several columns.
-const LONGEST_VALUES: usize = 23;
 
 /// From this width on the panel stands beside every matrix: the default sensor fits there.
 const BOTH: u16 = RULER + 2 * 16 + 1 + PANEL;
@@ -40,11 +36,12 @@ const LONGEST_FORM: u16 = 18;
 /// The smallest height of the descriptors below a form.
 const LOW_PANEL: u16 = 10;
 
-/// From this height on there is a line for the title, which neither the descriptors nor the default sensor need.
-const TITLED: u16 = 24;
+/// From this height on there is room for everything: a title, all lines at the foot, and all descriptors beside the
+/// matrix. On a lower screen matrix and descriptors each have the screen to themselves.
+const FULL: u16 = 24;
 
 /// The smallest useful size of the screen: columns, rows.
-pub const SMALLEST: (u16, u16) = (20, 6);
+pub const SMALLEST: (u16, u16) = (40, 12);
 
 /// The panes of a screen. A line without room is empty.
 #[derive(Clone, Copy, Debug)]
@@ -61,8 +58,6 @@ pub struct Panes {
     pub matrix: Rect,
     /// The descriptors, where there is room beside the matrix.
     pub panel: Option<Rect>,
-    /// Whether the descriptors have room for all their values beside the matrix.
-    pub is_panel_roomy: bool,
     /// A form: in place of the panel, or over the foot of the matrix.
     pub form: Rect,
     /// The descriptors while a form is open, where there is room for both.
@@ -84,11 +79,8 @@ impl Panes {
         if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
             return None;
         }
-        let foot = match area.height {
-            22.. => 4,
-            21 => 3,
-            _ => 2,
-        };
+        let is_full = area.height >= FULL;
+        let foot = if is_full { 4 } else { 2 };
         let line = |from_bottom: u16| Rect {
             y: area.bottom() - from_bottom,
             height: 1,
@@ -101,7 +93,7 @@ impl Panes {
             ..area
         };
         let title = Rect {
-            height: u16::from(area.height >= TITLED),
+            height: u16::from(is_full),
             ..body
         };
         let content = below(body, title.height);
@@ -116,12 +108,11 @@ impl Panes {
             title,
             content,
             matrix,
-            panel: (beside.width >= PANEL).then_some(beside),
-            is_panel_roomy: is_roomy(beside),
+            panel: (is_full && beside.width >= PANEL).then_some(beside),
             form,
             form_panel,
-            source: if foot > 2 { line(foot) } else { absent },
-            taxel: line(if foot == 4 { 3 } else { 2 }),
+            source: if is_full { line(foot) } else { absent },
+            taxel: line(if is_full { 3 } else { 2 }),
             notice: line(2),
             hints: line(1),
         })
@@ -163,26 +154,11 @@ fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
     size.matrix_width(imprint).min(room.width)
 }
 
-/// Returns true if the descriptors have room for the longest values below their heading. On a low screen they need
-/// several columns.
-fn is_roomy(panel: Rect) -> bool {
-    let lines = usize::from(panel.height.saturating_sub(1)).max(1);
-    match DESCRIPTORS.len().div_ceil(lines) {
-        1 => true,
-        columns => usize::from(panel.width) >= columns * LONGEST_VALUES,
-    }
-}
-
-/// Returns the area of a form: beside the matrix, over its foot where there is too little room, or over all of it;
+/// Returns the area of a form: beside the matrix, or over its foot where there is too little room;
 /// and the area of the descriptors, if they fit beside the form or below it.
 fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {
     if beside.width < FORM {
-        // If less than the ruler and two lines of the matrix would be left, the form hides it.
-        let height = if body.height < LOW_FORM + 3 {
-            body.height
-        } else {
-            LOW_FORM
-        };
+        let height = LOW_FORM.min(body.height);
         let y = body.bottom() - height;
         return (Rect { y, height, ..body }, None);
     }

@@ -1,9 +1,7 @@
 //! The two lines of keys: the menu in the first line of the screen, and the hints in the last one.
 //!
 //! ```text
-//! n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help      on the matrix, from 70 columns on
-//! new  load  figure  picture  save  delete  quit  ? Help                           the key is the bold letter
-//! n l f p s d  q Quit  ? Help                                                      where that has no room either
+//! n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help      on the matrix
 //! Enter accept   Esc cancel   ? help                                               in a form or a list
 //! Tab page   d D descriptor   x export   e ranges   ? help   Esc close             on all tabs of Explore
 //! ```
@@ -28,9 +26,6 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// From this width on the menu shows keys beside the names of the paper's options.
-const WIDE: u16 = 70;
-
 /// A row of the table of keys, as a line shows it: keys, and what they do.
 #[derive(Clone, Debug)]
 pub struct Item<'a> {
@@ -40,7 +35,7 @@ pub struct Item<'a> {
     pub binding: &'a Binding,
     /// The name of the action: a word or two.
     pub name: &'a str,
-    /// The keys before the name; empty if there are none, or if the key is the first letter of the name.
+    /// The keys before the name; empty if there are none.
     pub keys: String,
     /// The role of the name, which decides how it looks.
     role: Role,
@@ -55,7 +50,7 @@ impl Item<'_> {
         }
         let parts = self.binding.short_parts();
         let mut x = self.area.x;
-        for (part, action) in parts.iter().filter(|_| !self.keys.is_empty()) {
+        for (part, action) in &parts {
             x += narrow(part.chars().count());
             if at.x < x {
                 return action.and_then(|action| action.message().cloned());
@@ -71,18 +66,8 @@ impl Item<'_> {
     /// Draws the item.
     fn draw(&self, theme: &Theme, buffer: &mut Buffer) {
         let keys = (self.keys.as_str(), Role::Key);
-        let pieces = if !self.keys.is_empty() {
-            [keys, (" ", Role::Text), (self.name, self.role)]
-        } else if self.binding.keys.is_empty() {
-            [keys, ("", Role::Text), (self.name, self.role)]
-        } else {
-            // In lower case, as the key is typed: `S` is another key than `s`.
-            let (first, rest) = self.name.split_at(1);
-            let first = first.to_lowercase();
-            let pieces = [(first.as_str(), Role::Key), (rest, self.role)];
-            write::line(buffer, self.area, theme, pieces);
-            return;
-        };
+        let gap = if self.keys.is_empty() { "" } else { " " };
+        let pieces = [keys, (gap, Role::Text), (self.name, self.role)];
         write::line(buffer, self.area, theme, pieces);
     }
 }
@@ -97,7 +82,6 @@ pub fn draw(theme: &Theme, buffer: &mut Buffer, items: &[Item<'_>]) {
 /// Returns the menu of the page that is open, as much as fits.
 pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     let (context, keymap) = (app.context(), app.keymap());
-    let gap = if area.width < WIDE { 2 } else { 3 };
     let options = matches!(context, Context::Matrix | Context::Hold);
     let rows: Vec<(&Binding, &str)> = if options {
         let all = keymap.rows().iter().take(MENU).chain(help(keymap));
@@ -108,36 +92,7 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
             .map(|row| (row, row.hint))
             .collect()
     };
-    let brief = options && area.width < WIDE;
-    let all = placed(area, gap, Role::Text, brief, &rows);
-    if all.len() == rows.len() {
-        return all;
-    }
-    if options {
-        return placed(area, gap, Role::Text, false, &keys_alone(&rows));
-    }
-    // The first row and the way out stay while they fit together. The rows left out appear among the hints.
-    let mut rows = rows;
-    let gives_way = |(row, _): &(&Binding, &str)| !row.does(&Message::Cancel);
-    while let Some(at) = rows.iter().rposition(gives_way).filter(|&at| at > 0) {
-        rows.remove(at);
-        let fitting = placed(area, gap, Role::Text, brief, &rows);
-        if fitting.len() == rows.len() {
-            return fitting;
-        }
-    }
-    all
-}
-
-/// Shortens the paper's options to their keys. Quit and Help keep their names, and so does an option that no key
-/// leads to.
-fn keys_alone<'a>(rows: &[(&'a Binding, &'a str)]) -> Vec<(&'a Binding, &'a str)> {
-    let kept = [Message::Quit, Message::Help];
-    let rows = rows.iter().map(|&(row, name)| {
-        let named = row.keys.is_empty() || by_default(row).is_some_and(|own| kept.contains(&own));
-        (row, if named { name } else { "" })
-    });
-    rows.collect()
+    placed(area, 3, Role::Text, &rows)
 }
 
 /// Returns the hints: the keys that mean something now and are not in the menu, as many as fit.
@@ -166,14 +121,14 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     // Where the descriptors have no room beside the matrix, their key comes first; elsewhere it does nothing.
     let switches = |row: &&Binding| row.does(&Message::SwitchPane);
     let (first, others): (Vec<_>, Vec<_>) = rest.partition(switches);
-    let first = first.into_iter().filter(|_| app.can_switch_pane(panes));
+    let first = first.into_iter().filter(|_| panes.panel.is_none());
     // There, the key leads back to the matrix.
     let name = |row: &Binding| match app.narrow_pane {
         NarrowPane::Panel if row.does(&Message::SwitchPane) => "matrix",
         _ => row.hint,
     };
     let rows: Vec<_> = first.chain(others).map(|row| (row, name(row))).collect();
-    placed(panes.hints, 2, Role::Quiet, false, &rows)
+    placed(panes.hints, 2, Role::Quiet, &rows)
 }
 
 /// Returns true if one of the keys of a row does something now: on the matrix if the row belongs to it, otherwise on the
@@ -237,23 +192,13 @@ fn option(row: &Binding) -> &str {
     end.map_or(row.help, |end| &row.help[..end])
 }
 
-/// Returns the rows that fit, one after the other. With `brief`, a key that is the first letter of its name is left
-/// out.
-fn placed<'a>(
-    area: Rect,
-    gap: u16,
-    role: Role,
-    brief: bool,
-    rows: &[(&'a Binding, &'a str)],
-) -> Vec<Item<'a>> {
+/// Returns the rows that fit, one after the other.
+fn placed<'a>(area: Rect, gap: u16, role: Role, rows: &[(&'a Binding, &'a str)]) -> Vec<Item<'a>> {
     let mut x = area.x;
     let mut items = Vec::new();
     for &(binding, name) in rows {
-        let mut keys = binding.short_labels();
-        if brief && name.to_lowercase().starts_with(&keys) {
-            keys.clear();
-        }
-        let between = usize::from(!keys.is_empty() && !name.is_empty());
+        let keys = binding.short_labels();
+        let between = usize::from(!keys.is_empty());
         let width = narrow(keys.chars().count() + between + name.chars().count());
         if area.height == 0 || x.saturating_add(width) > area.right() {
             break;
@@ -265,7 +210,6 @@ fn placed<'a>(
             keys,
             role,
         });
-        let gap = if name.is_empty() { 1 } else { gap };
         x = x.saturating_add(width + gap);
     }
     items

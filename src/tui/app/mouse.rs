@@ -122,7 +122,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
             return None;
         }
     }
-    let beside = app.beside(&panes);
+    let beside = panes.panel;
     if beside.is_some_and(inside) {
         return Some(Target::Panel);
     }

@@ -30,8 +30,8 @@ pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(Strin
     }
 }
 
-/// Returns a question with its answers, after the notice. Where there is too little room, the notice is left out, and
-/// the sentences before the question end in an ellipsis: the answers are always there.
+/// Returns a question with its answers, after the notice. Where there is too little room, the notice is left out,
+/// then the sentences before the question: the answers are always there.
 fn asked(app: &App, panes: &Panes, question: &Question) -> String {
     let answers = question.answers(app.keymap());
     // A question without sentences before it may be too long itself: it has a name in it.
@@ -47,13 +47,8 @@ fn asked(app: &App, panes: &Panes, question: &Question) -> String {
         }
         None => String::new(),
     };
-    let whole = Some(format!("{said}{start} {end}")).filter(fits);
-    let most = usize::from(room) * usize::from(panes.notice.width);
-    let mut shorter = (0..=most.min(write::width(start))).rev().map(|columns| {
-        let start = write::fitted(start, columns, app.theme());
-        format!("{start} {end}")
-    });
-    whole.or_else(|| shorter.find(fits)).unwrap_or(end)
+    let texts = [format!("{said}{start} {end}"), format!("{start} {end}")];
+    texts.into_iter().find(fits).unwrap_or(end)
 }
 
 /// Returns the number of lines that a text takes in the area of notices.

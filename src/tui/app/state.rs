@@ -368,18 +368,6 @@ impl App {
         Panes::of(area, &self.reading().imprint, self.halves())
     }
 
-    /// Returns true if a key switches between the matrix and its descriptors or the page beside it: where only one of
-    /// them has room, and where the descriptors may be cut beside the matrix.
-    pub(in crate::tui) fn can_switch_pane(&self, panes: &Panes) -> bool {
-        panes.panel.is_none() || self.pane().is_none() && !panes.is_panel_roomy
-    }
-
-    /// Returns the area of the descriptors beside the matrix; None if one of the two has the whole screen.
-    pub(in crate::tui) fn beside(&self, panes: &Panes) -> Option<Rect> {
-        let alone = self.narrow_pane == NarrowPane::Panel && self.can_switch_pane(panes);
-        panes.panel.filter(|_| !alone)
-    }
-
     /// Returns true if two taxels may share a character of the screen. Coverage and the marks of a comparison need a
     /// character for each taxel.
     pub(in crate::tui) fn halves(&self) -> bool {

@@ -14,8 +14,6 @@ use ratatui::layout::Position;
 
 use crate::description::Descriptor;
 use crate::formats::value;
-use crate::parameter::Parameter;
-use crate::source::Source;
 use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::menu;
@@ -44,7 +42,7 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
         let line = if in_form && panes.form_panel.is_none() {
             described(app, seen)
         } else {
-            taxel(app, seen, panes)
+            taxel(app, seen)
         };
         let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
         write::line(buffer, panes.source, theme, pieces);
@@ -136,76 +134,25 @@ fn described(app: &App, seen: &Reading) -> String {
     main.chain(all).collect::<Vec<_>>().join("  ")
 }
 
-/// Returns where a shape lies: its position alone, and with its angle and the zoom of a picture.
-fn placed(source: &Source) -> [String; 2] {
-    let text = |parameter: Parameter| Some(parameter.format(source.get(parameter)?));
-    let all =
-        |parameters: [Parameter; 2]| parameters.map(text).into_iter().collect::<Option<Vec<_>>>();
-    let place = all([Parameter::X0, Parameter::Y0]).map(|at| format!("at {}", at.join(", ")));
-    let angle = text(Parameter::Angle).map(|angle| format!("{angle}°"));
-    let zoom =
-        all([Parameter::ZoomX, Parameter::ZoomY]).map(|by| format!("zoom {}", by.join(" × ")));
-    let joined = |parts: &[&Option<String>]| {
-        let parts = parts.iter().filter_map(|part| part.as_deref());
-        parts.collect::<Vec<_>>().join(", ")
-    };
-    [joined(&[&place]), joined(&[&place, &angle, &zoom])]
-}
-
-/// Returns the line about the taxel under the cursor and the step of moving; for a held shape that has no line of its
-/// own, the line about its place. Every part has a fixed place, and parts that change together stand together: so
-/// little is sent over the line when the cursor moves.
-fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
-    let width = usize::from(panes.taxel.width);
+/// Returns the line about the taxel under the cursor and the step of moving. Every part has a fixed place, and parts
+/// that change together stand together: so little is sent over the line when the cursor moves.
+fn taxel(app: &App, seen: &Reading) -> String {
     let all = format!("NA {} in all", seen.imprint.count());
-    let line = |pieces: &[&str]| {
-        let pieces = pieces.iter().filter(|piece| !piece.is_empty());
-        pieces.copied().collect::<Vec<_>>().join("  ")
-    };
-    let fitting = |lines: &[String]| {
-        let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
-        write::first_fitting(&lines, width).to_owned()
-    };
     // The step of moving and zooming, if there is a shape to move.
-    let step = match (&app.shown().source, app.held.is_some()) {
-        (None, _) => String::new(),
-        (Some(_), false) => format!("step {}", app.step.length()),
-        (Some(source), true) => {
-            let step = format!("held, step {}", app.step.length());
-            if panes.source.height == 0 {
-                let [position, place] =
-                    placed(source).map(|text| app.theme().text(&text).into_owned());
-                let lines = [
-                    line(&[&place, &step, &all]),
-                    line(&[&place, &step]),
-                    line(&[&position, &step]),
-                    step,
-                ];
-                return fitting(&lines);
-            }
-            step
-        }
-    };
+    let held = if app.held.is_some() { "held, " } else { "" };
+    let step = app.shown().source.as_ref();
+    let step = step.map_or(String::new(), |_| {
+        format!("{held}step {}", app.step.length())
+    });
     let (column, row) = app.cursor();
     let wide = |side: u8| (side - 1).to_string().len();
     let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
     let active = seen.imprint.get(column, row);
     let state = format!("{:>8}", if active { "active" } else { "inactive" });
-    let number = seen.coverage(column, row);
-    let number = number.map_or(String::new(), |coverage| format!("{coverage:.6}"));
-    let covered = seen
-        .coverage(column, row)
-        .map_or(String::new(), |_| format!("covered {number}"));
-    if width >= if step.is_empty() { 60 } else { 80 } {
-        let place = format!("column {column:>across$}, row {row:>down$}");
-        return line(&[&place, &covered, &state, &all, &step]);
-    }
-    // Parts that are shown elsewhere too are left out first; no word is cut.
-    let place = format!("{column:>across$}, {row:>down$}");
-    fitting(&[
-        line(&[&place, &covered, &state, &step, &all]),
-        line(&[&place, &covered, &state, &step]),
-        line(&[&place, &number, &state, &step]),
-        line(&[&place, &state, &step]),
-    ])
+    let covered = seen.coverage(column, row);
+    let covered = covered.map_or(String::new(), |coverage| format!("covered {coverage:.6}"));
+    let place = format!("column {column:>across$}, row {row:>down$}");
+    let mut pieces = vec![place, covered, state, all, step];
+    pieces.retain(|piece| !piece.is_empty());
+    pieces.join("  ")
 }

@@ -59,7 +59,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     }
     let panel = |buffer: &mut Buffer, area: Rect| panel::draw(&matrix, theme, buffer, area);
     let mut cursor = None;
-    match (app.pane(), app.beside(&panes)) {
+    match (app.pane(), panes.panel) {
         (Some(page), beside) if page.slot() == Slot::Panel => {
             if beside.is_some() || app.narrow_pane == NarrowPane::Matrix {
                 cursor = matrix.draw(theme, buffer, panes.matrix);
@@ -97,9 +97,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
 /// Draws the size that is needed, on a screen that is too small for anything.
 fn too_small(theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let (width, height) = SMALLEST;
-    let needed = format!("{width} × {height}");
-    for (index, text) in ["too small,", "need", &needed].into_iter().enumerate() {
-        let row = write::row(area, index);
-        write::text(buffer, row, theme, text, Role::Error);
-    }
+    let text = theme.text("×");
+    let text = format!("the screen is too small: {width} {text} {height} at least");
+    write::wrapped(buffer, area, theme, &text, Role::Error);
 }

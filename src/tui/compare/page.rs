@@ -218,19 +218,14 @@ impl Comparison {
             .filter(|(any, _)| *any)
             .map(|(_, sign)| sign)
             .collect();
-        let meanings: &[&str] = match view {
-            Difference => &["a: only A, b: only B", "a: A, b: B"],
-            First => &["A"],
-            Second => &["B"],
+        let meaning = match view {
+            Difference => "a: only A, b: only B",
+            First => "A",
+            Second => "B",
             Descriptors => return,
         };
-        let titles = meanings
-            .iter()
-            .map(|meaning| format!("{meaning}  {arrows}"));
-        let titles: Vec<String> = titles.map(|title| title.trim_end().to_owned()).collect();
-        let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
-        let title = write::first_fitting(&titles, area.width.saturating_sub(1).into());
-        write::text(buffer, area, theme, title, Role::Title);
+        let title = format!("{meaning}  {arrows}");
+        write::text(buffer, area, theme, title.trim_end(), Role::Title);
         // A number that does not fit would touch the descriptors.
         let line = write::left_of(write::row(area, 1), grid.x + grid.characters().0);
         if grid.y > line.y {

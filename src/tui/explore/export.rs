@@ -10,7 +10,6 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::tabs;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::write;
 
 /// The maximum number of characters of a name: the longest path of a file on Linux.
 const LONGEST: usize = 4096;
@@ -110,26 +109,14 @@ impl LinePrompt for ExportDialog {
         &self.field
     }
 
-    /// Returns the extensions that a name can have; in shorter forms where there is little room.
-    fn behind(&self, columns: u16) -> Cow<'_, str> {
-        let used = write::width(self.label()) + write::width(self.field.text());
-        let endings = self.what.endings();
-        let dotted = endings.join(" ");
-        let plain = dotted.replace('.', "");
-        let with_page = |endings: &str| {
-            let (table, others) = endings.split_once(' ')?;
-            self.what
-                .table
-                .then(|| format!("{table} page; {others} imprints"))
-        };
-        let forms = [
-            format!("   ({})", with_page(&dotted).unwrap_or(dotted)),
-            format!("   {}", with_page(&plain).unwrap_or(plain.clone())),
-            format!("   {plain}"),
-        ];
-        let room = usize::from(columns).saturating_sub(used);
-        let forms = forms.each_ref().map(String::as_str);
-        write::first_fitting(&forms, room).to_owned().into()
+    /// Returns the extensions that a name can have.
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+        let endings = self.what.endings().join(" ");
+        let has_page = self.what.table;
+        match endings.split_once(' ').filter(|_| has_page) {
+            Some((table, others)) => format!("   ({table} page; {others} imprints)").into(),
+            None => format!("   ({endings})").into(),
+        }
     }
 }
 

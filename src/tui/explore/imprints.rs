@@ -202,10 +202,8 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         let pieces = [(sign, Role::Key), (text.as_str(), role)];
         write::line(buffer, row, theme, pieces);
         if selected {
-            let texts = detail(theme, results, &entry);
-            let texts = texts.each_ref().map(String::as_str);
-            let text = write::first_fitting(&texts, list.detail.width.into());
-            write::text(buffer, list.detail, theme, text, Role::Text);
+            let text = detail(theme, results, &entry);
+            write::text(buffer, list.detail, theme, &text, Role::Text);
         }
     }
     if let Some(area) = list.gallery {
@@ -282,19 +280,18 @@ fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     theme.number(value, VALUE - 1)
 }
 
-/// Describes an imprint in one line; the shorter form leaves out what its row says too.
-fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> [String; 2] {
+fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     let pose = results.sweep().grid.pose(entry.first_pose);
     let count = |count: u16, noun: &str| counted(count, noun);
-    let short = format!("imprint {} at {}", entry.id, results.pose_text(&pose));
-    let full = format!(
-        "{short}; {}, {}, {} {}",
+    format!(
+        "imprint {} at {}; {}, {}, {} {}",
+        entry.id,
+        results.pose_text(&pose),
         count(entry.summary.pieces, "piece"),
         count(entry.summary.holes, "hole"),
         results.feature().key,
         number(theme, results, entry)
-    );
-    [full, short]
+    )
 }
 
 /// Draws thumbnails of the selected imprint and the ones after it, in lines from left to right.
@@ -328,9 +325,8 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
         } else {
             " "
         };
-        let captions = [" imprint ", ""].map(|word| format!("{sign}{word}{}", entry.id));
-        let caption = write::first_fitting(&[&captions[0], &captions[1]], place.width.into());
-        write::text(buffer, place, theme, caption, Role::Key);
+        let caption = format!("{sign} imprint {}", entry.id);
+        write::text(buffer, place, theme, &caption, Role::Key);
         thumbnail::draw(theme, &entry.imprint, buffer, write::below(place, 1));
     }
 }

@@ -118,7 +118,7 @@ impl StatisticsTable {
 /// Draws the tab. Returns the position of the chosen descriptor.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let table = StatisticsTable::of(area, results);
-    for (index, total) in totals(results, area.width.into()).iter().enumerate() {
+    for (index, total) in totals(results).iter().enumerate() {
         let row = write::row(table.totals, index);
         write::text(buffer, row, theme, total, Role::Text);
     }
@@ -169,21 +169,18 @@ fn head(table: &StatisticsTable, results: &Results) -> String {
     row + columns
 }
 
-/// Returns the lines with the numbers of imprints and poses; a longer text if it fits into the width.
-fn totals(results: &Results, width: usize) -> [String; 2] {
+/// Returns the lines with the numbers of imprints and poses.
+fn totals(results: &Results) -> [String; 2] {
     let findings = results.findings();
     let (result, classes) = (&findings.sweep, findings.classes);
     let (shifts, symmetry) = (classes.up_to_shifts, classes.up_to_symmetry);
     let many = |count: usize| grouped(count as u64);
-    let classes = ["quarter turns and mirror images", "turns and mirrors"].map(|symmetries| {
+    [
         format!(
-            "{} distinct up to shifts, {} up to {symmetries} too",
+            "{} distinct up to shifts, {} up to quarter turns and mirror images too",
             many(shifts),
             many(symmetry)
-        )
-    });
-    [
-        write::first_fitting(&[&classes[0], &classes[1]], width).to_owned(),
+        ),
         format!(
             "poses cut off by the sensor: {}  without imprint: {}",
             grouped(result.partly_off),

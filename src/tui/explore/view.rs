@@ -1,7 +1,7 @@
 //! The results of a sweep.
 //!
 //! ```text
-//!  1 imprints   2 statistics   3 histogram   4 map …   the tabs; titles only where all of them fit
+//!  1 imprints   2 statistics   3 histogram   4 map …   the tabs
 //! hexagon: 1,000 poses, 87 distinct imprints           what was swept, and how much was found
 //!                                                      the open tab, see the table in `tabs`
 //! ```
@@ -41,7 +41,7 @@ impl Page for Results {
         area: Rect,
     ) -> Option<Position> {
         let parts = ResultPanes::of(area);
-        for (tab, title, area) in parts.titles(self.tab()) {
+        for (tab, title, area) in parts.titles() {
             let role = if tab == self.tab() {
                 Role::Focus
             } else {
@@ -56,7 +56,7 @@ impl Page for Results {
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let parts = ResultPanes::of(area);
-        let mut tabs = parts.titles(self.tab());
+        let mut tabs = parts.titles();
         let tab = tabs.find(|(_, _, area)| area.contains(at));
         if let Some((tab, ..)) = tab {
             return Some(Message::Explore(ExploreMessage::Tab(tab)));
@@ -122,37 +122,27 @@ impl ResultPanes {
         }
     }
 
-    /// Returns the title of each tab, and its place. If there is no room for all names, only the open tab has
-    /// one.
-    pub fn titles(&self, present: ExploreTab) -> impl Iterator<Item = (ExploreTab, String, Rect)> {
+    /// Returns the title of each tab, and its place.
+    pub fn titles(&self) -> impl Iterator<Item = (ExploreTab, String, Rect)> {
         let area = self.titles;
-        let name = move |tab: ExploreTab, number: u16, named: bool| {
-            if named || tab == present {
-                format!(" {number} {} ", tabs::row(tab).title)
-            } else {
-                format!(" {number} ")
-            }
-        };
-        let tabs = || ExploreTab::ALL.into_iter().zip(1_u16..);
-        let all: usize = tabs()
-            .map(|(tab, number)| name(tab, number, true).len() + 1)
-            .sum();
-        let named = all <= usize::from(area.width);
         let mut x = area.x;
-        tabs().map(move |(tab, number)| {
-            let text = name(tab, number, named);
-            let left = x.min(area.right());
-            let width = narrow(text.len()).min(area.right() - left);
-            x = left + width + 1;
-            (
-                tab,
-                text,
-                Rect {
-                    x: left,
-                    width,
-                    ..area
-                },
-            )
-        })
+        ExploreTab::ALL
+            .into_iter()
+            .zip(1_u16..)
+            .map(move |(tab, number)| {
+                let text = format!(" {number} {} ", tabs::row(tab).title);
+                let left = x.min(area.right());
+                let width = narrow(text.len()).min(area.right() - left);
+                x = left + width + 1;
+                (
+                    tab,
+                    text,
+                    Rect {
+                        x: left,
+                        width,
+                        ..area
+                    },
+                )
+            })
     }
 }

@@ -146,13 +146,10 @@ fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer
     write::line(buffer, row, theme, pieces);
 }
 
-/// Returns a remark about a field, and whether it is about the present value: what an empty field means, or which
-/// pitch means that none is set.
-fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, bool)> {
+/// Returns a remark about a field: what an empty field means, or which pitch means that none is set.
+fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<&'static str> {
     if field.parameter() == Parameter::Pitch {
-        let default = dialog.form().sensor().default_value(Parameter::Pitch);
-        let pitch = dialog.form().value(Parameter::Pitch);
-        return Some(("1: not set", pitch == Some(default)));
+        return Some("1: not set");
     }
     if !field.optional() {
         return None;
@@ -161,8 +158,8 @@ fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, 
         Some(Source::Figure(figure))
             if figure.get(field.parameter()).is_some() && !figure.has_hole() =>
         {
-            Some((NO_ROOM, true))
+            Some(NO_ROOM)
         }
-        _ => Some(("empty: solid", field.text().is_empty())),
+        _ => Some("empty: solid"),
     }
 }

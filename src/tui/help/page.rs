@@ -120,7 +120,6 @@ impl Help {
         row: Rect,
     ) {
         let wanted = self.search.wanted();
-        let indent = indent(row.width.into());
         let mut pieces = Vec::new();
         let pad;
         match line {
@@ -128,12 +127,12 @@ impl Help {
             HelpLine::Keys(keys, text) => {
                 pieces.push((if here { "> " } else { "  " }, Role::Key));
                 pieces.extend(marked(keys, wanted, Role::Key));
-                pad = " ".repeat(indent.saturating_sub(2 + write::width(keys)));
+                pad = " ".repeat(INDENT.saturating_sub(2 + write::width(keys)));
                 pieces.push((&pad, Role::Key));
                 pieces.extend(marked(text, wanted, Role::Text));
             }
             HelpLine::More(text) => {
-                pad = " ".repeat(indent);
+                pad = " ".repeat(INDENT);
                 pieces.push((&pad, Role::Text));
                 pieces.extend(marked(text, wanted, Role::Text));
             }
@@ -205,15 +204,8 @@ impl Page for Help {
         let found = self.search.entry();
         let found = found.and_then(|entry| number(entry, &entries));
         let found = found.map(|(number, all)| format!("match {number} of {all}"));
-        // A second line would hide the last line of the list.
-        let (text, short) = match (found, visible) {
-            (None, None) => return None,
-            (None, Some(visible)) => (visible, format!("{last} of {}", lines.len())),
-            (Some(found), None) => (found.clone(), found),
-            (Some(found), Some(visible)) => (format!("{found}; {visible}"), found),
-        };
-        let fitting = write::first_fitting(&[&text, &short], body.width.into());
-        Some((fitting.to_owned(), Role::Key))
+        let text: Vec<String> = found.into_iter().chain(visible).collect();
+        (!text.is_empty()).then(|| (text.join("; "), Role::Key))
     }
 }
 
@@ -231,22 +223,16 @@ fn matches(context: Context, keymap: &Keymap, wanted: &str) -> Vec<usize> {
         .collect()
 }
 
-/// Returns the column where the help of the keys begins: to the right of the keys, or on a narrow screen near the
-/// left edge, under them.
-fn indent(columns: usize) -> usize {
-    /// The column of the help if there is room beside the keys.
-    const BESIDE: usize = 26;
-    if columns >= BESIDE + 20 { BESIDE } else { 4 }
-}
+/// The column where the help of the keys begins.
+const INDENT: usize = 26;
 
 /// Breaks a line of help into as many as it needs.
 fn broken_line(line: HelpLine, columns: usize) -> Vec<HelpLine> {
     let HelpLine::Keys(keys, text) = line else {
         return vec![line];
     };
-    let indent = indent(columns);
-    let mut pieces = broken(text, columns.saturating_sub(indent)).into_iter();
-    let beside = (keys.len() + 2 < indent).then(|| pieces.next()).flatten();
+    let mut pieces = broken(text, columns.saturating_sub(INDENT)).into_iter();
+    let beside = (keys.len() + 2 < INDENT).then(|| pieces.next()).flatten();
     let first = HelpLine::Keys(keys, beside.unwrap_or(""));
     std::iter::once(first)
         .chain(pieces.map(HelpLine::More))

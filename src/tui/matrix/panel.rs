@@ -7,8 +7,7 @@
 //! xg     5.5              centroid, x          otherwise the name of the descriptor
 //! ```
 //! The rows are [`DESCRIPTORS`]. If the pane is low, they are shown in several columns, each as wide as its values if
-//! space is scarce. If not all descriptors fit even then, the first ones are shown in full, and the last line says
-//! how many are missing.
+//! space is scarce.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -50,10 +49,6 @@ pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: R
         .collect();
     let below = write::below(area, 1);
     let (lines, columns) = columns(&cells, below);
-    let missing = cells.len().saturating_sub(lines * columns.len());
-    if missing > 0 {
-        write::left_out(buffer, write::row(below, lines), theme, missing);
-    }
     for (cells, column) in cells.chunks(lines).zip(columns) {
         for (index, cell) in cells.iter().enumerate() {
             let row = write::row(column.area, index);
@@ -71,8 +66,7 @@ struct PanelColumn {
 }
 
 /// Returns the number of lines of the panel's columns, and the columns. They are equally wide if all values fit;
-/// otherwise each is as wide as it needs to be, with as many lines as all of them need. If there are too few lines
-/// for that, the last line stays free, and only the first columns are returned.
+/// otherwise each is as wide as it needs to be, with as many lines as all of them need.
 fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     let most = usize::from(area.height).max(1);
     let count = cells.len().div_ceil(most);
@@ -102,14 +96,7 @@ fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     };
     let mut all = (even..=most).map(|lines| (lines, own(lines)));
     let fitting = all.find(|(_, columns)| fits(columns));
-    let (lines, widths) = fitting.unwrap_or_else(|| {
-        let lines = most.saturating_sub(1).max(1);
-        let mut columns = own(lines);
-        while columns.len() > 1 && !fits(&columns) {
-            columns.pop();
-        }
-        (lines, columns)
-    });
+    let (lines, widths) = fitting.unwrap_or_else(|| (even, own(even)));
     (lines, placed(area, &widths))
 }
 

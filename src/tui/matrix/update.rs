@@ -298,10 +298,7 @@ fn toggle(app: &mut App) {
 
 /// Shows the other one of matrix and descriptors where only one has room.
 fn switch_pane(app: &mut App) {
-    if app
-        .panes()
-        .is_some_and(|panes| !app.can_switch_pane(&panes))
-    {
+    if app.panes().is_some_and(|panes| panes.panel.is_some()) {
         return refuse(app, "both sides of the screen are visible");
     }
     app.narrow_pane = match app.narrow_pane {

@@ -131,14 +131,12 @@ fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
 /// Draws the number of shapes that match the filter; without a filter, a hint that typing makes one.
 fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rect) {
     let count = format!("  {} of {}", dialog.rows().len(), dialog.total());
-    let hinted = format!("{count}; type to search");
-    let hinted = if dialog.filter().is_empty() && dialog.total() > 0 {
-        &hinted
+    let hint = if dialog.filter().is_empty() && dialog.total() > 0 {
+        "; type to search"
     } else {
-        &count
+        ""
     };
-    let text = write::first_fitting(&[hinted, &count], usize::from(area.width).saturating_sub(1));
-    write::text(buffer, area, theme, text, Role::Quiet);
+    write::text(buffer, area, theme, &(count + hint), Role::Quiet);
 }
 
 /// Draws a row: a sign, the name, the size, the origin of the shape.

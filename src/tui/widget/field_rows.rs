@@ -51,15 +51,15 @@ impl FieldRows {
         }
     }
 
-    /// Draws the fields of a list into the first rows, with this many columns for labels and texts, and with remarks
-    /// that say whether they are about the present value. Returns the position of the text cursor; None if no visible
+    /// Draws the fields of a list into the first rows, with this many columns for labels and texts, and with remarks.
+    /// Returns the position of the text cursor; None if no visible
     /// field has the focus.
     pub fn draw<F: FormField>(
         &self,
         theme: &Theme,
         list: &FieldList<F>,
         widths: (usize, usize),
-        remark: impl Fn(&F) -> Option<(&'static str, bool)>,
+        remark: impl Fn(&F) -> Option<&'static str>,
         buffer: &mut Buffer,
     ) -> Option<Position> {
         let mut cursor = None;
@@ -114,8 +114,8 @@ struct FieldRow<'a, F> {
     focused: bool,
     /// The allowed values.
     range: Range,
-    /// A remark, and whether it is about the present value.
-    remark: Option<(&'static str, bool)>,
+    /// A remark under the range.
+    remark: Option<&'static str>,
     /// The error in the text; None if it is valid.
     error: Option<String>,
 }
@@ -157,39 +157,24 @@ impl<F: FormField> FieldRow<'_, F> {
         }
         if let Some(error) = &self.error {
             let place = second.unwrap_or(first);
-            let full = format!("! {error}");
-            // Cut at its end, a message would hide the limit.
-            let bare = full.replacen("expected ", "", 1);
-            let text = write::first_fitting(&[&full, &bare], place.width.into());
-            write::text(buffer, place, theme, text, Role::Error);
+            let text = format!("! {error}");
+            write::text(buffer, place, theme, &text, Role::Error);
         }
         Position::new(area.x.saturating_add(narrow(label + cursor)), area.y)
     }
 
-    /// Draws the range, and the remark under or behind it. If there is no room for everything, the unit is left out
-    /// first, then the remark, or the range if the remark is about the present value.
+    /// Draws the range, and the remark under or behind it.
     fn draw_range(&self, theme: &Theme, buffer: &mut Buffer, area: Rect, under: Option<Rect>) {
-        let bare = self.range.to_string();
-        let range = self.field.parameter().row().unit.after(&bare);
-        let mut write = |area: Rect, texts: &[&str]| {
-            let text = write::first_fitting(texts, usize::from(area.width));
-            write::text(buffer, area, theme, text, Role::Quiet);
+        let range = self.range.to_string();
+        let range = self.field.parameter().row().unit.after(&range);
+        let (beside, below) = match (self.remark.filter(|_| self.error.is_none()), under) {
+            (None, _) => (range.to_string(), None),
+            (Some(remark), Some(under)) => (range.to_string(), Some((under, remark))),
+            (Some(remark), None) => (format!("{range}; {remark}"), None),
         };
-        match (self.remark.filter(|_| self.error.is_none()), under) {
-            (None, _) => write(area, &[&range, &bare]),
-            (Some((remark, _)), Some(under)) => {
-                write(area, &[&range, &bare]);
-                write(under, &[remark]);
-            }
-            (Some((remark, of_value)), None) => {
-                let (both, barely) = (format!("{range}; {remark}"), format!("{bare}; {remark}"));
-                let (first, second) = if of_value {
-                    (remark, remark)
-                } else {
-                    (&*range, &*bare)
-                };
-                write(area, &[&both, &barely, first, second]);
-            }
+        write::text(buffer, area, theme, &beside, Role::Quiet);
+        if let Some((under, remark)) = below {
+            write::text(buffer, under, theme, remark, Role::Quiet);
         }
     }
 }

@@ -80,13 +80,8 @@ pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
 
 /// Writes how many lines a low screen leaves out.
 pub fn left_out(buffer: &mut Buffer, row: Rect, theme: &Theme, count: usize) {
-    let texts = [
-        format!("and {count} more on a larger screen"),
-        format!("and {count} more"),
-    ];
-    let texts = texts.each_ref().map(String::as_str);
-    let text = first_fitting(&texts, row.width.into());
-    line(buffer, row, theme, [(text, Role::Quiet)]);
+    let left = format!("and {count} more on a larger screen");
+    text(buffer, row, theme, &left, Role::Quiet);
 }
 
 /// Returns the line `index` below the top of an area; it is empty if the area ends before.

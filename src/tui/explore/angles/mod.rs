@@ -77,23 +77,14 @@ fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     Some(Message::Explore(ExploreMessage::ToAngle(nearest.index)))
 }
 
-/// Returns the title: the descriptor, and which part of the poses it is computed from; and the legend. If there is
-/// little room, words that the axes show too are left out before the legend is.
+/// Returns the title: the descriptor, and which part of the poses it is computed from; and the legend if
+/// there is room for it.
 fn title(results: &Results, room: usize) -> (String, &'static str) {
     let feature = results.feature();
-    let (label, key) = (feature.label(), &feature.key);
     let sampled = results.angle_curve().map_or_else(String::new, sampled);
-    let titles = [
-        format!("{label} against the angle{sampled}"),
-        format!("{key} against the angle{sampled}"),
-        format!("{key}{sampled}"),
-    ];
-    let with_legend = |title: &&String| write::width(title) + write::width(LEGEND) <= room;
-    if let Some(title) = titles.iter().find(with_legend) {
-        return (title.clone(), LEGEND);
-    }
-    let titles = titles.each_ref().map(String::as_str);
-    (write::first_fitting(&titles, room).to_owned(), "")
+    let title = format!("{} against the angle{sampled}", feature.label());
+    let fits = write::width(&title) + write::width(LEGEND) <= room;
+    (title, if fits { LEGEND } else { "" })
 }
 
 /// Returns which of the angles and positions a curve is computed from; nothing if from all of them.

@@ -44,9 +44,9 @@ const COVERAGES: [f64; 5] = [0.0, 0.1, 0.3, 0.7, 1.0];
 /// The maximum number of cells along a side of a drawing: more would not be distinguishable.
 const DRAWN: u64 = 400;
 
-/// Returns the legend: what letters, colours or shades mean, and which part of the poses is shown; and shorter ones,
-/// the last of which is the part alone: a picture of a part looks like one of the whole.
-fn meaning(theme: &Theme, pane: &MapPane) -> Vec<String> {
+/// Returns the legend: what letters, colours or shades mean, and which part of the poses is shown: a picture of a part
+/// looks like one of the whole.
+fn meaning(theme: &Theme, pane: &MapPane) -> String {
     let sign = match (pane.is_picture(), has_colours(theme)) {
         (false, _) => "letter",
         (true, true) => "colour",
@@ -54,14 +54,9 @@ fn meaning(theme: &Theme, pane: &MapPane) -> Vec<String> {
     };
     let full = format!("  each {sign} an imprint");
     if pane.stride == 1 {
-        return vec![full];
+        return full;
     }
-    let stride = format!("{0} × {0}", pane.stride);
-    vec![
-        format!("{full}; 1 pose in {stride}"),
-        format!("{full}; 1 in {stride}"),
-        format!("  1 pose in {stride}"),
-    ]
+    format!("{full}; 1 pose in {0} × {0}", pane.stride)
 }
 
 /// Draws the tab. Returns the position of the cursor.
@@ -75,13 +70,8 @@ pub(in crate::tui) fn draw(
     let grid = &results.sweep().grid;
     let head = heading(results);
     let end = write::text(buffer, pane.head, theme, &head, Role::Title);
-    // A legend is drawn only if there is room for all of it.
     let legend = write::right_of(pane.head, end);
-    let texts = meaning(theme, &pane);
-    let fits = |text: &&String| write::width(text) <= usize::from(legend.width);
-    if let Some(text) = texts.iter().find(fits) {
-        write::text(buffer, legend, theme, text, Role::Quiet);
-    }
+    write::text(buffer, legend, theme, &meaning(theme, &pane), Role::Quiet);
     if pane.cells.is_empty() {
         draw_no_room(theme, buffer, area);
         draw_pose(theme, results, &pane, buffer);

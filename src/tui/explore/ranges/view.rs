@@ -23,7 +23,7 @@ use crate::tui::app::page::{Page, Slot};
 use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::field_rows::{FieldRows, WIDE};
+use crate::tui::widget::field_rows::FieldRows;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -32,8 +32,6 @@ use crate::tui::widget::write;
 const LABEL: usize = 8;
 /// The number of columns of the text of a field: `-15.5:-14.51:0.01` is about the longest that is proposed.
 const INPUT: usize = 16;
-/// The number of columns of the text of a field in a narrow pane.
-const NARROW_INPUT: usize = 14;
 
 impl Page for RangesForm {
     fn context(&self) -> Context {
@@ -54,13 +52,8 @@ impl Page for RangesForm {
         let title = self.title();
         write::text(buffer, area, theme, &title, Role::Title);
         let rows = rows(self, area);
-        let input = if area.width >= WIDE {
-            INPUT
-        } else {
-            NARROW_INPUT
-        };
         let fields = self.form();
-        let mut cursor = rows.draw(theme, fields, (LABEL, input), |_| None, buffer);
+        let mut cursor = rows.draw(theme, fields, (LABEL, INPUT), |_| None, buffer);
         let mut others = rows
             .visible()
             .skip_while(|(index, _)| *index < fields.fields().len());
@@ -103,9 +96,6 @@ fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect)
     } else {
         Role::Text
     };
-    let short = meaning.split_once(',').map_or(meaning, |(head, _)| head);
-    let room = usize::from(row.width).saturating_sub(LABEL + 11);
-    let meaning = write::first_fitting(&[meaning, short, ""], room);
     let pieces = [
         (label.as_str(), Role::Text),
         ("< ", Role::Quiet),
@@ -124,9 +114,7 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
         Ok(grid) => {
             let poses = counted(grid.poses(), "pose");
             let time = form.estimate().map(|time| format!(", {}", about(time)));
-            let timed = poses.clone() + time.as_deref().unwrap_or("");
-            let text = write::first_fitting(&[&timed, &poses], area.width.into());
-            (text.to_owned(), Role::Text)
+            (poses + time.as_deref().unwrap_or(""), Role::Text)
         }
         // A wrong field shows its own error.
         Err(_) if form.form().error().is_some() => (String::new(), Role::Text),
