@@ -21,13 +21,11 @@ use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::runtime::effect::{Effect, FileRequest};
 
-/// Shows a notice.
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Info(text.into()));
 }
 
-/// Opens the comparison of a named imprint with the one on the matrix. The matrix comes second: it is the later one,
-/// or is being made from the other.
+/// The matrix comes second: it is the later one, or is being made from the other.
 pub(in crate::tui) fn compare_with(app: &mut App, name: &str, other: &Imprint) {
     let own = ("the matrix".to_owned(), &app.reading().imprint);
     let comparison = Comparison::new((heading(name), other), own);
@@ -39,20 +37,18 @@ pub(in crate::tui) fn refuse(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Refusal(text.into()));
 }
 
-/// Changes the document. The chosen region stays chosen if there still is a region of that number.
+/// The chosen region stays chosen if there still is a region of that number.
 pub(in crate::tui) fn change(app: &mut App, document: Document) {
     app.history.push(document);
     settle(app);
 }
 
-/// Puts a document from elsewhere onto the matrix.
 pub(in crate::tui) fn begin(app: &mut App, origin: DocumentOrigin, document: Document) {
     app.history.begin(document, origin);
     settle_elsewhere(app);
 }
 
-/// Puts an imprint onto the matrix as if it were drawn, without any trace of what made it. `brought_by` is the name of
-/// the step in the history.
+/// `brought_by` is the name of the step in the history.
 pub(in crate::tui) fn begin_drawn(
     app: &mut App,
     sensor: Sensor,
@@ -64,26 +60,22 @@ pub(in crate::tui) fn begin_drawn(
     begin(app, origin, document);
 }
 
-/// Puts a document from an earlier run onto the matrix.
 pub(in crate::tui) fn resume(app: &mut App, origin: DocumentOrigin, document: Document) {
     app.history.resume(document, origin);
     settle_elsewhere(app);
 }
 
-/// Goes back or forward to the state after that many steps.
 pub(in crate::tui) fn go_to(app: &mut App, step: usize) {
     app.history.go_to(step);
     settle_elsewhere(app);
 }
 
-/// Settles on a document that does not go on from the one before.
 fn settle_elsewhere(app: &mut App) {
     let_go(app);
     app.paint = None;
     settle(app);
 }
 
-/// Reads the document, and brings everything that depends on it back into range.
 pub(in crate::tui) fn settle(app: &mut App) {
     app.removed.clear();
     app.moves = None;
@@ -113,19 +105,16 @@ pub(in crate::tui) fn travel(
     }
 }
 
-/// Takes hold of the shape.
 pub(in crate::tui) fn hold(app: &mut App) {
     if movable(app).is_some() {
         app.held = Some(Box::new(app.history.present().clone()));
     }
 }
 
-/// Lets the shape go where it is.
 pub(in crate::tui) fn let_go(app: &mut App) {
     app.held = None;
 }
 
-/// Puts the shape back to where it was taken, and lets it go.
 pub(in crate::tui) fn put_back(app: &mut App) {
     let Some(before) = app.held.take() else {
         return refuse(app, "nothing is held");
@@ -144,15 +133,12 @@ pub(in crate::tui) fn put_back(app: &mut App) {
     }
 }
 
-/// Changes the document, and says how many taxels set by hand were dropped.
 fn change_shape(app: &mut App, document: Document) {
     let dropped = dropped(app, &document);
     change(app, document);
     say_dropped(app, dropped);
 }
 
-/// Returns true if a document shows something other than the document with the present name: a figure of another
-/// kind, or a picture of another shape.
 pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
     let present = app.history.present().source.as_ref();
     let name = app.history.origin().name.as_ref();
@@ -197,8 +183,8 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     }
 }
 
-/// Returns the number of taxels set by hand that are lost if this document replaces the present one. An imprint that
-/// was loaded, or taken from a frame, was not set by hand; a picture of the whole drawing loses nothing.
+/// An imprint that was loaded, or taken from a frame, was not set by hand; a picture of the whole drawing loses
+/// nothing.
 fn dropped(app: &App, document: &Document) -> u32 {
     let (present, begun) = (app.history.present(), app.history.begun());
     if let (None, Some(Source::Picture(picture))) = (&present.source, &document.source)
@@ -213,7 +199,6 @@ fn dropped(app: &App, document: &Document) -> u32 {
     by_hand(present).saturating_sub(by_hand(document))
 }
 
-/// Says how many taxels set by hand were dropped, if any.
 fn say_dropped(app: &mut App, dropped: u32) {
     if dropped > 0 {
         let taxels = counted(dropped, "taxel");
@@ -230,8 +215,7 @@ fn say_dropped(app: &mut App, dropped: u32) {
     }
 }
 
-/// Says that there is nothing to move, and how to get something. A drawing has no position to change, but once it is
-/// stored, it can be placed as a picture.
+/// A drawing has no position to change, but once it is stored, it can be placed as a picture.
 fn refuse_to_move(app: &mut App) {
     if app.loaded_imprint().is_some() {
         let place = app.key_of(&action::PICTURE);
@@ -261,14 +245,12 @@ pub(in crate::tui) fn movable(app: &mut App) -> Option<Source> {
     source
 }
 
-/// Moves the shape by a step.
 pub(in crate::tui) fn nudge(app: &mut App, arrow: Arrow) {
     let (dx, dy) = arrow.step();
     let length = app.step.length();
     shift(app, f64::from(dx) * length, f64::from(dy) * length);
 }
 
-/// Moves the shape by a distance in cells along x and y.
 pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
     let Some(source) = movable(app) else { return };
     let ways = [(Parameter::X0, dx), (Parameter::Y0, dy)];
@@ -291,7 +273,6 @@ pub(in crate::tui) fn turn(app: &mut App, clockwise: f64) {
     }
 }
 
-/// Makes a picture larger or smaller by a step.
 pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
     if app.history.present().source.is_none() && app.reading().imprint.is_empty() {
         let picture = app.key_of(&action::PICTURE);
@@ -350,7 +331,6 @@ pub(in crate::tui) fn from_prompt(
     effect
 }
 
-/// Gives the prompt to the question that its request has led to, if there is one.
 pub(in crate::tui) fn give_prompt(app: &mut App) {
     if let Some(Dialog::Question(question)) = app.dialogs.last_mut()
         && let Some(prompt) = app.prompt.take()

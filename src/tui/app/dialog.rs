@@ -28,47 +28,29 @@ use crate::tui::search::page::SearchDialog;
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::theme::Theme;
 
-/// A page that lies over the matrix, with its state.
 #[derive(Clone, Debug)]
 pub enum Dialog {
-    /// The form of a figure, a picture or the sensor.
     Form(Box<FormDialog>),
-    /// The shapes of the library.
     List(ListDialog),
-    /// The prompt for the name to save under.
     Name(NameDialog),
-    /// The `:` prompt.
     Command(CommandDialog),
-    /// A question.
     Question(Question),
-    /// The list of keys.
     Help(Help),
-    /// The prompt that searches in help.
     Search(SearchDialog),
-    /// The comparison of two imprints.
     Compare(Comparison),
-    /// The steps of the history.
     History(HistoryDialog),
-    /// The ranges of a sweep.
     Ranges(Box<RangesForm>),
-    /// A sweep or an export in progress.
     Running(Running),
-    /// The results of a sweep.
     Results(Box<Results>),
-    /// The prompt for the name of the file to export to.
     Export(ExportDialog),
-    /// The prompt for the filter of the list of imprints.
     Filter(FilterDialog),
     /// Recognition of the shape on the matrix. Its state outlasts the page, so the program keeps it.
     Recognition,
-    /// The confusion matrix of a model.
     Confusion(Box<Confusion>),
-    /// The frames of a sensor.
     Live(Box<Live>),
 }
 
 impl Dialog {
-    /// Returns what the screen knows of the page, given the state of recognition.
     pub fn page<'a>(&'a self, recognition: &'a Recognition) -> &'a dyn Page {
         match self {
             Self::Form(page) => &**page,
@@ -92,8 +74,7 @@ impl Dialog {
     }
 }
 
-/// Finds the topmost page of a kind among the pages of the program, for reading or for changing it:
-/// `topmost!(&app.dialogs, Live)`, `topmost!(&mut app.dialogs, Live)`. None if there is no such page.
+/// None if there is no such page.
 macro_rules! topmost {
     ($dialogs:expr, $kind:ident) => {
         $dialogs.into_iter().rev().find_map(|dialog| match dialog {
@@ -105,29 +86,20 @@ macro_rules! topmost {
 
 pub(in crate::tui) use topmost;
 
-/// A question, and what each answer does. Leaving it without an answer does nothing.
+/// Leaving it without an answer does nothing.
 #[derive(Clone, Debug)]
 pub struct Question {
-    /// The sentences before the question; empty if it says all.
     pub about: String,
-    /// The question.
     pub text: String,
-    /// The message that yes sends.
     pub yes: Message,
-    /// The message that no sends, None for nothing.
     pub no: Option<Message>,
-    /// The prompt whose request led to the question; it opens again without the answer yes.
     pub prompt: Option<Box<Dialog>>,
-    /// Whether the document on the matrix may be saved first.
     pub saves_first: bool,
-    /// The meanings of yes and no, in a few words; None if the question says them.
     pub meanings: Option<[&'static str; 2]>,
-    /// The meaning of leaving it without an answer, in a few words; None if that does nothing.
     pub left: Option<&'static str>,
 }
 
 impl Question {
-    /// Returns a question where only yes does something, with the sentences before it.
     pub fn new(about: impl Into<String>, text: impl Into<String>, yes: Message) -> Self {
         Self {
             about: about.into(),
@@ -141,12 +113,10 @@ impl Question {
         }
     }
 
-    /// Creates the question whether to replace the file or the shape of this name; yes sends the message `yes`.
     pub fn replaces(name: &str, yes: Message) -> Self {
         Self::new(format!("{name:?} already exists."), "Replace it?", yes)
     }
 
-    /// Returns the keys of the answers and their meanings: `(y: lose it, n: stay, s: save first)`.
     pub fn answers(&self, keymap: &Keymap) -> String {
         let key = |answer| keymap.label(Context::Question, answer);
         let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
@@ -174,7 +144,6 @@ impl Page for Question {
         Slot::Question
     }
 
-    /// Draws nothing: a question stands in the line of notices, see [`crate::tui::app::notice`].
     fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
         None
     }

@@ -23,21 +23,17 @@ use crate::touch::{Plane, reaches_beyond};
 /// The content of the matrix. It is plain and small, so that a list of earlier documents is the undo history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Document {
-    /// The sensor.
     pub sensor: Sensor,
-    /// The source that touched the sensor; None on a matrix that is only drawn on.
     pub source: Option<Source>,
     /// The taxels switched by hand since then.
     pub edits: Imprint,
 }
 
 impl Document {
-    /// Returns the document of an empty matrix.
     pub fn empty(sensor: Sensor) -> Self {
         Self::drawn(sensor, Imprint::empty(sensor.size()))
     }
 
-    /// Returns the document of a matrix touched by a figure or a picture.
     pub fn touched(sensor: Sensor, source: Source) -> Self {
         Self {
             source: Some(source),
@@ -47,7 +43,6 @@ impl Document {
 }
 
 impl Document {
-    /// Returns the document of a matrix that an imprint was drawn on, which has the same columns and rows.
     pub fn drawn(sensor: Sensor, imprint: Imprint) -> Self {
         Self {
             sensor,
@@ -56,12 +51,11 @@ impl Document {
         }
     }
 
-    /// Returns true if nothing is on the matrix: no touch, and no taxel set by hand. The sensor does not count.
+    /// The sensor does not count.
     pub fn is_empty(&self) -> bool {
         self.source.is_none() && self.edits.is_empty()
     }
 
-    /// Returns the document of a stored shape: its source, with the taxels that differ from its touch as set by hand.
     pub fn of_shape(shape: &StoredShape) -> Self {
         let mut document = Self {
             source: shape.source.clone(),
@@ -72,7 +66,6 @@ impl Document {
         document
     }
 
-    /// Returns the shape to store under a name; `reading` is the reading of this document.
     pub fn to_shape(&self, name: Name, reading: &Reading) -> StoredShape {
         let imprint = reading.imprint;
         StoredShape {
@@ -83,8 +76,7 @@ impl Document {
         }
     }
 
-    /// Returns the same document on another sensor. A source whose values this sensor does not allow becomes a
-    /// drawing.
+    /// A source whose values this sensor does not allow becomes a drawing.
     #[must_use]
     pub fn on(&self, sensor: Sensor) -> Self {
         let allowed = |source: &Source| {
@@ -109,20 +101,15 @@ impl Document {
 /// [`ReadDocument`].
 #[derive(Clone, Debug)]
 pub struct Reading {
-    /// The active taxels.
     pub imprint: Imprint,
-    /// The covered share of each cell; None for a matrix without a shape, on which taxels are only drawn.
     pub coverages: Option<Matrix<f64>>,
-    /// The regions: pieces and holes.
     pub regions: Vec<Region<'static>>,
     /// The index of the region that is described unless another one was chosen.
     pub main: Option<usize>,
-    /// Whether the source reaches beyond the sensor.
     pub beyond: bool,
 }
 
 impl Reading {
-    /// Reads a document.
     pub fn of(document: &Document) -> Self {
         let mut imprint = document.edits;
         let mut coverages = None;
@@ -147,12 +134,10 @@ impl Reading {
         }
     }
 
-    /// Returns the covered fraction of a cell; None on a matrix that is only drawn on.
     pub fn coverage(&self, column: u8, row: u8) -> Option<f64> {
         self.coverages.as_ref()?.get(column, row)
     }
 
-    /// Returns a region with its index: the chosen one if it exists, else the main one.
     pub fn region(&self, chosen: Option<usize>) -> Option<(usize, &Region<'_>)> {
         let index = chosen
             .filter(|&index| index < self.regions.len())
@@ -160,23 +145,20 @@ impl Reading {
         Some((index, self.regions.get(index)?))
     }
 
-    /// Returns the description of that region: counts and sums.
     pub fn description(&self, chosen: Option<usize>) -> Option<Description> {
         self.region(chosen)
             .map(|(_, region)| Description::of(region))
     }
 }
 
-/// A document with its reading. The screen keeps readings only here.
+/// The screen keeps readings only here.
 #[derive(Clone, Debug)]
 pub struct ReadDocument {
-    /// The document that was read.
     document: Document,
     reading: Reading,
 }
 
 impl ReadDocument {
-    /// Reads a document.
     pub fn new(document: Document) -> Self {
         Self {
             reading: Reading::of(&document),
@@ -184,12 +166,10 @@ impl ReadDocument {
         }
     }
 
-    /// Returns the document.
     pub fn document(&self) -> &Document {
         &self.document
     }
 
-    /// Returns the reading of the document.
     pub fn reading(&self) -> &Reading {
         &self.reading
     }

@@ -5,23 +5,18 @@ use crate::storage::ShapeOrigin;
 use crate::tui::app::document::Document;
 use crate::tui::app::steps::difference;
 
-/// The origin of a document: New, a loaded shape, a form. All states from one origin to the next belong together, and
-/// share the name that they are stored under.
+/// All states from one origin to the next belong together, and share the name that they are stored under.
 #[derive(Clone, Debug)]
 pub struct DocumentOrigin {
-    /// The step that brought the document, in words: "washer loaded", "random touch"; None where the documents
-    /// themselves tell. Saving under another name does not change it.
+    /// Saving under another name does not change it.
     pub brought_by: Option<String>,
-    /// A name to save the document under; None where the document itself tells.
     pub proposed: Option<String>,
-    /// The name that the document was loaded from or stored under.
     pub name: Option<StoredName>,
     /// The document that is not lost: as it was loaded, saved or begun. An empty one if all of it would be lost.
     pub saved: Document,
 }
 
 impl DocumentOrigin {
-    /// Returns the origin of a document that is not lost: it can be had again where it comes from.
     pub fn of(document: &Document) -> Self {
         Self {
             brought_by: None,
@@ -36,7 +31,6 @@ impl DocumentOrigin {
         Self::of(&Document::empty(document.sensor))
     }
 
-    /// Returns the same origin with a name for the step in the history.
     #[must_use]
     pub fn called(self, brought_by: impl Into<String>) -> Self {
         Self {
@@ -45,7 +39,6 @@ impl DocumentOrigin {
         }
     }
 
-    /// Returns the same origin with a name to save the document under.
     #[must_use]
     pub fn proposing(self, name: impl Into<String>) -> Self {
         Self {
@@ -54,7 +47,6 @@ impl DocumentOrigin {
         }
     }
 
-    /// Returns the same origin for a document that was loaded under a name.
     #[must_use]
     pub fn loaded(self, name: StoredName) -> Self {
         Self {
@@ -71,70 +63,49 @@ impl DocumentOrigin {
     }
 }
 
-/// The name that a document is stored under, and its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StoredName {
-    /// The shape's name.
     pub name: String,
-    /// The stamp of the file's content when it was read or written last.
     pub stamp: u64,
-    /// Whether the file is the user's own or shipped.
     pub owner: ShapeOrigin,
 }
 
-/// A document, the number of its origin, and what was chosen on it.
 #[derive(Clone, Debug)]
 struct Revision {
-    /// The document.
     document: Document,
-    /// The index of its origin in the history's list.
     origin: usize,
-    /// The index of the region that was chosen last; None for the main one.
     chosen: Option<usize>,
 }
 
-/// The place of a state in the history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatePlace {
-    /// Before the present state: undo leads there.
     Earlier,
-    /// The present state.
     Present,
-    /// After the present state: redo leads there.
     Later,
 }
 
 /// A document of the history that would be lost with it.
 #[derive(Clone, Copy, Debug)]
 pub struct UnsavedState<'a> {
-    /// The document.
     pub document: &'a Document,
-    /// Its origin.
     pub origin: &'a DocumentOrigin,
-    /// Its place in the history.
     pub place: StatePlace,
 }
 
-/// A document with all its earlier and, after undo, later states. Going back to a state brings back its name too.
+/// Going back to a state brings back its name too.
 #[derive(Clone, Debug)]
 pub struct History {
-    /// Earlier states, the oldest first.
     past: Vec<Revision>,
-    /// The state now.
     present: Revision,
-    /// States that were undone, the next one last.
     future: Vec<Revision>,
     /// While the last change can go on: the states that could be redone before it. They can be redone again if the
     /// change comes to nothing.
     future_before: Option<Vec<Revision>>,
-    /// All origins; revisions refer to them by index.
     origins: Vec<DocumentOrigin>,
-    /// The origins of deleted shapes as they were before, each with its index: the shape may be restored.
     gone: Vec<(usize, DocumentOrigin)>,
 }
 
 impl History {
-    /// Returns a history that begins with a document with nothing to save.
     pub fn new(document: Document) -> Self {
         let origins = vec![DocumentOrigin::of(&document)];
         Self {
@@ -151,12 +122,10 @@ impl History {
         }
     }
 
-    /// Returns the document as it is now.
     pub fn present(&self) -> &Document {
         &self.present.document
     }
 
-    /// Returns the index of the chosen region of the present document; None for the main one.
     pub fn chosen(&self) -> Option<usize> {
         self.present.chosen
     }
@@ -166,7 +135,6 @@ impl History {
         self.present.chosen = region;
     }
 
-    /// Returns the origin of the present document.
     pub fn origin(&self) -> &DocumentOrigin {
         // The index is in the list: only `begin` makes indices.
         self.origins
@@ -174,7 +142,6 @@ impl History {
             .unwrap_or(&self.origins[0])
     }
 
-    /// Returns the origin of that index; None if there is none.
     pub fn origin_at(&self, index: usize) -> Option<&DocumentOrigin> {
         self.origins.get(index)
     }
@@ -187,21 +154,19 @@ impl History {
             .any(|own| own == folded(name))
     }
 
-    /// Returns the first document of the present origin: what was loaded, taken or begun, before any change of it.
     pub fn begun(&self) -> &Document {
         let past = self.past.iter().rev();
         let own = past.take_while(|state| state.origin == self.present.origin);
         own.last().map_or(self.present(), |state| &state.document)
     }
 
-    /// Adds a change of the document. A change that changes nothing leaves no trace.
+    /// A change that changes nothing leaves no trace.
     pub fn push(&mut self, document: Document) {
         if document != self.present.document {
             self.replace(document, self.present.origin);
         }
     }
 
-    /// Adds a document that comes from somewhere else.
     pub fn begin(&mut self, document: Document, origin: DocumentOrigin) {
         self.origins.push(origin);
         self.replace(document, self.origins.len() - 1);
@@ -217,8 +182,6 @@ impl History {
         }
     }
 
-    /// Returns the index of the origin of a present or past document; if there is no such document, that of the
-    /// present one.
     pub fn origin_of(&self, document: &Document) -> usize {
         let mut states = std::iter::once(&self.present).chain(self.past.iter().rev());
         let found = states.find(|state| state.document == *document);
@@ -304,14 +267,12 @@ impl History {
         })
     }
 
-    /// Returns the states that redo leads to, the next one first.
     fn later(&self) -> impl Iterator<Item = &Revision> {
         let before = self.future_before.as_ref();
         let future = before.filter(|_| self.last_step_is_empty());
         future.unwrap_or(&self.future).iter().rev()
     }
 
-    /// Returns true if the last step leads to the same document.
     fn last_step_is_empty(&self) -> bool {
         let Revision {
             document, origin, ..
@@ -320,8 +281,7 @@ impl History {
         last.is_some_and(|past| past.document == *document && past.origin == *origin)
     }
 
-    /// Drops the last step if amendments have undone it: such a step is no change, and leaves no trace. What could be
-    /// redone before it can be redone again.
+    /// What could be redone before it can be redone again.
     fn drop_empty_step(&mut self) {
         if self.last_step_is_empty()
             && let Some(future) = self.future_before.take()
@@ -331,7 +291,6 @@ impl History {
         }
     }
 
-    /// Makes a document the present one and the former one the last of the past.
     fn replace(&mut self, document: Document, origin: usize) {
         self.drop_empty_step();
         let chosen = self.present.chosen;
@@ -353,7 +312,6 @@ impl History {
         }
     }
 
-    /// Goes back by one change. Returns the change in words, None if there is none.
     pub fn undo(&mut self) -> Option<String> {
         self.drop_empty_step();
         let earlier = self.past.pop()?;
@@ -363,13 +321,11 @@ impl History {
         Some(undone)
     }
 
-    /// Returns true if there is a change to undo.
     pub fn can_undo(&self) -> bool {
         let dropped = self.future_before.is_some() && self.last_step_is_empty();
         self.past.len() > usize::from(dropped)
     }
 
-    /// Goes forward again by one change. Returns the change in words, None if there is none.
     pub fn redo(&mut self) -> Option<String> {
         self.drop_empty_step();
         let later = self.future.pop()?;
@@ -379,15 +335,13 @@ impl History {
         Some(redone)
     }
 
-    /// Makes an earlier or a later state the present one, and returns the one that is left. The region that was chosen
-    /// there is chosen again; if none was, the choice stays.
+    /// The region that was chosen there is chosen again; if none was, the choice stays.
     fn travel(&mut self, mut state: Revision) -> Revision {
         self.future_before = None;
         state.chosen = state.chosen.or(self.present.chosen);
         std::mem::replace(&mut self.present, state)
     }
 
-    /// Returns the change from one state to the next, in words.
     fn step(&self, from: &Revision, to: &Revision) -> String {
         let origin = self.origins.get(to.origin);
         let brought_by = origin.and_then(|origin| origin.brought_by.clone());
@@ -395,8 +349,6 @@ impl History {
         brought_by.unwrap_or_else(|| difference(&from.document, &to.document))
     }
 
-    /// Returns the steps from the oldest state to the latest one, in words, and the number of steps that lead to the
-    /// present one.
     pub fn steps(&mut self) -> (Vec<String>, usize) {
         self.drop_empty_step();
         let later = self.future.iter().rev();
@@ -406,32 +358,27 @@ impl History {
         (steps, self.past.len())
     }
 
-    /// Returns the step that brought the oldest state, in words; None if the program began with it.
     pub fn start(&self) -> Option<&str> {
         let oldest = self.past.first().unwrap_or(&self.present);
         self.origins.get(oldest.origin)?.brought_by.as_deref()
     }
 
-    /// Returns the number of steps that lead to the present state.
     pub fn step_number(&self) -> usize {
         self.past.len()
     }
 
-    /// Returns the state before the last step that changed something, None if there is none.
     pub fn before(&self) -> Option<&Document> {
         let past = self.past.iter().rev();
         let mut others = past.filter(|state| state.document != self.present.document);
         others.next().map(|state| &state.document)
     }
 
-    /// Returns the state after this many steps; None if there are fewer.
     pub fn after(&self, step: usize) -> Option<&Document> {
         let later = self.future.iter().rev();
         let mut states = self.past.iter().chain([&self.present]).chain(later);
         states.nth(step).map(|state| &state.document)
     }
 
-    /// Goes back or forward to the state after that many steps, or as near to it as there are states.
     pub fn go_to(&mut self, step: usize) {
         while self.past.len() > step && self.undo().is_some() {}
         while self.past.len() < step && self.redo().is_some() {}

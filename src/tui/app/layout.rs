@@ -11,70 +11,47 @@ use crate::tui::app::page::Slot;
 use crate::tui::matrix::layout::{RULER, TaxelSize};
 use crate::tui::widget::write::{below, right_of};
 
-/// The smallest width of the panel; with less room it has the screen to itself.
 const PANEL: u16 = 30;
 
-/// From this width on the panel stands beside every matrix: the default sensor fits there.
 const BOTH: u16 = RULER + 2 * 16 + 1 + PANEL;
 
-/// The width that the panel gets before taxels are enlarged.
 const WIDE_PANEL: u16 = 44;
 
-/// The smallest width of a form beside the matrix.
 const FORM: u16 = 22;
 
-/// The width of a form beside the descriptors, where there is room for it.
 const WIDE_FORM: u16 = 40;
-/// The smallest width of a form beside the descriptors: ranges stand under the fields then.
 const NARROW_FORM: u16 = 32;
 
-/// The height of a form over the foot of the matrix.
 const LOW_FORM: u16 = 8;
 
-/// The height of a form above the descriptors.
 const LONGEST_FORM: u16 = 18;
-/// The smallest height of the descriptors below a form.
 const LOW_PANEL: u16 = 10;
 
-/// From this height on there is room for everything: a title, all lines at the foot, and all descriptors beside the
-/// matrix. On a lower screen matrix and descriptors each have the screen to themselves.
+/// On a lower screen matrix and descriptors each have the screen to themselves.
 const FULL: u16 = 24;
 
-/// The smallest useful size of the screen: columns, rows.
 pub const SMALLEST: (u16, u16) = (40, 12);
 
-/// The panes of a screen. A line without room is empty.
+/// A line without room is empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Panes {
-    /// The menu.
     pub menu: Rect,
-    /// Everything between the menu and the lines at the foot.
     pub body: Rect,
-    /// The sensor and the name, above the matrix; empty on a low screen. Pages over the whole body cover it.
+    /// Pages over the whole body cover it.
     pub title: Rect,
-    /// The body below the title.
     pub content: Rect,
-    /// The matrix with its rulers.
     pub matrix: Rect,
-    /// The descriptors, where there is room beside the matrix.
     pub panel: Option<Rect>,
-    /// A form: in place of the panel, or over the foot of the matrix.
     pub form: Rect,
-    /// The descriptors while a form is open, where there is room for both.
     pub form_panel: Option<Rect>,
-    /// The line about the source of the imprint.
     pub source: Rect,
-    /// The line about the taxel under the cursor.
     pub taxel: Rect,
-    /// Notices and questions; the same line as the taxel where there is no room for both.
     pub notice: Rect,
-    /// The line of key hints.
     pub hints: Rect,
 }
 
 impl Panes {
-    /// Returns the panes of a screen for a matrix; None if the screen is too small. With `halves`, two taxels may
-    /// share a character.
+    /// With `halves`, two taxels may share a character.
     pub fn of(area: Rect, imprint: &Imprint, halves: bool) -> Option<Self> {
         if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
             return None;
@@ -118,7 +95,6 @@ impl Panes {
         })
     }
 
-    /// Returns the area of a slot.
     pub fn area(&self, slot: Slot) -> Rect {
         match slot {
             Slot::Screen => Rect {
@@ -133,7 +109,6 @@ impl Panes {
     }
 }
 
-/// Returns the width of the matrix in the content of a screen; the rest is for the panel, or is too narrow for it.
 /// Square taxels come first, as large as there is room for, then smaller ones that show more of the matrix.
 fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
     let beside = |panel: u16| Rect {
@@ -154,8 +129,6 @@ fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
     size.matrix_width(imprint).min(room.width)
 }
 
-/// Returns the area of a form: beside the matrix, or over its foot where there is too little room;
-/// and the area of the descriptors, if they fit beside the form or below it.
 fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {
     if beside.width < FORM {
         let height = LOW_FORM.min(body.height);

@@ -18,29 +18,24 @@ use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// A prompt. Every type with this trait is a [`Page`].
+/// Every type with this trait is a [`Page`].
 pub trait LinePrompt {
-    /// The context in which its keys are looked up.
     const CONTEXT: Context;
 
     /// Whether Cancel and Quit go to its own update, because the page below has to be restored.
     const RESTORES: bool = false;
 
-    /// Returns the text before the field.
     fn label(&self) -> &str;
 
-    /// Returns the field with the typed text.
     fn field(&self) -> &TextField;
 
-    /// Returns the text behind the field, in an area of this many columns; empty for none.
     fn behind(&self, columns: u16) -> Cow<'_, str>;
 
-    /// Returns what is wrong with the typed text, None if nothing is.
     fn wrong(&self) -> Option<String> {
         None
     }
 
-    /// Draws over the page below. Does nothing by default.
+    /// Does nothing by default.
     fn draw_offers(&self, _theme: &Theme, _buffer: &mut Buffer, _body: Rect) {}
 }
 

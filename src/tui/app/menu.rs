@@ -26,24 +26,17 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// A row of the table of keys, as a line shows it: keys, and what they do.
 #[derive(Clone, Debug)]
 pub struct Item<'a> {
-    /// The area on the screen.
     pub area: Rect,
-    /// The row of the table of keys.
     pub binding: &'a Binding,
-    /// The name of the action: a word or two.
     pub name: &'a str,
-    /// The keys before the name; empty if there are none.
     pub keys: String,
-    /// The role of the name, which decides how it looks.
     role: Role,
 }
 
 impl Item<'_> {
-    /// Returns the message of a click at a position: on a key, the message of that key; on the name, that of the
-    /// first key. None beside the item, and for the four arrows together.
+    /// None beside the item, and for the four arrows together.
     pub fn click(&self, at: Position) -> Option<Message> {
         if !self.area.contains(at) {
             return None;
@@ -63,7 +56,6 @@ impl Item<'_> {
         }
     }
 
-    /// Draws the item.
     fn draw(&self, theme: &Theme, buffer: &mut Buffer) {
         let keys = (self.keys.as_str(), Role::Key);
         let gap = if self.keys.is_empty() { "" } else { " " };
@@ -72,14 +64,12 @@ impl Item<'_> {
     }
 }
 
-/// Draws a line of keys.
 pub fn draw(theme: &Theme, buffer: &mut Buffer, items: &[Item<'_>]) {
     for item in items {
         item.draw(theme, buffer);
     }
 }
 
-/// Returns the menu of the page that is open, as much as fits.
 pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     let (context, keymap) = (app.context(), app.keymap());
     let options = matches!(context, Context::Matrix | Context::Hold);
@@ -95,7 +85,6 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     placed(area, 3, Role::Text, &rows)
 }
 
-/// Returns the hints: the keys that mean something now and are not in the menu, as many as fit.
 pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     let (context, keymap) = (app.context(), app.keymap());
     let line = context.outer().filter(|&outer| outer == Context::Line);
@@ -146,8 +135,7 @@ fn useful(app: &App, row: &Binding) -> bool {
     messages.any(|message| page.has_use_for(message, area))
 }
 
-/// Returns the rows of the menu of a page other than the matrix: the rows of the screen that it belongs to, or its
-/// own ones over the matrix. For a form, a list, a prompt or a question: the rows that accept, leave or explain it.
+/// For a form, a list, a prompt or a question: the rows that accept, leave or explain it.
 fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
     let hinted = |row: &&Binding| {
         !row.hint.is_empty() && !row.keys.is_empty() && !row.does(&Message::SwitchPane)
@@ -165,7 +153,6 @@ fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
     }
 }
 
-/// The messages that lead on from a page, out of it, or to its keys.
 const LEADING: [Message; 7] = [
     Message::Accept,
     Message::Decline,
@@ -176,7 +163,6 @@ const LEADING: [Message; 7] = [
     Message::Explore(ExploreMessage::Stop),
 ];
 
-/// Returns the row of Help on the matrix.
 fn help(keymap: &Keymap) -> impl Iterator<Item = &Binding> {
     let all = keymap
         .rows()
@@ -186,13 +172,11 @@ fn help(keymap: &Keymap) -> impl Iterator<Item = &Binding> {
     all.filter(|row| by_default(row) == Some(Message::Help))
 }
 
-/// Returns the name of one of the paper's options: the part of its help before a colon or a comma.
 fn option(row: &Binding) -> &str {
     let end = row.help.find([':', ',']);
     end.map_or(row.help, |end| &row.help[..end])
 }
 
-/// Returns the rows that fit, one after the other.
 fn placed<'a>(area: Rect, gap: u16, role: Role, rows: &[(&'a Binding, &'a str)]) -> Vec<Item<'a>> {
     let mut x = area.x;
     let mut items = Vec::new();

@@ -13,17 +13,13 @@ use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::{menu, notice};
 use crate::tui::widget::number::taxels;
 
-/// The thing that the mouse points at.
 #[derive(Clone, Debug, PartialEq)]
 enum Target {
-    /// A key in the menu or in the hints.
     Key(Message),
     /// A taxel: column, row, and whether the whole matrix is visible, so that the cursor may go there without
     /// scrolling it.
     Taxel(u8, u8, bool),
-    /// The heading of the descriptors, or a descriptor.
     Panel,
-    /// Something on the top page, with what it means there.
     Page(Message),
 }
 
@@ -63,8 +59,7 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
     None
 }
 
-/// Sets the taxels of a straight line: over a slow connection a quick drag is reported at a few places only. The
-/// taxels of a drag are one change: one undo takes all of them back.
+/// The taxels of a drag are one change: one undo takes all of them back.
 fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
     let imprint = app.reading().imprint;
     let mut document = app.history.present().clone();
@@ -95,7 +90,6 @@ fn scroll(app: &App, notch: i16) -> Option<Message> {
     Some(Message::Scroll(notch * lines))
 }
 
-/// Returns the target at a position of the screen; None if there is none, or if the screen is too small.
 fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     let panes = app.panes()?;
     let place = Position::new(column, row);
@@ -143,7 +137,6 @@ mod tests {
     use crate::tui::app::state::Options;
     use crate::tui::app::update::update;
 
-    /// An answer of the library comes whenever it is ready.
     #[test]
     fn a_drag_ends_when_another_document_comes() {
         let mut app = App::new(&Options::plain(true));

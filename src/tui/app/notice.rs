@@ -9,8 +9,7 @@ use crate::tui::app::state::{App, Notice};
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
-/// Returns the notice, else the request to the disk that the user waits for, else the text of the top page. A
-/// question stands after the notice.
+/// A question stands after the notice.
 pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
     if let Some(Dialog::Question(question)) = app.dialogs.last() {
         return Some((asked(app, panes, question), Role::Error));
@@ -51,12 +50,11 @@ fn asked(app: &App, panes: &Panes, question: &Question) -> String {
     texts.into_iter().find(fits).unwrap_or(end)
 }
 
-/// Returns the number of lines that a text takes in the area of notices.
 fn lines(app: &App, panes: &Panes, text: &str) -> usize {
     write::broken(&app.theme().text(text), usize::from(panes.notice.width)).len()
 }
 
-/// Returns the lines that a notice takes. A prompt keeps its line, and the notice stands above it.
+/// A prompt keeps its line, and the notice stands above it.
 pub fn block(app: &App, panes: &Panes, text: &str) -> Rect {
     let is_typed = |page: &dyn Page| page.slot() == Slot::Prompt;
     let is_typed = app.top_page().is_some_and(is_typed);
@@ -74,7 +72,6 @@ pub fn block(app: &App, panes: &Panes, text: &str) -> Rect {
     }
 }
 
-/// Returns the area of a page; it ends above the notice if the page makes room for it.
 pub fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
     let area = panes.area(page.slot());
     if !page.makes_room() {

@@ -70,7 +70,6 @@ fn losses(app: &App) -> Option<(String, &'static str)> {
     Some((what, lost))
 }
 
-/// Returns true if something on the matrix can be saved before the end.
 fn can_save_first(app: &App) -> bool {
     let present = app.history.present();
     app.unsaved() && !app.is_being_saved(present) && !app.reading().imprint.is_empty()

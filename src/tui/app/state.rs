@@ -32,19 +32,14 @@ use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::widget::theme::Theme;
 
-/// The settings that the program starts with.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// The sensor of the empty matrix.
     pub sensor: Sensor,
-    /// The colours and characters.
     pub theme: Theme,
-    /// The seed of the random touches.
     pub seed: u64,
 }
 
 impl Options {
-    /// Returns the options of scripts and tests: the paper's sensor, no colours.
     pub fn plain(ascii: bool) -> Self {
         Self {
             sensor: Sensor::default(),
@@ -58,71 +53,49 @@ impl Options {
 /// moves while the shape is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoveKind {
-    /// Any move while the shape is held.
     Held,
-    /// A shift along x and y.
     Along,
-    /// A turn about the centre.
     Turn,
-    /// A change of the size.
     Zoom,
 }
 
-/// The part of the matrix that stays visible where the screen shows only a window of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::tui) enum Followed {
-    /// The taxel under the cursor.
     Cursor,
-    /// The described region.
     Region,
 }
 
 /// The state that decides what the window follows. It is compared before and after a message.
 #[derive(Clone, Debug)]
 pub(in crate::tui) struct Attention {
-    /// The taxel under the cursor.
     cursor: (u8, u8),
-    /// Whether a page stands beside the matrix.
     accompanied: bool,
-    /// The source of the imprint. A small move changes it, but may leave the same taxels active.
+    /// A small move changes it, but may leave the same taxels active.
     source: Option<Source>,
-    /// The active taxels.
     imprint: Imprint,
 }
 
-/// A way of showing the taxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Display {
-    /// Active or inactive.
     Imprint,
-    /// Coverage in shades.
     Shades,
-    /// Coverage in percent.
     Percent,
 }
 
-/// The pane on a screen that is too small for matrix and descriptors side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NarrowPane {
-    /// The matrix.
     Matrix,
-    /// The descriptors.
     Panel,
 }
 
-/// The step of moving and zooming the shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NudgeStep {
-    /// 0.01 cells.
     Hundredth,
-    /// 0.1 cells.
     Tenth,
-    /// One cell.
     One,
 }
 
 impl NudgeStep {
-    /// Returns the length in cell sides.
     pub fn length(self) -> f64 {
         match self {
             Self::Hundredth => 0.01,
@@ -131,7 +104,6 @@ impl NudgeStep {
         }
     }
 
-    /// Returns the next larger step if `direction` is positive, else the next smaller one; at the end, the same step.
     #[must_use]
     pub fn other(self, direction: i8) -> Self {
         match (self, direction > 0) {
@@ -142,70 +114,47 @@ impl NudgeStep {
     }
 }
 
-/// Whether the program runs, and how it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunState {
-    /// The program runs.
     Running,
-    /// The user has quit: unsaved work was given up.
     Quit,
-    /// The program was ended from outside, without a question: unsaved work stays in the journal.
     Terminated,
 }
 
 /// A notice, shown until the next key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Notice {
-    /// A message for information.
     Info(String),
-    /// The reason why something was not done.
     Refusal(String),
-    /// The reason why something failed that was under way, such as a save. What is said before the next key stands
-    /// after it.
+    /// What is said before the next key stands after it.
     Failure(String),
 }
 
-/// A shape that is being saved.
 #[derive(Clone, Debug)]
 pub(in crate::tui) struct UnfinishedSave {
-    /// The shape.
     pub(in crate::tui) shape: Box<StoredShape>,
-    /// The document that it was made from.
     pub(in crate::tui) document: Document,
-    /// The index of that document's origin in the history.
     pub(in crate::tui) origin: usize,
 }
 
-/// The state of the program.
 #[derive(Clone, Debug)]
 pub struct App {
-    /// The document and its earlier states.
     pub(in crate::tui) history: History,
-    /// The document that the matrix shows, with its last reading.
     shown: ReadDocument,
     /// The taxel that the cursor was put on: column, row. It may lie beyond a sensor that became smaller; so if the
     /// sensor is larger again, the cursor is back.
     pub(in crate::tui) cursor: (u8, u8),
-    /// The part of a large matrix that its window follows.
     pub(in crate::tui) followed: Followed,
-    /// The way of showing the taxels.
     pub(in crate::tui) display: Display,
-    /// The layers over the taxels.
     pub(in crate::tui) layers: Layers,
-    /// The pane that a narrow screen shows.
     pub(in crate::tui) narrow_pane: NarrowPane,
-    /// The step by which a key moves or zooms the shape.
     pub(in crate::tui) step: NudgeStep,
-    /// The pages over the matrix; the last one is on top.
     pub(in crate::tui) dialogs: Vec<Dialog>,
     /// The prompt that the last message came from, until the next action: it opens again if its request is refused.
     pub(in crate::tui) prompt: Option<Dialog>,
-    /// The notice in the line of notices.
     pub(in crate::tui) notice: Option<Notice>,
-    /// The request to the disk that the user waits for, if it takes long. The status line shows it while there is no
-    /// notice.
+    /// The status line shows it while there is no notice.
     pub(in crate::tui) waiting: Option<String>,
-    /// The shapes that are being saved, in the order in which the library answers.
     pub(in crate::tui) saving: VecDeque<UnfinishedSave>,
     /// The shapes that could not be saved before the program ended, each with the reason. Nobody can be asked any more,
     /// so the journal keeps them.
@@ -213,44 +162,31 @@ pub struct App {
     /// The names of the shapes that were removed since the last change of the document, the last one last: undo
     /// restores them.
     pub(in crate::tui) removed: Vec<String>,
-    /// The results of the last sweep, while their page is closed.
     pub(in crate::tui) results: Option<Box<Results>>,
-    /// The state of recognition, whether its page is open or closed.
     pub(in crate::tui) recognition: Recognition,
-    /// The settings for a source that is named at the prompt.
     pub(in crate::tui) watch_settings: WatchRequest,
-    /// The page of a source of frames, while it is closed.
     pub(in crate::tui) live: Option<Box<Live>>,
     /// The number of sweeps and exports begun so far, which is also the number of the last one.
     pub(in crate::tui) works: u64,
     /// The commands given so far, the last one last.
     pub(in crate::tui) commands: Vec<String>,
-    /// The values that forms were accepted with.
     pub(in crate::tui) forms: FormMemory,
     /// While the shape is held, so that the arrow keys move it and not the cursor: the document when it was taken.
     pub(in crate::tui) held: Option<Box<Document>>,
-    /// The kind of move that the last message made, if any: the next move of that kind is part of the same step of
-    /// the history.
     pub(in crate::tui) moves: Option<MoveKind>,
-    /// During a drag of the mouse: the state that it gives taxels (true: active), and the last taxel on its way.
     pub(in crate::tui) paint: Option<(bool, (u8, u8))>,
-    /// The columns and rows of the screen.
     pub(in crate::tui) screen: (u16, u16),
-    /// The colours and characters.
     pub(in crate::tui) theme: Theme,
-    /// The keymap: what each key does.
     pub(in crate::tui) keymap: Keymap,
-    /// Whether the program runs.
     pub(in crate::tui) run_state: RunState,
     /// Whether the program ends once the document is saved, because the user chose this at the question before
     /// quitting.
     pub(in crate::tui) quits_when_saved: bool,
-    /// The keys without a meaning that a notice has named. Each is named once.
+    /// Each is named once.
     pub(in crate::tui) unknown_keys: Vec<Key>,
 }
 
 impl App {
-    /// Returns the state with an empty matrix and the cursor in its middle.
     pub fn new(options: &Options) -> Self {
         let document = Document::empty(options.sensor);
         Self {
@@ -288,13 +224,11 @@ impl App {
         }
     }
 
-    /// Returns the same state with another keymap.
     #[must_use]
     pub fn with_keymap(self, keymap: Keymap) -> Self {
         Self { keymap, ..self }
     }
 
-    /// Returns the same state with other settings for sources that are named at the prompt.
     #[must_use]
     pub fn with_watch_settings(self, watch_settings: WatchRequest) -> Self {
         Self {
@@ -303,17 +237,14 @@ impl App {
         }
     }
 
-    /// Returns the keymap.
     pub fn keymap(&self) -> &Keymap {
         &self.keymap
     }
 
-    /// Returns the label of the key for an action on the matrix, for notices.
     pub(in crate::tui) fn key_of(&self, action: &Action) -> String {
         self.keymap.label(Context::Matrix, action)
     }
 
-    /// Returns the message that there is nothing to explore, with the keys that make something.
     pub(in crate::tui) fn nothing_to_explore(&self) -> String {
         let [figure, picture, draw] = [&action::FIGURE, &action::PICTURE, &action::TOGGLE];
         format!(
@@ -324,12 +255,10 @@ impl App {
         )
     }
 
-    /// Returns the context in which keys are looked up.
     pub fn context(&self) -> Context {
         self.context_on(self.top_page())
     }
 
-    /// Returns the context with this page on top; None for the matrix without pages.
     pub(in crate::tui) fn context_on(&self, page: Option<&dyn Page>) -> Context {
         match (page, self.held.is_some()) {
             (Some(page), true) if page.leaves_matrix() => Context::Hold,
@@ -339,50 +268,42 @@ impl App {
         }
     }
 
-    /// Returns the message that a key sends now.
     pub fn meaning(&self, key: Key) -> Message {
         let message = self.keymap.lookup(self.context(), key);
         message.unwrap_or(Message::Unknown(key))
     }
 
-    /// Returns the pages over the matrix; the last one is on top.
     pub(in crate::tui) fn pages(&self) -> impl DoubleEndedIterator<Item = &dyn Page> {
         let page = |dialog| Dialog::page(dialog, &self.recognition);
         self.dialogs.iter().map(page)
     }
 
-    /// Returns the page that receives the keys; None if the matrix does.
     pub(in crate::tui) fn top_page(&self) -> Option<&dyn Page> {
         self.pages().next_back()
     }
 
-    /// Returns the top page that has a pane of its own; None if no page has one.
     pub fn pane(&self) -> Option<&dyn Page> {
         self.pages().rev().find(|page| page.has_pane())
     }
 
-    /// Returns the panes of the screen; None if it is too small.
     pub fn panes(&self) -> Option<Panes> {
         let (columns, rows) = self.screen;
         let area = Rect::new(0, 0, columns, rows);
         Panes::of(area, &self.reading().imprint, self.halves())
     }
 
-    /// Returns true if two taxels may share a character of the screen. Coverage and the marks of a comparison need a
-    /// character for each taxel.
+    /// Coverage and the marks of a comparison need a character for each taxel.
     pub(in crate::tui) fn halves(&self) -> bool {
         let compared = self.pane().and_then(Page::compared_with);
         self.display == Display::Imprint && compared.is_none()
     }
 
-    /// Returns the positions of the taxels on the screen; None if it is too small.
     pub(in crate::tui) fn grid(&self) -> Option<TaxelGrid> {
         let area = self.panes()?.matrix;
         let (imprint, seen) = (&self.reading().imprint, self.seen());
         Some(TaxelGrid::of(area, imprint, seen, self.halves()))
     }
 
-    /// Returns the part of the matrix that the window keeps visible.
     pub(in crate::tui) fn seen(&self) -> Bounds {
         let region = self.reading().region(self.chosen());
         match region.filter(|_| self.followed == Followed::Region) {
@@ -391,7 +312,6 @@ impl App {
         }
     }
 
-    /// Returns the state that decides what the window follows.
     pub(in crate::tui) fn attention(&self) -> Attention {
         let page = self.pane().map(Page::slot);
         Attention {
@@ -422,13 +342,11 @@ impl App {
         }
     }
 
-    /// Returns the columns and rows of a page that fills the body; both are 0 on a screen that is too small.
     pub(in crate::tui) fn body_size(&self) -> (u16, u16) {
         self.panes()
             .map_or((0, 0), |panes| panes.body.as_size().into())
     }
 
-    /// Returns the results that are open, perhaps under other pages.
     pub(in crate::tui) fn results_below(&self) -> Option<&Results> {
         topmost!(&self.dialogs, Results).map(|results| &**results)
     }
@@ -438,7 +356,6 @@ impl App {
         self.shown.document()
     }
 
-    /// Returns the reading of the document that the matrix shows.
     pub fn reading(&self) -> &Reading {
         self.shown.reading()
     }
@@ -452,7 +369,6 @@ impl App {
         }
     }
 
-    /// Returns the document of the topmost form, or the present one.
     fn on_matrix(&self) -> &Document {
         match topmost!(&self.dialogs, Form) {
             Some(form) => form.shown(),
@@ -460,7 +376,7 @@ impl App {
         }
     }
 
-    /// Clears the state that belongs to the user's last action. Called before each action.
+    /// Called before each action.
     pub(in crate::tui) fn begin_action(&mut self) {
         self.notice = None;
         self.prompt = None;
@@ -478,48 +394,39 @@ impl App {
         *self.history.present() != self.history.origin().saved
     }
 
-    /// Returns the taxel under the cursor: column, row. On a smaller sensor than the one that the cursor was put on,
-    /// this is at the rim.
+    /// On a smaller sensor than the one that the cursor was put on, this is at the rim.
     pub fn cursor(&self) -> (u8, u8) {
         let (sensor, (column, row)) = (&self.shown().sensor, self.cursor);
         (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1))
     }
 
-    /// Returns the index of the chosen region; None for the main one.
     pub fn chosen(&self) -> Option<usize> {
         self.history.chosen()
     }
 
-    /// Returns the name that the document is stored under, with the stamp and the owner of its file; None if it is
-    /// not stored.
     pub(in crate::tui) fn stored(&self) -> Option<&StoredName> {
         self.history.origin().name.as_ref()
     }
 
-    /// Returns the name that the document was loaded from or stored under.
     pub fn stored_name(&self) -> Option<&str> {
         self.stored().map(|stored| stored.name.as_str())
     }
 
-    /// Returns the name and the imprint of a stored shape that has no source. None if a source made the imprint on
-    /// the matrix, or if it has no name.
+    /// None if a source made the imprint on the matrix, or if it has no name.
     pub(in crate::tui) fn loaded_imprint(&self) -> Option<(&str, &Imprint)> {
         let document = self.history.present();
         let name = self.stored_name().filter(|_| document.source.is_none())?;
         (!document.edits.is_empty()).then_some((name, &document.edits))
     }
 
-    /// Returns true if the program has ended.
     pub fn ended(&self) -> bool {
         self.run_state != RunState::Running
     }
 
-    /// Returns the request to the disk that the user waits for, if it takes long.
     pub fn waiting(&self) -> Option<&str> {
         self.waiting.as_deref()
     }
 
-    /// Returns the colours and characters.
     pub fn theme(&self) -> &Theme {
         &self.theme
     }

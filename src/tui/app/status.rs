@@ -29,7 +29,6 @@ use crate::tui::widget::write;
 /// The text after the source if the shape is not wholly on the sensor. It is never shortened; the text before it is.
 const BEYOND: &str = "; reaches beyond the sensor";
 
-/// Draws all these lines. Returns the position of the cursor in a prompt, None if there is no prompt.
 pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let (theme, seen) = (app.theme(), app.reading());
     if !hides_matrix(app) {
@@ -64,8 +63,6 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     cursor
 }
 
-/// Returns true if the matrix is not the subject of the screen: under a page that covers it and these lines, also if
-/// another one, such as the help, lies over that.
 fn hides_matrix(app: &App) -> bool {
     let pages = app.pages().filter(|page| page.has_pane());
     let slots: Vec<Slot> = pages.map(Page::slot).collect();
@@ -75,7 +72,6 @@ fn hides_matrix(app: &App) -> bool {
     }
 }
 
-/// Returns the line about the source of the imprint.
 fn source(app: &App, panes: &Panes) -> String {
     let document = app.shown();
     let by_hand = document.edits.count();

@@ -8,8 +8,6 @@ use crate::source::Source;
 use crate::touch::Plane;
 use crate::tui::app::document::Document;
 
-/// Returns the changes from one document to another, for example "x0 4.00 → 4.31, angle 0 → 15"; empty if they are
-/// alike.
 pub fn difference(from: &Document, to: &Document) -> String {
     let sensor = of_sensor(&from.sensor, &to.sensor);
     let mut parts = vec![sensor, of_source(from.source.as_ref(), to.source.as_ref())];
@@ -25,13 +23,11 @@ pub fn difference(from: &Document, to: &Document) -> String {
     parts.join(", ")
 }
 
-/// Returns true if the shape, or several taxels at once, were removed and nothing is left.
 fn is_emptied(from: &Document, to: &Document) -> bool {
     let is_empty = to.source.is_none() && to.edits.is_empty();
     is_empty && (from.source.is_some() || from.edits.count() > 1)
 }
 
-/// Returns the changes of the sensor.
 fn of_sensor(from: &Sensor, to: &Sensor) -> String {
     let value = |sensor: &Sensor, parameter| sensor.get(parameter);
     values(SENSOR_PARAMETERS, |p| value(from, p), |p| value(to, p))
@@ -49,7 +45,6 @@ fn of_source(from: Option<&Source>, to: Option<&Source>) -> String {
     }
 }
 
-/// Returns true if two sources differ only by their values.
 fn alike(from: &Source, to: &Source) -> bool {
     match (from, to) {
         (Source::Figure(from), Source::Figure(to)) => from.kind() == to.kind(),
@@ -58,7 +53,6 @@ fn alike(from: &Source, to: &Source) -> bool {
     }
 }
 
-/// Returns the parameters that differ, each as "label before → after".
 fn values(
     parameters: &[Parameter],
     from: impl Fn(Parameter) -> Option<f64>,
@@ -80,7 +74,6 @@ fn values(
     changed.collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the taxels that were set by hand: a single one by its column and row, several by their number.
 fn of_edits(from: &Document, to: &Document) -> String {
     let switched = from.edits.differing(&to.edits);
     match (switched.count(), switched.active().next()) {

@@ -12,7 +12,6 @@ use crate::tui::app::change::is_other;
 use crate::tui::app::state::App;
 use crate::tui::live::watch::recording;
 
-/// Returns the text of the title.
 pub fn title(app: &App) -> String {
     let sensor = &app.shown().sensor;
     let pitch = sensor.pitch_mm();
@@ -46,7 +45,6 @@ pub(in crate::tui) fn name(app: &App) -> Option<String> {
     Some(format!("{stored}{changed}"))
 }
 
-/// Returns the threshold with two decimals, or with more if it has more.
 fn threshold(sensor: &Sensor) -> String {
     let (exact, short) = (
         sensor.threshold().to_string(),

@@ -10,9 +10,7 @@ use crate::tui::app::state::{App, RunState};
 /// A document that would be lost if the program died now.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnsavedWork {
-    /// The name that it is offered under.
     name: Name,
-    /// The document.
     document: Document,
 }
 
@@ -39,7 +37,6 @@ impl App {
         self.history.origin().would_lose(self.history.present())
     }
 
-    /// Returns true if a document is being saved.
     pub(in crate::tui) fn is_being_saved(&self, document: &Document) -> bool {
         self.saving.iter().any(|save| save.document == *document)
     }
@@ -102,7 +99,6 @@ mod tests {
     use crate::tui::app::update::update;
     use crate::tui::runtime::effect::Effect;
 
-    /// Draws a taxel and asks for it to be saved; returns the shape that the library was asked to store.
     fn saving(app: &mut App) -> Box<StoredShape> {
         let _ = update(app, Message::Toggle);
         let message = app.storing(Name::new("mine").expect("a name"));
@@ -112,7 +108,6 @@ mod tests {
         }
     }
 
-    /// The library may answer only after the user has quit: then nobody can be asked whether to replace the file.
     #[test]
     fn a_save_that_is_refused_after_the_end_is_kept() {
         let differs = |shape| LibraryEvent::Differs(shape, 7, "mine already exists".to_owned());

@@ -40,7 +40,6 @@ pub fn next_work(app: &mut App) -> Option<Effect> {
     work.or_else(|| live::update::next_work(app))
 }
 
-/// Handles a message without reading the document again.
 fn handle(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),
@@ -119,7 +118,6 @@ fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> O
     effect
 }
 
-/// Handles a message of the user once.
 fn perform(app: &mut App, message: Message) -> Option<Effect> {
     app.begin_action();
     if matches!(message, Message::Cancel | Message::Quit) {
@@ -139,8 +137,7 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
     }
 }
 
-/// Explains that a key does nothing here, once per key. Names the key that lists all keys or, in that list, the keys
-/// that scroll and search.
+/// Names the key that lists all keys or, in that list, the keys that scroll and search.
 fn unknown(app: &mut App, key: Key) {
     if app.unknown_keys.contains(&key) {
         return;
@@ -238,7 +235,6 @@ fn at_question(app: &mut App, question: Question, message: &Message) -> Option<E
     }
 }
 
-/// Passes an event of a worker to its page.
 fn on_worker(app: &mut App, event: WorkerEvent) -> Option<Effect> {
     match event {
         WorkerEvent::Progress(number, progress) => {

@@ -35,14 +35,13 @@ use crate::tui::matrix::view::MatrixView;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Draws the whole screen of a terminal, and shows or hides its cursor.
 pub fn view(app: &App, frame: &mut Frame<'_>) {
     if let Some(position) = draw(app, frame.buffer_mut()) {
         frame.set_cursor_position(position);
     }
 }
 
-/// Draws the whole screen into an empty buffer. Returns the position of the terminal's cursor; None if it is hidden.
+/// Returns the position of the terminal's cursor; None if it is hidden.
 pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     let area = buffer.area;
     let theme = app.theme();
@@ -94,7 +93,6 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     cursor.filter(|&position| area.contains(position))
 }
 
-/// Draws the size that is needed, on a screen that is too small for anything.
 fn too_small(theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let (width, height) = SMALLEST;
     let text = theme.text("×");

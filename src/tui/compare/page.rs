@@ -19,62 +19,41 @@ use crate::tui::widget::number::{around, narrow};
 use crate::tui::widget::theme::{Role, Theme, spelling};
 use crate::tui::widget::write;
 
-/// The number of columns between two columns of the table.
 const GAP: u16 = 2;
 
-/// A view of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ComparedView {
-    /// The taxels that are active in both imprints, in one, or in none.
     Difference,
-    /// The first imprint.
     First,
-    /// The second one.
     Second,
-    /// The descriptors, if they have no room beside the other views.
     Descriptors,
 }
 
 use ComparedView::{Descriptors, Difference, First, Second};
 
-/// The views in the order of Tab.
 const VIEWS: [ComparedView; 4] = [Difference, First, Second, Descriptors];
 
-/// The views that have the descriptors beside them.
 const GRIDS: &[ComparedView] = VIEWS.split_at(3).0;
 
-/// A row of the table: the symbol of a descriptor, its two values, their difference.
 type TableRow = [String; 4];
 
-/// Two imprints of the same size, with their names.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// The two imprints, resized to the same size.
     imprints: Box<[Imprint; 2]>,
-    /// The names of the imprints, for the headings.
     names: [String; 2],
-    /// The table of descriptors, with a heading.
     table: Vec<TableRow>,
-    /// The index of the chosen view.
     view: usize,
-    /// The number of rows of the views and of the table that are hidden above; a part that needs to hide fewer hides
-    /// fewer.
     top: u16,
-    /// The number of columns of the views that are hidden on the left.
     left: u16,
 }
 
-/// The areas of the views and of the descriptors.
 struct ComparedPanes {
-    /// The visible views.
     views: Vec<(ComparedView, Rect)>,
-    /// The descriptors; None if they are not visible.
     table: Option<Rect>,
 }
 
 impl Comparison {
-    /// Compares two imprints, given with their names. If one has fewer columns or rows, the missing taxels count as
-    /// inactive.
+    /// If one has fewer columns or rows, the missing taxels count as inactive.
     pub fn new(first: (String, &Imprint), second: (String, &Imprint)) -> Self {
         let size = first.1.size().union(second.1.size());
         let imprints = [first.1, second.1].map(|imprint| imprint.resized(size));
@@ -89,13 +68,12 @@ impl Comparison {
         }
     }
 
-    /// Shows the view `by` places further on, in an area with this many columns; after the last view comes the first.
     pub fn next_view(&mut self, by: i8, columns: u16) {
         let views = self.views(columns);
         self.view = around(self.view.min(views.len() - 1), by, views.len());
     }
 
-    /// Scrolls to the right and down, or back if negative. Returns false if everything fits into the area.
+    /// Scrolls to the right and down, or back if negative.
     pub fn scroll(&mut self, (columns, rows): (i16, i16), area: Rect) -> bool {
         let (most_left, most_top) = self.hidden(area);
         let moved =
@@ -105,7 +83,6 @@ impl Comparison {
         (most_left, most_top) != (0, 0)
     }
 
-    /// Returns how many columns and rows do not fit into the area.
     fn hidden(&self, area: Rect) -> (u16, u16) {
         let panes = self.panes(area);
         let [first, _] = &*self.imprints;
@@ -119,12 +96,10 @@ impl Comparison {
         all.fold((0, 0), |most, one| (most.0.max(one.0), most.1.max(one.1)))
     }
 
-    /// Returns how many rows of the table do not fit below its heading in this many lines.
     fn rows_beyond(&self, lines: u16) -> u16 {
         narrow(self.table.len()).saturating_sub(lines)
     }
 
-    /// Returns the areas of the views and of the descriptors on the page.
     fn panes(&self, area: Rect) -> ComparedPanes {
         let body = write::below(area, HEADING);
         let table = self.widths().iter().sum::<u16>() + 3 * GAP;
@@ -157,8 +132,6 @@ impl Comparison {
         }
     }
 
-    /// Returns the places of the taxels of a view in its area: two characters per taxel, or one if there is no room
-    /// for two.
     fn grid(&self, area: Rect) -> TaxelGrid {
         let [first, _] = &*self.imprints;
         let room = area.width.saturating_sub(RULER);
@@ -179,12 +152,10 @@ impl Comparison {
         }
     }
 
-    /// Returns the width of a view in columns, with this many characters per taxel.
     fn width(&self, characters: u16) -> u16 {
         RULER + characters * u16::from(self.imprints[0].columns()) + 1
     }
 
-    /// Returns the width of each column of the table.
     fn widths(&self) -> [u16; 4] {
         std::array::from_fn(|column| {
             let widths = self.table.iter().map(|row| ascii_width(&row[column]));
@@ -192,7 +163,6 @@ impl Comparison {
         })
     }
 
-    /// Returns the views that Tab shows in this many columns.
     fn views(&self, columns: u16) -> &'static [ComparedView] {
         let [symbol, first, second, _] = self.widths();
         let least = symbol + first + second + 2 * GAP;
@@ -203,12 +173,11 @@ impl Comparison {
         }
     }
 
-    /// Returns the number of taxels in which the imprints differ.
     fn differing(&self) -> u32 {
         self.imprints[0].differing(&self.imprints[1]).count()
     }
 
-    /// Draws a view: a heading, the rulers, the taxels. Arrows in the heading show where there are more taxels.
+    /// Arrows in the heading show where there are more taxels.
     fn draw_view(&self, view: ComparedView, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let [first, second] = &*self.imprints;
         let grid = self.grid(area);
@@ -289,8 +258,7 @@ impl Comparison {
     }
 }
 
-/// Returns the descriptors of the main regions of two imprints, with a heading. If nothing is active, counts and sums
-/// are 0.
+/// If nothing is active, counts and sums are 0.
 fn table(imprints: &[Imprint; 2]) -> Vec<TableRow> {
     let described = imprints.each_ref().map(|imprint| {
         let regions = regions(imprint);
@@ -334,13 +302,11 @@ fn signs(theme: &Theme, view: ComparedView, active: (bool, bool)) -> ([char; 2],
     }
 }
 
-/// Formats a value; a missing one is a dash.
 fn text(descriptor: &Descriptor, measured: Value) -> String {
     let text = value::text(measured, descriptor.dimension);
     text.unwrap_or_else(|| "–".to_owned())
 }
 
-/// Formats a difference, each number with its sign; a missing one is a dash.
 fn signed(descriptor: &Descriptor, by: Value) -> String {
     let sign = |number: f64| {
         let text = text(descriptor, Value::Number(number));
@@ -358,8 +324,7 @@ fn signed(descriptor: &Descriptor, by: Value) -> String {
     }
 }
 
-/// Returns the second value minus the first: for directions, the turn from one to the other, by at most 180°. Values
-/// such as rectangles have no difference.
+/// Values such as rectangles have no difference.
 fn difference(descriptor: &Descriptor, first: Value, second: Value) -> Value {
     match (first, second) {
         (Value::Count(first), Value::Count(second)) => {
@@ -419,7 +384,6 @@ impl Page for Comparison {
         None
     }
 
-    /// A click shows the next view.
     fn click(&self, _area: Rect, _at: Position) -> Option<Message> {
         Some(Message::Field(1))
     }
@@ -437,10 +401,8 @@ impl Page for Comparison {
     }
 }
 
-/// The number of lines above the views.
 const HEADING: u16 = 1;
 
-/// Returns the name of what is compared with the matrix, cut to the length that a heading can hold.
 pub fn heading(what: &str) -> String {
     let mut name: String = what.chars().take(LONGEST).collect();
     if name.chars().count() < what.chars().count() {
@@ -449,5 +411,4 @@ pub fn heading(what: &str) -> String {
     name
 }
 
-/// The greatest number of characters of a name in the heading.
 const LONGEST: usize = 24;

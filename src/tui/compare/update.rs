@@ -9,7 +9,6 @@ use crate::tui::compare::page::Comparison;
 use crate::tui::keys::key::Arrow;
 use crate::tui::runtime::effect::Effect;
 
-/// Shows another view of two imprints, or scrolls parts that do not fit.
 pub(in crate::tui) fn in_comparison(
     app: &mut App,
     mut page: Comparison,

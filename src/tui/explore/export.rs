@@ -11,22 +11,17 @@ use crate::tui::explore::tabs;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
 
-/// The maximum number of characters of a name: the longest path of a file on Linux.
 const LONGEST: usize = 4096;
 
-/// The kind of export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExportKind {
     /// Whether all poses were swept, so that they can be written too.
     poses: bool,
-    /// Whether the tab has a drawing.
     drawing: bool,
-    /// Whether a CSV file holds the table of the tab.
     table: bool,
 }
 
 impl ExportKind {
-    /// Returns the kind of export of a sweep's results from the open tab.
     pub fn of(results: &Results) -> Self {
         let tab = tabs::row(results.tab());
         Self {
@@ -36,37 +31,30 @@ impl ExportKind {
         }
     }
 
-    /// Returns the extensions that a name can have.
     fn endings(self) -> Vec<&'static str> {
         let poses: &[&str] = if self.poses { &[".npy"] } else { &[] };
         let drawings: &[&str] = if self.drawing { &[".svg"] } else { &[] };
         [&[".csv", ".jsonl", ".npz"], poses, drawings].concat()
     }
 
-    /// Returns true if a file of that name can be made, at least on some tab.
     fn takes(name: &str) -> bool {
         is_poses(name) || has_ending(name, "svg") || AtlasFile::new(name).is_ok()
     }
 }
 
-/// The prompt for the name.
 #[derive(Clone, Debug)]
 pub struct ExportDialog {
-    /// The typed text.
     pub field: TextField,
-    /// The kind of export.
     pub what: ExportKind,
 }
 
 impl ExportDialog {
-    /// Creates a prompt that proposes a name; typing replaces it.
     pub fn proposing(name: &str, what: ExportKind) -> Self {
         let mut dialog = Self::new(name, what);
         dialog.field.enter();
         dialog
     }
 
-    /// Creates a prompt that starts with a name.
     pub fn new(name: &str, what: ExportKind) -> Self {
         Self {
             field: TextField::new(name, LONGEST),
@@ -74,10 +62,6 @@ impl ExportDialog {
         }
     }
 
-    /// Returns the name of the file.
-    ///
-    /// # Errors
-    /// Returns a message that says what is wrong with the name, and what was expected.
     pub fn name(&self) -> Result<String, String> {
         let name = self.field.text().trim();
         if ExportKind::takes(name) {
@@ -109,7 +93,6 @@ impl LinePrompt for ExportDialog {
         &self.field
     }
 
-    /// Returns the extensions that a name can have.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
         let endings = self.what.endings().join(" ");
         let has_page = self.what.table;

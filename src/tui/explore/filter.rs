@@ -14,25 +14,18 @@ use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
 
-/// The maximum number of characters of a filter.
 const LONGEST: usize = 200;
 
-/// The text behind an empty field.
 const EXAMPLE: &str = "   such as na>=40 holes=0; empty shows all";
 
-/// The prompt for a filter, and the state of the list before it.
 #[derive(Clone, Debug)]
 pub struct FilterDialog {
-    /// The typed text.
     pub field: TextField,
-    /// The filter and the selected imprint before the prompt was opened.
     before: (String, Option<u32>),
-    /// The number of kept imprints and of all imprints; or the error in the typed text.
     kept: Result<(usize, usize), FilterError>,
 }
 
 impl FilterDialog {
-    /// Creates a prompt that starts with the filter of a list.
     pub fn new(results: &Results) -> Self {
         let selected = results.rows_from(results.list.selected()).next();
         let mut field = TextField::new(results.list.filter(), LONGEST);
@@ -58,12 +51,10 @@ impl FilterDialog {
         });
     }
 
-    /// Returns the error in the typed text; None if there is none.
     pub fn error(&self) -> Option<&FilterError> {
         self.kept.as_ref().err()
     }
 
-    /// Restores the filter and the selected imprint that a list had before.
     pub fn restore(&self, results: &mut Results) {
         let (typed, selected) = &self.before;
         if let Ok(filter) = typed.parse() {
@@ -87,7 +78,6 @@ impl LinePrompt for FilterDialog {
         &self.field
     }
 
-    /// Returns how many imprints the filter keeps.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
         let count = |count: usize| grouped(count as u64);
         match self.kept {

@@ -22,10 +22,8 @@ use crate::tui::keys::binding::Context;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The number of characters of a number in the line above the bars.
 const NUMBER: usize = 9;
 
-/// The histogram tab.
 pub static TAB: ResultsTab = ResultsTab {
     title: "histogram",
     context: Context::Histogram,
@@ -38,16 +36,13 @@ pub static TAB: ResultsTab = ResultsTab {
     update: choose_descriptor,
 };
 
-/// Computes the intervals of a histogram that fits on a tab. Three lines of the tab have no bar: the title, the
-/// numbers, and a spare one.
+/// Three lines of the tab have no bar: the title, the numbers, and a spare one.
 fn histogram(results: &Results, area: Rect) -> Histogram {
     let room = usize::from(area.height.saturating_sub(3));
     let (atlas, values) = (&results.sweep().atlas, results.values());
     Histogram::of(atlas, results.feature(), values, room.max(1))
 }
 
-/// Returns the bars as CSV: each interval from its start to before its end, the last one including its end; then the
-/// poses without a value.
 fn table(results: &Results, area: Rect) -> String {
     let (histogram, key) = (histogram(results, area), &results.feature().key);
     let decimals = histogram.decimals();
@@ -62,7 +57,6 @@ fn table(results: &Results, area: Rect) -> String {
     text
 }
 
-/// Draws the tab: the descriptor with its unit, its numbers, and a bar for each bin that there is a line for.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let (result, feature) = (results.sweep(), results.feature());
     let statistic = &result.statistics[results.feature_number()];
@@ -103,7 +97,6 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     None
 }
 
-/// Draws the bars, a line for each interval.
 fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buffer, area: Rect) {
     let decimals = histogram.decimals();
     let single = unit == Dimension::Count && histogram.width == 1.0;

@@ -29,14 +29,10 @@ use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// The number of characters of a descriptor's value.
 const VALUE: usize = 8;
-/// The number of characters of a share in percent.
 const SHARE: usize = 6;
-/// The number of characters of the sign of the selected row.
 const SIGN: usize = 2;
 
-/// The imprints tab.
 pub static TAB: ResultsTab = ResultsTab {
     title: "imprints",
     context: Context::Imprints,
@@ -49,7 +45,6 @@ pub static TAB: ResultsTab = ResultsTab {
     update,
 };
 
-/// Returns the message of a click: it selects a row, puts the selected row onto the matrix, or sorts by a heading.
 fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     let list = ImprintTable::of(area, results);
     if let Some(column) = list.heading(at) {
@@ -58,7 +53,6 @@ fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     list.rows.click(at, results.list.selected())
 }
 
-/// Selects a row, or another heading.
 fn update(results: &mut Results, message: &Message, area: Rect) {
     let visible = ImprintTable::of(area, results).rows.area.height.into();
     results.list.keep_first_row(visible);
@@ -73,28 +67,18 @@ fn update(results: &mut Results, message: &Message, area: Rect) {
     results.list.keep_first_row(visible);
 }
 
-/// The layout of the list of imprints.
 #[derive(Clone, Debug)]
 pub struct ImprintTable {
-    /// The headings.
     pub head: Rect,
-    /// The rows.
     pub rows: ListRows,
-    /// The line about the selected imprint.
     pub detail: Rect,
-    /// The thumbnails; None without room beside the rows.
     pub gallery: Option<Rect>,
-    /// The number of characters of an imprint's number.
     pub id: usize,
-    /// The number of characters of a number of poses.
     pub poses: usize,
-    /// The axes of the first pose that have several values, with the number of characters of these; empty without room
-    /// for them.
     pub place: Vec<(Axis, usize)>,
 }
 
 impl ImprintTable {
-    /// Computes the layout of the list on its tab.
     pub fn of(area: Rect, results: &Results) -> Self {
         let result = results.sweep();
         let grid = &result.grid;
@@ -146,8 +130,6 @@ impl ImprintTable {
         }
     }
 
-    /// Returns the columns that rows can be sorted by, from left to right, with the number of characters of each,
-    /// including the gap before it.
     pub fn columns(&self) -> Vec<(ListColumn, usize)> {
         let place = self.place.iter();
         let place = place.map(|&(axis, width)| (ListColumn::Position(axis), width + 1));
@@ -163,7 +145,6 @@ impl ImprintTable {
         first.into_iter().chain(place).chain(last).collect()
     }
 
-    /// Returns the column whose heading is at a place of the screen.
     fn heading(&self, place: Position) -> Option<ListColumn> {
         if !self.head.contains(place) {
             return None;
@@ -177,12 +158,11 @@ impl ImprintTable {
     }
 }
 
-/// Returns the text for a list without a row.
 pub(super) fn no_row(results: &Results) -> String {
     format!("no imprint fits {}", results.list.filter())
 }
 
-/// Draws the tab. Returns the position of the selected row.
+/// Returns the position of the selected row.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let list = ImprintTable::of(area, results);
     draw_headings(theme, results, &list, buffer);
@@ -212,8 +192,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     list.rows.position(results.list.selected())
 }
 
-/// Draws the headings, with an arrow at the column that rows are sorted by. The chosen heading looks like the
-/// selected row.
+/// The chosen heading looks like the selected row.
 fn draw_headings(theme: &Theme, results: &Results, list: &ImprintTable, buffer: &mut Buffer) {
     let (by, direction) = results.list.sort_key();
     let key: String = results.feature().key.chars().take(VALUE - 1).collect();
@@ -251,7 +230,6 @@ fn draw_headings(theme: &Theme, results: &Results, list: &ImprintTable, buffer: 
     write::line(buffer, list.head, theme, pieces);
 }
 
-/// Returns the text of a row, without the sign of the selected one.
 fn row_text(theme: &Theme, results: &Results, list: &ImprintTable, entry: &AtlasEntry) -> String {
     let (id, poses) = (list.id, list.poses);
     let mut text = format!(
@@ -269,12 +247,10 @@ fn row_text(theme: &Theme, results: &Results, list: &ImprintTable, entry: &Atlas
     text
 }
 
-/// Returns the share of an imprint's poses in percent.
 fn share(results: &Results, entry: &AtlasEntry) -> String {
     percentage(crate::formats::atlas::pose_share(results.sweep(), entry), 2)
 }
 
-/// Returns the chosen descriptor's value of an imprint.
 fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     let value = results.values().get(wide(entry.id)).copied().flatten();
     theme.number(value, VALUE - 1)
@@ -294,7 +270,6 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     )
 }
 
-/// Draws thumbnails of the selected imprint and the ones after it, in lines from left to right.
 fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rect) {
     let Some((_, first)) = results.rows_from(results.list.selected()).next() else {
         return;

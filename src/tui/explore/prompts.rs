@@ -8,7 +8,6 @@ use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::results::Results;
 use crate::tui::runtime::effect::Effect;
 
-/// Returns the results that a prompt lies over.
 fn results(app: &mut App) -> Option<&mut Results> {
     match app.dialogs.last_mut() {
         Some(Dialog::Results(results)) => Some(results),

@@ -18,39 +18,26 @@ use crate::tui::explore::map::visible::VisibleImprints;
 use crate::tui::explore::message::{ExploreTab, Findings, name_of};
 use crate::tui::widget::number::around;
 
-/// The first descriptor of the horizontal axis of the scatter plot: the perimeter `p`, by its index.
 const X_FEATURE: usize = 7;
 
-/// The results of a sweep, and what is shown of them.
 #[derive(Clone, Debug)]
 pub struct Results {
-    /// The findings, shared with workers that write them.
     findings: Arc<Findings>,
-    /// The open tab.
     tab: ExploreTab,
-    /// The number of the chosen descriptor.
     feature: usize,
-    /// The values of the chosen descriptor, by the imprints' numbers.
     values: Vec<Option<f64>>,
-    /// The number of the descriptor of the scatter plot's horizontal axis, and its values by the imprints' numbers.
     x_feature: (usize, Vec<Option<f64>>),
     /// The zooms for which the imprints of each angle were requested last, and the search for them; None until the
     /// tab of angles was opened.
     angles: Option<(PoseIndex, AngleSearch)>,
-    /// The imprints that the map shows.
     visible_imprints: VisibleImprints,
-    /// How many times the map was zoomed in, starting from its whole range.
     map_zoom: u8,
-    /// The list of imprints.
     pub(super) list: ImprintList,
-    /// The index of the first column of statistics that is shown.
     column: usize,
-    /// The place of the map's cursor, by indices.
     pose_index: PoseIndex,
 }
 
 impl Results {
-    /// Creates the state for some findings, with the most frequent imprint first.
     pub fn new(findings: Arc<Findings>) -> Self {
         Self {
             tab: ExploreTab::Imprints,
@@ -67,54 +54,44 @@ impl Results {
         }
     }
 
-    /// Returns the findings.
     pub fn findings(&self) -> &Arc<Findings> {
         &self.findings
     }
 
-    /// Returns the sweep.
     pub fn sweep(&self) -> &SweepResult {
         &self.findings.sweep
     }
 
-    /// Returns the open tab.
     pub fn tab(&self) -> ExploreTab {
         self.tab
     }
 
-    /// Opens a tab.
     pub fn open_tab(&mut self, tab: ExploreTab) {
         self.tab = tab;
     }
 
-    /// Goes `by` tabs on; the first follows the last.
     pub fn next_tab(&mut self, by: i8) {
         let next = around(self.tab as usize, by, ExploreTab::ALL.len());
         self.tab = ExploreTab::ALL[next];
     }
 
-    /// Returns the number of the chosen descriptor.
     pub fn feature_number(&self) -> usize {
         self.feature
     }
 
-    /// Returns the chosen descriptor.
     pub fn feature(&self) -> &'static Feature {
         &features()[self.feature]
     }
 
-    /// Returns the values of the chosen descriptor, by the imprints' numbers.
     pub fn values(&self) -> &[Option<f64>] {
         &self.values
     }
 
-    /// Chooses the descriptor `by` further on; the first follows the last.
     pub fn next_feature(&mut self, by: i8) {
         self.choose_feature(around(self.feature, by, features().len()));
     }
 
-    /// Chooses a descriptor by its number; a number too large chooses the last one. The selected imprint stays
-    /// selected.
+    /// The selected imprint stays selected.
     pub fn choose_feature(&mut self, number: usize) {
         self.feature = number.min(features().len() - 1);
         self.values = self.sweep().atlas.values(self.feature);
@@ -123,23 +100,19 @@ impl Results {
         }
     }
 
-    /// Returns the number of the descriptor of the scatter plot's horizontal axis.
     pub fn x_feature(&self) -> usize {
         self.x_feature.0
     }
 
-    /// Returns the values of that descriptor, by the imprints' numbers.
     pub fn x_values(&self) -> &[Option<f64>] {
         &self.x_feature.1
     }
 
-    /// Chooses the descriptor `by` further on for the scatter plot's horizontal axis; the first follows the last.
     pub fn next_x_feature(&mut self, by: i8) {
         let number = around(self.x_feature.0, by, features().len());
         self.x_feature = (number, self.sweep().atlas.values(number));
     }
 
-    /// Returns the search for the imprints of each angle at the zooms of the map; None if there was none.
     pub fn angles(&self) -> Option<&AngleSearch> {
         let own = |(zooms, _): &&_| *zooms == zooms_of(self.pose_index);
         Some(&self.angles.as_ref().filter(own)?.1)
@@ -163,8 +136,7 @@ impl Results {
         missing.then_some(self.pose_index)
     }
 
-    /// Takes the end of the search for the imprints of each angle at the zooms of a place; None if it failed. Dropped
-    /// if other zooms were requested meanwhile.
+    /// Dropped if other zooms were requested meanwhile.
     pub fn take_angles(&mut self, place: PoseIndex, curve: Option<Arc<AngleCurve>>) {
         if let Some((zooms, search)) = &mut self.angles
             && *zooms == zooms_of(place)
@@ -173,12 +145,10 @@ impl Results {
         }
     }
 
-    /// Returns the imprints that the map showed last.
     pub(super) fn visible_imprints(&self) -> &VisibleImprints {
         &self.visible_imprints
     }
 
-    /// Returns how many times the map was zoomed in.
     pub fn map_zoom(&self) -> u8 {
         self.map_zoom
     }
@@ -188,15 +158,13 @@ impl Results {
         self.map_zoom = self.map_zoom.min(last).saturating_add_signed(by).min(last);
     }
 
-    /// Returns how many of all imprints are in the list, as text: `312 of 4,102`.
     pub fn kept_of_all(&self) -> String {
         let count = |count: usize| grouped(count as u64);
         let all = self.sweep().atlas.len();
         format!("{} of {}", count(self.list.row_count()), count(all))
     }
 
-    /// Returns a summary of the sweep; it begins with a remark if the sweep is only a part. `filtered` is whether the
-    /// open tab follows the filter.
+    /// `filtered` is whether the open tab follows the filter.
     pub fn summary(&self, filtered: bool) -> String {
         let result = self.sweep();
         let all = result.grid.poses();
@@ -216,28 +184,21 @@ impl Results {
         format!("{what}: {poses}, {distinct}")
     }
 
-    /// Sorts the list by a column, which becomes the chosen heading; by the same column again, reverses the order. The
-    /// selected imprint stays selected.
+    /// The selected imprint stays selected.
     pub fn sort(&mut self, by: ListColumn) {
         self.list.sort(by, &self.findings.sweep, &self.values);
     }
 
-    /// Keeps only the imprints in the list that pass a filter, given as it was typed and as it was read. The selected
-    /// imprint stays selected if it is kept.
+    /// The selected imprint stays selected if it is kept.
     pub fn keep(&mut self, typed: &str, filter: &AtlasFilter) {
         self.list.keep(typed, filter, &self.findings.sweep.atlas);
     }
 
-    /// Returns the imprints from a row on, with the indices of their rows.
     pub fn rows_from(&self, first: usize) -> impl Iterator<Item = (usize, AtlasEntry)> + '_ {
         let rows = self.list.rows().enumerate().skip(first);
         rows.filter_map(|(index, id)| Some((index, self.sweep().atlas.entry(id)?)))
     }
 
-    /// Selects an imprint.
-    ///
-    /// # Errors
-    /// Returns a sentence if the filter hides the imprint.
     pub fn go_to_imprint(&mut self, id: u32) -> Result<(), String> {
         if self.list.find(id) {
             return Ok(());
@@ -248,39 +209,30 @@ impl Results {
         ))
     }
 
-    /// Selects the imprint of a pose.
-    ///
-    /// # Errors
-    /// Returns a sentence if the pose was not swept or the filter hides its imprint.
     pub fn go_to_imprint_at(&mut self, pose: u64) -> Result<(), String> {
         let id = self.id_at(pose);
         self.go_to_imprint(id.ok_or("this pose was not swept: the sweep was stopped")?)
     }
 
-    /// Returns the index of the first column of statistics that is shown.
     pub fn column(&self) -> usize {
         self.column
     }
 
-    /// Scrolls the columns of statistics by `by`; the first one is at most `last`.
     pub fn move_columns(&mut self, by: i8, last: usize) {
         let moved = (self.column.min(last)).saturating_add_signed(isize::from(by));
         self.column = moved.min(last);
     }
 
-    /// Returns the place of the map's cursor, by indices.
     pub fn pose_index(&self) -> PoseIndex {
         self.pose_index
     }
 
-    /// Puts the map's cursor at an x0 and a y0, by index; an index too large means the last one.
     pub fn point(&mut self, x0: u64, y0: u64) {
         let counts = self.sweep().grid.counts();
         self.pose_index[Axis::X0] = x0.min(counts[Axis::X0] - 1);
         self.pose_index[Axis::Y0] = y0.min(counts[Axis::Y0] - 1);
     }
 
-    /// Shows the angle `by` further on.
     pub fn turn(&mut self, by: i16) {
         let count = self.sweep().grid.counts()[Axis::Angle];
         let now = self.pose_index[Axis::Angle];
@@ -290,18 +242,15 @@ impl Results {
         self.pose_index[Axis::Angle] = (now + step) % count;
     }
 
-    /// Shows an angle, by index; an index too large means the last one.
     pub fn to_angle(&mut self, index: u64) {
         self.pose_index[Axis::Angle] = index.min(self.sweep().grid.counts()[Axis::Angle] - 1);
     }
 
-    /// Moves the map's cursor along an axis by a number of poses; at the ends it stays.
     pub fn move_along(&mut self, axis: Axis, by: i64) {
         let last = self.sweep().grid.counts()[axis] - 1;
         self.pose_index[axis] = self.pose_index[axis].saturating_add_signed(by).min(last);
     }
 
-    /// Puts the map's cursor at a pose, given by its number.
     pub fn go_to_pose(&mut self, number: u64) {
         self.pose_index = self.sweep().grid.index(number);
     }
@@ -316,7 +265,6 @@ impl Results {
         Some(entry.first_pose)
     }
 
-    /// Returns a pose as text: the values of the axes that a sweep of this shape has.
     pub fn pose_text(&self, pose: &Pose) -> String {
         let values = self.sweep().grid.axes().map(|axis| {
             let parameter = axis.parameter();
@@ -326,7 +274,6 @@ impl Results {
         values.collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the number of characters that the values of an axis, or its name, need.
     pub fn width_of(&self, axis: Axis) -> usize {
         let (range, parameter) = (self.sweep().grid.ranges()[axis], axis.parameter());
         let ends = [range.value(0), range.value(1), range.last()];
@@ -336,14 +283,12 @@ impl Results {
             .fold(parameter.row().short.len(), usize::max)
     }
 
-    /// Returns the number of the imprint that a pose leaves; None if the pose was not swept.
     pub fn id_at(&self, pose: u64) -> Option<u32> {
         let grid = &self.sweep().grid;
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
         self.id(&imprint)
     }
 
-    /// Returns the number of an imprint in the atlas.
     pub fn id(&self, imprint: &Imprint) -> Option<u32> {
         self.sweep().atlas.find(imprint)
     }
@@ -365,7 +310,6 @@ mod tests {
         of(source, ranges())
     }
 
-    /// Returns the results of a picture in two zooms.
     fn with_zooms() -> Results {
         let bar = "####\n####".parse().expect("an imprint");
         let zooms = "1:1.5:0.5".parse().expect("a range");

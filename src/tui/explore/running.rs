@@ -24,30 +24,21 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The kind of work in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkKind {
-    /// A sweep of a grid.
     Sweep(Box<PoseGrid>),
-    /// An export to a file of this name, and the number of poses if the file has a record for each.
     Write(String, Option<u64>),
 }
 
-/// A sweep or an export in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Running {
-    /// The number of the piece of work.
     pub number: u64,
-    /// The kind of work.
     pub job: WorkKind,
-    /// The progress; None before the first progress message.
     pub progress: Option<SweepProgress>,
-    /// Whether the work is being stopped.
     pub stopping: bool,
 }
 
 impl Running {
-    /// Creates work that has just begun.
     pub fn new(number: u64, job: WorkKind) -> Self {
         Self {
             number,
@@ -57,7 +48,6 @@ impl Running {
         }
     }
 
-    /// Returns the number of poses in all; None if it is not known.
     pub fn poses(&self) -> Option<u64> {
         match &self.job {
             WorkKind::Sweep(grid) => Some(grid.poses()),
@@ -65,7 +55,6 @@ impl Running {
         }
     }
 
-    /// Returns the poses per second; None before the first progress.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     pub fn rate(&self) -> Option<f64> {
         let SweepProgress { poses, elapsed } = self.progress?;
@@ -73,7 +62,6 @@ impl Running {
         (seconds > 0.0 && poses > 0).then(|| poses as f64 / seconds)
     }
 
-    /// Returns the seconds left at that rate; None if it is not known.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     pub fn left(&self) -> Option<f64> {
         let rest = self.poses()?.saturating_sub(self.progress?.poses);
@@ -81,7 +69,6 @@ impl Running {
     }
 }
 
-/// The maximum width of the gauge.
 const WIDEST: u16 = 60;
 
 impl Page for Running {
@@ -137,13 +124,11 @@ impl Page for Running {
         true
     }
 
-    /// The update of this page stops the work.
     fn cancels_itself(&self) -> bool {
         true
     }
 }
 
-/// Draws a bar whose filled part is the share that is done.
 pub(in crate::tui) fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buffer, row: Rect) {
     let [full, _, empty] = theme.bar();
     let width = row.width.min(WIDEST);
@@ -155,7 +140,6 @@ pub(in crate::tui) fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buf
     write::line(buffer, row, theme, pieces);
 }
 
-/// Returns the poses per second and the time left; empty before the first progress.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -28,10 +28,8 @@ use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The number of characters of a value.
 const VALUE: usize = 9;
 
-/// The scatter tab.
 pub static TAB: ResultsTab = ResultsTab {
     title: "scatter",
     context: Context::Scatter,
@@ -44,7 +42,6 @@ pub static TAB: ResultsTab = ResultsTab {
     update,
 };
 
-/// Chooses a descriptor, or selects an imprint.
 fn update(results: &mut Results, message: &Message, area: Rect) {
     match *message {
         Message::Explore(ExploreMessage::Columns(by)) => results.next_x_feature(by),
@@ -53,21 +50,18 @@ fn update(results: &mut Results, message: &Message, area: Rect) {
     }
 }
 
-/// Returns an imprint's values, horizontal and vertical; None if it lacks one.
 fn point(results: &Results, entry: &AtlasEntry) -> Option<(f64, f64)> {
     let index = wide(entry.id);
     let [x, y] = [results.x_values(), results.values()];
     Some(((*x.get(index)?)?, (*y.get(index)?)?))
 }
 
-/// Returns the points of all rows, with the indices of their rows.
 fn points(results: &Results) -> Vec<(usize, (f64, f64))> {
     let rows = results.rows_from(0);
     rows.filter_map(|(row, entry)| Some((row, point(results, &entry)?)))
         .collect()
 }
 
-/// Returns the plot field on the tab, for some points; None without room.
 fn field(area: Rect, points: &[(usize, (f64, f64))]) -> Option<PlotField> {
     let area = Rect {
         height: area.height.saturating_sub(2),
@@ -100,7 +94,6 @@ fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     })
 }
 
-/// Returns the title: both descriptors, and the number of imprints.
 fn title(results: &Results, count: usize) -> String {
     let (x, y) = (&features()[results.x_feature()], results.feature());
     format!(
@@ -111,7 +104,7 @@ fn title(results: &Results, count: usize) -> String {
     )
 }
 
-/// Draws the tab. Returns the position of the selected imprint.
+/// Returns the position of the selected imprint.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let points = points(results);
     let title = title(results, points.len());
@@ -149,7 +142,6 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     Some(at)
 }
 
-/// Describes the selected imprint in one line.
 fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     let formatted = |values: &[Option<f64>]| {
         let value = values.get(wide(entry.id)).copied().flatten();
@@ -166,7 +158,6 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     )
 }
 
-/// Returns the drawing of the tab for a file.
 fn drawing(results: &Results) -> Result<String, String> {
     let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
     if points.is_empty() {

@@ -24,7 +24,6 @@ use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below};
 
-/// The statistics tab.
 pub static TAB: ResultsTab = ResultsTab {
     title: "statistics",
     context: Context::Statistics,
@@ -40,7 +39,6 @@ pub static TAB: ResultsTab = ResultsTab {
     update,
 };
 
-/// Returns the statistics of all descriptors as CSV, with the same columns as the summary of a sweep.
 fn table(results: &Results, _area: Rect) -> String {
     let keys = STATISTIC_COLUMNS.iter().map(|column| column.key);
     let mut text = format!("descriptor,{}\n", keys.collect::<Vec<_>>().join(","));
@@ -55,7 +53,6 @@ fn table(results: &Results, _area: Rect) -> String {
     text
 }
 
-/// Scrolls the columns, or chooses a descriptor.
 fn update(results: &mut Results, message: &Message, area: Rect) {
     if let Message::Explore(ExploreMessage::Columns(by)) = message {
         let (_, visible) = StatisticsTable::of(area, results).columns;
@@ -65,25 +62,17 @@ fn update(results: &mut Results, message: &Message, area: Rect) {
     }
 }
 
-/// The layout of the table of statistics.
 #[derive(Clone, Copy, Debug)]
 pub struct StatisticsTable {
-    /// The numbers of poses and imprints; empty without room.
     pub totals: Rect,
-    /// The headings.
     pub head: Rect,
-    /// The rows.
     pub rows: ListRows,
-    /// The number of characters of a descriptor's name.
     pub name: usize,
-    /// The number of characters of a column.
     pub column: usize,
-    /// The index of the first visible column, and the number of columns that there is room for.
     pub columns: (usize, usize),
 }
 
 impl StatisticsTable {
-    /// Computes the layout of the table on its tab.
     pub fn of(area: Rect, results: &Results) -> Self {
         let (name, count) = (17, STATISTIC_COLUMNS.len());
         let room = usize::from(area.width).saturating_sub(name);
@@ -109,13 +98,12 @@ impl StatisticsTable {
         }
     }
 
-    /// Returns true if there are columns that do not fit.
     pub fn hides_columns(&self) -> bool {
         self.columns.1 < STATISTIC_COLUMNS.len()
     }
 }
 
-/// Draws the tab. Returns the position of the chosen descriptor.
+/// Returns the position of the chosen descriptor.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let table = StatisticsTable::of(area, results);
     for (index, total) in totals(results).iter().enumerate() {
@@ -151,7 +139,6 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     table.rows.position(results.feature_number())
 }
 
-/// Returns which row is chosen if not all rows are visible, and on which side there are more columns.
 fn head(table: &StatisticsTable, results: &Results) -> String {
     let (first, visible) = table.columns;
     let all = features().len();
@@ -169,7 +156,6 @@ fn head(table: &StatisticsTable, results: &Results) -> String {
     row + columns
 }
 
-/// Returns the lines with the numbers of imprints and poses.
 fn totals(results: &Results) -> [String; 2] {
     let findings = results.findings();
     let (result, classes) = (&findings.sweep, findings.classes);

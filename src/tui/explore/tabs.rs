@@ -8,7 +8,6 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::tab::ResultsTab;
 use crate::tui::explore::{angles, histogram, imprints, map, scatter, statistics};
 
-/// Returns the row of a tab.
 pub fn row(tab: ExploreTab) -> &'static ResultsTab {
     match tab {
         ExploreTab::Imprints => &imprints::TAB,
@@ -20,11 +19,7 @@ pub fn row(tab: ExploreTab) -> &'static ResultsTab {
     }
 }
 
-/// Returns the content of a file of that name if it holds what the open tab shows: its drawing, or the numbers of its
-/// table, whose tab has this area. None for a file that holds the results of the whole sweep.
-///
-/// # Errors
-/// Returns why the tab cannot be drawn.
+/// None for a file that holds the results of the whole sweep.
 pub(super) fn file(results: &Results, name: &str, area: Rect) -> Option<Result<Vec<u8>, String>> {
     let tab = row(results.tab());
     if has_ending(name, "svg") {
@@ -37,7 +32,6 @@ pub(super) fn file(results: &Results, name: &str, area: Rect) -> Option<Result<V
     Some(Ok(table(results, area).into_bytes()))
 }
 
-/// Returns the reason why a tab that is a table is not drawn, with the tabs that are.
 fn no_drawing() -> String {
     let rows = ExploreTab::ALL.into_iter().map(row);
     let drawn = rows.filter(|row| row.drawing.is_some());

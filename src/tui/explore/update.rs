@@ -76,8 +76,7 @@ pub(in crate::tui) fn in_results(
     None
 }
 
-/// Opens the comparison of the selected imprint with the one on the matrix, over the results. Refused if nothing is
-/// selected.
+/// Refused if nothing is selected.
 fn compare(app: &mut App, results: Box<Results>) {
     let entry = results.rows_from(results.list.selected()).next();
     app.dialogs.push(Dialog::Results(results));
@@ -128,7 +127,6 @@ fn change_view(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     }
 }
 
-/// Returns why there is no other pose along an axis; None if there is one.
 fn only_one(app: &App, results: &Results, axis: Axis) -> Option<String> {
     let grid = &results.sweep().grid;
     let name = axis.parameter().row().short;
@@ -176,8 +174,7 @@ fn find(app: &mut App, results: &mut Results) {
     }
 }
 
-/// Goes from the list and the points to the first pose on the map, or from the map and the angles to the imprint in
-/// the list. Refused for a pose whose imprint a stopped sweep has not found.
+/// Refused for a pose whose imprint a stopped sweep has not found.
 fn follow(app: &mut App, results: &mut Results) {
     let Some(pose) = results.pose() else {
         return refuse(app, "nothing is selected here");
@@ -228,7 +225,6 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     None
 }
 
-/// Handles a message in the prompt for the name of a file; a refused name stays in it.
 pub(in crate::tui) fn in_export(
     app: &mut App,
     mut dialog: ExportDialog,
@@ -246,7 +242,7 @@ pub(in crate::tui) fn in_export(
     None
 }
 
-/// Exports results to a file. The export of a sweep shows its progress, and opens the prompt again itself.
+/// The export of a sweep shows its progress, and opens the prompt again itself.
 fn export(app: &mut App, dialog: ExportDialog, name: String) -> Option<Effect> {
     let results = app.results_below()?;
     if let Some(file) = tabs::file(results, &name, tab_area(app, results)) {

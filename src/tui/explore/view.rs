@@ -68,9 +68,8 @@ impl Page for Results {
         tabs::row(self.tab()).wheel
     }
 
-    /// An empty list has nothing to compare, to put onto the matrix or to go to. Scrolling, turning and zooming have
-    /// no use if all columns of the statistics are visible, if there is a single angle, or if the map has a single
-    /// scale.
+    /// Scrolling, turning and zooming have no use if all columns of the statistics are visible, if there is a single
+    /// angle, or if the map has a single scale.
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {
         let tab = || ResultPanes::of(area).tab;
         match (message, self.tab()) {
@@ -90,25 +89,19 @@ impl Page for Results {
         }
     }
 
-    /// The update of this page keeps the findings.
     fn cancels_itself(&self) -> bool {
         true
     }
 }
 
-/// The parts of the screen that shows results.
 #[derive(Clone, Copy, Debug)]
 pub struct ResultPanes {
-    /// The titles of the tabs.
     pub titles: Rect,
-    /// The summary of the findings.
     pub summary: Rect,
-    /// The open tab.
     pub tab: Rect,
 }
 
 impl ResultPanes {
-    /// Divides an area into the parts.
     pub fn of(area: Rect) -> Self {
         let line = |index: u16| Rect {
             y: area.y + index.min(area.height),
@@ -122,7 +115,6 @@ impl ResultPanes {
         }
     }
 
-    /// Returns the title of each tab, and its place.
     pub fn titles(&self) -> impl Iterator<Item = (ExploreTab, String, Rect)> {
         let area = self.titles;
         let mut x = area.x;

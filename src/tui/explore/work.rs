@@ -32,7 +32,6 @@ use crate::tui::explore::running::{Running, WorkKind};
 use crate::tui::explore::view::ResultPanes;
 use crate::tui::runtime::effect::{Effect, Work};
 
-/// Handles a request by a key, a command or an answered question.
 pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
     match asked {
         ExploreMessage::Open => open(app),
@@ -48,7 +47,6 @@ pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect
     }
 }
 
-/// Returns the area of the results' tabs on the screen; empty if there is no room.
 pub(super) fn tab_area(app: &App, results: &Results) -> Rect {
     let area = app.panes().map(|panes| panes.area(results.slot()));
     area.map_or(Rect::default(), |area| ResultPanes::of(area).tab)
@@ -69,8 +67,6 @@ fn open(app: &mut App) -> Option<Effect> {
     }
 }
 
-/// Returns what is explored: the figure or picture on the matrix, or a drawing as a picture, with the name that it is
-/// stored under; None for an empty matrix.
 pub(in crate::tui) fn explored(app: &App) -> Option<Source> {
     let document = app.history.present();
     if document.source.is_some() {
@@ -92,7 +88,6 @@ fn is_of(app: &App, results: &Results) -> bool {
     explored(app).is_some_and(|source| grid.is_of(&source, &present.sensor))
 }
 
-/// Opens the form, with the ranges of the results below it or else the last ones.
 fn open_ranges(app: &mut App) -> Option<Effect> {
     let below = app.dialogs.last().and_then(|dialog| match dialog {
         Dialog::Results(results) => Some(results.sweep().grid.clone()),
@@ -110,19 +105,16 @@ fn open_ranges(app: &mut App) -> Option<Effect> {
     effect
 }
 
-/// Returns the effect that estimates how long the grid of a form takes, once for each grid.
 fn measure(form: &mut RangesForm) -> Option<Effect> {
     let grid = form.unmeasured()?;
     Some(Effect::Work(Work::Measure(Box::new(grid))))
 }
 
-/// Begins a sweep.
 fn start(app: &mut App, grid: PoseGrid) -> Effect {
     let number = begin(app, WorkKind::Sweep(Box::new(grid.clone())));
     Effect::Work(Work::Sweep(number, Box::new(grid)))
 }
 
-/// Opens the page of a new piece of work, and returns its number.
 fn begin(app: &mut App, job: WorkKind) -> u64 {
     app.works += 1;
     app.dialogs
@@ -130,7 +122,6 @@ fn begin(app: &mut App, job: WorkKind) -> u64 {
     app.works
 }
 
-/// Handles a message in the form of ranges.
 pub(in crate::tui) fn in_ranges(
     app: &mut App,
     mut form: Box<RangesForm>,
@@ -176,7 +167,7 @@ pub(in crate::tui) fn in_running(
     stops.then_some(Effect::Work(Work::Stop))
 }
 
-/// Shows the progress of a sweep or an export. Returns true if this work is awaited.
+/// Returns true if this work is awaited.
 pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) -> bool {
     let running = running(app, number);
     let waited = running.is_some();
@@ -186,14 +177,12 @@ pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepPro
     waited
 }
 
-/// Shows how long the grid in the form of ranges will take.
 pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration) {
     if let Some(form) = topmost!(&mut app.dialogs, Ranges) {
         form.take_estimate(grid, time);
     }
 }
 
-/// Returns the search for the imprints of each angle, if the open tab shows them and they have not been found yet.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let Some(Dialog::Results(results)) = app.dialogs.last_mut() else {
         return None;
@@ -203,7 +192,6 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     Some(Effect::Work(Work::Angles(findings, place)))
 }
 
-/// Takes the imprints of each angle at a place, if these results are still there, or shows why they were not found.
 pub(in crate::tui) fn on_angles(
     app: &mut App,
     findings: &Arc<Findings>,
@@ -220,14 +208,13 @@ pub(in crate::tui) fn on_angles(
     }
 }
 
-/// Shows that a file was written.
 pub(in crate::tui) fn on_written(app: &mut App, number: u64, name: &str) {
     if finish(app, number).is_some() {
         inform(app, format!("written: {name}{}", filter_remark(app, name)));
     }
 }
 
-/// Asks whether an existing file is to be replaced. If not, the prompt for its name opens again.
+/// If not, the prompt for its name opens again.
 pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: &str) {
     if let Some(place) = finish(app, number) {
         let yes = ExploreMessage::Write(name.to_owned(), Existing::Replaced);
@@ -241,8 +228,7 @@ pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: &str) {
     }
 }
 
-/// Shows why a sweep or an export failed, and asks for another file name after an export. Returns true if this work
-/// was awaited.
+/// Returns true if this work was awaited.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bool {
     let name = running(app, number).and_then(|running| match &running.job {
         WorkKind::Write(name, _) if !running.stopping => Some(name.clone()),
@@ -271,19 +257,16 @@ fn filter_remark(app: &App, name: &str) -> String {
     }
 }
 
-/// Opens a page in place of the finished work; help over the work is closed.
 fn ask(app: &mut App, place: usize, dialog: Dialog) {
     app.dialogs.truncate(place);
     app.dialogs.push(dialog);
 }
 
-/// Returns the work of that number, if it is still awaited.
 fn running(app: &mut App, number: u64) -> Option<&mut Running> {
     topmost!(&mut app.dialogs, Running).filter(|running| running.number == number)
 }
 
-/// Closes the work of a number, and its notice, such as "stopping". Returns its index among the pages; None if it is
-/// not awaited.
+/// Returns its index among the pages; None if it is not awaited.
 fn finish(app: &mut App, number: u64) -> Option<usize> {
     let own =
         |dialog: &Dialog| matches!(dialog, Dialog::Running(running) if running.number == number);
@@ -293,8 +276,8 @@ fn finish(app: &mut App, number: u64) -> Option<usize> {
     Some(place)
 }
 
-/// Opens the results in place of the work and of earlier results. A stopped sweep gives results of what was complete,
-/// as a notice says; a sweep stopped before anything was complete gives none.
+/// A stopped sweep gives results of what was complete, as a notice says; a sweep stopped before anything was complete
+/// gives none.
 pub(in crate::tui) fn take_findings(app: &mut App, number: u64, findings: Arc<Findings>) {
     let Some(place) = finish(app, number) else {
         return;

@@ -9,27 +9,20 @@ use crate::sensor::Sensor;
 use crate::tui::widget::field_list::{FieldList, FormError, FormField};
 use crate::tui::widget::text_field::TextField;
 
-/// The greatest number of characters in a field.
 const LONGEST: usize = 24;
 
-/// A text field of one parameter.
 #[derive(Clone, Debug)]
 pub struct ParameterField {
-    /// The parameter that it sets.
     parameter: Parameter,
-    /// Whether it may be empty.
     optional: bool,
-    /// The text.
     input: TextField,
     /// The initial value, which is always accepted: a shape that was moved or loaded may have more decimals than the
     /// form shows.
     initial: Option<f64>,
-    /// The initial value as text.
     initial_text: String,
 }
 
 impl ParameterField {
-    /// Creates a field that shows a value; it is empty if there is none.
     pub fn new(parameter: Parameter, value: Option<f64>, optional: bool) -> Self {
         let text = value.map_or(String::new(), |value| parameter.format(value));
         let mut input = TextField::new(text.clone(), LONGEST);
@@ -43,25 +36,18 @@ impl ParameterField {
         }
     }
 
-    /// Whether it may be empty.
     pub fn optional(&self) -> bool {
         self.optional
     }
 
-    /// Returns true if the text differs from the initial one.
     pub fn changed(&self) -> bool {
         self.text() != self.initial_text
     }
 
-    /// Whether the next character replaces the text.
     pub fn fresh(&self) -> bool {
         self.input.fresh()
     }
 
-    /// Returns the value of the text; None if the field is optional and empty.
-    ///
-    /// # Errors
-    /// Returns an error that says what is wrong with the text.
     pub fn value(&self, sensor: &Sensor) -> Result<Option<f64>, ParameterError> {
         if self.text() == self.initial_text && (self.initial.is_some() || self.optional) {
             return Ok(self.initial);
@@ -79,8 +65,7 @@ impl ParameterField {
         }
     }
 
-    /// Adds or subtracts one unit of the last decimal. An empty field gets the default; a text that is not a number
-    /// is kept.
+    /// An empty field gets the default; a text that is not a number is kept.
     fn step(&mut self, direction: i8, sensor: &Sensor) {
         let value = match self.value(sensor) {
             Ok(Some(value)) => sensor.step(self.parameter, value, i32::from(direction)),
@@ -113,18 +98,15 @@ impl FormField for ParameterField {
     }
 }
 
-/// The fields of a figure, a picture or the sensor.
 pub type ParameterFields = FieldList<ParameterField>;
 
 impl ParameterFields {
-    /// Returns the value of a parameter; None if its field is empty, invalid or missing.
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
         let mut fields = self.fields().iter();
         let field = fields.find(|field| field.parameter == parameter)?;
         field.value(self.sensor()).ok().flatten()
     }
 
-    /// Changes the number in the field with the focus by one unit of its last decimal.
     pub fn step(&mut self, direction: i8) {
         let sensor = *self.sensor();
         if let Some(field) = self.focused() {

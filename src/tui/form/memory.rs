@@ -10,25 +10,19 @@ use crate::sensor::{MatrixSize, Sensor};
 
 #[derive(Clone, Debug, Default)]
 pub struct FormMemory {
-    /// One figure of each kind, the last accepted one last, each with the size of its sensor.
     figures: Vec<(Figure, MatrixSize)>,
     pub ranges: Option<RememberedRanges>,
 }
 
-/// Ranges of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RememberedRanges {
-    /// The name of the kind of shape.
     pub of: String,
     pub size: MatrixSize,
     pub anchor: Anchor,
-    /// The ranges that were typed, in the order of their fields.
     pub ranges: Vec<(Axis, DecimalRange)>,
 }
 
 impl RememberedRanges {
-    /// Returns the range of an axis for a kind of shape on a sensor; None if no range is remembered, or if it does
-    /// not fit.
     pub fn get(&self, of: &str, sensor: &Sensor, axis: Axis) -> Option<DecimalRange> {
         let place = matches!(axis, Axis::X0 | Axis::Y0);
         let suits = of == self.of && self.size == sensor.size();
@@ -51,7 +45,6 @@ impl FormMemory {
         self.figures.last().map(|(figure, _)| figure.kind())
     }
 
-    /// Returns the last figure of a kind; None if there is none, or if it was placed on a sensor of another size.
     pub fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Option<Figure> {
         let mut own = self.figures.iter().filter(|(own, _)| own.kind() == kind);
         own.find(|(_, size)| *size == sensor.size())

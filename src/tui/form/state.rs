@@ -18,33 +18,22 @@ use crate::tui::form::fields::{ParameterField, ParameterFields};
 use crate::tui::form::memory::FormMemory;
 use crate::tui::widget::field_list::FormField;
 
-/// The subject of a form.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FormSubject {
-    /// A figure of a kind; the form can change the kind.
     Figure(FigureKind),
-    /// A stored imprint, with its name.
     Picture(String, Box<Imprint>),
-    /// The sensor.
     Sensor,
 }
 
-/// A form, with the document that it makes.
 #[derive(Clone, Debug)]
 pub struct FormDialog {
-    /// The subject of the form.
     subject: FormSubject,
-    /// The fields of the subject.
     form: ParameterFields,
-    /// Fields of other kinds of figure, kept as they were typed.
     hidden: Vec<ParameterField>,
     /// The values of the figures accepted so far.
     memory: FormMemory,
-    /// The source of the first values: the shape on the matrix, or a new one.
     begun: Option<Source>,
-    /// The document on the matrix without the form.
     before: Document,
-    /// The imprint of that document.
     before_imprint: Imprint,
     /// The document that the fields make while all are valid, otherwise `settled`.
     shown: Document,
@@ -55,8 +44,6 @@ pub struct FormDialog {
 }
 
 impl FormDialog {
-    /// Creates the form of a figure: of the one on the matrix, or of a new one with the values accepted last; the
-    /// first kind is the ellipse.
     pub fn figure(before: &Document, memory: &FormMemory) -> Self {
         let figure = if let Some(Source::Figure(figure)) = before.source {
             figure
@@ -73,7 +60,6 @@ impl FormDialog {
         dialog
     }
 
-    /// Returns the figure that the fields make; None if the form is not about a figure.
     pub fn made_figure(&self) -> Option<&Figure> {
         match (&self.subject, &self.shown.source) {
             (FormSubject::Figure(_), Some(Source::Figure(figure))) => Some(figure),
@@ -81,7 +67,6 @@ impl FormDialog {
         }
     }
 
-    /// Creates the form of a picture, which starts at its present position.
     pub fn picture(before: &Document, picture: Picture, name: String) -> Self {
         let imprint = Box::new(*picture.imprint());
         let shown = Document::touched(before.sensor, Source::Picture(picture));
@@ -90,14 +75,12 @@ impl FormDialog {
         dialog
     }
 
-    /// Creates the form of the sensor.
     pub fn sensor(before: &Document) -> Self {
         let mut dialog = Self::new(FormSubject::Sensor, before, before.clone());
         dialog.form.set_focus(Some(0));
         dialog
     }
 
-    /// Creates a form that shows a document; no field has the focus.
     fn new(subject: FormSubject, before: &Document, shown: Document) -> Self {
         let form = ParameterFields::new(Vec::new(), false, before.sensor);
         let mut dialog = Self {
@@ -115,12 +98,10 @@ impl FormDialog {
         dialog
     }
 
-    /// Returns the subject of the form.
     pub fn subject(&self) -> &FormSubject {
         &self.subject
     }
 
-    /// Returns the heading of the form.
     pub fn title(&self) -> String {
         match &self.subject {
             FormSubject::Figure(_) => "Figure".to_owned(),
@@ -129,7 +110,6 @@ impl FormDialog {
         }
     }
 
-    /// Returns the chosen kind of figure; None if the form is not about a figure.
     pub fn kind(&self) -> Option<FigureKind> {
         match self.subject {
             FormSubject::Figure(kind) => Some(kind),
@@ -137,12 +117,10 @@ impl FormDialog {
         }
     }
 
-    /// Returns the fields.
     pub fn form(&self) -> &ParameterFields {
         &self.form
     }
 
-    /// Returns the document that the matrix shows.
     pub fn shown(&self) -> &Document {
         &self.shown
     }
@@ -155,7 +133,6 @@ impl FormDialog {
         (lost > 0).then(|| format!("{taxels} will be cut"))
     }
 
-    /// Returns the parameters of the subject, in the order of their fields.
     fn parameters(&self) -> Vec<Parameter> {
         match self.subject {
             FormSubject::Figure(kind) => kind.parameters().to_vec(),
@@ -164,7 +141,6 @@ impl FormDialog {
         }
     }
 
-    /// Makes the fields of the subject: edited ones keep their text, the others get the subject's values.
     fn fill(&mut self) {
         let (sensor, focus) = (*self.form.sensor(), self.form.focus());
         let mut known = std::mem::take(&mut self.hidden);
@@ -187,8 +163,7 @@ impl FormDialog {
         self.form.set_focus(focus);
     }
 
-    /// Creates a field with the value of the shape with which the form began, or the default. For another kind of
-    /// figure, it has the value accepted last for this kind, or the default.
+    /// For another kind of figure, it has the value accepted last for this kind, or the default.
     fn new_field(&self, parameter: Parameter, sensor: &Sensor) -> ParameterField {
         let own = match (&self.subject, &self.begun) {
             (FormSubject::Figure(kind), begun)
@@ -208,7 +183,6 @@ impl FormDialog {
         ParameterField::new(parameter, value, optional)
     }
 
-    /// Sets the fields to the defaults of the subject; those of a picture are the position at which it was stored.
     pub fn set_defaults(&mut self) {
         let (sensor, focus) = (self.before.sensor, self.form.focus());
         match &self.subject {
@@ -229,7 +203,6 @@ impl FormDialog {
         self.edit(|form| form.set_focus(focus));
     }
 
-    /// Changes the fields by `change`, and updates the document that the matrix shows.
     pub fn edit(&mut self, change: impl FnOnce(&mut ParameterFields)) {
         change(&mut self.form);
         if let Some(document) = self.made() {
@@ -243,7 +216,6 @@ impl FormDialog {
         }
     }
 
-    /// Returns the document that the fields make; None if a field is invalid.
     fn made(&self) -> Option<Document> {
         if self.form.error().is_some() {
             return None;
@@ -272,9 +244,6 @@ impl FormDialog {
         }
     }
 
-    /// Handles a character: types it into the field; on the kind, chooses the next kind that begins with it. No kind
-    /// begins with a digit, a sign or a point: such a character begins the number in the first field. Returns false if
-    /// no kind begins with the character.
     pub fn insert(&mut self, character: char) -> bool {
         if self.form.focus().is_none() && begins_number(character) {
             self.edit(|form| form.move_focus(1));
@@ -287,8 +256,6 @@ impl FormDialog {
         self.next_kind(1, |kind| kind.name().starts_with(letter))
     }
 
-    /// Handles pasted text: types it into the field; on the kind, chooses the kind with that name. Returns false if
-    /// there is no such kind.
     pub fn paste(&mut self, text: &str) -> bool {
         let name = text.trim().to_lowercase();
         let on_kind = self.form.focus().is_none() && self.kind().is_some();
@@ -302,17 +269,14 @@ impl FormDialog {
         true
     }
 
-    /// Chooses the next kind.
     pub fn choose_next_kind(&mut self) {
         self.next_kind(1, |_| true);
     }
 
-    /// Chooses the previous kind.
     pub fn choose_previous_kind(&mut self) {
         self.next_kind(FigureKind::ALL.len() - 1, |_| true);
     }
 
-    /// Chooses the first kind that fits, in steps of `step` from the present one; returns false if none fits.
     fn next_kind(&mut self, step: usize, fits: impl Fn(FigureKind) -> bool) -> bool {
         let kinds = FigureKind::ALL;
         let own = |kind: FigureKind| kinds.iter().position(|&other| other == kind);
@@ -331,12 +295,10 @@ impl FormDialog {
     }
 }
 
-/// Returns true if a number may begin with this character.
 fn begins_number(character: char) -> bool {
     matches!(character, '0'..='9' | '-' | '+' | '.')
 }
 
-/// Creates a figure of a kind, with the values accepted last or the defaults.
 fn new_figure(kind: FigureKind, sensor: &Sensor, memory: &FormMemory) -> Figure {
     let known = memory.figure(kind, sensor);
     known.unwrap_or_else(|| Figure::default_of(kind, sensor))

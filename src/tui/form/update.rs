@@ -64,7 +64,6 @@ pub(in crate::tui) fn update(
     None
 }
 
-/// Returns the names of all kinds.
 fn kinds() -> String {
     FigureKind::names().join(", ")
 }

@@ -29,13 +29,9 @@ use crate::tui::widget::field_rows::FieldRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The width of a label, in columns.
 const LABEL: usize = 10;
-/// The number of characters of the name of a kind.
 const NAME: usize = 9;
-/// The column of the letters that choose a kind, behind the name in its brackets.
 const LETTERS: usize = LABEL + 2 + NAME + 3;
-/// The width of a field's text, in columns.
 const INPUT: usize = 9;
 
 impl Page for FormDialog {
@@ -94,14 +90,12 @@ impl Page for FormDialog {
     }
 }
 
-/// Returns the places of the fields in the area of the form: below the title and the kind, which has a row of its own.
 fn rows(dialog: &FormDialog, area: Rect) -> FieldRows {
     let (fixed, fields) = (dialog.kind().is_some().into(), dialog.form().fields());
     let focus = dialog.form().focus();
     FieldRows::of(write::below(area, 1), fixed, fields.len(), focus)
 }
 
-/// Returns the letters that choose a kind.
 fn kind_letters() -> Vec<&'static str> {
     let mut letters: Vec<&str> = FigureKind::ALL
         .iter()
@@ -111,8 +105,6 @@ fn kind_letters() -> Vec<&'static str> {
     letters
 }
 
-/// Returns the message of a click in a column of the line of the kind, which has the focus: on the left bracket the
-/// previous kind, on a letter the kind that begins with it, elsewhere the next kind.
 fn click_on_kind(column: usize) -> Message {
     let letter = column
         .checked_sub(LETTERS)
@@ -125,7 +117,6 @@ fn click_on_kind(column: usize) -> Message {
     }
 }
 
-/// Draws the kind between angle brackets, and the letters that choose one.
 fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer, row: Rect) {
     let label = format!("{:LABEL$}", "Kind");
     let name = format!("{:NAME$}", kind.name());
@@ -146,7 +137,6 @@ fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer
     write::line(buffer, row, theme, pieces);
 }
 
-/// Returns a remark about a field: what an empty field means, or which pitch means that none is set.
 fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<&'static str> {
     if field.parameter() == Parameter::Pitch {
         return Some("1: not set");

@@ -13,23 +13,17 @@ use crate::tui::widget::found::{Search, contains, marked, number};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The list of the keys of a place.
 #[derive(Clone, Debug)]
 pub struct Help {
-    /// The place whose keys are listed.
     context: Context,
-    /// The first visible line: the index of its entry, and its own among the lines of the entry. An entry has other
-    /// lines on a screen of another width.
+    /// An entry has other lines on a screen of another width.
     top: (usize, usize),
-    /// The search.
     pub search: Search,
 }
 
-/// The lines of the list as they are drawn, each with the index of its entry: a long entry has several.
 type Lines = Vec<(usize, HelpLine)>;
 
 impl Help {
-    /// Creates the list of a place, which starts at its first line.
     pub fn new(context: Context) -> Self {
         Self {
             context,
@@ -38,7 +32,6 @@ impl Help {
         }
     }
 
-    /// Returns the lines for an area of this many columns and rows, and the index of the first visible one.
     fn lines(&self, keymap: &Keymap, (columns, rows): (u16, u16)) -> (Lines, usize) {
         let broken = |(entry, line)| {
             let lines = broken_line(line, columns.into()).into_iter();
@@ -60,7 +53,6 @@ impl Help {
         self.set_top(&lines, top.saturating_add_signed(by.into()), room.1);
     }
 
-    /// Makes a line the first visible one, or an earlier one if fewer than `rows` follow.
     fn set_top(&mut self, lines: &Lines, line: usize, rows: u16) {
         let line = line.min(lines.len().saturating_sub(rows.into()));
         let entry = lines.get(line).map_or(0, |(entry, _)| *entry);
@@ -68,8 +60,6 @@ impl Help {
         self.top = (entry, line - first);
     }
 
-    /// Searches for a text from the first visible line, then from the start, and goes to the first match. Returns the
-    /// number of that match, from 1, and the number of all matches; None if there is none.
     pub fn search_for(
         &mut self,
         wanted: &str,
@@ -84,8 +74,6 @@ impl Help {
         number(entry, &entries)
     }
 
-    /// Goes to the match `by` places further on; after the last match comes the first. Returns false if there is no
-    /// search or no match.
     pub fn go_to_match(&mut self, by: i8, keymap: &Keymap, room: (u16, u16)) -> bool {
         let entries = matches(self.context, keymap, self.search.wanted());
         let from = self.search.entry();
@@ -179,12 +167,10 @@ impl Page for Help {
         self.search.entry().is_some() || !matches!(message, Message::Match(_))
     }
 
-    /// The update leaves the search first.
     fn cancels_itself(&self) -> bool {
         self.search.entry().is_some()
     }
 
-    /// Returns the number of the present match, and, if not all lines are visible, which ones are.
     fn remark(&self, keymap: &Keymap, body: Rect) -> Option<(String, Role)> {
         let (lines, top) = self.lines(keymap, body.as_size().into());
         let last = lines.len().min(top + usize::from(body.height));
@@ -209,7 +195,6 @@ impl Page for Help {
     }
 }
 
-/// Returns the entries of a place's list that contain a text, in their keys or their help.
 fn matches(context: Context, keymap: &Keymap, wanted: &str) -> Vec<usize> {
     let has = |line: &HelpLine| match line {
         HelpLine::Place(context) => contains(context.title(), wanted),
@@ -223,10 +208,8 @@ fn matches(context: Context, keymap: &Keymap, wanted: &str) -> Vec<usize> {
         .collect()
 }
 
-/// The column where the help of the keys begins.
 const INDENT: usize = 26;
 
-/// Breaks a line of help into as many as it needs.
 fn broken_line(line: HelpLine, columns: usize) -> Vec<HelpLine> {
     let HelpLine::Keys(keys, text) = line else {
         return vec![line];

@@ -10,8 +10,7 @@ use crate::tui::runtime::effect::Effect;
 use crate::tui::search::page::SearchDialog;
 use crate::tui::search::update::no_search;
 
-/// Handles a message in help, which closes on Quit. Cancel leaves the search; without a search, help closes before
-/// Cancel and Quit come here.
+/// Cancel leaves the search; without a search, help closes before Cancel and Quit come here.
 pub(in crate::tui) fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     let (keymap, room) = (app.keymap(), app.body_size());
     let mut refused = None;

@@ -9,8 +9,7 @@ use crate::tui::history::page::HistoryDialog;
 use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::rows::moved;
 
-/// Moves in the list of steps, or goes to the state after the selected one. Comparing leaves the list
-/// open below.
+/// Comparing leaves the list open below.
 pub(in crate::tui) fn in_history(
     app: &mut App,
     mut list: HistoryDialog,

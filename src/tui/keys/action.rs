@@ -21,72 +21,46 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::message::RecogniseMessage;
 
-/// Something that a user can ask for.
 #[derive(Debug, PartialEq)]
 pub struct Action {
-    /// The name in a settings file and after `:`.
     pub name: &'static str,
-    /// Other spellings after `:`, such as "cursor left" for "cursor-left".
     pub spellings: &'static [&'static str],
-    /// The message that the action sends, or the arguments that it needs.
     pub does: Does,
-    /// A description for the list of `:` commands; empty if the help of its key says the same.
     pub help: &'static str,
 }
 
-/// The effect of an action.
 #[derive(Debug, PartialEq)]
 pub enum Does {
-    /// Sends a message.
     Message(Message),
-    /// Sends a message that depends on what follows the name after `:`.
     With(Arguments),
 }
 
-/// The arguments after the name of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arguments {
-    /// The name of a shape, and the purpose of the command.
     Shape(Purpose),
-    /// The name of a deleted shape.
     Deleted,
-    /// A name to save under.
     Name,
-    /// A file, and the purpose of the command.
     File(FilePurpose),
-    /// A kind of figure and its parameters.
     Figure,
-    /// Parameters of the sensor.
     Sensor,
-    /// The ranges of a sweep.
     Ranges,
     /// An angle in degrees.
     Degrees,
-    /// Column and row of a taxel.
     Taxel,
-    /// Cells along x and along y.
     Distance,
-    /// The name of a set of shapes.
     Model,
-    /// A whole number.
     Seed,
-    /// A source of frames.
     FrameSource,
-    /// A threshold in the sensor's unit.
     Threshold,
 }
 
-/// The purpose for which a file is named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePurpose {
-    /// The file is opened.
     Open,
-    /// The file is written.
     Write,
 }
 
 impl Action {
-    /// Returns the message of the action; None for a command with arguments.
     pub fn message(&self) -> Option<&Message> {
         match &self.does {
             Does::Message(message) => Some(message),
@@ -94,7 +68,6 @@ impl Action {
         }
     }
 
-    /// Returns the arguments that the action needs; None if it needs no arguments.
     pub fn arguments(&self) -> Option<Arguments> {
         match self.does {
             Does::Message(_) => None,
@@ -102,14 +75,12 @@ impl Action {
         }
     }
 
-    /// Returns true if the action sends this message.
     pub fn sends(&self, message: &Message) -> bool {
         self.message() == Some(message)
     }
 }
 
 impl Arguments {
-    /// Returns how messages show the arguments.
     pub fn form(self) -> &'static str {
         match self {
             Self::Shape(_) | Self::Deleted | Self::Name => "NAME",
@@ -127,7 +98,6 @@ impl Arguments {
         }
     }
 
-    /// Whether the rest of the line is the name of a shape, a model, a file or a source, which may have spaces.
     pub fn is_name(self) -> bool {
         matches!(
             self,
@@ -159,7 +129,6 @@ macro_rules! actions {
             };
         )+
 
-        /// All actions.
         pub static ACTIONS: &[&Action] = &[
             $(&$constant,)+
             $(&Action {
@@ -339,7 +308,6 @@ actions! {
     }
 }
 
-/// Returns the action with this name, if a key can have it.
 pub fn named(name: &str) -> Option<&'static Action> {
     let mut all = ACTIONS.iter().copied();
     all.find(|action| action.name == name && action.message().is_some())

@@ -18,15 +18,10 @@ use Key::{
     Tab,
 };
 
-/// The first function key.
 const F1: Key = Key::Function(1);
-/// The left arrow.
 const LEFT: Key = Key::Arrow(Left);
-/// The right arrow.
 const RIGHT: Key = Key::Arrow(Right);
-/// The up arrow.
 const UP: Key = Key::Arrow(Up);
-/// The down arrow.
 const DOWN: Key = Key::Arrow(Down);
 
 /// Builds the table from rows `[key => ACTION, ...] hint help`, grouped by place. It is a macro, so that a row stays
@@ -39,10 +34,8 @@ macro_rules! table {
     };
 }
 
-/// The default keys, in the order of help and hints; the first seven rows are the paper's options and form the menu.
 pub static DEFAULT_KEYS: &[Binding] = table! {
-    /// The first seven rows are the menu, in its order. A digit does nothing by itself: it is a count for the next
-    /// key.
+    /// The first seven rows are the menu, in its order.
     Matrix {
         [Char('n') => NEW] "" "New: empty the matrix, to draw by hand";
         [Char('l') => LOAD] "" "Load: bring a stored shape onto the matrix";
@@ -87,7 +80,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "Help: all keys";
     }
 
-    /// Only the differences from the matrix: any other key does what it does there.
     Hold {
         [LEFT => NUDGE_LEFT, RIGHT => NUDGE_RIGHT, UP => NUDGE_UP, DOWN => NUDGE_DOWN]
             "move" "move the shape by a step";
@@ -98,7 +90,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "put back" "put it back where it was, and let go";
     }
 
-    /// Characters without a row are typed into the field that has the focus.
     Form {
         [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
@@ -111,7 +102,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
-    /// If a question has no answer "no", `n` only closes it. A key without a row leaves it open.
+    /// A key without a row leaves it open.
     Question {
         [Char('y') => ACCEPT] "yes" "yes";
         [Char('n') => DECLINE] "no" "no; at the start: move the unsaved work to the trash";
@@ -133,7 +124,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
-    /// Moving in the list changes nothing; the matrix follows only on Enter.
     History {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "earlier, later step";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten steps back, forward";
@@ -163,8 +153,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [F1 => HELP] "help" "these keys";
     }
 
-    /// Up and Down recall earlier commands, as in a shell; in forms, whose fields stand one above the other, they
-    /// move.
     Command {
         [Enter => ACCEPT] "run" "run the command";
         [Tab => NEXT] "complete" "complete the word";
@@ -183,14 +171,12 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
-    /// Ctrl-C stops the work, as it closes a page elsewhere; it quits if a worker does not stop.
     Running {
         [Esc => STOP, Char('s') => STOP, Ctrl('g') => STOP]
             "stop" "stop; a sweep keeps what is complete";
         [Ctrl('c') => QUIT] "" "stop; again while it stops: quit at once";
     }
 
-    /// The tabs of Explore look here for keys that have no row there.
     Explore {
         [Char('1') => IMPRINTS,
             Char('2') => STATISTICS,
@@ -210,7 +196,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "back to the matrix; the results are kept";
     }
 
-    /// Enter takes the first pose of the selected imprint, which is the one that the sweep reached first.
     Imprints {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "" "previous, next imprint";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten imprints back, forward";
@@ -289,7 +274,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('g') => FOLLOW] "list" "go to the imprint of that pose in the list";
     }
 
-    /// The list changes with every character typed; Esc restores the earlier filter and row.
     Filter {
         [Enter => ACCEPT] "keep" "keep the filter; an empty one shows all imprints";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave the list as it was";
@@ -302,7 +286,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [F1 => HELP] "help" "these keys";
     }
 
-    /// Keys without a row go to the matrix: the user can draw, move and turn while the answer follows.
     Recognise {
         [Char('t') => RANDOM_TOUCH] "random touch" "a random touch of a shape of the model";
         [Char('a') => KEEP, Char('x') => FORGET]
@@ -327,7 +310,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to Recognise";
     }
 
-    /// All four arrows move in the history of frames: the page has no cursor to move.
     Live {
         [Char('t') => TARE, Char('T') => NO_TARE]
             "tare" "subtract the median of the last 30 frames; no tare";
@@ -371,14 +353,12 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => CANCEL, Ctrl('g') => CANCEL] "" "leave the search; without one: close";
     }
 
-    /// The list follows with every character typed; Esc restores it.
     Search {
         [Enter => ACCEPT] "keep" "keep the search, to go to other matches";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "back to where the search began";
         [F1 => HELP] "help" "these keys";
     }
 
-    /// Forms and prompts look here for keys that have no row there.
     Line {
         [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
         [Home => TO_START, End => TO_END] "" "to its start, its end";
@@ -395,5 +375,4 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     }
 };
 
-/// The number of rows at the head of the table that form the menu.
 pub const MENU: usize = 7;

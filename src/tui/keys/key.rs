@@ -6,21 +6,15 @@
 
 use std::fmt;
 
-/// One of the four arrows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrow {
-    /// Towards smaller x.
     Left,
-    /// Towards larger x.
     Right,
-    /// Towards smaller y.
     Up,
-    /// Towards larger y.
     Down,
 }
 
 impl Arrow {
-    /// Returns the step (dx, dy) in the plane's frame.
     pub fn step(self) -> (i8, i8) {
         match self {
             Self::Left => (-1, 0),
@@ -31,38 +25,22 @@ impl Arrow {
     }
 }
 
-/// A key that was pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// A character, as Shift has changed it.
     Char(char),
-    /// Ctrl with a lower-case letter.
     Ctrl(char),
-    /// An arrow.
     Arrow(Arrow),
-    /// An arrow with Shift, on terminals that send it.
     ShiftArrow(Arrow),
-    /// Home.
     Home,
-    /// End.
     End,
-    /// Page up.
     PageUp,
-    /// Page down.
     PageDown,
-    /// Enter.
     Enter,
-    /// Escape.
     Esc,
-    /// Tab.
     Tab,
-    /// Shift-Tab.
     BackTab,
-    /// Backspace, which deletes to the left.
     Backspace,
-    /// Delete, which deletes to the right.
     Delete,
-    /// A function key, 1 to 12.
     Function(u8),
 }
 
@@ -110,7 +88,6 @@ const NAMES: [(&str, Key); 38] = [
 ];
 
 impl fmt::Display for Key {
-    /// Writes the notation of the key.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (*self, NAMES.iter().find(|(_, key)| key == self)) {
             (Self::Char('>'), _) => f.write_str(">"),
@@ -127,7 +104,6 @@ impl fmt::Display for Key {
 }
 
 impl Key {
-    /// Returns the name of the key in hints, help and tables.
     pub fn label(self) -> String {
         match self {
             Self::Char(' ') => "Space".to_owned(),
@@ -142,32 +118,19 @@ impl Key {
     }
 }
 
-/// The reason why a text is not a sequence of keys, with the position and text of the wrong key.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum KeyError {
-    /// No key has this name.
     #[error("key {found:?} at character {at} is unknown; write a single '<' as <lt>")]
-    Unknown {
-        /// The position in the text, in characters from 1.
-        at: usize,
-        /// The text of the key.
-        found: String,
-    },
+    Unknown { at: usize, found: String },
     /// There are too many keys; they would take hours.
     #[error(
         "key {found:?} at character {at}: a key repeats at most 10,000 times, and all keys together are at most 200,000"
     )]
-    TooMany {
-        /// The position in the text, in characters from 1.
-        at: usize,
-        /// The text of the key.
-        found: String,
-    },
+    TooMany { at: usize, found: String },
 }
 
 /// The greatest number of keys from one repetition: a typing mistake must not take hours.
 const MOST_REPEATED: usize = 10_000;
-/// The greatest number of keys from one text.
 const MOST_KEYS: usize = 200_000;
 
 /// Reads the keys of a text in notation.
@@ -214,14 +177,12 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
     Ok(keys)
 }
 
-/// Returns the key of a text of one character.
 fn character(text: &str) -> Option<Key> {
     let mut characters = text.chars();
     let first = characters.next()?;
     characters.next().is_none().then_some(Key::Char(first))
 }
 
-/// Returns the key of a name, given without its angle brackets.
 fn named(name: &str) -> Option<Key> {
     let ctrl = || {
         let letter = name

@@ -24,59 +24,39 @@ use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
 use crate::tui::keys::key::Key;
 
-/// The key that closes what is open everywhere; on the matrix it quits.
 const WAY_OUT: Key = Key::Ctrl('c');
 
-/// A change of one key in one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// The place.
     pub context: Context,
-    /// The key.
     pub key: Key,
-    /// The new action of the key; None if it does nothing.
     pub action: Option<&'static Action>,
 }
 
-/// The reason why a change is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum KeymapError {
-    /// The key is Ctrl-C.
     #[error("{WAY_OUT} always closes what is open and cannot be changed")]
     WayOut,
-    /// The key is a letter, in a place where text is typed.
     #[error("{0} types text here; choose a key like <C-x>")]
     Text(Key),
-    /// The key is changed twice.
     #[error("{0} is bound twice here")]
     Twice(Key),
-    /// The place does not have the action.
     #[error("{action:?} is not an action of [keys.{}]; 'taxel config' lists them", context.name())]
     Elsewhere {
-        /// The name of the action.
         action: &'static str,
-        /// The place.
         context: Context,
     },
     /// The former action of the key would have no key left.
     #[error("{key} is the only key of {action:?} here; give the action another key first")]
-    LastKey {
-        /// The key.
-        key: Key,
-        /// The name of its default action.
-        action: &'static str,
-    },
+    LastKey { key: Key, action: &'static str },
 }
 
-/// The action of each key in each place.
 #[derive(Clone, Debug)]
 pub struct Keymap {
-    /// A row for each row of the default keys, in the same order.
     rows: Vec<Binding>,
 }
 
 impl Default for Keymap {
-    /// Returns the default keys.
     fn default() -> Self {
         Self {
             rows: DEFAULT_KEYS.to_vec(),
@@ -85,10 +65,6 @@ impl Default for Keymap {
 }
 
 impl Keymap {
-    /// Returns the default keys with changes.
-    ///
-    /// # Errors
-    /// Returns the index of the first change that is refused, and the reason.
     pub fn with(changes: &[Change]) -> Result<Self, (usize, KeymapError)> {
         for (index, change) in changes.iter().enumerate() {
             allowed(change, &changes[..index]).map_err(|error| (index, error))?;
@@ -103,20 +79,18 @@ impl Keymap {
         Ok(Self { rows })
     }
 
-    /// Returns a row for each row of the default keys, in the same order.
     pub fn rows(&self) -> &[Binding] {
         &self.rows
     }
 
-    /// Returns the rows of one place.
     pub fn of(&self, context: Context) -> impl Iterator<Item = &Binding> {
         self.rows
             .iter()
             .filter(move |binding| binding.context == context)
     }
 
-    /// Returns the message of a key pressed in a place. A key that has no binding there is looked up in the outer
-    /// places; if it has none there either, a character is typed if the place has a field.
+    /// A key that has no binding there is looked up in the outer places; if it has none there either, a character is
+    /// typed if the place has a field.
     pub fn lookup(&self, context: Context, key: Key) -> Option<Message> {
         let mut place = Some(context);
         while let Some(here) = place {
@@ -132,7 +106,6 @@ impl Keymap {
         }
     }
 
-    /// Returns the name of the first key of an action, in a place or its outer places; `:name` if it has no key.
     pub fn label(&self, context: Context, action: &Action) -> String {
         let places = std::iter::successors(Some(context), |place| place.outer());
         let mut keys = places
@@ -143,19 +116,15 @@ impl Keymap {
     }
 }
 
-/// A line of help.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HelpLine {
-    /// The heading of a place.
     Place(Context),
-    /// The names of the keys of a row, and what they do.
     Keys(String, &'static str),
-    /// The rest of a text that does not fit on one line.
     More(&'static str),
 }
 
-/// Returns the lines of help in a place. On the matrix, where a user begins, these are all rows; elsewhere the rows
-/// of the place and its outer places, without keys that an inner one binds, then those of the screen's other tabs.
+/// On the matrix, where a user begins, these are all rows; elsewhere the rows of the place and its outer places,
+/// without keys that an inner one binds, then those of the screen's other tabs.
 pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
     let whole = |place| section(place, keymap, &[]);
     if context == Context::Matrix {
@@ -172,7 +141,6 @@ pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
     lines
 }
 
-/// Returns the heading and the rows of a place, without the keys in `taken`; nothing if no row is left.
 fn section(place: Context, keymap: &Keymap, taken: &[Key]) -> Vec<HelpLine> {
     let rows = keymap.of(place).map(|row| row.without(taken));
     let rows = rows.filter(|row| taken.is_empty() || !row.keys.is_empty());
@@ -184,7 +152,6 @@ fn section(place: Context, keymap: &Keymap, taken: &[Key]) -> Vec<HelpLine> {
     lines
 }
 
-/// Checks a change by itself, given the changes before it.
 fn allowed(change: &Change, before: &[Change]) -> Result<(), KeymapError> {
     let Change {
         context,
@@ -217,7 +184,6 @@ fn allowed(change: &Change, before: &[Change]) -> Result<(), KeymapError> {
     }
 }
 
-/// Checks that the former action of a changed key still has a key.
 fn lasting(change: &Change, rows: &[Binding]) -> Result<(), KeymapError> {
     let lost = default_rows(change.context)
         .flat_map(|row| row.keys.iter())
@@ -269,14 +235,12 @@ fn changed(row: &Binding, changes: &[Change]) -> Binding {
     }
 }
 
-/// Returns the default rows of a place.
 fn default_rows(context: Context) -> impl Iterator<Item = &'static Binding> + Clone {
     DEFAULT_KEYS
         .iter()
         .filter(move |binding| binding.context == context)
 }
 
-/// Returns the names of a place's actions, in the order of the default keys.
 pub fn actions(context: Context) -> Vec<&'static str> {
     let mut names = Vec::new();
     for (_, action) in default_rows(context).flat_map(|row| row.keys.iter()) {

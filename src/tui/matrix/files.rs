@@ -19,11 +19,9 @@ use crate::tui::app::message::{FileEvent, Message, OpenedFile};
 use crate::tui::app::state::App;
 use crate::tui::runtime::effect::{Effect, FileRequest};
 
-/// The extensions that the name of a file to write can have.
 const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg";
 
-/// Returns the request to write a file. Shows a notice and returns None if there is nothing to write, or if no format
-/// has that extension.
+/// Shows a notice and returns None if there is nothing to write, or if no format has that extension.
 pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
     if app.reading().imprint.is_empty() {
         refuse(app, "nothing to write: the matrix is empty");
@@ -33,12 +31,10 @@ pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
     write_file(app, name, content)
 }
 
-/// Returns the request to write content over a file that exists.
 pub(in crate::tui) fn overwrite(name: String, content: Vec<u8>) -> Effect {
     Effect::File(FileRequest::Write(name, content, Existing::Replaced))
 }
 
-/// Returns the content of a file of that name, in the format of its extension.
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     let reading = app.reading();
     if let Some(format) = ImprintFormat::of_path(name) {
@@ -62,7 +58,6 @@ fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     Ok(app.shown().to_shape(name, reading).write().into_bytes())
 }
 
-/// Returns the drawing of the matrix, with the outline of the source.
 fn drawing(app: &App) -> Drawing {
     let document = app.shown();
     let mut drawing = Drawing::new(&app.reading().imprint);
@@ -78,7 +73,6 @@ fn drawing(app: &App) -> Drawing {
     }
 }
 
-/// Handles the answer to a request about files.
 pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect> {
     match answer {
         FileEvent::Opened(name, file) => match opened(app, file) {
@@ -108,7 +102,6 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
     None
 }
 
-/// Returns the document of a file: a shape has its own sensor, an imprint gets a sensor of as many columns and rows.
 fn opened(app: &App, file: OpenedFile) -> Result<Document, String> {
     match file {
         OpenedFile::Shape(shape) => Ok(Document::of_shape(&shape)),
@@ -116,8 +109,7 @@ fn opened(app: &App, file: OpenedFile) -> Result<Document, String> {
     }
 }
 
-/// Returns the document of an imprint. What an imprint file does not say, such as pitch and threshold, is taken from
-/// the sensor in use.
+/// What an imprint file does not say, such as pitch and threshold, is taken from the sensor in use.
 fn of_imprint(app: &App, imprint: &Imprint) -> Result<Document, String> {
     let sensor = app.history.present().sensor;
     let sensor = sensor

@@ -19,32 +19,27 @@ use crate::tui::widget::theme::{Role, Theme};
 /// The number of straight pieces that an ellipse is drawn in: even on the largest matrix, none is off by a dot.
 const PIECES: u16 = 256;
 
-/// How far lines between two cells are shifted to the side of the material, in dots.
 const INSIDE: f64 = 0.25;
 
-/// The layers that are shown. None shows a layer only where taxels are large.
+/// None shows a layer only where taxels are large.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layers {
-    /// The true outline.
     pub outline: Option<bool>,
-    /// The circumscribed rectangle, CG and CD.
     pub rectangle: Option<bool>,
 }
 
 impl Layers {
-    /// Returns true if a layer is shown on a grid.
     pub fn shown(layer: Option<bool>, grid: &TaxelGrid) -> bool {
         layer.unwrap_or(grid.size.is_large())
     }
 }
 
-/// Returns true if a character of the screen is a digit.
 fn is_digit(cell: &Cell) -> bool {
     cell.symbol()
         .starts_with(|first: char| first.is_ascii_digit())
 }
 
-/// Erases the number of two digits that a place is in. A large taxel has spaces around its number.
+/// A large taxel has spaces around its number.
 fn erase_number(buffer: &mut Buffer, place: Position) {
     for x in place.x.saturating_sub(1)..=place.x.saturating_add(1) {
         if let Some(cell) = buffer.cell_mut(Position::new(x, place.y))
@@ -55,20 +50,15 @@ fn erase_number(buffer: &mut Buffer, place: Position) {
     }
 }
 
-/// A canvas of dots over the grid of taxels.
 struct DotGrid<'a> {
-    /// The places of the taxels.
     grid: &'a TaxelGrid,
     /// The dots set so far.
     canvas: DotCanvas,
-    /// The offset of everything that is drawn, in cells.
     by: [f64; 2],
-    /// Whether only some of the dots of a line are set.
     faint: bool,
 }
 
 impl<'a> DotGrid<'a> {
-    /// Creates an empty canvas over the grid, without offset and with full lines.
     fn new(grid: &'a TaxelGrid) -> Self {
         let (columns, lines) = grid.characters();
         Self {
@@ -79,7 +69,6 @@ impl<'a> DotGrid<'a> {
         }
     }
 
-    /// Draws a line between two places, faint or full.
     fn stroke(&mut self, from: DotPosition, to: DotPosition) {
         let faint = self.faint;
         // Which dots are set depends on their place, so that short pieces of a curve are as faint as a long line.
@@ -89,13 +78,11 @@ impl<'a> DotGrid<'a> {
         });
     }
 
-    /// Returns the number of dots of a taxel, across and down.
     fn dots(&self) -> (u16, u16) {
         let size = self.grid.size;
         (size.columns() * DOTS.0, size.half_lines() * DOTS.1 / 2)
     }
 
-    /// Converts a place on the plane, in cell sides, to dots.
     fn position(&self, x: f64, y: f64) -> DotPosition {
         let (across, down) = self.dots();
         let (left, top) = (self.grid.columns.first, self.grid.rows.first);
@@ -141,18 +128,13 @@ impl Pen<f64> for DotGrid<'_> {
     }
 }
 
-/// The layers over the taxels of a grid.
 pub(in crate::tui) struct Overlay<'a> {
-    /// The source whose outline is drawn.
     pub outline: Option<&'a Source>,
-    /// The region whose rectangle, CG and CD are drawn.
     pub region: Option<Description>,
-    /// Shapes in poses that may have left the imprint: the first one as a line, the others faintly.
     pub poses: &'a [PlacedSource],
 }
 
 impl Overlay<'_> {
-    /// Draws the layers.
     pub(in crate::tui) fn draw(
         &self,
         grid: &TaxelGrid,
@@ -200,7 +182,6 @@ impl Overlay<'_> {
         }
     }
 
-    /// Returns the letters of CG and CD with their places; side by side if both are in one character.
     fn centres(&self, dots: &DotGrid<'_>, screen: Rect) -> impl Iterator<Item = (Position, char)> {
         let at = |x: f64, y: f64| character_at(dots, (x, y), screen);
         let cg = self.region.map(|region| region.cg());
@@ -213,7 +194,6 @@ impl Overlay<'_> {
     }
 }
 
-/// Draws the circumscribed rectangle of a region, in dashes.
 fn draw_rectangle(dots: &mut DotGrid<'_>, region: &Description) {
     let rect = region.rect;
     let (left, top) = dots.position(rect.left.into(), rect.top.into());
@@ -228,7 +208,6 @@ fn draw_rectangle(dots: &mut DotGrid<'_>, region: &Description) {
     }
 }
 
-/// Returns the position on the screen of a place on the plane; None if it is not visible.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -17,17 +17,12 @@ use ratatui::layout::Rect;
 use crate::imprint::{Bounds, Imprint};
 use crate::tui::widget::number::{narrow, taxels};
 
-/// The number of columns of the row ruler.
 pub const RULER: u16 = 3;
 
-/// The size at which taxels are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaxelSize {
-    /// The upper or the lower half of a character.
     Half,
-    /// A character.
     Narrow,
-    /// Two characters side by side, or a multiple of that, both across and down.
     Square(u16),
 }
 
@@ -46,12 +41,10 @@ impl TaxelSize {
         }
     }
 
-    /// Returns true if taxels are drawn enlarged: then a layer is shown by itself, and a number has two digits.
     pub(in crate::tui) fn is_large(self) -> bool {
         matches!(self, Self::Square(2..))
     }
 
-    /// Returns the number of columns of the screen that a taxel takes.
     pub(in crate::tui) fn columns(self) -> u16 {
         match self {
             Self::Half | Self::Narrow => 1,
@@ -59,7 +52,6 @@ impl TaxelSize {
         }
     }
 
-    /// Returns the number of half lines of the screen that a taxel takes.
     pub(in crate::tui) fn half_lines(self) -> u16 {
         match self {
             Self::Half => 1,
@@ -68,25 +60,19 @@ impl TaxelSize {
         }
     }
 
-    /// Returns the width of the whole matrix with its ruler.
     pub(in crate::tui) fn matrix_width(self, imprint: &Imprint) -> u16 {
         RULER + self.columns() * u16::from(imprint.columns())
     }
 }
 
-/// The visible part of one axis of the matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisWindow {
-    /// The first visible cell.
     pub first: u8,
-    /// The number of visible cells.
     pub count: u8,
-    /// The number of cells in all.
     all: u8,
 }
 
 impl AxisWindow {
-    /// Creates a window of at most `room` of `cells` cells after `hidden` ones, or after fewer if these are too many.
     pub(in crate::tui) fn after(hidden: u16, cells: u8, room: u16) -> Self {
         let count = taxels(room).min(cells);
         let first = taxels(hidden).min(cells - count);
@@ -116,45 +102,34 @@ impl AxisWindow {
         }
     }
 
-    /// Returns the visible cells, each with its place from the first one.
     pub fn visible(&self) -> impl Iterator<Item = (u16, u8)> {
         (0..self.count).map(|index| (u16::from(index), self.first + index))
     }
 
-    /// Returns true if all cells are visible.
     pub fn is_whole(&self) -> bool {
         self.count == self.all
     }
 
-    /// Returns whether there are cells before the first visible one, and after the last.
     pub fn hidden(&self) -> (bool, bool) {
         (self.first > 0, self.first + self.count < self.all)
     }
 
-    /// Returns the cell at a place counted from the first visible one.
     fn at(self, place: u16) -> Option<u8> {
         (place < u16::from(self.count)).then(|| self.first + taxels(place))
     }
 }
 
-/// The places of the taxels on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct TaxelGrid {
-    /// The column of the screen where the first visible taxel begins.
     pub x: u16,
-    /// The row of the screen where the first visible taxel begins.
     pub y: u16,
-    /// The size of the taxels.
     pub size: TaxelSize,
-    /// The visible columns.
     pub columns: AxisWindow,
-    /// The visible rows.
     pub rows: AxisWindow,
 }
 
 impl TaxelGrid {
-    /// Computes the places of a matrix's taxels in its pane, with the window around `seen`. `halves` is whether two
-    /// taxels may share a character.
+    /// `halves` is whether two taxels may share a character.
     pub fn of(area: Rect, imprint: &Imprint, seen: Bounds, halves: bool) -> Self {
         let size = TaxelSize::fitting(imprint, area, halves);
         let (across, lines) = (
@@ -180,7 +155,6 @@ impl TaxelGrid {
         }
     }
 
-    /// Returns the columns and lines of the screen that the visible taxels take.
     pub fn characters(&self) -> (u16, u16) {
         let (columns, rows) = (u16::from(self.columns.count), u16::from(self.rows.count));
         (
@@ -189,8 +163,7 @@ impl TaxelGrid {
         )
     }
 
-    /// Returns the place of a taxel on the screen, by its indices among the visible columns and rows. Two taxels that
-    /// share a character have the same place.
+    /// Two taxels that share a character have the same place.
     pub fn cell_rect(&self, column: u16, row: u16) -> Rect {
         let (width, half_lines) = (self.size.columns(), self.size.half_lines());
         Rect {
@@ -201,7 +174,6 @@ impl TaxelGrid {
         }
     }
 
-    /// Returns the taxels at a place of the screen: none, one, or two that share a character, the upper one first.
     pub fn taxels(&self, x: u16, y: u16) -> impl Iterator<Item = (u8, u8)> {
         let place = x.checked_sub(self.x).zip(y.checked_sub(self.y));
         let found = move |half: u16| {

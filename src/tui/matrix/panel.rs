@@ -19,15 +19,11 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The number of columns of the symbols.
 const SYMBOL: usize = 7;
-/// The number of columns of the values.
 const VALUE: usize = 17;
 
-/// The number of columns of the values in ASCII, where the longest is `120.96, 59.04 deg`.
 const VALUE_IN_ASCII: usize = 19;
 
-/// Draws the panel, in several columns if it has fewer lines than there are descriptors.
 pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let (seen, chosen) = (matrix.reading, matrix.chosen);
     let described = seen.region(chosen).zip(seen.description(chosen));
@@ -57,11 +53,8 @@ pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: R
     }
 }
 
-/// A column of the panel.
 struct PanelColumn {
-    /// The place of the column.
     area: Rect,
-    /// The width of its symbols, in columns of the screen.
     symbol: usize,
 }
 
@@ -100,7 +93,6 @@ fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     (lines, placed(area, &widths))
 }
 
-/// Returns columns of these widths side by side, each with the width of its symbols.
 fn placed(area: Rect, widths: &[(usize, usize)]) -> Vec<PanelColumn> {
     let mut x = area.x;
     let columns = widths.iter().map(|&(width, symbol)| {
@@ -115,20 +107,14 @@ fn placed(area: Rect, widths: &[(usize, usize)]) -> Vec<PanelColumn> {
     columns.collect()
 }
 
-/// A descriptor with its value.
 struct PanelCell<'a> {
-    /// The descriptor.
     descriptor: &'static Descriptor,
-    /// The description that the value is taken from; None if the matrix is empty.
     description: Option<&'a Description>,
-    /// The value.
     measured: Value,
-    /// The value as text.
     text: String,
 }
 
 impl<'a> PanelCell<'a> {
-    /// Creates the cell of a descriptor, with its value in a description.
     fn of(
         theme: &Theme,
         descriptor: &'static Descriptor,
@@ -147,7 +133,6 @@ impl<'a> PanelCell<'a> {
         }
     }
 
-    /// Draws the symbol, the value, and the value in millimetres or the descriptor's name, as far as there is room.
     fn draw(&self, theme: &Theme, pitch_mm: f64, symbols: usize, buffer: &mut Buffer, row: Rect) {
         let (descriptor, description) = (self.descriptor, self.description);
         // The value in millimetres if the user gave a pitch; a pitch of 1 would only repeat the value.

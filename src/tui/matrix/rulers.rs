@@ -14,7 +14,6 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Draws both rulers and the arrows into the area of the matrix.
 pub(super) fn draw(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
     let [above, below, left, right] = theme.more();
     let ((more_above, more_below), (more_left, more_right)) =
@@ -38,7 +37,6 @@ pub(super) fn draw(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: R
     }
 }
 
-/// Draws the numbers of columns that fit whole into a line.
 pub(in crate::tui) fn draw_columns(
     theme: &Theme,
     grid: &TaxelGrid,
@@ -65,7 +63,6 @@ pub(in crate::tui) fn draw_columns(
     }
 }
 
-/// Draws the number of each row; of the upper row if two share a line.
 pub(in crate::tui) fn draw_rows(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
     let rows = if grid.size == TaxelSize::Half { 2 } else { 1 };
     for (index, row) in grid.rows.visible().step_by(rows) {

@@ -35,12 +35,11 @@ use crate::tui::shapes::state::{ListDialog, ListPurpose};
 use crate::tui::widget::number::around;
 use crate::tui::{explore, live, recognise};
 
-/// The notice for an empty matrix. Copied descriptors, the rectangle and the choice of a region all need a region,
-/// and show this notice if there is none.
+/// Copied descriptors, the rectangle and the choice of a region all need a region, and show this notice if there is
+/// none.
 const NO_REGION: &str = "no region: the matrix is empty";
 
-/// Handles a message: this is the table of what each message does on the matrix. A new message has to be added here or
-/// to those that mean nothing.
+/// A new message has to be added here or to those that mean nothing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     use Message::{
         Accept, Cancel, Choose, Decline, Defaults, Erase, Field, File, Library, Match, Mouse,
@@ -99,7 +98,6 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     None
 }
 
-/// Empties the matrix.
 fn empty(app: &mut App) {
     let origin = app.history.origin();
     if origin.name.is_none() && app.history.present().is_empty() {
@@ -109,7 +107,6 @@ fn empty(app: &mut App) {
     begin(app, DocumentOrigin::of(&empty), empty);
 }
 
-/// Opens the comparison with the state before the last step.
 fn compare_with_before(app: &mut App) {
     let before = app.history.before().map(Reading::of);
     match before {
@@ -118,7 +115,7 @@ fn compare_with_before(app: &mut App) {
     }
 }
 
-/// Returns the request to the library. Takes note of a shape that is being saved.
+/// Takes note of a shape that is being saved.
 fn send(app: &mut App, request: LibraryRequest) -> Effect {
     if let LibraryRequest::Store(shape, _) = &request {
         begin_save(app, shape);
@@ -135,20 +132,18 @@ fn undo(app: &mut App) -> Option<Effect> {
     None
 }
 
-/// Opens the `:` prompt.
 fn open_command(app: &mut App) {
     let prompt = CommandDialog::new(&app.commands);
     app.dialogs.push(Dialog::Command(prompt));
 }
 
-/// Opens the list of the steps of the history.
 fn open_history(app: &mut App) {
     let (steps, present) = app.history.steps();
     let page = HistoryDialog::new(app.history.start(), steps, present);
     app.dialogs.push(Dialog::History(page));
 }
 
-/// Takes note of what is being saved. Keys may change the matrix before the library answers.
+/// Keys may change the matrix before the library answers.
 fn begin_save(app: &mut App, shape: &StoredShape) {
     // From now on undo is about the drawing again, not about shapes that were deleted before.
     app.removed.clear();
@@ -211,7 +206,6 @@ fn save(app: &mut App) {
     app.dialogs.push(Dialog::Name(dialog));
 }
 
-/// Returns the name of the present figure if the document is stored under the name of the figure that it was.
 fn outdated(app: &App, stored: &str) -> Option<String> {
     let name = |document: &Document| match &document.source {
         Some(Source::Figure(figure)) => Some(name_of_figure(figure)),
@@ -222,7 +216,6 @@ fn outdated(app: &App, stored: &str) -> Option<String> {
     (then == stored && now != then).then_some(now)
 }
 
-/// Returns a name; a number follows if it was used before: "drawing 2".
 fn free_name(app: &App, name: &str) -> String {
     let (mut free, mut number) = (name.to_owned(), 2);
     while app.history.knows(&free) {
@@ -232,8 +225,6 @@ fn free_name(app: &App, name: &str) -> String {
     free
 }
 
-/// Returns a name for a document that has no name of its own: the one that was proposed with it, the figure with its
-/// sizes, the picture or the shape that it comes from, or "drawing".
 fn name_of_origin(app: &App) -> String {
     if let Some(stored) = app.stored() {
         return name_of_copy(&stored.name);
@@ -250,12 +241,10 @@ fn name_of_origin(app: &App) -> String {
     }
 }
 
-/// Returns the name to save a changed shape under whose own name is taken, as that of a shipped shape is.
 pub(in crate::tui) fn name_of_copy(name: &str) -> String {
     format!("{name} copy")
 }
 
-/// Returns the kind of a figure with its sizes.
 fn name_of_figure(figure: &Figure) -> String {
     let size = |&parameter: &Parameter| figure.get(parameter).map(short);
     let sizes: Vec<String> = figure.kind().sizes().iter().filter_map(size).collect();
@@ -288,7 +277,6 @@ fn next_display(app: &mut App) {
     inform(app, text);
 }
 
-/// Switches the taxel under the cursor.
 fn toggle(app: &mut App) {
     let mut document = app.history.present().clone();
     let (column, row) = app.cursor();
@@ -296,7 +284,6 @@ fn toggle(app: &mut App) {
     change(app, document);
 }
 
-/// Shows the other one of matrix and descriptors where only one has room.
 fn switch_pane(app: &mut App) {
     if app.panes().is_some_and(|panes| panes.panel.is_some()) {
         return refuse(app, "both sides of the screen are visible");
@@ -307,7 +294,6 @@ fn switch_pane(app: &mut App) {
     };
 }
 
-/// Takes hold of the shape, or lets it go if it is held.
 fn hold_or_let_go(app: &mut App) {
     if app.held.is_some() {
         let_go(app);
@@ -353,7 +339,6 @@ fn open_list(app: &mut App, purpose: ListPurpose) -> Effect {
     Effect::Library(LibraryRequest::List)
 }
 
-/// Says why what is on the matrix has neither outline nor coverage, and what has.
 fn has_none(app: &App) -> String {
     let (figure, place) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     if app.loaded_imprint().is_some() {
@@ -396,7 +381,6 @@ fn switch_layer(app: &mut App, layer: Layer) {
     inform(app, text);
 }
 
-/// Returns the first or the last index of a number of columns or rows.
 fn at_end(end: Endpoint, count: u8) -> u8 {
     match end {
         Endpoint::First => 0,
@@ -417,25 +401,21 @@ fn change_step(app: &mut App, direction: i8) {
     app.step = step;
 }
 
-/// Puts the cursor on a taxel; beyond the sensor, on the nearest one.
 fn point_at(app: &mut App, column: u8, row: u8) {
     let sensor = app.history.present().sensor;
     app.cursor = (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1));
 }
 
-/// Moves the cursor to the first or the last column.
 fn to_column(app: &mut App, end: Endpoint) {
     let columns = app.history.present().sensor.columns();
     app.cursor = (at_end(end, columns), app.cursor().1);
 }
 
-/// Moves the cursor to the first or the last row.
 fn to_row(app: &mut App, end: Endpoint) {
     let rows = app.history.present().sensor.rows();
     app.cursor = (app.cursor().0, at_end(end, rows));
 }
 
-/// Moves the cursor by one taxel; it stays at the edge.
 fn move_cursor(app: &mut App, arrow: Arrow) {
     let sensor = app.history.present().sensor;
     let ((dx, dy), (column, row)) = (arrow.step(), app.cursor());
@@ -445,8 +425,7 @@ fn move_cursor(app: &mut App, arrow: Arrow) {
     );
 }
 
-/// Selects the region that comes `by` further on, the first after the last. Until a region is chosen, the main region
-/// is described, and `by` counts from it.
+/// Until a region is chosen, the main region is described, and `by` counts from it.
 fn choose_region(app: &mut App, by: i8) {
     // Also if the region stays the same: it may be out of sight.
     app.followed = Followed::Region;

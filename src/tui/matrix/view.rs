@@ -26,33 +26,21 @@ use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
 use crate::tui::matrix::rulers;
 use crate::tui::widget::theme::{Role, Theme};
 
-/// The parts of the state that the drawing of the matrix depends on.
 #[derive(Clone, Copy, Debug)]
 pub struct MatrixView<'a> {
-    /// The imprint of the document, with its coverage and regions.
     pub reading: &'a Reading,
-    /// The length of a cell side in millimetres.
     pub pitch_mm: f64,
-    /// The taxel under the cursor: column, row.
     pub cursor: (u8, u8),
-    /// The taxels that the window shows if not all of the matrix fits.
     pub seen: Bounds,
-    /// The index of the chosen region; None for the main one.
     pub chosen: Option<usize>,
-    /// How taxels are shown.
     pub display: Display,
-    /// The imprint that the matrix is compared with; None for no comparison.
     pub compared: Option<&'a Imprint>,
-    /// The source; None if nothing touches.
     pub source: Option<&'a Source>,
-    /// The layers over the taxels.
     pub layers: Layers,
-    /// Poses that may have left the imprint.
     pub poses: PoseLayer<'a>,
 }
 
 impl<'a> MatrixView<'a> {
-    /// Creates the view of the present state.
     pub fn of(app: &'a App) -> Self {
         Self {
             reading: app.reading(),
@@ -68,13 +56,11 @@ impl<'a> MatrixView<'a> {
         }
     }
 
-    /// Returns the places of the taxels in an area.
     fn grid(&self, area: Rect) -> TaxelGrid {
         let halves = self.display == Display::Imprint && self.compared.is_none();
         TaxelGrid::of(area, &self.reading.imprint, self.seen, halves)
     }
 
-    /// Draws the matrix. Returns the position of the cursor; None if it is not visible.
     pub fn draw(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
         let grid = self.grid(area);
         rulers::draw(theme, &grid, buffer, area);
@@ -150,7 +136,6 @@ impl<'a> MatrixView<'a> {
         at
     }
 
-    /// Draws the layers that are shown.
     fn draw_layers(&self, theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer) {
         let active = |column, row| self.reading.imprint.get(column, row);
         let overlay = Overlay {
@@ -168,7 +153,6 @@ impl<'a> MatrixView<'a> {
         overlay.draw(grid, theme, buffer, active);
     }
 
-    /// Returns how a taxel differs from the imprint that the matrix is compared with; None if it does not.
     fn difference(&self, column: u8, row: u8) -> Option<Role> {
         let compared = self.compared?;
         let inside = column < compared.columns() && row < compared.rows();
@@ -182,8 +166,6 @@ impl<'a> MatrixView<'a> {
         }
     }
 
-    /// Draws a taxel: one or two characters, or more of the same if it is drawn larger, with a sign or a number in
-    /// its middle.
     fn draw_taxel(
         &self,
         theme: &Theme,
@@ -219,7 +201,6 @@ impl<'a> MatrixView<'a> {
     }
 }
 
-/// Returns the role of a taxel for the described region.
 fn role_of(seen: &Reading, chosen: Option<&Region>, column: u8, row: u8) -> Role {
     let active = seen.imprint.get(column, row);
     let in_region = chosen
@@ -233,7 +214,7 @@ fn role_of(seen: &Reading, chosen: Option<&Region>, column: u8, row: u8) -> Role
     }
 }
 
-/// Returns the coverage of a taxel. A drawn taxel counts as covered.
+/// A drawn taxel counts as covered.
 fn coverage(seen: &Reading, column: u8, row: u8) -> f64 {
     let drawn = if seen.imprint.get(column, row) {
         1.0

@@ -26,36 +26,26 @@ use crate::tui::keys::default_keys::DEFAULT_KEYS;
 use crate::tui::live::named_source::{NamedSource, flags_start};
 use crate::tui::prompt::flags::{is_given, lacks_value};
 
-/// The flag of the anchor in `explore`.
 pub(super) const ANCHOR: &str = "--anchor";
 
-/// A command: all lines that begin with one word.
 #[derive(Clone, Debug)]
 pub struct PromptCommand {
-    /// The first word.
     pub name: &'static str,
-    /// The words that may follow, each with its action; an empty one is the name alone.
     pub words: Vec<(&'static str, &'static Action)>,
     /// The arguments that may follow instead.
     pub arguments: Option<Arguments>,
-    /// The effect of the command, in words.
     pub help: &'static str,
 }
 
-/// The largest number of earlier lines that are offered.
 const MOST_RECENT: usize = 5;
 
-/// Short forms of commands.
 const SHORT: [(&str, &str); 3] = [("q", "quit"), ("q!", "quit!"), ("w", "write")];
 
-/// Returns the actions that work on the matrix, where the prompt opens: those that have a key there or have no key at
-/// all.
 pub fn actions() -> impl Iterator<Item = &'static Action> {
     static LISTED: LazyLock<Vec<&Action>> = LazyLock::new(|| of_the_matrix().collect());
     LISTED.iter().copied()
 }
 
-/// Finds the actions that work on the matrix.
 fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
     let places = [Context::Matrix, Context::Hold, Context::Everywhere];
     let bound = |action: &Action, places: &[Context]| {
@@ -73,14 +63,12 @@ fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
     })
 }
 
-/// Returns all commands, sorted by name.
 pub fn commands() -> &'static [PromptCommand] {
     // The list is kept, because each key in the prompt needs it.
     static LISTED: LazyLock<Vec<PromptCommand>> = LazyLock::new(listed);
     &LISTED
 }
 
-/// Makes the commands from the actions.
 fn listed() -> Vec<PromptCommand> {
     let mut names: Vec<&str> = actions()
         .flat_map(spellings)
@@ -91,19 +79,16 @@ fn listed() -> Vec<PromptCommand> {
     names.into_iter().map(command).collect()
 }
 
-/// Returns the spellings of an action that completion offers; its name if it has no others.
 fn spellings(action: &'static Action) -> impl Iterator<Item = &'static str> {
     let name = action.spellings.is_empty().then_some(action.name);
     name.into_iter().chain(action.spellings.iter().copied())
 }
 
-/// Splits a line into its first word and the rest.
 fn split(line: &str) -> (&str, &str) {
     line.split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim_start()))
 }
 
-/// Returns the command of that name.
 fn command(name: &'static str) -> PromptCommand {
     let own = |action: &'static Action| {
         spellings(action)
@@ -142,7 +127,6 @@ fn help(action: &Action) -> &'static str {
     row.map_or("", |row| row.help)
 }
 
-/// Returns the command of that name or short form.
 pub fn find(name: &str) -> Option<PromptCommand> {
     let short = SHORT.iter().find(|(short, _)| *short == name);
     let name = short.map_or(name, |(_, name)| *name);
@@ -160,8 +144,6 @@ fn begun(line: &str) -> Option<(PromptCommand, &str)> {
     Some((find(name)?, rest.trim_start()))
 }
 
-/// Returns the arguments of a line if they are a name, of a shape or a file for example: completion then needs the
-/// names that there are.
 pub fn wants_names(line: &str) -> Option<Arguments> {
     let (command, rest) = begun(line)?;
     let arguments = command.arguments.filter(|arguments| arguments.is_name())?;
@@ -210,7 +192,6 @@ pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
     (format!("{before}{completed}"), fitting)
 }
 
-/// Returns the words that may follow the words `before`.
 fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
     let said: Vec<&str> = before.split_whitespace().collect();
     let words = |flags: Vec<String>, said: &[&str]| {
@@ -257,17 +238,12 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
     }
 }
 
-/// A line that the prompt offers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Offer {
-    /// The line, or its first word where arguments follow.
     pub line: String,
-    /// The form of the arguments and what the command does; None for an earlier line.
     pub help: Option<String>,
 }
 
-/// Returns the lines that the prompt offers while a line is typed: earlier lines that begin with it, the last one
-/// first, then commands whose names begin with it, then those whose names contain it.
 pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
     let typed = typed.trim_start();
     let mut recent: Vec<&String> = Vec::new();
@@ -297,7 +273,6 @@ pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
     recent.chain(named).collect()
 }
 
-/// Returns the longest common start of several words; None if there are no words.
 fn common_start(words: &[String]) -> Option<String> {
     let (first, others) = words.split_first()?;
     let common = others.iter().fold(first.chars().count(), |common, other| {

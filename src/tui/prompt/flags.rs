@@ -9,14 +9,10 @@
 
 use crate::quote::{did_you_mean, shortened};
 
-/// A flag as it was typed, its meaning, and its value.
 pub type Flag<'a, T> = (&'a str, T, &'a str);
 
 /// Reads flags, each with its value and none twice. `known` returns the meaning of a flag; None if it is unknown. An
 /// error lists `names`, the first one as an example.
-///
-/// # Errors
-/// Returns what is wrong with the flags, in a sentence.
 pub fn read<'a, T: PartialEq>(
     words: &[&'a str],
     names: &[impl AsRef<str>],
@@ -46,7 +42,6 @@ pub fn read<'a, T: PartialEq>(
     Ok(flags)
 }
 
-/// Returns the message for a flag that is not one of these.
 fn unknown(flag: &str, names: &[impl AsRef<str>]) -> String {
     let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
     format!(
@@ -57,14 +52,12 @@ fn unknown(flag: &str, names: &[impl AsRef<str>]) -> String {
     )
 }
 
-/// Returns true if the last flag still needs its value.
 pub(super) fn lacks_value(words: &[&str]) -> bool {
     words
         .iter()
         .fold(false, |lacks, word| !lacks && !word.contains('='))
 }
 
-/// Returns true if a flag is among these words.
 pub(super) fn is_given(flag: &str, words: &[&str]) -> bool {
     words
         .iter()

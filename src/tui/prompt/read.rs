@@ -36,7 +36,6 @@ use crate::tui::prompt::commands::{ANCHOR, PromptCommand, commands, find};
 use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
 
-/// Words for what the screen leaves to the shell, each with the command there.
 const IN_SHELL: [(&str, &str); 5] = [
     ("batch", "taxel batch"),
     ("config", "taxel config"),
@@ -45,10 +44,6 @@ const IN_SHELL: [(&str, &str); 5] = [
     ("train", "taxel model train"),
 ];
 
-/// Reads a line and returns its message.
-///
-/// # Errors
-/// Returns what is wrong with the line, in a sentence.
 pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let line = line.trim();
     let (name, rest) = line
@@ -81,8 +76,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     }
 }
 
-/// Returns the message of a command with arguments, which are given as the rest of the line and as its words, at
-/// least one. `unexpected` returns the error that says what they should be.
+/// `unexpected` returns the error that says what they should be.
 fn with_arguments(
     arguments: Arguments,
     rest: &str,
@@ -128,7 +122,6 @@ fn with_arguments(
     }
 }
 
-/// Reads a seed of random touches.
 fn seed(text: &str) -> Result<Message, String> {
     let seed = text.parse().map_err(|_| {
         format!(
@@ -140,7 +133,6 @@ fn seed(text: &str) -> Result<Message, String> {
     Ok(Message::Recognise(RecogniseMessage::Seed(seed)))
 }
 
-/// Reads a threshold in the unit of the watched sensor.
 fn threshold(text: &str) -> Result<Message, String> {
     let found = shortened(text);
     let value = number::read(text);
@@ -160,7 +152,6 @@ fn degrees(text: &str) -> Result<Message, String> {
     degrees.ok_or_else(|| format!("turn takes degrees like 30.5, found {:?}", shortened(text)))
 }
 
-/// Reads a taxel of the sensor.
 fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
     let index = |what: &str, text: &str, count: u8| {
         let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
@@ -183,7 +174,6 @@ fn distance(dx: &str, dy: &str) -> Option<Message> {
     Some(Message::Move(number::read(dx)?, number::read(dy)?))
 }
 
-/// Returns the error that says what a command takes and what was found.
 fn unexpected(command: &PromptCommand, rest: &str) -> String {
     let words = command.words.iter().map(|(word, _)| *word);
     let mut taken: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
@@ -206,17 +196,14 @@ fn unexpected(command: &PromptCommand, rest: &str) -> String {
     format!("{} takes {taken}{found}", command.name)
 }
 
-/// Reads a valid name of a shape.
 fn name_of(text: &str) -> Result<Name, String> {
     Name::new(text).map_err(|error| error.to_string())
 }
 
-/// Returns a parameter's flag.
 fn flag_of(parameter: Parameter) -> String {
     format!("--{}", parameter.flag())
 }
 
-/// Reads flags with numbers; an error about an unknown flag lists those of `parameters`.
 fn numbers(
     words: &[&str],
     parameters: &[Parameter],
@@ -232,8 +219,7 @@ fn numbers(
     flags.map(number).collect()
 }
 
-/// Reads `figure KIND --side 3 …`. Parameters that are not given have their defaults; one that the figure does not
-/// have is an error.
+/// Parameters that are not given have their defaults; one that the figure does not have is an error.
 fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
     let kind: FigureKind = kind.parse().map_err(|_| {
@@ -268,7 +254,7 @@ fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     ))))
 }
 
-/// Reads `sensor --columns 32 …`. Parameters that are not given keep their values.
+/// Parameters that are not given keep their values.
 fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
     let values = numbers(words, SENSOR_PARAMETERS, &Sensor::LARGEST)?;
@@ -282,10 +268,7 @@ fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     )))
 }
 
-/// Reads the flags of `explore`. Ranges that are not given have their defaults.
-///
-/// # Errors
-/// Returns what is wrong with the flags, in a sentence.
+/// Ranges that are not given have their defaults.
 fn explore(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
     let source = explored(app).ok_or_else(|| app.nothing_to_explore())?;

@@ -9,82 +9,53 @@ use crate::tui::app::message::Message;
 use crate::tui::prompt::commands::{Offer, complete, offers};
 use crate::tui::widget::text_field::TextField;
 
-/// The largest number of characters of a command.
 const LONGEST_COMMAND: usize = 200;
 
 /// The largest number of characters in the field for a name. It is more than a name may have, so that one sees the
 /// message about a long name.
 const LONGEST_NAME: usize = LONGEST + 8;
 
-/// The prompt for the name to save under.
 #[derive(Clone, Debug)]
 pub struct NameDialog {
-    /// The field with the typed name.
     pub field: TextField,
 }
 
 impl NameDialog {
-    /// Returns a prompt whose field starts with a name.
     pub fn new(name: &str) -> Self {
         Self {
             field: TextField::new(name, LONGEST_NAME),
         }
     }
 
-    /// Returns a prompt that proposes a name: typing replaces it.
     pub fn proposing(name: &str) -> Self {
         let mut dialog = Self::new(name);
         dialog.field.enter();
         dialog
     }
 
-    /// Returns the name.
-    ///
-    /// # Errors
-    /// Returns the first rule for names that it breaks.
     pub fn name(&self) -> Result<Name, NameError> {
         Name::new(self.field.text())
     }
 }
 
-/// The `:` prompt.
 #[derive(Clone, Debug)]
 pub struct CommandDialog {
-    /// The field with the typed line.
     pub field: TextField,
-    /// The candidates for the last word, after Tab.
     pub candidates: Vec<String>,
-    /// The typed line when names for the last word were asked for.
     asked: Option<String>,
-    /// The earlier lines, the last one last.
     given: Vec<String>,
-    /// The origin of the line in the field.
     shown: ShownLine,
 }
 
-/// The origin of the line in the field. A line that is edited or completed counts as typed.
+/// A line that is edited or completed counts as typed.
 #[derive(Clone, Debug)]
 enum ShownLine {
-    /// It was typed.
     Typed,
-    /// It is an earlier line.
-    Earlier {
-        /// Its index, counted from the last one.
-        index: usize,
-        /// The line that was typed before.
-        typed: String,
-    },
-    /// It is an offered line.
-    Offered {
-        /// Its index.
-        index: usize,
-        /// The line that was typed before.
-        typed: String,
-    },
+    Earlier { index: usize, typed: String },
+    Offered { index: usize, typed: String },
 }
 
 impl CommandDialog {
-    /// Returns an empty prompt; `given` are the earlier lines, the last one last.
     pub fn new(given: &[String]) -> Self {
         Self {
             given: given.to_vec(),
@@ -95,7 +66,6 @@ impl CommandDialog {
         }
     }
 
-    /// Returns the offered lines, and the index of the picked one.
     pub fn offers(&self) -> (Vec<Offer>, Option<usize>) {
         let (picked, typed) = match &self.shown {
             ShownLine::Offered { index, typed } => (Some(*index), typed.as_str()),
@@ -104,8 +74,6 @@ impl CommandDialog {
         (offers(typed, &self.given), picked)
     }
 
-    /// Shows the next offered line, or with `down` false the one before; before the first one, the typed line.
-    /// Returns false if there is none before.
     pub fn pick(&mut self, down: bool) -> bool {
         let (offers, picked) = self.offers();
         let typed = match &self.shown {
@@ -140,12 +108,10 @@ impl CommandDialog {
         true
     }
 
-    /// Sets the earlier lines, for a prompt that may open again after its line was given.
     pub fn set_given(&mut self, given: &[String]) {
         given.clone_into(&mut self.given);
     }
 
-    /// Types, moves or deletes in the field.
     pub fn edit(&mut self, message: &Message) {
         self.candidates.clear();
         if self.field.take(message) {
@@ -153,7 +119,6 @@ impl CommandDialog {
         }
     }
 
-    /// Completes the last word, or the name at the end of the line, of which `names` are all that there are.
     pub fn complete(&mut self, names: &[String]) {
         self.shown = ShownLine::Typed;
         let (line, candidates) = complete(self.field.text(), names);
@@ -164,7 +129,6 @@ impl CommandDialog {
         }
     }
 
-    /// Notes that names for the last word were asked for.
     pub fn ask(&mut self) {
         self.asked = Some(self.field.text().to_owned());
     }
@@ -176,7 +140,7 @@ impl CommandDialog {
         }
     }
 
-    /// Shows the earlier line before the one that is shown. Does nothing at the first one.
+    /// Does nothing at the first one.
     pub fn earlier(&mut self) {
         let (index, typed) = match &self.shown {
             ShownLine::Earlier { index, typed } => (index + 1, typed.clone()),
@@ -189,8 +153,6 @@ impl CommandDialog {
         }
     }
 
-    /// Shows the line after the earlier one that is shown; after the last one, the line that was being typed. Returns
-    /// false if no earlier line is shown.
     pub fn later(&mut self) -> bool {
         let ShownLine::Earlier { index, typed } = &self.shown else {
             return false;

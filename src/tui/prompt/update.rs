@@ -76,7 +76,6 @@ pub(in crate::tui) fn in_command(
     None
 }
 
-/// Says how much of a pasted text did not fit into a field.
 fn say_left_out(app: &mut App, field: &TextField) {
     if field.left_out() > 0 {
         let characters = counted(field.left_out() as u64, "character");
@@ -87,7 +86,6 @@ fn say_left_out(app: &mut App, field: &TextField) {
     }
 }
 
-/// Completes the typed line: at once, or when the names that it needs have arrived.
 fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
     let wanted = wants_names(dialog.field.text());
     match wanted {
@@ -101,7 +99,7 @@ fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
     wanted.map(|names| names_for(names, last_word))
 }
 
-/// Returns the request for the names that complete the last word of a command. A model may also be a path.
+/// A model may also be a path.
 fn names_for(wanted: Arguments, last_word: String) -> Effect {
     match wanted {
         Arguments::File(_) | Arguments::FrameSource => Effect::File(FileRequest::Paths(last_word)),
@@ -112,7 +110,6 @@ fn names_for(wanted: Arguments, last_word: String) -> Effect {
     }
 }
 
-/// Carries out the request of a prompt.
 fn ask(app: &mut App, message: Message, prompt: Dialog) -> Option<Effect> {
     from_prompt(app, prompt, |app| matrix::update::act(app, message))
 }

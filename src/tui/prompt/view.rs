@@ -20,10 +20,8 @@ use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The largest number of offered lines on the screen.
 const MOST_OFFERS: u16 = 9;
 
-/// The largest number of columns of an offered line before its help.
 const MOST_INDENT: usize = 40;
 
 impl LinePrompt for NameDialog {
@@ -41,7 +39,6 @@ impl LinePrompt for NameDialog {
         "".into()
     }
 
-    /// Returns the rule that the name breaks.
     fn wrong(&self) -> Option<String> {
         let error = self.name().err();
         let error = error.filter(|error| *error != NameError::Empty)?;
@@ -60,7 +57,6 @@ impl LinePrompt for CommandDialog {
         &self.field
     }
 
-    /// Returns the candidates for the last word.
     fn behind(&self, columns: u16) -> Cow<'_, str> {
         let used = 1 + write::width(self.field.text());
         let room = usize::from(columns).saturating_sub(used);
@@ -68,7 +64,6 @@ impl LinePrompt for CommandDialog {
         as_many_as_fit(&words, room).into()
     }
 
-    /// Draws the offered lines as a list over the foot of the body.
     fn draw_offers(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
         let (offers, picked) = self.offers();
         let room = body.height.min(MOST_OFFERS);
@@ -101,8 +96,7 @@ impl LinePrompt for CommandDialog {
     }
 }
 
-/// Returns the last part of a path, with the slash after a folder: the parts before are those that were typed. Returns
-/// any other word as it is.
+/// Returns any other word as it is.
 fn last_part(path: &str) -> &str {
     let inner = path.strip_suffix('/').unwrap_or(path);
     let start = inner.rfind('/').map_or(0, |slash| slash + 1);

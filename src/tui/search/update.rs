@@ -10,8 +10,6 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::runtime::effect::Effect;
 use crate::tui::search::page::SearchDialog;
 
-/// Handles a message at the prompt: the list below follows what is typed, Enter keeps the matches, and Esc restores
-/// the list as it was before.
 pub(in crate::tui) fn in_search(
     app: &mut App,
     mut dialog: SearchDialog,
@@ -39,7 +37,6 @@ pub(in crate::tui) fn in_search(
     None
 }
 
-/// Returns the notice for the key of the next match if there is no search.
 pub(in crate::tui) fn no_search(keymap: &Keymap, context: Context) -> String {
     let key = keymap.label(context, &action::SEARCH);
     format!("nothing to go to: {key} searches")

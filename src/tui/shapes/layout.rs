@@ -8,10 +8,8 @@ use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::write;
 
-/// The number of lines of a list above its first row.
 pub const LIST_HEAD: u16 = 2;
 
-/// Returns the pane of the list and, if there is room, that of the preview.
 pub fn list(body: Rect) -> (Rect, Option<Rect>) {
     let width = body.width.saturating_sub(36);
     if body.width < 66 {
@@ -29,7 +27,6 @@ pub fn list(body: Rect) -> (Rect, Option<Rect>) {
     (left, Some(right))
 }
 
-/// Returns the visible rows of a list in its pane.
 pub fn list_rows(pane: Rect, dialog: &ListDialog) -> ListRows {
     let area = write::below(pane, LIST_HEAD);
     ListRows::around(area, dialog.rows().len(), dialog.selected())

@@ -46,7 +46,6 @@ pub(in crate::tui) fn update(
     read_visible(app)
 }
 
-/// Handles an answer of the library.
 pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<Effect> {
     match answer {
         LibraryEvent::List(Ok(entries)) => return on_list(app, entries),
@@ -94,7 +93,6 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
     None
 }
 
-/// Handles the names of stored models: for completion in the `:` prompt, or for the Live page.
 fn on_models(app: &mut App, names: &[String]) -> Option<Effect> {
     match app.dialogs.last_mut() {
         Some(Dialog::Command(command)) => {
@@ -108,7 +106,6 @@ fn on_models(app: &mut App, names: &[String]) -> Option<Effect> {
     }
 }
 
-/// Handles the names of deleted shapes, for completion in the `:` prompt.
 fn on_trash(app: &mut App, names: &[String]) {
     if names.is_empty() {
         refuse(app, "nothing has been deleted");
@@ -118,7 +115,6 @@ fn on_trash(app: &mut App, names: &[String]) {
     }
 }
 
-/// Handles a shape that a command has named.
 fn on_named(app: &mut App, purpose: Purpose, loaded: &LoadedShape) {
     let shape = &loaded.shape;
     match purpose {
@@ -132,7 +128,6 @@ fn on_named(app: &mut App, purpose: Purpose, loaded: &LoadedShape) {
     }
 }
 
-/// Handles the list of shapes: for the page of that name, or for completion in the `:` prompt.
 /// After a command that deletes or replaces, only shapes of the user's own are offered: shipped ones are read-only.
 fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
     match app.dialogs.last_mut() {
@@ -153,7 +148,7 @@ fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
     }
 }
 
-/// Handles the deletion of a shape. Earlier states in the history may bear its name.
+/// Earlier states in the history may bear its name.
 fn on_removed(app: &mut App, name: String) {
     // The matrix may show the only copy that is left.
     app.history.removed(&name);
@@ -185,7 +180,6 @@ fn on_recovered(app: &mut App, shape: &StoredShape) {
     inform(app, format!("restored; {save} saves it"));
 }
 
-/// Handles unsaved work that was moved to the trash, and offers what is left.
 fn on_given_up(app: &mut App, name: &str, left: Option<Leftover>) {
     app.removed.push(name.to_owned());
     if let Some(left) = left {
@@ -198,13 +192,11 @@ fn on_given_up(app: &mut App, name: &str, left: Option<Leftover>) {
     }
 }
 
-/// Returns how to restore a shape that is in the trash now.
 fn how_to_restore(app: &App, name: &str) -> String {
     let undo = app.key_of(&action::UNDO);
     format!("{undo} restores it now, :restore {name} later")
 }
 
-/// Handles a save: the history notes the document as it was when the save was asked for.
 fn on_stored(app: &mut App, name: String, stamp: u64) {
     inform(app, format!("saved as {name}"));
     if let Some(save) = app.saving.pop_front() {
@@ -221,8 +213,7 @@ fn on_stored(app: &mut App, name: String, stamp: u64) {
     }
 }
 
-/// Handles a save that was refused. At the end of the program nobody sees a notice: the shape goes to the journal, and
-/// the end says why.
+/// At the end of the program nobody sees a notice: the shape goes to the journal, and the end says why.
 fn not_saved(app: &mut App, save: Option<UnfinishedSave>, reason: String) {
     match save.filter(|_| app.ended()) {
         Some(save) => app.refused_at_end.push((save, reason)),
@@ -259,7 +250,6 @@ fn offer(app: &mut App, left: &Leftover) {
     }
 }
 
-/// Reads the shapes of the list that have come into sight.
 /// A library may be large, and only rows in sight need their size and preview.
 fn read_visible(app: &mut App) -> Option<Effect> {
     let Some(Dialog::List(list)) = app.dialogs.last_mut() else {
@@ -269,7 +259,6 @@ fn read_visible(app: &mut App) -> Option<Effect> {
     (!unread.is_empty()).then_some(Effect::Library(LibraryRequest::Read(unread)))
 }
 
-/// Takes the selected shape, if this was asked for before the list or the shape had been read.
 fn choose_accepted(app: &mut App) -> Option<Effect> {
     let accepted = |dialog: &mut Dialog| matches!(dialog, Dialog::List(list) if list.is_accepted());
     match app.dialogs.pop_if(accepted) {
@@ -346,14 +335,12 @@ fn ask_replacement(app: &mut App, shape: Box<StoredShape>, stamp: u64, reason: S
     app.dialogs.push(Dialog::Question(question));
 }
 
-/// Asks whether to delete a shape.
 fn ask_removal(app: &mut App, name: String) {
     let text = format!("Delete {name:?}?");
     let question = Question::new("", text, Message::Request(LibraryRequest::Remove(name)));
     app.dialogs.push(Dialog::Question(question));
 }
 
-/// Opens the form that places an imprint as a picture.
 fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
     let picture = Picture::at_home(*imprint).named(&name);
     let form = FormDialog::picture(app.history.present(), picture, name);

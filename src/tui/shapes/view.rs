@@ -26,11 +26,8 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// The columns of a row beside the name: its sign, its size, its origin.
 const BESIDE: usize = 18;
 
-/// The smallest number of columns for a name, which still tells shapes apart; on a narrower screen the rest of the
-/// row is cut.
 const SHORTEST: usize = 8;
 
 /// The largest number of columns for a name, so that the rest of the row stays near.
@@ -89,13 +86,12 @@ impl Page for ListDialog {
         Some(Position::new(end, area.y))
     }
 
-    /// A click selects a row, a click on the selected row takes it.
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let (pane, _) = list(area);
         list_rows(pane, self).click(at, self.selected())
     }
 
-    /// Returns false for messages about rows if the list is empty. A list that is still being read may get rows.
+    /// A list that is still being read may get rows.
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
         let of_rows = matches!(
             message,
@@ -109,7 +105,6 @@ impl Page for ListDialog {
     }
 }
 
-/// Returns the reason why no shape is shown; None if there are some.
 fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
     if dialog.rows().len() > 0 {
         return None;
@@ -128,7 +123,6 @@ fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
     )
 }
 
-/// Draws the number of shapes that match the filter; without a filter, a hint that typing makes one.
 fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rect) {
     let count = format!("  {} of {}", dialog.rows().len(), dialog.total());
     let hint = if dialog.filter().is_empty() && dialog.total() > 0 {
@@ -139,7 +133,6 @@ fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rec
     write::text(buffer, area, theme, &(count + hint), Role::Quiet);
 }
 
-/// Draws a row: a sign, the name, the size, the origin of the shape.
 fn draw_row(
     theme: &Theme,
     entry: &LibraryEntry,
@@ -180,7 +173,6 @@ fn draw_row(
     write::line(buffer, row, theme, pieces);
 }
 
-/// Draws the preview: the name, a few facts, the source of the shape, and its imprint.
 fn draw_preview(
     theme: &Theme,
     entry: &LibraryEntry,

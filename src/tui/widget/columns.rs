@@ -9,7 +9,6 @@
 
 use ratatui::text::Span;
 
-/// Returns the number of columns that a text takes.
 pub fn width(text: &str) -> usize {
     if is_plain(text) {
         return text.len();
@@ -17,12 +16,10 @@ pub fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// Returns true if each byte of a text is a character of one column, as in nearly all text on the screen.
 fn is_plain(text: &str) -> bool {
     text.bytes().all(|byte| matches!(byte, b' '..=b'~'))
 }
 
-/// Returns the longest beginning of a text that fits into a number of columns.
 pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
     if is_plain(text) {
         return &text[..room.min(text.len())];
@@ -51,7 +48,6 @@ pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
     (shown, column)
 }
 
-/// Breaks a text into lines of at most `room` columns: at spaces, or inside longer words, such as paths.
 pub fn broken(text: &str, room: usize) -> Vec<&str> {
     let mut lines = Vec::new();
     let mut rest = text.trim();

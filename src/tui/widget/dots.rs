@@ -4,28 +4,20 @@
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::Theme;
 
-/// The number of dots in a character: across and down.
 pub const DOTS: (u16, u16) = (2, 4);
 
-/// The bit of each dot in a Braille character, by row and column.
 const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
-/// A position among the dots, from the top left corner; dot (i, j) covers `[i, i+1] × [j, j+1]`.
 pub type DotPosition = (f64, f64);
 
-/// A field of dots, as large as some characters of the screen.
 #[derive(Clone, Debug)]
 pub struct DotCanvas {
-    /// The number of characters across.
     columns: u16,
-    /// The number of characters down.
     rows: u16,
-    /// The dots of each character as bits, row by row; 0 for a blank one.
     characters: Vec<u8>,
 }
 
 impl DotCanvas {
-    /// Creates an empty field of the given size in characters.
     pub fn new(columns: u16, rows: u16) -> Self {
         let count = usize::from(columns) * usize::from(rows);
         Self {
@@ -35,7 +27,6 @@ impl DotCanvas {
         }
     }
 
-    /// Returns the number of dots across and down.
     pub fn size(&self) -> DotPosition {
         let (across, down) = DOTS;
         (
@@ -44,7 +35,6 @@ impl DotCanvas {
         )
     }
 
-    /// Sets the dot at a position; does nothing outside of the field.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -63,13 +53,10 @@ impl DotCanvas {
         }
     }
 
-    /// Sets the dots of a straight line, as far as they lie in the field.
     pub fn line(&mut self, from: DotPosition, to: DotPosition) {
         self.dashed(from, to, |_| true);
     }
 
-    /// Sets those dots of a straight line for whose number `shown` returns true; dots are numbered from the start of
-    /// the visible part.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -87,7 +74,6 @@ impl DotCanvas {
         }
     }
 
-    /// Returns the characters with dots: column, row, and the dots as bits of Braille.
     pub fn characters(&self) -> impl Iterator<Item = (u16, u16, u8)> {
         let columns = usize::from(self.columns.max(1));
         let all = self.characters.iter().enumerate();
@@ -96,8 +82,6 @@ impl DotCanvas {
     }
 }
 
-/// Returns the part of a line within `[0, width] × [0, height]`; None if there is none, or if a coordinate is not a
-/// number.
 fn clipped(
     from: DotPosition,
     to: DotPosition,
@@ -128,7 +112,6 @@ fn clipped(
     (start <= end).then(|| (at(start), at(end)))
 }
 
-/// Returns the character for some dots: Braille, or a similar stroke if the terminal has no Braille.
 pub fn glyph(theme: &Theme, dots: u8) -> char {
     if !theme.ascii && !theme.console {
         return char::from_u32(0x2800 + u32::from(dots)).unwrap_or(' ');

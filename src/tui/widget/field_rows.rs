@@ -19,19 +19,14 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The least width of a pane in which the range stands beside the field, in columns.
 pub const WIDE: u16 = 40;
 
-/// The places of the visible rows.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldRows {
-    /// The area from the first visible row on.
     area: Rect,
     /// The number of lines of a row: two if there is room, otherwise one.
     spacing: u16,
-    /// The index of the first visible row.
     first: usize,
-    /// The number of visible rows.
     visible: usize,
 }
 
@@ -51,9 +46,6 @@ impl FieldRows {
         }
     }
 
-    /// Draws the fields of a list into the first rows, with this many columns for labels and texts, and with remarks.
-    /// Returns the position of the text cursor; None if no visible
-    /// field has the focus.
     pub fn draw<F: FormField>(
         &self,
         theme: &Theme,
@@ -81,7 +73,6 @@ impl FieldRows {
         cursor
     }
 
-    /// Returns the index of each visible row, with its lines.
     pub fn visible(&self) -> impl Iterator<Item = (usize, Rect)> {
         let rows = *self;
         (0..rows.visible).map(move |index| {
@@ -91,38 +82,29 @@ impl FieldRows {
         })
     }
 
-    /// Returns the index of the row at a line of the screen.
     pub fn at(&self, y: u16) -> Option<usize> {
         let mut rows = self.visible();
         let row = rows.find(|(_, lines)| (lines.top()..lines.bottom()).contains(&y));
         row.map(|(index, _)| index)
     }
 
-    /// Returns the area below the last visible row, up to the end of the pane.
     pub fn rest(&self, pane: Rect) -> Rect {
         let end = self.area.y + narrow(self.visible) * self.spacing;
         write::below(pane, end - pane.y)
     }
 }
 
-/// A field as a row of a form shows it.
 #[derive(Clone, Debug)]
 struct FieldRow<'a, F> {
-    /// The field.
     field: &'a F,
-    /// Whether the field has the focus.
     focused: bool,
-    /// The allowed values.
     range: Range,
-    /// A remark under the range.
     remark: Option<&'static str>,
-    /// The error in the text; None if it is valid.
     error: Option<String>,
 }
 
 impl<F: FormField> FieldRow<'_, F> {
-    /// Draws the row, with this many columns for the label and for the text. Returns the position that the text
-    /// cursor has in the field.
+    /// Returns the position that the text cursor has in the field.
     fn draw(
         &self,
         theme: &Theme,
@@ -163,7 +145,6 @@ impl<F: FormField> FieldRow<'_, F> {
         Position::new(area.x.saturating_add(narrow(label + cursor)), area.y)
     }
 
-    /// Draws the range, and the remark under or behind it.
     fn draw_range(&self, theme: &Theme, buffer: &mut Buffer, area: Rect, under: Option<Rect>) {
         let range = self.range.to_string();
         let range = self.field.parameter().row().unit.after(&range);

@@ -17,7 +17,6 @@ pub fn contains(text: &str, wanted: &str) -> bool {
     first(text, wanted).is_some()
 }
 
-/// Splits a text into pieces: every match has the role [`Role::Match`], the rest the given role.
 pub fn marked<'a>(text: &'a str, wanted: &str, role: Role) -> Vec<(&'a str, Role)> {
     let (mut pieces, mut rest) = (Vec::new(), text);
     while let Some((start, end)) = first(rest, wanted) {
@@ -30,7 +29,6 @@ pub fn marked<'a>(text: &'a str, wanted: &str, role: Role) -> Vec<(&'a str, Role
     pieces
 }
 
-/// Returns the byte range of the first match in a text.
 fn first(text: &str, wanted: &str) -> Option<(usize, usize)> {
     if wanted.is_empty() {
         return None;
@@ -46,12 +44,9 @@ fn first(text: &str, wanted: &str) -> Option<(usize, usize)> {
     })
 }
 
-/// A search in a list, at one of its matches; at first there is none.
 #[derive(Clone, Debug, Default)]
 pub struct Search {
-    /// The text that is searched for; empty if there is no search.
     wanted: String,
-    /// The index of the entry at which the search is.
     entry: usize,
 }
 
@@ -67,17 +62,14 @@ impl Search {
         Some(self.entry)
     }
 
-    /// Ends the search.
     pub fn end(&mut self) {
         *self = Self::default();
     }
 
-    /// Returns the text that is searched for; empty if there is no search.
     pub fn wanted(&self) -> &str {
         &self.wanted
     }
 
-    /// Returns the index of the entry at which the search is; None if there is no search.
     pub fn entry(&self) -> Option<usize> {
         (!self.wanted.is_empty()).then_some(self.entry)
     }
@@ -97,7 +89,6 @@ impl Search {
     }
 }
 
-/// Returns the number of the match at an entry, from 1, and the number of all matches; None if the entry is no match.
 pub fn number(entry: usize, matches: &[usize]) -> Option<(usize, usize)> {
     let before = matches.binary_search(&entry).ok()?;
     Some((before + 1, matches.len()))

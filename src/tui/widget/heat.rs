@@ -8,7 +8,6 @@ use ratatui::style::{Color, Style};
 use crate::formats::value;
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme, Tone};
 
-/// Colours from dark to light.
 const TONES: [Tone; 9] = [
     (Color::Blue, 53, [68, 1, 84]),
     (Color::Blue, 54, [71, 45, 123]),
@@ -21,23 +20,19 @@ const TONES: [Tone; 9] = [
     (Color::Yellow, 220, [253, 231, 37]),
 ];
 
-/// Returns the characters of the shades; the first one is for zero.
 pub(in crate::tui) fn shades(theme: &Theme) -> &'static [char] {
     value::characters(theme.ascii)
 }
 
-/// Returns the character for a share of the range; a blank for NaN, a cell that does not exist.
 pub(in crate::tui) fn shade(theme: &Theme, share: f64) -> char {
     value::character(share, theme.ascii)
 }
 
-/// Returns true if the two halves of a character can have different colours.
 pub(in crate::tui) fn has_halves(theme: &Theme) -> bool {
     let many = matches!(theme.depth, ColorDepth::TwoFiftySix | ColorDepth::True);
     many && !theme.ascii && theme.palette != Palette::Mono
 }
 
-/// Returns the colour for a share of the range; None for shares up to 0, and if there are no colours.
 pub(in crate::tui) fn color(theme: &Theme, share: f64) -> Option<Color> {
     let step = value::shade(share, TONES.len() + 1).checked_sub(1)?;
     match theme.palette {
@@ -47,12 +42,10 @@ pub(in crate::tui) fn color(theme: &Theme, share: f64) -> Option<Color> {
     }
 }
 
-/// Returns the style for a share of the range.
 pub(in crate::tui) fn style(theme: &Theme, share: f64) -> Style {
     color(theme, share).map_or(Style::new(), |color| Style::new().fg(color))
 }
 
-/// Returns the character that marks the edge of the imprint.
 pub(in crate::tui) fn edge(theme: &Theme) -> char {
     if theme.ascii { 'o' } else { '•' }
 }

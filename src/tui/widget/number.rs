@@ -1,12 +1,10 @@
 //! Numbers for the screen: lengths in the integer types of the terminal and of the matrix, and indices and items
 //! that wrap around.
 
-/// Converts a number of columns or lines; a larger one than a screen can have becomes the largest `u16`.
 pub(in crate::tui) fn narrow(length: impl TryInto<u16>) -> u16 {
     length.try_into().unwrap_or(u16::MAX)
 }
 
-/// Converts a number of taxels; a larger one becomes 255, more than any matrix has.
 pub(in crate::tui) fn taxels(length: impl TryInto<u8>) -> u8 {
     length.try_into().unwrap_or(u8::MAX)
 }

@@ -19,34 +19,23 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The approximate distance between two numbers of the axis to the right, in characters.
 const APART: u16 = 10;
-/// The approximate distance between two numbers of the upward axis, in lines.
 const LINES: u16 = 2;
 
-/// The marks for points, each with the least number of points in a character that it stands for.
 const MARKS: [(u32, char); 4] = [(1, '·'), (2, 'o'), (10, 'O'), (100, '@')];
 
-/// The explanation of the marks.
 const LEGEND: &str = "· 1   o 2–9   O 10–99   @ 100+";
 
-/// A field between two axes.
 #[derive(Clone, Debug)]
 pub struct PlotField {
-    /// The area of the field, without axes.
     pub field: Rect,
-    /// The ends of the axis to the right.
     x: (f64, f64),
-    /// The ends of the upward axis.
     y: (f64, f64),
-    /// The numbers of the upward axis: value and text.
     upwards: Vec<(f64, String)>,
-    /// The area of the whole plot.
     area: Rect,
 }
 
 impl PlotField {
-    /// Creates a plot in an area, between axes with these ends; None if there is no room.
     pub fn of(area: Rect, x: (f64, f64), y: (f64, f64)) -> Option<Self> {
         let height = area.height.checked_sub(3).filter(|&height| height > 0)?;
         let upwards = axis_marks(y, (height / LINES).max(1));
@@ -67,12 +56,10 @@ impl PlotField {
         })
     }
 
-    /// Creates an empty canvas of the field's size.
     pub fn canvas(&self) -> DotCanvas {
         DotCanvas::new(self.field.width, self.field.height)
     }
 
-    /// Returns the position of a point among the dots.
     pub fn dot(&self, (x, y): (f64, f64)) -> DotPosition {
         let wide = f64::from(self.field.width) * f64::from(DOTS.0);
         let high = f64::from(self.field.height) * f64::from(DOTS.1);
@@ -80,7 +67,6 @@ impl PlotField {
         (share(x, self.x) * wide, (1.0 - share(y, self.y)) * high)
     }
 
-    /// Returns the character in which a point lies; None if it lies outside.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -94,7 +80,6 @@ impl PlotField {
         inside.then(|| Position::new(self.field.x + x as u16, self.field.y + y as u16))
     }
 
-    /// Returns the point in the middle of a character of the field; None outside.
     pub fn point(&self, at: Position) -> Option<(f64, f64)> {
         self.field.contains(at).then(|| {
             let middle =
@@ -108,7 +93,6 @@ impl PlotField {
         })
     }
 
-    /// Draws both axes with numbers and labels; the upward axis has the first label.
     pub fn draw_axes(&self, theme: &Theme, buffer: &mut Buffer, [upward, right]: [&str; 2]) {
         write::text(buffer, self.area, theme, upward, Role::Key);
         self.draw_frame(theme, buffer);
@@ -116,7 +100,6 @@ impl PlotField {
         self.draw_across(theme, buffer, right);
     }
 
-    /// Draws both axes without marks.
     fn draw_frame(&self, theme: &Theme, buffer: &mut Buffer) {
         let [across, down, corner] = if theme.ascii {
             ['-', '|', '+']
@@ -155,7 +138,6 @@ impl PlotField {
         }
     }
 
-    /// Draws the marks, numbers and label of the axis to the right; numbers without room are left out.
     fn draw_across(&self, theme: &Theme, buffer: &mut Buffer, label: &str) {
         let bottom = self.field.bottom();
         let width = narrow(write::width(label));
@@ -182,7 +164,6 @@ impl PlotField {
         }
     }
 
-    /// Returns a line of the plot, from its left edge.
     fn line_at(&self, y: u16) -> Rect {
         Rect {
             y,
@@ -191,7 +172,6 @@ impl PlotField {
         }
     }
 
-    /// Draws the lines of a canvas into the field.
     pub fn draw_lines(&self, theme: &Theme, buffer: &mut Buffer, canvas: &DotCanvas, style: Style) {
         for (column, row, dots) in canvas.characters() {
             let at = Position::new(self.field.x + column, self.field.y + row);
@@ -201,8 +181,6 @@ impl PlotField {
         }
     }
 
-    /// Draws points into the field, as marks that show how many points share a character, and explains the marks
-    /// above.
     pub fn draw_points(
         &self,
         theme: &Theme,
@@ -247,7 +225,6 @@ impl PlotField {
     }
 }
 
-/// Writes under the title of a page that there is no room for its plot.
 pub fn draw_no_room(theme: &Theme, buffer: &mut Buffer, page: Rect) {
     let text = "no room for the plot";
     write::text(buffer, write::row(page, 1), theme, text, Role::Quiet);

@@ -5,19 +5,14 @@ use ratatui::layout::{Position, Rect};
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::widget::write::first_of;
 
-/// The visible rows of a list, a line each.
 #[derive(Clone, Copy, Debug)]
 pub struct ListRows {
-    /// The area of the visible rows.
     pub area: Rect,
-    /// The index of the first visible row.
     pub first: usize,
-    /// The number of rows, visible or not.
     pub count: usize,
 }
 
 impl ListRows {
-    /// Returns the rows that are visible in an area: the selected one is as near to its middle as the ends allow.
     pub fn around(area: Rect, count: usize, selected: usize) -> Self {
         Self {
             area,
@@ -26,7 +21,6 @@ impl ListRows {
         }
     }
 
-    /// Returns the visible items of a list, each with its index and its line.
     pub fn visible<T>(
         self,
         all: impl Iterator<Item = T>,
@@ -35,27 +29,23 @@ impl ListRows {
         visible.map(|((index, item), line)| (index, line, item))
     }
 
-    /// Returns the start of the line of a row, for the cursor; None if it is out of sight.
     pub fn position(&self, row: usize) -> Option<Position> {
         let line = self.area.rows().nth(row.checked_sub(self.first)?)?;
         (row < self.count).then(|| line.as_position())
     }
 
-    /// Returns how many rows are out of sight; None if all are visible.
     pub fn hidden(&self) -> Option<String> {
         let last = self.first + usize::from(self.area.height);
         let (above, below) = (self.first, self.count.saturating_sub(last));
         (above + below > 0).then(|| format!("  {above} above, {below} below"))
     }
 
-    /// Returns the index of the row at a position of the screen; None if there is none.
     pub fn at(&self, position: Position) -> Option<usize> {
         let row = self.first + usize::from(position.y.checked_sub(self.area.y)?);
         (self.area.contains(position) && row < self.count).then_some(row)
     }
 
-    /// Returns the message of a click: it selects a row, and a click on the selected row accepts it. None beside the
-    /// rows.
+    /// None beside the rows.
     pub fn click(&self, position: Position, selected: usize) -> Option<Message> {
         let row = self.at(position)?;
         Some(if row == selected {

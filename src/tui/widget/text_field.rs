@@ -21,12 +21,9 @@ use tui_input::{Input, InputRequest};
 use crate::tui::app::message::{Endpoint, Erase, Message};
 use crate::tui::keys::key::Arrow;
 
-/// A line of text with a cursor in it.
 #[derive(Clone, Debug)]
 pub struct TextField {
-    /// The text and the cursor.
     input: Input,
-    /// The greatest number of characters that can be typed.
     longest: usize,
     /// Whether the field was just entered, so that the next typed character replaces the text.
     fresh: bool,
@@ -35,7 +32,7 @@ pub struct TextField {
 }
 
 impl TextField {
-    /// Creates a field with a text and the cursor at its end. At most `longest` characters can be typed.
+    /// At most `longest` characters can be typed.
     pub fn new(text: impl Into<String>, longest: usize) -> Self {
         Self {
             input: Input::new(text.into()),
@@ -45,18 +42,15 @@ impl TextField {
         }
     }
 
-    /// Enters the field: puts the cursor at the end, and lets the next typed character replace the text.
     pub fn enter(&mut self) {
         self.edit(InputRequest::GoToEnd);
         self.fresh = true;
     }
 
-    /// Whether the next character replaces the text.
     pub fn fresh(&self) -> bool {
         self.fresh
     }
 
-    /// Returns the text of the field.
     pub fn text(&self) -> &str {
         self.input.value()
     }
@@ -66,18 +60,15 @@ impl TextField {
         self.left_out
     }
 
-    /// Returns the position of the cursor, in columns.
     pub fn cursor(&self) -> usize {
         self.input.visual_cursor()
     }
 
-    /// Replaces the text, and puts the cursor at its end.
     pub fn set(&mut self, text: impl Into<String>) {
         self.input = Input::new(text.into());
         self.fresh = false;
     }
 
-    /// Handles a message. Returns false if it means nothing in a line of text.
     pub fn take(&mut self, message: &Message) -> bool {
         let replaces = matches!(
             message,
@@ -92,8 +83,7 @@ impl TextField {
         taken
     }
 
-    /// Does what a message means, even if the field was just entered. Returns false if it means nothing in a line of
-    /// text.
+    /// Does what a message means, even if the field was just entered.
     fn does(&mut self, message: &Message) -> bool {
         let request = match message {
             Message::Type(character) => {
@@ -124,7 +114,6 @@ impl TextField {
         true
     }
 
-    /// Inserts a character. Returns false if there is no room for it, or if it is a control character.
     fn insert(&mut self, character: char) -> bool {
         let fits = !character.is_control() && self.text().chars().count() < self.longest;
         if fits {
@@ -133,7 +122,6 @@ impl TextField {
         fits
     }
 
-    /// Performs a request of the crate `tui_input`.
     fn edit(&mut self, request: InputRequest) {
         // The result only says whether anything changed.
         let _ = self.input.handle(request);

@@ -17,40 +17,25 @@ use ratatui::style::{Color, Modifier, Style};
 use crate::atlas::SortDirection;
 use crate::formats::value::fitting;
 
-/// The purpose of a piece of text on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Ordinary text.
     Text,
-    /// A ruler, unit or explanation.
     Quiet,
-    /// A key that can be pressed.
     Key,
-    /// A heading.
     Title,
-    /// An active taxel of the region that is described.
     Chosen,
-    /// Another active taxel.
     Active,
-    /// A taxel of the hole that is described.
     Hole,
-    /// An inactive taxel.
     Inactive,
-    /// An active taxel that the nearest imprint does not have.
     Surplus,
-    /// An inactive taxel that the nearest imprint has.
     Missing,
-    /// The position of the cursor.
     Cursor,
-    /// The field that has the focus.
     Focus,
-    /// A text that was searched for.
     Match,
-    /// An error.
     Error,
 }
 
-/// Returns the letter of a style in printed screens. Roles have no other styles than these, apart from colours.
+/// Roles have no other styles than these, apart from colours.
 pub fn letter(style: &Style) -> char {
     let has = |modifier| style.add_modifier.contains(modifier);
     if has(Modifier::REVERSED) {
@@ -64,32 +49,23 @@ pub fn letter(style: &Style) -> char {
     }
 }
 
-/// The number of colours of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorDepth {
-    /// No colours, or none wanted.
     Never,
-    /// The eight colours and their bright variants, in the tones that the user chose for the terminal.
     Sixteen,
-    /// The table of 256 colours.
     TwoFiftySix,
-    /// Any colour.
     True,
 }
 
-/// The background for which colours are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Palette {
-    /// A dark background.
     Dark,
-    /// A light background.
     Light,
     /// No colours, even if the terminal has them.
     Mono,
 }
 
 impl ColorDepth {
-    /// All depths, with their names in flags and files.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("never", Self::Never),
         ("16", Self::Sixteen),
@@ -99,7 +75,6 @@ impl ColorDepth {
 }
 
 impl Palette {
-    /// All palettes, with their names in flags and files.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("dark", Self::Dark),
         ("light", Self::Light),
@@ -107,27 +82,19 @@ impl Palette {
     ];
 }
 
-/// The look of the screen, as far as it depends on the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {
-    /// Whether to use ASCII characters only.
     pub ascii: bool,
-    /// Whether the terminal is a text console, whose font has no Braille.
     pub console: bool,
-    /// The number of colours.
     pub depth: ColorDepth,
-    /// The colours for a dark or a light background, or none.
     pub palette: Palette,
 }
 
-/// The characters of a taxel; only the first one is used if a taxel is one column wide.
 pub type Glyphs = [char; 2];
 
-/// A colour in each depth: one of the sixteen, one of the 256, and red, green, blue.
 pub(in crate::tui) type Tone = (Color, u8, [u8; 3]);
 
-/// Returns the colour of a role in a palette. Bright colours of the sixteen are not used: some terminals show them as
-/// bold, some not at all.
+/// Bright colours of the sixteen are not used: some terminals show them as bold, some not at all.
 fn tone(role: Role, palette: Palette) -> Option<Tone> {
     match (palette, role) {
         (Palette::Dark, Role::Title) => Some((Color::Cyan, 80, [95, 215, 215])),
@@ -148,7 +115,6 @@ fn tone(role: Role, palette: Palette) -> Option<Tone> {
     }
 }
 
-/// The colours that distinguish things side by side, on a dark background.
 const DARK_TINTS: [Tone; 6] = [
     (Color::Cyan, 80, [95, 215, 215]),
     (Color::Yellow, 221, [255, 215, 95]),
@@ -157,7 +123,6 @@ const DARK_TINTS: [Tone; 6] = [
     (Color::Magenta, 176, [215, 135, 215]),
     (Color::Red, 203, [255, 95, 95]),
 ];
-/// The colours of tints on a light background.
 const LIGHT_TINTS: [Tone; 6] = [
     (Color::Cyan, 31, [0, 135, 175]),
     (Color::Magenta, 130, [175, 95, 0]),
@@ -168,7 +133,6 @@ const LIGHT_TINTS: [Tone; 6] = [
 ];
 
 impl Theme {
-    /// Creates a theme without colours.
     pub const fn plain(ascii: bool) -> Self {
         Self {
             ascii,
@@ -178,7 +142,6 @@ impl Theme {
         }
     }
 
-    /// Returns the style of a role.
     pub fn style(&self, role: Role) -> Style {
         let style = match role {
             Role::Quiet | Role::Inactive => Style::new().add_modifier(Modifier::DIM),
@@ -196,7 +159,6 @@ impl Theme {
         }
     }
 
-    /// Returns a colour as the terminal can show it; None without colours.
     pub(in crate::tui) fn color(self, (named, index, [red, green, blue]): Tone) -> Option<Color> {
         match self.depth {
             ColorDepth::Never => None,
@@ -206,12 +168,10 @@ impl Theme {
         }
     }
 
-    /// Adds a colour to a style, if the terminal has colours.
     fn coloured(self, style: Style, tone: Tone) -> Style {
         self.color(tone).map_or(style, |color| style.fg(color))
     }
 
-    /// Returns the style of one of several things side by side, by its number; the colours repeat after six.
     pub fn tint(&self, number: usize) -> Style {
         let tints = match self.palette {
             Palette::Dark => &DARK_TINTS,
@@ -221,7 +181,6 @@ impl Theme {
         self.coloured(Style::new(), tints[number % tints.len()])
     }
 
-    /// Returns the characters of a taxel, by its role.
     pub fn taxel(&self, role: Role) -> Glyphs {
         match (role, self.ascii) {
             (Role::Chosen, true) => ['#', '#'],
@@ -254,7 +213,6 @@ impl Theme {
         [shades[shade], if shade == 0 { ' ' } else { shades[shade] }]
     }
 
-    /// Returns the characters of a bar: full, half full, empty.
     pub fn bar(&self) -> [char; 3] {
         if self.ascii {
             ['#', '=', '.']
@@ -263,8 +221,7 @@ impl Theme {
         }
     }
 
-    /// Returns the character for two taxels, one above the other; `upper` and `lower` say which are active. ASCII
-    /// does not tell which of the two is.
+    /// ASCII does not tell which of the two is.
     pub fn half(&self, upper: bool, lower: bool) -> char {
         match (self.ascii, upper, lower) {
             (true, false, false) => '.',
@@ -300,8 +257,6 @@ impl Theme {
         }
     }
 
-    /// Returns the mark of the cursor on one of two taxels in a character: it points to the taxel, and is a letter if
-    /// that taxel is active.
     pub fn half_cursor(&self, lower: bool, active: bool) -> char {
         match (lower, active) {
             (false, false) => '^',
@@ -311,7 +266,6 @@ impl Theme {
         }
     }
 
-    /// Returns the marks for more content above, below, left, right.
     pub fn more(&self) -> [char; 4] {
         if self.ascii {
             ['^', 'v', '<', '>']
@@ -320,7 +274,6 @@ impl Theme {
         }
     }
 
-    /// Returns the mark of the heading by which rows are sorted, in this direction.
     pub fn sorted(&self, direction: SortDirection) -> char {
         let [up, down, ..] = self.more();
         match direction {
@@ -329,17 +282,14 @@ impl Theme {
         }
     }
 
-    /// Returns the text for a value that does not exist.
     pub fn none(&self) -> &'static str {
         if self.ascii { "-" } else { "–" }
     }
 
-    /// Returns a number in at most `width` characters, or the text for a value that does not exist.
     pub fn number(&self, value: Option<f64>, width: usize) -> String {
         value.map_or_else(|| self.none().to_owned(), |value| fitting(value, width))
     }
 
-    /// Converts a text to the characters that the terminal has.
     pub fn text<'a>(&self, text: &'a str) -> Cow<'a, str> {
         if !self.ascii || text.is_ascii() {
             return Cow::Borrowed(text);
@@ -348,8 +298,7 @@ impl Theme {
     }
 }
 
-/// Returns the spelling in ASCII of a sign that the program writes; None for any other character. The screen and the
-/// command line share this table.
+/// The screen and the command line share this table.
 pub(crate) fn spelling(sign: char) -> Option<&'static str> {
     Some(match sign {
         '°' => " deg",

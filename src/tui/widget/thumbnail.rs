@@ -8,15 +8,12 @@ use crate::tui::widget::number::taxels;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Returns the number of columns and lines that an imprint takes.
 pub fn size(theme: &Theme, imprint: &Imprint) -> (u16, u16) {
     let rows = u16::from(imprint.rows());
     let lines = if theme.ascii { rows } else { rows.div_ceil(2) };
     (imprint.columns().into(), lines)
 }
 
-/// Draws an imprint from the top left corner of an area; if it is larger than the area, the part around its active
-/// taxels.
 pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
     let step: u8 = if theme.ascii { 1 } else { 2 };
     let (columns, rows) = (imprint.columns(), imprint.rows());

@@ -72,19 +72,16 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
 }
 
-/// Returns the first of several texts that fits into a number of columns, or the last one if none does.
 pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
     let fitting = texts.iter().find(|text| width(text) <= room);
     fitting.or(texts.last()).copied().unwrap_or("")
 }
 
-/// Writes how many lines a low screen leaves out.
 pub fn left_out(buffer: &mut Buffer, row: Rect, theme: &Theme, count: usize) {
     let left = format!("and {count} more on a larger screen");
     text(buffer, row, theme, &left, Role::Quiet);
 }
 
-/// Returns the line `index` below the top of an area; it is empty if the area ends before.
 pub fn row(area: Rect, index: usize) -> Rect {
     let index = narrow(index);
     let inside = index < area.height;
@@ -103,7 +100,6 @@ pub(in crate::tui) fn first_of(visible: u16, rows: usize, selected: usize) -> us
         .min(rows.saturating_sub(visible))
 }
 
-/// Returns the part of an area that begins `lines` below its top.
 pub fn below(area: Rect, lines: u16) -> Rect {
     let lines = lines.min(area.height);
     Rect {
@@ -113,7 +109,6 @@ pub fn below(area: Rect, lines: u16) -> Rect {
     }
 }
 
-/// Returns the part of an area to the right of `x`.
 pub fn right_of(area: Rect, x: u16) -> Rect {
     let x = x.clamp(area.x, area.right());
     Rect {
@@ -123,7 +118,6 @@ pub fn right_of(area: Rect, x: u16) -> Rect {
     }
 }
 
-/// Returns the part of an area to the left of `x`.
 pub fn left_of(area: Rect, x: u16) -> Rect {
     let width = x.saturating_sub(area.x).min(area.width);
     Rect { width, ..area }
@@ -159,7 +153,6 @@ pub fn field_text<'a>(
     (Cow::Owned(marked), column)
 }
 
-/// Returns the text of a field like [`field_text`], padded with spaces or shortened to exactly `room` columns.
 pub fn field_columns(text: &str, cursor: usize, room: usize, theme: &Theme) -> (String, usize) {
     let (shown, column) = field_text(text, cursor, room, theme);
     let shown = fitted(&shown, room, theme);
@@ -167,8 +160,6 @@ pub fn field_columns(text: &str, cursor: usize, room: usize, theme: &Theme) -> (
     (format!("{shown}{fill}"), column)
 }
 
-/// Writes a prompt: a label, the text of a field, and a remark after it. Returns the position of the cursor. If the
-/// text is too long, the part around the cursor is shown, after an ellipsis.
 pub fn prompt(
     buffer: &mut Buffer,
     area: Rect,
@@ -187,15 +178,13 @@ pub fn prompt(
     Position::new(area.x.saturating_add(column), area.y)
 }
 
-/// Empties an area.
 pub fn clear(buffer: &mut Buffer, area: Rect) {
     for position in area.intersection(*buffer.area()).positions() {
         buffer[position].reset();
     }
 }
 
-/// Writes a text over several lines, and returns the number of lines that it needs. If the area has fewer, the text
-/// ends in an ellipsis.
+/// If the area has fewer, the text ends in an ellipsis.
 pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) -> usize {
     let text = theme.text(text);
     let room = usize::from(area.width);

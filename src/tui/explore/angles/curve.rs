@@ -14,51 +14,35 @@ use crate::index::{index, wide};
 use crate::pose::{Axis, PoseIndex};
 use crate::sweep::SweepResult;
 
-/// The maximum number of angles: a screen has no more dots.
 const MOST_ANGLES: u64 = 720;
 
-/// The maximum number of rows of positions, summed over all angles.
 const MOST_ROWS: u64 = 8_000;
 
-/// The state of the search for the imprints at each angle.
 #[derive(Clone, Debug)]
 pub enum AngleSearch {
-    /// A worker searches.
     Running,
-    /// The imprints.
     Found(Arc<AngleCurve>),
     /// They cannot be found.
     Failed,
 }
 
-/// The imprints at the angles of a sweep, at one zoom, with how often each one occurs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngleCurve {
-    /// The step between the angles that are sampled; 1 for all of them.
     pub every_angle: u64,
-    /// The step between the rows of positions that are sampled; 1 for all of them.
     pub every_row: u64,
-    /// The sampled angles: the index of each, and its imprints by number, with how many of the sampled positions
-    /// leave them.
     angles: Vec<(u64, BTreeMap<u32, u32>)>,
 }
 
-/// The values of a descriptor at an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngleSpread {
-    /// The index of the angle.
     pub index: u64,
     /// The angle in degrees.
     pub degrees: f64,
-    /// The smallest value; None for a direction.
     pub min: Option<f64>,
-    /// The mean; the circular mean for a direction.
     pub mean: f64,
-    /// The largest value; None for a direction.
     pub max: Option<f64>,
 }
 
-/// Returns a place at the first position and angle, with its zooms.
 pub(in crate::tui::explore) fn zooms_of(place: PoseIndex) -> PoseIndex {
     place
         .with(Axis::X0, 0)
@@ -67,7 +51,6 @@ pub(in crate::tui::explore) fn zooms_of(place: PoseIndex) -> PoseIndex {
 }
 
 impl AngleCurve {
-    /// Sweeps the positions of all angles at the zooms of a place.
     pub fn of(sweep: &SweepResult, place: PoseIndex) -> Self {
         let counts = sweep.grid.counts();
         let (columns, rows, angles) = (counts[Axis::X0], counts[Axis::Y0], counts[Axis::Angle]);
@@ -97,8 +80,7 @@ impl AngleCurve {
         }
     }
 
-    /// Returns the spread of a descriptor at each angle at which its values have a mean. `values` has the value of each
-    /// imprint, by number.
+    /// `values` has the value of each imprint, by number.
     pub fn spread(
         &self,
         sweep: &SweepResult,
@@ -134,7 +116,6 @@ impl AngleCurve {
     }
 }
 
-/// Returns the mean of a function of values, given how often each value occurs; None if there are no values.
 fn mean(known: &[(f64, f64)], of: fn(f64) -> f64) -> Option<f64> {
     let count: f64 = known.iter().map(|(_, count)| count).sum();
     let sum: f64 = known.iter().map(|(value, count)| of(*value) * count).sum();
@@ -175,7 +156,6 @@ mod tests {
         Sweep::new(&grid.expect("in range")).run()
     }
 
-    /// Compares with each pose of an angle, described by itself.
     #[test]
     fn each_angle_has_the_values_of_its_positions() {
         let sweep = sweep("5:5.3:0.1", "0:80:20");

@@ -28,13 +28,10 @@ use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The number of characters of a value.
 const VALUE: usize = 9;
 
-/// The legend of the lines.
 const LEGEND: &str = "  line: mean, dashes: min, max";
 
-/// The angles tab.
 pub static TAB: ResultsTab = ResultsTab {
     title: "angles",
     context: Context::Angles,
@@ -47,7 +44,6 @@ pub static TAB: ResultsTab = ResultsTab {
     update: choose_descriptor,
 };
 
-/// Returns the spread at each angle that has a mean; empty before the angles were swept.
 fn spread(results: &Results) -> Vec<AngleSpread> {
     let curve = results.angle_curve();
     curve.map_or(Vec::new(), |curve| {
@@ -55,7 +51,6 @@ fn spread(results: &Results) -> Vec<AngleSpread> {
     })
 }
 
-/// Returns the plot field on the tab; None without room.
 fn field(area: Rect, spread: &[AngleSpread]) -> Option<PlotField> {
     let area = Rect {
         height: area.height.saturating_sub(2),
@@ -66,7 +61,6 @@ fn field(area: Rect, spread: &[AngleSpread]) -> Option<PlotField> {
     PlotField::of(area, x, axis_ends(values.flatten()))
 }
 
-/// Returns the message of a click, which chooses the nearest angle.
 fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     let spread = spread(results);
     let (degrees, _) = field(area, &spread)?.point(at)?;
@@ -77,17 +71,16 @@ fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     Some(Message::Explore(ExploreMessage::ToAngle(nearest.index)))
 }
 
-/// Returns the title: the descriptor, and which part of the poses it is computed from; and the legend if
-/// there is room for it.
-fn title(results: &Results, room: usize) -> (String, &'static str) {
+/// Returns the title: the name of the descriptor gives way to its key where the legend would have no room.
+fn title(results: &Results, room: usize) -> String {
     let feature = results.feature();
     let sampled = results.angle_curve().map_or_else(String::new, sampled);
-    let title = format!("{} against the angle{sampled}", feature.label());
-    let fits = write::width(&title) + write::width(LEGEND) <= room;
-    (title, if fits { LEGEND } else { "" })
+    let title = |name: &str| format!("{name} against the angle{sampled}");
+    let title = [feature.label(), feature.key.clone()].map(|name| title(&name));
+    let fits = |title: &&String| write::width(title) + write::width(LEGEND) <= room;
+    title.iter().find(fits).unwrap_or(&title[1]).clone()
 }
 
-/// Returns which of the angles and positions a curve is computed from; nothing if from all of them.
 fn sampled(curve: &AngleCurve) -> String {
     let parts = [(curve.every_angle, "angle"), (curve.every_row, "y0")];
     let parts = parts.into_iter().filter(|&(every, _)| every > 1);
@@ -100,7 +93,6 @@ fn sampled(curve: &AngleCurve) -> String {
     }
 }
 
-/// Returns the ordinal of a number: 2nd, 3rd, 11th.
 fn ordinal(number: u64) -> String {
     let end = match (number % 10, number % 100) {
         (1..=3, 11..=13) => "th",
@@ -112,7 +104,6 @@ fn ordinal(number: u64) -> String {
     format!("{number}{end}")
 }
 
-/// Returns why there is no curve, in a few words.
 fn without_curve(results: &Results) -> &'static str {
     match results.angles() {
         Some(AngleSearch::Found(_)) if results.feature().circular => {
@@ -124,17 +115,12 @@ fn without_curve(results: &Results) -> &'static str {
     }
 }
 
-/// Draws the tab. Returns the position of the mean at the chosen angle.
+/// Returns the position of the mean at the chosen angle.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let (text, legend) = title(results, area.width.into());
+    let text = title(results, area.width.into());
     let end = write::text(buffer, area, theme, &text, Role::Title);
-    write::text(
-        buffer,
-        write::right_of(area, end),
-        theme,
-        legend,
-        Role::Quiet,
-    );
+    let after = write::right_of(area, end);
+    write::text(buffer, after, theme, LEGEND, Role::Quiet);
     let spread = spread(results);
     let Some(here) = nearest(results, &spread) else {
         let text = without_curve(results);
@@ -161,7 +147,6 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     Some(at)
 }
 
-/// Draws the curves of all values.
 fn draw_curves(field: &PlotField, spread: &[AngleSpread], theme: &Theme, buffer: &mut Buffer) {
     let quiet = theme.style(Role::Text);
     for (of, dashed) in CURVES {
@@ -191,18 +176,15 @@ fn draw_curves(field: &PlotField, spread: &[AngleSpread], theme: &Theme, buffer:
     }
 }
 
-/// A value of a spread.
 type SpreadValue = fn(&AngleSpread) -> Option<f64>;
 
-/// The curves: the value of a spread that each one shows, and whether it is dashed. The mean is drawn over the
-/// others.
+/// The mean is drawn over the others.
 const CURVES: [(SpreadValue, bool); 3] = [
     (|at| at.min, true),
     (|at| at.max, true),
     (|at| Some(at.mean), false),
 ];
 
-/// Returns the spread at the angle with a mean that is nearest to the chosen angle.
 fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
     let now = results.pose_index()[Axis::Angle];
     spread
@@ -211,7 +193,6 @@ fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
         .copied()
 }
 
-/// Describes the values at an angle in one line.
 fn detail(at: &AngleSpread) -> String {
     let formatted = |value: f64| fitting(value, VALUE);
     let angle = Axis::Angle.parameter().format(at.degrees);
@@ -229,7 +210,6 @@ fn detail(at: &AngleSpread) -> String {
     )
 }
 
-/// Returns the drawing of the tab for a file.
 fn drawing(results: &Results) -> Result<String, String> {
     let spread = spread(results);
     if spread.is_empty() {

@@ -12,44 +12,28 @@ use crate::tui::explore::results::Results;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::write::below;
 
-/// The layout of the map of x0 and y0.
 #[derive(Clone, Copy, Debug)]
 pub struct MapPane {
-    /// The line of angle and zooms.
     pub head: Rect,
-    /// The ruler of x0, above the cells.
     pub ruler: Rect,
-    /// The cells; the ruler of y0 is left of them.
     pub cells: Rect,
-    /// The width of a cell in characters.
     pub cell: u16,
     /// The number of poses in a line of the screen, one above the other: two in a picture, otherwise one.
     pub lines: u16,
-    /// The step between shown poses, along x0 and along y0.
     pub stride: u64,
-    /// The number of the closest zoom.
     pub closest: u8,
-    /// The first visible x0 and y0, by index.
     pub first: (u64, u64),
-    /// The number of visible values of x0 and y0.
     pub count: (u64, u64),
-    /// The pose at the cursor; None without room beside the cells.
     pub side: Option<Rect>,
-    /// The pose at the cursor in one line.
     pub detail: Rect,
 }
 
-/// A way of showing the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum MapScale {
-    /// A letter for each pose.
     Letters,
-    /// Half a character for every n-th pose.
     Picture(u64),
 }
 
-/// Returns the scales of a map of some poses across and down, in a room of columns and lines, starting with the whole
-/// range.
 fn scales((width, height): (u64, u64), (columns, lines): (u16, u16)) -> Vec<MapScale> {
     let (columns, lines) = (u64::from(columns.max(1)), u64::from(lines.max(1)));
     let mut scales = Vec::new();
@@ -66,7 +50,6 @@ fn scales((width, height): (u64, u64), (columns, lines): (u16, u16)) -> Vec<MapS
 }
 
 impl MapPane {
-    /// Computes the layout of the map on its tab, with the cursor as near to the middle as the ends allow.
     pub fn of(area: Rect, results: &Results) -> Self {
         let grid = &results.sweep().grid;
         let [width, height, ..] = grid.counts().into_array();
@@ -127,7 +110,6 @@ impl MapPane {
         }
     }
 
-    /// Returns the x0 and y0 at a place of the screen, by index; of two in a line, the upper one.
     pub fn pose(&self, place: Position) -> Option<(u64, u64)> {
         self.cells.contains(place).then(|| {
             let x = u64::from((place.x - self.cells.x) / self.cell);
@@ -139,7 +121,6 @@ impl MapPane {
         })
     }
 
-    /// Returns the place of a pose on the screen, and whether it is the lower one of two; None if it is not visible.
     pub fn position(&self, (x0, y0): (u64, u64)) -> Option<(Position, bool)> {
         let x = x0.checked_sub(self.first.0)? / self.stride;
         let y = y0.checked_sub(self.first.1)? / self.stride;
@@ -152,7 +133,6 @@ impl MapPane {
         })
     }
 
-    /// Returns true if the map is a picture, not letters.
     pub fn is_picture(&self) -> bool {
         self.lines > 1
     }

@@ -6,7 +6,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The number of letters: lower and upper case, and digits.
 pub const LETTERS: u8 = 62;
 
 /// Returns the letter of each cell of a map as a number from 0, or None where there is no imprint. `width` is the
@@ -23,7 +22,6 @@ pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
     signs(ids, width, LETTERS)
 }
 
-/// Assigns another number of signs, at least one, in the same way as [`letters`]: colours or shades.
 pub fn signs(ids: &[Option<u32>], width: usize, count: u8) -> Vec<Option<u8>> {
     let width = width.max(1);
     let mut neighbours: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
@@ -75,7 +73,6 @@ pub fn signs(ids: &[Option<u32>], width: usize, count: u8) -> Vec<Option<u8>> {
         .collect()
 }
 
-/// Returns the letter of a number.
 pub fn letter(number: u8) -> char {
     let (first, number) = match number {
         0..26 => (b'a', number),

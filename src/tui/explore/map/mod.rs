@@ -26,7 +26,6 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::tab::ResultsTab;
 use crate::tui::keys::binding::Context;
 
-/// The map tab.
 pub static TAB: ResultsTab = ResultsTab {
     title: "map",
     context: Context::Map,
@@ -39,13 +38,12 @@ pub static TAB: ResultsTab = ResultsTab {
     update,
 };
 
-/// Returns the message of a click, which puts the cursor at a pose.
 fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     let (x0, y0) = MapPane::of(area, results).pose(at)?;
     Some(Message::Explore(ExploreMessage::Point(x0, y0)))
 }
 
-/// Moves the cursor by as many poses as the map's step: along y0 by lines, along x0 also to the ends. Zooms the map.
+/// Zooms the map.
 fn update(results: &mut Results, message: &Message, area: Rect) {
     let pane = MapPane::of(area, results);
     let stride = i64::try_from(pane.stride).unwrap_or(i64::MAX);

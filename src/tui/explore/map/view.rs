@@ -34,18 +34,13 @@ use crate::tui::widget::plot::draw_no_room;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// The number of colours for neighbouring imprints.
 const TINTS: u8 = 6;
-/// The number of shades of the theme, including the one for zero.
 const SHADES: u8 = 5;
-/// A coverage for each shade.
 const COVERAGES: [f64; 5] = [0.0, 0.1, 0.3, 0.7, 1.0];
 
 /// The maximum number of cells along a side of a drawing: more would not be distinguishable.
 const DRAWN: u64 = 400;
 
-/// Returns the legend: what letters, colours or shades mean, and which part of the poses is shown: a picture of a part
-/// looks like one of the whole.
 fn meaning(theme: &Theme, pane: &MapPane) -> String {
     let sign = match (pane.is_picture(), has_colours(theme)) {
         (false, _) => "letter",
@@ -59,7 +54,6 @@ fn meaning(theme: &Theme, pane: &MapPane) -> String {
     format!("{full}; 1 pose in {0} × {0}", pane.stride)
 }
 
-/// Draws the tab. Returns the position of the cursor.
 pub(in crate::tui) fn draw(
     results: &Results,
     theme: &Theme,
@@ -83,7 +77,6 @@ pub(in crate::tui) fn draw(
     cursor
 }
 
-/// Returns the drawing of the tab for a file: the whole range at the present angle and zooms of the shape.
 pub(in crate::tui) fn drawing(results: &Results) -> Result<String, String> {
     let grid = &results.sweep().grid;
     let [width, height, ..] = grid.counts().into_array();
@@ -100,7 +93,6 @@ pub(in crate::tui) fn drawing(results: &Results) -> Result<String, String> {
     Ok(map.with_title(&title).svg())
 }
 
-/// Returns the angle and the zooms, each with its number and how many there are.
 fn heading(results: &Results) -> String {
     let grid = &results.sweep().grid;
     let (place, counts) = (results.pose_index(), grid.counts());
@@ -121,7 +113,6 @@ fn heading(results: &Results) -> String {
     parts.collect::<Vec<_>>().join("  ")
 }
 
-/// Returns the imprints of the visible poses, row by row.
 fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
     let (x, y) = pane.first;
     let poses = VisiblePoses {
@@ -133,8 +124,6 @@ fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
     results.visible_imprints().of(poses, find)
 }
 
-/// Returns the imprints of a number of poses across and down, starting at a first one, one in `stride` along both
-/// axes.
 fn sampled(
     results: &Results,
     (x, y): (u64, u64),
@@ -154,7 +143,6 @@ fn sampled(
     ids.collect()
 }
 
-/// Draws the visible poses. Returns the position of the cursor; None if there is no room for any cell.
 fn draw_cells(
     theme: &Theme,
     results: &Results,
@@ -203,23 +191,18 @@ fn draw_cells(
     Some(cursor)
 }
 
-/// Returns the sign of the cursor in a picture, which is no shade.
 fn cursor_sign(theme: &Theme) -> char {
     if theme.ascii { 'X' } else { '+' }
 }
 
-/// Returns the number of colours or shades of a picture.
 fn signs_of_pictures(theme: &Theme) -> u8 {
     if has_colours(theme) { TINTS } else { SHADES }
 }
 
-/// Returns true if the two halves of a character can have different colours.
 fn has_colours(theme: &Theme) -> bool {
     !theme.ascii && theme.tint(0).fg.is_some()
 }
 
-/// Returns the character for two poses, one above the other, by their signs: with colours for both; without colours a
-/// shade for the upper one.
 fn halves(theme: &Theme, upper: Option<u8>, lower: Option<u8>) -> (char, Style) {
     let tint = |sign: u8| theme.tint(sign.into());
     if !has_colours(theme) {
@@ -243,7 +226,6 @@ fn halves(theme: &Theme, upper: Option<u8>, lower: Option<u8>) -> (char, Style) 
     }
 }
 
-/// Draws y0 left of the cells, and above them the first and the last x0.
 fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, area: Rect) {
     let ranges = grid.ranges();
     let label = usize::from(pane.cells.x.saturating_sub(area.x)).saturating_sub(1);
@@ -278,7 +260,6 @@ fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buff
     write::text(buffer, ruler, theme, &text, Role::Quiet);
 }
 
-/// Draws the pose at the cursor: its imprint, the number of that, and its place.
 fn draw_pose(theme: &Theme, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
     let result = results.sweep();
     let grid = &result.grid;

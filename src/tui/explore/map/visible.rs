@@ -6,26 +6,20 @@ use std::sync::Arc;
 
 use crate::pose::PoseIndex;
 
-/// The poses that a map shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct VisiblePoses {
-    /// The first pose, with the angle and the zooms of all.
     pub(super) first: PoseIndex,
-    /// The number of shown poses across and down.
     pub(super) count: (u64, u64),
-    /// The step from one shown pose to the next, along both axes.
     pub(super) stride: u64,
 }
 
-/// The imprints of the poses that were visible last, by number; None for a pose that was not swept.
 #[derive(Clone, Debug, Default)]
 pub struct VisibleImprints(RefCell<Option<PosesAndImprints>>);
 
-/// Poses, and their imprints row by row.
 type PosesAndImprints = (VisiblePoses, Arc<[Option<u32>]>);
 
 impl VisibleImprints {
-    /// Returns the imprints of some poses. Calls `find` if other poses were visible last.
+    /// Calls `find` if other poses were visible last.
     pub(super) fn of(
         &self,
         poses: VisiblePoses,

@@ -22,21 +22,14 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::widget::field_list::{FieldList, FormError, FormField};
 use crate::tui::widget::text_field::TextField;
 
-/// The maximum number of characters of a field.
 const LONGEST: usize = 40;
 
-/// The maximum number of orientations for which ranges are proposed, and poses that are cut off are counted, while
-/// the user types.
 const MOST_ORIENTATIONS: u64 = 20_000;
 
-/// The text field of one range.
 #[derive(Clone, Debug)]
 pub struct RangeField {
-    /// The axis.
     axis: Axis,
-    /// The text.
     input: TextField,
-    /// The proposed text; None once another text was typed.
     proposed: Option<String>,
 }
 
@@ -69,29 +62,19 @@ impl FormField for RangeField {
     }
 }
 
-/// The form of ranges.
 #[derive(Clone, Debug)]
 pub struct RangesForm {
-    /// The source to sweep.
     source: Source,
-    /// A field for each axis of the source; the anchor, below them, has the focus if none of them has it.
     form: FieldList<RangeField>,
-    /// The anchor: the point of the shape that x0 and y0 place.
     anchor: Anchor,
-    /// The number of taxels that were set by hand, which the sweep ignores.
     by_hand: u32,
-    /// The grid of the fields, or their first error.
     grid: Result<PoseGrid, FormError>,
-    /// The last measured grid, the number of its poses that are cut off, and its time.
     measured: Option<Measured>,
 }
 
-/// The facts that are known about a grid before its sweep.
 #[derive(Clone, Debug)]
 struct Measured {
-    /// The grid.
     grid: PoseGrid,
-    /// The number of its poses that the sensor cuts off; None if it has too many orientations to count.
     cut_off: Option<u64>,
     /// The time that its sweep takes; None until a worker has measured it.
     time: Option<Duration>,
@@ -113,7 +96,6 @@ impl RangesForm {
         Self::begun((document.sensor, by_hand), source, earlier, last)
     }
 
-    /// Creates the form for a sensor, and a number of taxels that were set by hand.
     fn begun(
         (sensor, by_hand): (Sensor, u32),
         source: Source,
@@ -157,7 +139,6 @@ impl RangesForm {
         form
     }
 
-    /// Brings the proposals and the grid up to date after a change of a field or of the anchor.
     fn follow(&mut self) {
         self.propose();
         self.grid = grid_of(&self.form, &self.source, self.anchor);
@@ -198,7 +179,6 @@ impl RangesForm {
         }
     }
 
-    /// Resets all fields to the defaults.
     fn set_defaults(&mut self) {
         let of = (*self.form.sensor(), self.by_hand);
         let fresh = Self::begun(of, self.source.clone(), None, None);
@@ -207,8 +187,6 @@ impl RangesForm {
         self.form.set_focus(focus);
     }
 
-    /// Returns the ranges to remember: typed ones and ones from an earlier form, not those that follow the other
-    /// fields.
     pub fn remembered(&self) -> RememberedRanges {
         let fields = self.form.fields().iter();
         let own = fields.filter(|field| field.proposed.is_none());
@@ -221,37 +199,30 @@ impl RangesForm {
         }
     }
 
-    /// Returns the title, with the name of the source.
     pub fn title(&self) -> String {
         format!("Explore: {}", name_of(&self.source))
     }
 
-    /// Returns the fields.
     pub fn form(&self) -> &FieldList<RangeField> {
         &self.form
     }
 
-    /// Returns the anchor, the point of the shape that x0 and y0 place.
     pub fn anchor(&self) -> Anchor {
         self.anchor
     }
 
-    /// Returns the number of taxels that were set by hand, which the sweep ignores.
     pub fn by_hand(&self) -> u32 {
         self.by_hand
     }
 
-    /// Returns the approximate time for the grid of the fields; None if it is not known.
     pub fn estimate(&self) -> Option<Duration> {
         self.known()?.time
     }
 
-    /// Returns the number of poses of the fields' grid that the sensor cuts off; None if it is not known.
     pub fn cut_off(&self) -> Option<u64> {
         self.known()?.cut_off
     }
 
-    /// Returns the known facts about the grid of the fields.
     fn known(&self) -> Option<&Measured> {
         let measured = self.measured.as_ref();
         measured.filter(|known| self.grid.as_ref() == Ok(&known.grid))
@@ -277,7 +248,7 @@ impl RangesForm {
         Some(grid.clone())
     }
 
-    /// Takes the estimated time of a grid. An estimate for another grid is ignored.
+    /// An estimate for another grid is ignored.
     pub fn take_estimate(&mut self, grid: &PoseGrid, time: Duration) {
         let known = self.measured.as_mut().filter(|known| known.grid == *grid);
         if let Some(known) = known {
@@ -285,11 +256,6 @@ impl RangesForm {
         }
     }
 
-    /// Returns the grid of the fields.
-    ///
-    /// # Errors
-    /// Returns the first error in the fields, after moving the focus to it; or what is wrong with all of them together,
-    /// such as too many poses.
     pub fn accepted(&mut self) -> Result<PoseGrid, FormError> {
         if let Some((index, _)) = self.form.error() {
             self.form.set_focus(Some(index));
@@ -297,16 +263,11 @@ impl RangesForm {
         self.grid.clone()
     }
 
-    /// Returns the grid of the fields.
-    ///
-    /// # Errors
-    /// Returns the first error in the fields, or what is wrong with all of them together.
     pub fn grid(&self) -> Result<&PoseGrid, &FormError> {
         self.grid.as_ref()
     }
 
-    /// Handles a message: moves to another row, or types, moves or deletes in the field. On the anchor, Space, a click
-    /// and the arrows to the sides choose the other anchor.
+    /// On the anchor, Space, a click and the arrows to the sides choose the other anchor.
     pub fn take(&mut self, message: &Message) {
         let on_anchor = self.form.focus().is_none();
         match message {
@@ -325,7 +286,6 @@ impl RangesForm {
         }
     }
 
-    /// Chooses the other anchor, and proposes ranges that fit it.
     fn other_anchor(&mut self) {
         self.anchor = match self.anchor {
             Anchor::Corner => Anchor::Centre,
@@ -335,10 +295,6 @@ impl RangesForm {
     }
 }
 
-/// Returns the grid of the fields.
-///
-/// # Errors
-/// Returns the first error in the fields.
 fn grid_of(
     form: &FieldList<RangeField>,
     source: &Source,

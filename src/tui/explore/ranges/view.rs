@@ -28,9 +28,7 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// The number of columns of a label.
 const LABEL: usize = 8;
-/// The number of columns of the text of a field: `-15.5:-14.51:0.01` is about the longest that is proposed.
 const INPUT: usize = 16;
 
 impl Page for RangesForm {
@@ -73,8 +71,7 @@ impl Page for RangesForm {
     }
 }
 
-/// Returns the places of the fields and of the anchor, the last row, in the area of the form. The title is above them;
-/// below them are three lines, or as many as the rows leave, but at least one.
+/// The title is above them; below them are three lines, or as many as the rows leave, but at least one.
 fn rows(form: &RangesForm, area: Rect) -> FieldRows {
     let (below, rows) = (write::below(area, 1), form.form().fields().len() + 1);
     let foot = below.height.saturating_sub(narrow(rows)).clamp(1, 3);
@@ -83,8 +80,6 @@ fn rows(form: &RangesForm, area: Rect) -> FieldRows {
     FieldRows::of(Rect { height, ..below }, 0, rows, Some(focus))
 }
 
-/// Draws the anchor between angle brackets, and its meaning as far as there is room. Returns the position of the
-/// cursor.
 fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
     let label = format!("{:LABEL$}", "Anchor");
     let (name, meaning) = match form.anchor() {
@@ -107,8 +102,6 @@ fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect)
     Position::new(row.x.saturating_add(narrow(LABEL)), row.y)
 }
 
-/// Draws the number of poses and the time, or the error of the grid; then the number of poses that are cut off, and
-/// what the sweep ignores.
 fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
     let (text, role) = match form.grid() {
         Ok(grid) => {
@@ -147,7 +140,6 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
     }
 }
 
-/// Returns a time in words: "about 20 seconds".
 pub fn about(time: Duration) -> String {
     if time < Duration::from_secs(1) {
         return "under a second".to_owned();
