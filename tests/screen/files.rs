@@ -143,63 +143,37 @@ fn the_prompt_offers_commands_and_remembers_lines_between_runs() {
 
 #[test]
 fn forms_begin_with_the_values_that_were_accepted_last() {
-    let folder = folder();
-    let world = || World::new(Library::open(folder.path().to_owned()));
-    press(&mut started(world(), ""), "f<Tab>2.5<Enter>:quit!<Enter>");
-    // The figure was given up, so no unsaved work is offered. Cancelled values are not remembered.
-    press(&mut started(world(), ""), "f<Tab>7<Esc>");
-    press(
-        &mut started(world(), ""),
-        "fr<Tab>5<Enter>e<Down><Down><C-u>0:80:20<Enter>q:quit!<Enter>",
-    );
-    let mut third = started(world(), "f");
-    shows(&third, &["rectangle length 5.00"]);
-    // Each kind has its own values; a kind that was never accepted has its defaults.
-    then(&mut third, "e", &["ellipse rx 2.50"]);
-    then(&mut third, "<Left>", &["octagon side"]);
-    // The angles suit any shape; the ranges of x0 and y0 are proposed anew.
-    press(&mut third, "<Esc>lcross<Enter>e");
-    shows(&third, &["0:80:20"]);
-    // A shape on the matrix takes precedence.
-    then(
-        &mut third,
-        "<Esc>:figure ellipse --radius-x 1<Enter>f",
-        &["ellipse rx 1.00"],
-    );
-    // Without reminders, as in a script and a record, a form begins with the defaults.
-    shows(
-        &started(world().without_reminders(), "f"),
-        &["ellipse rx 4.00 ry 4.00"],
-    );
-}
-
-#[test]
-fn a_key_gives_forms_their_defaults_and_another_sensor_has_its_own_values() {
-    let folder = folder();
-    let world = || World::new(Library::open(folder.path().to_owned()));
-    let accepted = "f<Tab>2.5<Enter>e<Down><Down><C-u>0:80:20<Enter>q:quit!<Enter>";
-    press(&mut started(world(), ""), accepted);
+    let mut session = session("f<Tab>2.5<Enter>n");
+    // Cancelled values are not remembered, and each kind has its own.
+    press(&mut session, "f<Tab>7<Esc>fr<Tab>5<Enter>n");
+    then(&mut session, "f", &["rectangle length 5.00"]);
+    then(&mut session, "e", &["ellipse rx 2.50"]);
+    then(&mut session, "<Left>", &["octagon side"]);
     // On a sensor of another size, a remembered position may be anywhere, so the values do not apply.
-    let mut other = started(world(), ":sensor --columns 20 --rows 16<Enter>f");
-    shows(&other, &["ellipse rx 4.00"]);
-    press(&mut other, "<Esc>");
-    drop(other);
-    let mut second = started(world(), "f");
-    shows(&second, &["ellipse rx 2.50", "Ctrl-D defaults"]);
+    press(&mut session, "<Esc>:sensor --columns 20<Enter>");
+    then(&mut session, "fe", &["ellipse rx 4.00"]);
+    press(&mut session, "<Esc>u");
+    then(&mut session, "fe", &["ellipse rx 2.50", "Ctrl-D defaults"]);
     then(
-        &mut second,
+        &mut session,
         "<Tab><Tab>3<C-d>",
         &["ellipse rx 4.00 ry 4.00"],
     );
-    then(&mut second, "1", &["ellipse rx 4.00 ry 1.00"]);
-    press(&mut second, "<Enter>e");
-    shows(&second, &["0:80:20", "Ctrl-D defaults"]);
-    press(&mut second, "<C-d>");
-    hides(&second, &["0:80:20"]);
-    shows(&second, &["0:359:1"]);
+    then(&mut session, "1", &["ellipse rx 4.00 ry 1.00"]);
+}
+
+#[test]
+fn ranges_begin_with_those_that_were_accepted_last() {
+    let mut session = session("fr<Enter>e<Down><Down><C-u>0:80:20<Enter>q");
+    // The angles suit any shape; the ranges of x0 and y0 are proposed anew.
+    press(&mut session, "lcross<Enter>e");
+    shows(&session, &["0:80:20", "Ctrl-D defaults"]);
+    press(&mut session, "<C-d>");
+    hides(&session, &["0:80:20"]);
+    shows(&session, &["0:359:1"]);
     // A picture returns to its place, and a sensor becomes that of the paper.
-    then(&mut second, "<Esc>pwasher<Enter>", &["zoom 1.00"]);
-    then(&mut second, "3", &["at 3.00, 2.00"]);
-    then(&mut second, "<C-d>", &["at 2.00, 2.00"]);
-    then(&mut second, "<Esc>S20<C-d>", &["16 × 16"]);
+    then(&mut session, "<Esc>n:picture washer<Enter>", &["zoom 1.00"]);
+    then(&mut session, "3", &["at 3.00, 2.00"]);
+    then(&mut session, "<C-d>", &["at 2.00, 2.00"]);
+    then(&mut session, "<Esc>S20<C-d>", &["16 × 16"]);
 }

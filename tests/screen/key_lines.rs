@@ -70,20 +70,6 @@ fn the_menu_shows_the_keys_of_the_page() {
             "{keys}: once is enough: {last}"
         );
     }
-    // The way out is shown on a narrow screen, too.
-    for (keys, menu) in [
-        (
-            "f<CR>:explore --angle 0<CR>",
-            "Tab page  d D descriptor  x export  e ranges  Esc close",
-        ),
-        (
-            "f<CR>r",
-            "t random touch  a x keep, forget  o O other model  Esc close",
-        ),
-    ] {
-        let (first, _) = lines(&sized((60, 20), false, keys));
-        assert_eq!(first, menu, "{keys}");
-    }
     let (_, hints) = lines(&sized((60, 20), false, "r"));
     assert!(hints.starts_with("i matrix"), "{hints}");
     let (_, hints) = lines(&sized((60, 20), false, "ri"));
@@ -100,13 +86,6 @@ fn the_menu_shows_the_keys_of_the_page() {
         hints.starts_with("Space toggle") && !hints.contains("outline"),
         "{hints}"
     );
-    // Keys that do not fit into the menu are in the hints.
-    let narrow = sized((20, 20), false, "f");
-    let (menu, hints) = lines(&narrow);
-    assert_eq!(
-        (menu.as_str(), hints.as_str()),
-        ("Enter accept", "Tab field")
-    );
 }
 
 #[test]
@@ -114,9 +93,7 @@ fn keys_that_can_do_nothing_at_the_moment_are_not_shown() {
     for (keys, has, lacks) in [
         ("?", "/ search", "n N match"),
         ("?/zoom<CR>", "n N match", "nothing"),
-        ("H", "/ search", "n N match"),
         ("lzzz", "/ new search", "choose"),
-        ("H/start<CR>", "n N match", "nothing"),
         (
             "f<CR>:explore --angle 0<CR>",
             "Enter to matrix  / filter",
@@ -203,16 +180,4 @@ fn clicks_on_the_lines_of_keys_do_what_the_keys_do() {
     click(&mut session, "q Quit");
     click(&mut session, "yes");
     assert!(session.app().ended());
-}
-
-/// A narrow screen shows the way out and help in full; the other options are shown by their keys.
-#[test]
-fn the_menu_of_a_narrow_screen_has_every_option() {
-    let menu = |width| sized((width, 12), false, "").screen();
-    assert!(
-        menu(40).starts_with("n l f p s d q Quit  ? Help\n"),
-        "{}",
-        menu(40)
-    );
-    assert!(menu(60).starts_with("new  load  figure"), "{}", menu(60));
 }

@@ -5,7 +5,7 @@ use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::keys::keymap::{Keymap, help};
 
-use crate::session::{hides, session, shows, sized, then};
+use crate::session::{hides, session, shows, then};
 
 #[test]
 fn the_cursor_stays_on_the_matrix() {
@@ -31,10 +31,8 @@ fn taxels_are_toggled_and_toggles_are_undone() {
     shows("<Space><Right><Space>u", &["NA 1 in all"]);
     shows("<Space><Right><Space>uu", &["NA 0 in all"]);
     shows("<Space><Right><Space>uuu", &["! nothing to undo"]);
-    // A count that is too large ends at the first step, which is still named.
-    shows("<Space><Right><Space>9u", &["undone: taxel 8, 8 on"]);
-    shows("<Space><Right><Space>uu9<C-r>", &["redone: taxel 9, 8 on"]);
-    shows("9u", &["nothing to undo"]);
+    shows("<Space><Right><Space>uu", &["undone: taxel 8, 8 on"]);
+    shows("f<Enter><Space>u", &["undone: taxel 8, 8 off"]);
     shows("<Space><Right><Space>uuUU", &["NA 2 in all"]);
     shows("<Space><Right><Space>uu<C-r>", &["NA 1 in all"]);
     shows(
@@ -88,40 +86,6 @@ fn the_matrix_does_not_show_the_beginning_of_a_wrong_number() {
         "f<Tab>2<S-Tab>r<Tab>x",
         &["rectangle length 6.00 width 3.00"],
     );
-}
-
-#[test]
-fn keys_for_numbers_do_nothing_on_the_kind_and_say_so() {
-    for key in ["<PageUp>", "<C-u>", "<Home>", "<BS>"] {
-        shows(
-            &format!("f{key}"),
-            &["an arrow or a letter chooses the kind"],
-        );
-    }
-    let hints = |keys: &str| session(keys).screen();
-    assert!(!hints("f").contains("clear") && hints("f<Tab>").contains("clear"));
-}
-
-#[test]
-fn a_form_explains_the_thickness() {
-    shows(
-        "f",
-        &[
-            "Thickness           above 0, up to 16 cells",
-            "empty: solid",
-        ],
-    );
-    let figure = "ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°, wall";
-    shows(
-        "f<6x:Tab>3.99",
-        &[&format!("{figure} 3.99"), "empty: solid"],
-    );
-    let solid = "no room for a hole: solid";
-    shows(
-        "f<6x:Tab>4",
-        &[&format!("{figure} 4.00 ({solid})"), &format!("  {solid}")],
-    );
-    shows("f<6x:Tab>4<Enter>", &[solid, "NA 52 in all"]);
 }
 
 #[test]
@@ -216,25 +180,6 @@ fn a_form_accepts_the_values_that_a_command_accepts() {
 }
 
 #[test]
-fn a_text_that_is_too_long_for_its_field_is_not_cut_without_a_word() {
-    let mut prompt = session("<Space>s");
-    prompt.send(Message::Paste("a".repeat(5000)));
-    let said = "! the end of the text was left out: 4,928 characters";
-    shows(&prompt, &[said]);
-    then(&mut prompt, "<C-u>b", &["Save as: b"]);
-    hides(&prompt, &[said]);
-}
-
-#[test]
-fn equal_imprints_are_compared_in_the_words_of_others() {
-    shows(
-        "lkey<Enter>:compare key<Enter>",
-        &["no taxels differ   A: key"],
-    );
-    shows("lkey<Enter><Space>=", &["1 taxel differs   A: "]);
-}
-
-#[test]
 fn pasted_text_only_goes_into_fields() {
     let mut form = session("f<Tab>");
     form.send(Message::Paste(" 2.5\n".to_owned()));
@@ -308,30 +253,6 @@ fn a_shape_is_moved_and_turned() {
     }
     // A hundred steps of 0.01 are exactly 1.
     shows("f<Enter>g<100x:Right>", &["at 5.00, 4.00"]);
-}
-
-#[test]
-fn the_history_says_whether_a_taxel_was_switched_on_or_off() {
-    shows("<Space>u", &["undone: taxel 8, 8 on"]);
-    // A figure that covers the taxel does not change the words.
-    shows("f<Enter><Space>u", &["undone: taxel 8, 8 off"]);
-    shows("f<Enter><Space><Space>u", &["undone: taxel 8, 8 on"]);
-    shows("f<Enter><Home><Space>u", &["undone: taxel 0, 8 on"]);
-}
-
-#[test]
-fn toggles_that_a_new_touch_drops_are_reported() {
-    shows("f<Enter><Space>", &["+ 1 by hand"]);
-    shows(
-        "f<Enter><Space>>",
-        &["1 taxel set by hand was dropped; u restores it"],
-    );
-    shows("f<Enter><Space>>u", &["+ 1 by hand"]);
-    shows(
-        "<Space><Right><Space>f<Enter>",
-        &["2 taxels set by hand were dropped; u restores them"],
-    );
-    shows("f<Enter><Space>n", &["empty"]);
 }
 
 #[test]
@@ -634,40 +555,6 @@ fn a_page_that_is_closed_leaves_a_held_shape_held() {
 }
 
 #[test]
-fn copying_is_confirmed() {
-    shows("y", &["! no region: the matrix is empty"]);
-    shows(
-        "Y",
-        &["imprint sent to your terminal's clipboard (272 characters)"],
-    );
-    shows(
-        "<Space>y",
-        &["descriptors sent to your terminal's clipboard ("],
-    );
-}
-
-#[test]
-fn a_list_without_a_row_has_nothing_to_choose() {
-    shows("lzzz<Enter>", &["! there is no shape to choose", "0 of 28"]);
-    shows("d<Enter>", &["! there is no shape to choose"]);
-}
-
-/// Typed text is visible, however wide its characters are.
-#[test]
-fn wide_characters_in_a_number_are_seen() {
-    shows("f<Tab>字字字字字字1", &["… 字字1"]);
-    // Without the cursor, a number is shown from its start; with it, the digit under the cursor is visible.
-    let long = "f<Tab>3.2109876543";
-    shows(long, &["Radius x  …9876543 "]);
-    shows(&format!("{long}<Tab>"), &["Radius x  3.210987… "]);
-    shows(
-        &format!("{long}<Home><Right><Right><Right><Right><Right><Right><Right><Right>"),
-        &["Radius x  …2109876… "],
-    );
-    shows("f<Enter>e字字字字字字字字1", &["… 字字字字字字1"]);
-}
-
-#[test]
 fn recognise_names_the_shape_and_follows_the_matrix() {
     shows("r", &["Recognise: model figures", "The matrix is empty"]);
     shows("f<Enter>r", &["certain: ellipse", "100.0 %", "any angle"]);
@@ -860,40 +747,6 @@ fn a_turn_beyond_360_degrees_shows_no_rounding_error() {
     );
 }
 
-#[test]
-fn esc_cancels_a_count() {
-    let screen = session("12<Esc>").screen();
-    assert!(
-        !screen.contains("12 times") && !screen.contains("does nothing"),
-        "{screen}"
-    );
-    // Another key without a meaning is named, and also cancels the count.
-    let screen = session("12a").screen();
-    assert!(
-        !screen.contains("12 times") && screen.contains("a does nothing"),
-        "{screen}"
-    );
-    // The same again, after keys without a meaning have been named.
-    let screen = session("<Esc>12<Esc>").screen();
-    assert!(!screen.contains("12 times"), "{screen}");
-    shows("1", &["1 time"]);
-    shows("999", &["999 times"]);
-    shows("1000", &["a key repeats at most 999 times"]);
-    shows("0", &["a count begins with 1 to 9"]);
-}
-
-#[test]
-fn a_count_is_refused_before_what_is_done_only_once() {
-    let refused = "! a count repeats only steps";
-    shows("2<Space>", &[refused, "NA 0 in all"]);
-    shows("3o", &[refused]);
-    shows("2<Space><Space>1<Left><Space>", &["NA 2 in all"]);
-    shows("f<Enter>g<Right>2<Esc>", &["held", "at 4.01"]);
-    hides("f<Enter>g<Right>2<Esc>", &["2 times"]);
-    assert!(session("2<C-c>").app().ended());
-    shows("f<Enter>2q", &["Quit anyway?"]);
-}
-
 /// A smaller sensor that is undone leaves the cursor where it was.
 #[test]
 fn the_cursor_is_back_when_the_sensor_is_as_large_as_before() {
@@ -908,65 +761,11 @@ fn the_cursor_is_back_when_the_sensor_is_as_large_as_before() {
 }
 
 #[test]
-fn help_of_recognise_describes_only_keys_that_work_there() {
-    let help = sized((100, 70), false, "f<Enter>r?");
-    shows(&help, &["the rectangle with CG (G), CD (D)"]);
-    hides(&help, &["outline of the shape"]);
-}
-
-#[test]
 fn the_key_of_narrow_screens_says_that_nothing_is_hidden() {
     let text = "both sides of the screen are visible";
     for keys in ["i", "f<Enter>ri", "rt<Tab>"] {
         shows(keys, &[text]);
     }
-}
-
-#[test]
-fn an_emptied_matrix_is_a_step_of_that_name() {
-    shows("f<Enter><Space>nH", &["taxel 8, 8 off", "emptied"]);
-    shows("f<Enter><Space>nu", &["undone: emptied"]);
-    shows(":load arrow<Enter>nu", &["undone: emptied"]);
-    shows("<Space><Space>u", &["undone: taxel 8, 8 off"]);
-}
-
-#[test]
-fn cells_of_a_spreadsheet_stay_apart_when_pasted() {
-    let mut form = session("f<Tab>");
-    form.send(Message::Paste("3.5\t7".to_owned()));
-    shows(&form, &["3.5 7", "! not a number"]);
-}
-
-#[test]
-fn a_function_key_without_a_meaning_is_named() {
-    shows("<F5>", &["F5 does nothing here; ? lists the keys"]);
-    // Also in a text field, where ? is a character.
-    shows(
-        "<Space>s<F12>",
-        &["F12 does nothing here; F1 lists the keys"],
-    );
-}
-
-/// On the page of recognition, a held shape has its own keys instead of those of the page.
-#[test]
-fn help_lists_the_keys_of_a_held_shape() {
-    shows("f<Enter>rg?", &["While a shape is held"]);
-    shows("f<Enter>r?", &["Recognising"]);
-    // A prompt has its own keys, even while a shape is held.
-    shows("f<Enter>g:<F1>", &["In the command line"]);
-}
-
-/// A page of help continues where the previous one ended: it begins with the last line of that.
-#[test]
-fn pages_of_help_overlap_by_a_line() {
-    let body = |keys: &str| {
-        let screen = session(keys).screen();
-        let lines = screen.lines().skip(1).take(19);
-        lines.map(str::to_owned).collect::<Vec<_>>()
-    };
-    let [first, second] = ["?", "?<PageDown>"].map(body);
-    assert_eq!(second.first(), first.last(), "{second:#?}");
-    assert_eq!(body("?<PageDown><PageUp>"), first);
 }
 
 /// Home and End reach its ends as in other lists, and an unknown key is answered with the keys of help.
@@ -979,37 +778,6 @@ fn home_and_end_reach_the_ends_of_help() {
         "?g",
         &["! g does nothing here; Up Down PageUp PageDown scroll, / searches"],
     );
-}
-
-/// The keys of the other pages are listed below those of this page, so that a search finds them.
-#[test]
-fn help_on_a_page_of_explore_lists_the_keys_of_the_others() {
-    let mut help = session("fr<Enter>:explore --x0 5 --y0 5<Enter>?");
-    shows(
-        &help,
-        &["In the list of imprints", "Exploring, on every page"],
-    );
-    then(
-        &mut help,
-        "/zoom<Enter>",
-        &["match 1 of", "On the map", "+ -"],
-    );
-    // Enter opens the histogram from the statistics; on this page, it has another meaning.
-    then(
-        &mut help,
-        "/show its histogram<Enter>",
-        &["Enter                   show"],
-    );
-    hides(&help, &["! "]);
-    shows("fr<Enter>:explore --x0 5 --y0 5<Enter>4?", &["On the map"]);
-}
-
-#[test]
-fn a_drawing_says_how_it_can_be_moved() {
-    shows("g", &["! nothing to move: press f for a figure"]);
-    let how = "! a drawing cannot be moved: save it (s), then place it (p)";
-    shows("<Space>g", &[how]);
-    shows("<Space><S-Left>", &[how]);
 }
 
 #[test]
@@ -1026,24 +794,4 @@ fn a_difference_of_directions_is_a_turn_and_every_difference_has_its_sign() {
     assert_eq!(row("  dir ").as_deref(), Some("-90°"), "{screen}");
     assert_eq!(row("  CG  ").as_deref(), Some("0, +0.3333"), "{screen}");
     assert_eq!(row("  NumY ").as_deref(), Some("+1"), "{screen}");
-}
-
-#[test]
-fn a_layer_that_is_switched_on_an_empty_matrix_comes_with_the_next_shape() {
-    let mut session = session("o");
-    shows(
-        &session,
-        &["\nwith the outline: the matrix is empty; f places a figure"],
-    );
-    then(
-        &mut session,
-        "b",
-        &["\nwith rectangle, CG (G) and CD (D), once there is a region"],
-    );
-    then(
-        &mut session,
-        "C",
-        &["\npictures now zoom about their centre"],
-    );
-    then(&mut session, "C", &["\npictures now zoom about the origin"]);
 }

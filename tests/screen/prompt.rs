@@ -20,9 +20,8 @@ fn every_action_has_a_command_word() {
         .iter()
         .filter(|binding| places.contains(&binding.context))
         .flat_map(|binding| binding.keys.iter());
-    // The digits of a count belong to the following key, and `:` is there already.
-    let counts = |action: &Action| action.name.starts_with("count-") || action.name == "command";
-    for (key, action) in bound.filter(|(_, action)| !counts(action)) {
+    // `:` is there already.
+    for (key, action) in bound.filter(|(_, action)| action.name != "command") {
         assert!(said.contains(action), "{key}: {action:?}");
         let found = find(action.name).expect("its name is a command");
         assert!(found.words.contains(&("", *action)), "{}", action.name);
@@ -135,40 +134,6 @@ fn names_and_flags_are_completed() {
     );
 }
 
-/// Names may contain spaces, so a single space would not show where a name ends.
-#[test]
-fn offered_names_are_separated_by_two_spaces() {
-    let mut session = session("<Space>sa b<Enter>n<Space>sa c<Enter>");
-    for command in ["load", "compare", "delete"] {
-        let keys = format!(":{command} a <Tab>");
-        let texts = [format!(":{command} a    a b  a c")];
-        then(&mut session, &keys, &texts.each_ref().map(String::as_str));
-        press(&mut session, "<Esc>");
-    }
-    press(&mut session, "da b<Enter>yda c<Enter>y");
-    then(&mut session, ":restore <Tab>", &[":restore a    a c  a b"]);
-}
-
-/// Only as many candidates are shown as fit, with the number of the others.
-#[test]
-fn candidates_fit_on_the_screen() {
-    for width in [80, 60, 40] {
-        let mut session = session(":");
-        session.resize(width, 24);
-        press(&mut session, "<Tab>");
-        let screen = session.screen();
-        let line = screen
-            .lines()
-            .find(|line| line.starts_with(':'))
-            .expect("the line");
-        let shown = line.trim_start_matches(':').split_whitespace();
-        let shown = shown.take_while(|word| *word != "…").count();
-        let told = format!("… {} more", commands().len() - shown);
-        assert!(line.ends_with(&told), "{line:?} at {width}: {told}");
-        assert!(line.chars().count() <= width.into(), "{line:?}");
-    }
-}
-
 #[test]
 fn up_and_down_recall_earlier_lines() {
     let mut session = session(":new<Enter>:hold<Enter>:new<Enter>:new<Enter>:z<Up>");
@@ -193,116 +158,24 @@ fn up_and_down_recall_earlier_lines() {
 /// Help shows the keys of the place where it is opened, and returns to it.
 #[test]
 fn help_is_available_everywhere() {
-    for (keys, back, title, row, foreign) in [
-        (
-            "f?",
-            "Radius x",
-            "In a form",
-            "to the next 0.01 (from 10 on 0.1)",
-            "On the matrix",
-        ),
-        (
-            "f<Tab>2?",
-            "rx 2.00",
-            "In a form",
-            "accept; refused while a field is invalid",
-            "Saving",
-        ),
-        (
-            "l?",
-            "filter:",
-            "In the list of shapes",
-            "delete a character of the filter",
-            "On the matrix",
-        ),
-        (
-            "H/<F1>",
-            "a word in a step",
-            "Searching",
-            "keep the search, to go to other matches",
-            "Searching the help",
-        ),
-        (
-            "<Space>s<F1>",
-            "Save as:",
-            "Saving",
-            "save under this name",
-            "On the matrix",
-        ),
-        (
-            ":<F1>",
-            "Enter run",
-            "In the command line",
-            "complete the word",
-            "On the matrix",
-        ),
-        (
-            "<Space>q?",
-            "(y: lose it, n: stay, s: save first)",
-            "At a question",
-            "cancel, without an answer",
-            "On the matrix",
-        ),
-        (
-            "f<Enter>g?",
-            "held, step",
-            "While a shape is held",
-            "let the shape go",
-            "In a form",
-        ),
-        (
-            "<F1>",
-            "? Help",
-            "On the matrix",
-            "empty the matrix",
-            "In a form",
-        ),
+    for (keys, back, title) in [
+        ("f<Tab>2?", "rx 2.00", "In a form"),
+        ("l?", "filter:", "In the list of shapes"),
+        ("?/<F1>", "a word of what it does", "Searching"),
+        ("<Space>s<F1>", "Save as:", "Saving"),
+        (":<F1>", "Enter run", "In the command line"),
+        ("<Space>q?", "y: lose it", "At a question"),
+        ("f<Enter>g?", "held, step", "While a shape is held"),
+        ("<F1>", "? Help", "On the matrix"),
     ] {
         let mut session = session(keys);
-        shows(&session, &[title, row]);
-        assert!(!session.screen().contains(foreign), "{keys}: {foreign}");
+        shows(&session, &[&format!("{title}\n")]);
         press(&mut session, "<Esc>");
-        assert!(!session.screen().contains(row), "{keys}: help is closed");
         shows(&session, &[back]);
     }
     // In a text field, ? is a character.
     shows(&session("<Space>sa?"), &["'?' cannot be in a name"]);
     shows(&session(":a?"), &[":a?"]);
-}
-
-/// A long list shows the position, and that there is more.
-#[test]
-fn help_over_a_page_says_nothing_about_the_matrix_below() {
-    for keys in [
-        "f<Enter>:explore --x0 5:5.9:0.1 --y0 5 --angle 0<Enter>?",
-        "f<Enter>:watch tests/scripts/touch.csv<Enter>?",
-        "f<Enter>:watch tests/scripts/touch.csv<Enter>:help<Enter>",
-    ] {
-        hides(keys, &["ellipse rx", "column  8"]);
-    }
-    // The help that a command opens is that of the page, too, and leads back to it.
-    let live = "f<Enter>:watch tests/scripts/touch.csv<Enter>:help<Enter>";
-    shows(live, &["Watching a sensor"]);
-    shows(&format!("{live}q"), &["touch.csv  no frame yet"]);
-    shows("f<Enter>?", &["ellipse rx", "column  8"]);
-}
-
-#[test]
-fn a_long_help_says_that_there_is_more() {
-    let mut session = session("?");
-    shows(&session, &["lines 1-19 of", "more below: Down, PageDown"]);
-    then(&mut session, "<Down>", &["lines 2-20 of", "more below"]);
-    then(&mut session, "<30x:PageDown>", &["the end"]);
-    then(&mut session, "<Up>", &["more below"]);
-    then(&mut session, "<30x:PageUp>", &["lines 1-19 of"]);
-    press(&mut session, "<Esc>f?");
-    assert!(
-        !session.screen().contains("lines 1-"),
-        "{}",
-        session.screen()
-    );
-    session.resize(60, 12);
-    shows(&session, &["lines 1-9 of", "more below"]);
 }
 
 #[test]
@@ -456,27 +329,6 @@ fn a_refused_prompt_stays_open() {
 }
 
 #[test]
-fn commands_are_completed_and_recalled() {
-    let mut session = session(":re<Tab>");
-    shows(
-        &session,
-        &[":re   recognise  rectangle  redo  redraw  region  restore"],
-    );
-    then(&mut session, "g<Tab>", &[":region"]);
-    then(
-        &mut session,
-        "<C-u>figure hex<Tab>--side 3<Enter>",
-        &["hexagon side 3.00"],
-    );
-    then(
-        &mut session,
-        ":new<Enter>:<Up><Up>",
-        &[":figure hexagon --side 3"],
-    );
-    then(&mut session, "<Down>", &[":new"]);
-}
-
-#[test]
 fn commands_have_short_forms() {
     let folder = tempfile::tempdir().expect("a folder");
     let world = crate::session::world().confined_to(folder.path().to_owned());
@@ -484,11 +336,6 @@ fn commands_have_short_forms() {
     shows(&session, &["written: ", "one.txt"]);
     press(&mut session, ":q!<Enter>");
     assert!(session.app().ended());
-}
-
-#[test]
-fn a_seed_is_confirmed() {
-    shows(":seed 3<Enter>", &["random touches begin with the seed 3"]);
 }
 
 #[test]

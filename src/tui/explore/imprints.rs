@@ -182,8 +182,10 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         let pieces = [(sign, Role::Key), (text.as_str(), role)];
         write::line(buffer, row, theme, pieces);
         if selected {
-            let text = detail(theme, results, &entry);
-            write::text(buffer, list.detail, theme, &text, Role::Text);
+            let texts = detail(theme, results, &entry);
+            let texts = texts.each_ref().map(String::as_str);
+            let text = write::first_fitting(&texts, list.detail.width.into());
+            write::text(buffer, list.detail, theme, text, Role::Text);
         }
     }
     if let Some(area) = list.gallery {
@@ -256,18 +258,19 @@ fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     theme.number(value, VALUE - 1)
 }
 
-fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
+/// Describes an imprint in one line; the shorter form leaves out what its row says too.
+fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> [String; 2] {
     let pose = results.sweep().grid.pose(entry.first_pose);
     let count = |count: u16, noun: &str| counted(count, noun);
-    format!(
-        "imprint {} at {}; {}, {}, {} {}",
-        entry.id,
-        results.pose_text(&pose),
+    let short = format!("imprint {} at {}", entry.id, results.pose_text(&pose));
+    let full = format!(
+        "{short}; {}, {}, {} {}",
         count(entry.summary.pieces, "piece"),
         count(entry.summary.holes, "hole"),
         results.feature().key,
         number(theme, results, entry)
-    )
+    );
+    [full, short]
 }
 
 fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rect) {

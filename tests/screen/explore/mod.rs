@@ -118,8 +118,6 @@ fn a_stopped_sweep_keeps_its_complete_part() {
         "n<Space>e<Enter>",
         &["of 36,000,000,000 poses", "rectangle length 6.00"],
     );
-    program.session.resize(30, 8);
-    program.session.resize(80, 24);
     program.then("s", &["stopping"]);
     program.until("distinct imprints");
     shows(
@@ -201,14 +199,6 @@ fn a_plot_of_angles_that_fails_shows_the_error() {
         &program.session,
         &["no memory", "the imprints of each angle cannot be computed"],
     );
-}
-
-#[test]
-fn errors_in_the_form_of_ranges_name_the_label_of_the_field() {
-    let zoom = "larrow<Enter>p<Enter>e<3x:Tab><C-u>";
-    for (text, error) in [("0", "! Zoom x: 0 is not above 0"), ("a", "! Zoom x: ")] {
-        shows(&format!("{zoom}{text}<Enter>"), &[error]);
-    }
 }
 
 #[test]
@@ -351,20 +341,6 @@ fn the_wheel_skips_no_descriptor() {
     }
 }
 
-/// Scrolling stops at the last column, so that one step back is visible at once.
-#[test]
-fn columns_of_statistics_scroll_no_further_than_the_last() {
-    let mut session = session("fp<Enter>");
-    press(&mut session, SHORT);
-    session.resize(60, 24);
-    press(&mut session, "2<7x:Right>");
-    let last = session.screen();
-    press(&mut session, "<Left>");
-    assert_ne!(session.screen(), last);
-    press(&mut session, "<Right>");
-    assert_eq!(session.screen(), last);
-}
-
 /// A key is shown among the hints if it can do something; otherwise it says why it cannot.
 #[test]
 fn keys_of_explore_that_can_do_nothing_say_so() {
@@ -409,16 +385,6 @@ fn a_filter_that_leaves_nothing_is_named_on_each_page_that_it_empties() {
 }
 
 #[test]
-fn a_map_that_shows_only_some_poses_says_so_where_there_is_little_room() {
-    let keys = "f<Enter>:explore --x0 5:5.99:0.01 --y0 5:5.99:0.01 --angle 0<Enter>4";
-    for size in [(60, 20), (40, 12)] {
-        for ascii in [false, true] {
-            shows(&sized(size, ascii, keys), &["1 pose in "]);
-        }
-    }
-}
-
-#[test]
 fn a_map_in_ascii_has_its_legend_and_a_cursor_that_is_no_shade() {
     let keys = "f<Enter>:explore --x0 3:7:0.05 --y0 3:7:0.05 --angle 0:45:5<Enter>4>>";
     let screen = sized((80, 24), true, keys);
@@ -427,8 +393,6 @@ fn a_map_in_ascii_has_its_legend_and_a_cursor_that_is_no_shade() {
         &["angle 10 deg 3/10  each shade an imprint; 1 in 3 x 3 "],
     );
     shows(&screen, &["\n3.00 X"]);
-    let small = sized((30, 8), false, keys);
-    shows(&small, &["no room for the plot", "imprint 0 at x0 3.00"]);
 }
 
 #[test]
@@ -436,21 +400,6 @@ fn a_curve_of_a_sample_says_so_and_keeps_its_legend() {
     let keys = "f<Enter>:explore --x0 5 --y0 5:5.99:0.01 --angle 0:359:1<Enter>6";
     let sampled = "na against the angle; sampled: every 5th y0  line: mean, dashes: min, max";
     shows(&sized((80, 24), false, keys), &[sampled]);
-    let sampled = "na; sampled: every 5th y0  line: mean, dashes: min, max";
-    shows(&sized((60, 20), false, keys), &[sampled]);
-}
-
-#[test]
-fn every_ending_of_an_export_is_visible_on_sixty_columns() {
-    for (page, endings) in [
-        ("1", "ellipse.csv   csv jsonl npz npy\n"),
-        ("2", "ellipse-statistics.csv   csv jsonl npz npy\n"),
-        ("4", "ellipse-map.svg   csv jsonl npz npy svg\n"),
-        ("5", "ellipse-scatter.svg   csv jsonl npz npy svg\n"),
-    ] {
-        let keys = format!("f<Enter>{SHORT}{page}x");
-        shows(&sized((60, 20), false, &keys), &[endings]);
-    }
 }
 
 #[test]
@@ -462,15 +411,6 @@ fn a_click_reaches_every_angle_of_a_fine_sweep() {
         session.send(Message::Mouse(Mouse { kind, column, row }));
     }
     shows(&session, &["angle 35"]);
-}
-
-/// The form of ranges leaves no line empty while a field is hidden.
-#[test]
-fn all_ranges_are_visible_on_a_small_screen() {
-    let form = sized((30, 10), false, "fr<Enter>e");
-    shows(&form, &["x0 ", "y0 ", "Angle ", "Anchor ", "poses"]);
-    shows(&sized((20, 6), false, "fr<Enter>e"), &["x0 "]);
-    shows(&sized((40, 12), false, "fr<Enter>e"), &["> top left\n"]);
 }
 
 #[test]
@@ -499,8 +439,6 @@ fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
         "/<C-u><Enter>",
         "s",
         "#",
-        "ma",
-        "'a",
         "<Tab>",
         "<S-Tab>",
         "d",

@@ -12,7 +12,7 @@ use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
 use crate::property::config;
-use crate::session::{hides, press, session, shows, started, then};
+use crate::session::{press, session, shows, started, then};
 
 /// Starts a session on a library that outlasts it.
 fn session_on(folder: &Path, keys: &str) -> Session {
@@ -48,15 +48,6 @@ fn the_proposed_name_of_a_second_drawing_is_free() {
 }
 
 #[test]
-fn typing_replaces_the_name_of_a_saved_shape() {
-    let mut session = session("f<Enter>smy ring<Enter>s");
-    shows(&session, &["Save as: my ring"]);
-    then(&mut session, "yours<Enter>", &["saved as yours"]);
-    // The arrows keep the name.
-    then(&mut session, "s<Left><Right>2<Enter>", &["saved as yours2"]);
-}
-
-#[test]
 fn a_shape_is_saved_and_loaded() {
     let mut session = session("f<Enter>smine");
     shows(&session, &["Save as: mine"]);
@@ -78,21 +69,6 @@ fn a_shape_is_saved_and_loaded() {
     );
     press(&mut session, "q");
     assert!(session.app().ended(), "what is loaded is saved");
-}
-
-#[test]
-fn names_are_checked_while_they_are_typed() {
-    let mut session = session("<Space>s");
-    for (keys, text) in [
-        ("a/b", "! '/' cannot be in a name"),
-        ("<C-u>.hidden", "! a name cannot start with '.'"),
-        ("<C-u>a ", "! a name cannot end with a space"),
-        ("<C-u><Enter>", "! a name is missing"),
-        ("<C-u>ok<Left>x<Home>y<End>z<BS><Del>", "Save as: yoxk"),
-    ] {
-        then(&mut session, keys, &[text]);
-    }
-    then(&mut session, "<Esc>", &["Space toggle"]);
 }
 
 #[test]
@@ -202,13 +178,6 @@ fn the_last_version_of_a_shape_deleted_twice_is_restored() {
     let mut session =
         session("<Space>sone<Enter><Right><Space>done<Enter>ysone<Enter>done<Enter>y");
     then(&mut session, "u", &["one is back", "· one\n"]);
-}
-
-#[test]
-fn new_does_nothing_to_an_empty_matrix() {
-    let mut session = session("n");
-    shows(&session, &["the matrix is empty already"]);
-    then(&mut session, "u", &["nothing to undo"]);
 }
 
 #[test]
@@ -389,30 +358,4 @@ fn the_shape_whose_name_was_typed_comes_first() {
     assert!(line("washers ") < line("turned washer"), "{screen}");
     press(&mut session, "<Enter>");
     assert_eq!(session.app().stored_name(), Some("washer"));
-}
-
-/// Only the user's own shapes are listed for deletion: for another name, the list says why it is missing.
-#[test]
-fn the_list_says_that_a_shipped_shape_cannot_be_deleted() {
-    let why = "washer comes with taxel and cannot be\ndeleted";
-    shows("dwasher", &[why]);
-    shows("<Space>smine<Enter>dWash", &[why]);
-    hides("<Space>smine<Enter>dmi", &["comes with taxel"]);
-    shows("<Space>smine<Enter>dzzz", &["no name contains this"]);
-}
-
-/// The end of a filter is being typed, so it remains visible.
-#[test]
-fn a_long_filter_shows_its_end() {
-    let mut list = session("l");
-    press(&mut list, &"x".repeat(60));
-    press(&mut list, "end");
-    let screen = list.screen();
-    let head = screen.lines().find(|line| line.contains("filter: "));
-    assert!(head.is_some_and(|head| head.contains("xend")), "{screen}");
-}
-
-#[test]
-fn completion_says_that_nothing_can_be_restored() {
-    shows(":restore <Tab>", &["nothing has been deleted"]);
 }

@@ -17,22 +17,6 @@ use crate::session::shows;
 use crate::session::started;
 use crate::session::then;
 
-/// On the smallest screen, too, it is visible what the question is about, and what each answer does.
-#[test]
-fn the_question_about_unsaved_work_fits_on_the_smallest_screen() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    drop(session_on(folder.path(), "f<Enter>"));
-    let mut later = session_on(folder.path(), "");
-    later.resize(20, 6);
-    shows(
-        &later,
-        &[
-            "\nThere is unsaved wo…\n",
-            "\nRestore it? (y: yes,\nn: to the trash,\nEsc: ask next time)\n",
-        ],
-    );
-}
-
 #[test]
 fn unsaved_work_that_cannot_be_read_is_reported_and_stays() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");

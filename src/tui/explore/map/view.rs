@@ -41,7 +41,7 @@ const COVERAGES: [f64; 5] = [0.0, 0.1, 0.3, 0.7, 1.0];
 /// The maximum number of cells along a side of a drawing: more would not be distinguishable.
 const DRAWN: u64 = 400;
 
-fn meaning(theme: &Theme, pane: &MapPane) -> String {
+fn meaning(theme: &Theme, pane: &MapPane) -> Vec<String> {
     let sign = match (pane.is_picture(), has_colours(theme)) {
         (false, _) => "letter",
         (true, true) => "colour",
@@ -49,9 +49,10 @@ fn meaning(theme: &Theme, pane: &MapPane) -> String {
     };
     let full = format!("  each {sign} an imprint");
     if pane.stride == 1 {
-        return full;
+        return vec![full];
     }
-    format!("{full}; 1 pose in {0} × {0}", pane.stride)
+    let part = format!("1 pose in {0} × {0}", pane.stride);
+    vec![format!("{full}; {part}"), format!("  {part}")]
 }
 
 pub(in crate::tui) fn draw(
@@ -65,7 +66,10 @@ pub(in crate::tui) fn draw(
     let head = heading(results);
     let end = write::text(buffer, pane.head, theme, &head, Role::Title);
     let legend = write::right_of(pane.head, end);
-    write::text(buffer, legend, theme, &meaning(theme, &pane), Role::Quiet);
+    let fits = |text: &&String| write::width(text) <= usize::from(legend.width);
+    if let Some(text) = meaning(theme, &pane).iter().find(fits) {
+        write::text(buffer, legend, theme, text, Role::Quiet);
+    }
     if pane.cells.is_empty() {
         draw_no_room(theme, buffer, area);
         draw_pose(theme, results, &pane, buffer);
