@@ -132,27 +132,4 @@ mod tests {
         let error = Matrix::from_values(size, vec![0; 5]);
         assert_eq!(error, Err(MatrixError { size, found: 5 }));
     }
-
-    #[test]
-    fn examples_of_matrix() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::matrix::Matrix;
-        use crate::sensor::MatrixSize;
-        let mut heat = Matrix::filled(MatrixSize::new(3, 2)?, 0.0);
-        heat.set(2, 1, 7.5);
-        assert_eq!(
-            (heat.columns(), heat.rows(), heat.get(2, 1)),
-            (3, 2, Some(7.5))
-        );
-        assert_eq!(heat.row(1), [0.0, 0.0, 7.5]);
-        assert_eq!(heat.get(3, 0), None);
-        let size = MatrixSize::new(3, 2)?;
-        let gain = Matrix::from_values(size, vec![1.0, 1.2, 0.9, 1.0, 1.0, 1.1])?;
-        assert_eq!(gain.get(2, 1), Some(1.1));
-        let error = Matrix::from_values(size, vec![1.0]).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "found 1 value, expected 6 for a matrix of 3 × 2"
-        );
-        Ok(())
-    }
 }

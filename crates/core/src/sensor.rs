@@ -395,37 +395,11 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_sensor() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        let size = MatrixSize::new(12, 8)?;
-        assert_eq!((size.columns(), size.rows(), size.cells()), (12, 8, 96));
-        assert_eq!(size, Imprint::empty(size).size());
-        assert_eq!(
-            MatrixSize::new(65, 8).unwrap_err().to_string(),
-            "columns: 65 is above 64 (allowed: 1 to 64)"
-        );
-        let sensor = Sensor::new(12, 8)?.with_threshold(0.7)?;
-        assert_eq!(
-            (sensor.columns(), sensor.rows(), sensor.threshold()),
-            (12, 8, 0.7)
-        );
-        assert_eq!(
-            sensor.to_string(),
-            "12 × 8 with threshold 0.7 and pitch 1 mm"
-        );
-        let error = sensor.check(Parameter::X0, 12.5).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "x0: 12.5 is above 12 (allowed: -12 to 12)"
-        );
-        let sensor = Sensor::new(10, 8)?
-            .with_threshold(0.3)?
-            .with_pitch_mm(1.27)?;
+    fn a_sensor_has_its_threshold_and_its_pitch() {
+        let sensor = Sensor::new(10, 8).and_then(|sensor| sensor.with_threshold(0.3));
+        let sensor = sensor.and_then(|sensor| sensor.with_pitch_mm(1.27));
+        let sensor = sensor.expect("in range");
         assert_eq!((sensor.threshold(), sensor.pitch_mm()), (0.3, 1.27));
-        assert_eq!(
-            sensor.with_threshold(0.0).unwrap_err().parameter(),
-            Parameter::Threshold
-        );
-        Ok(())
+        assert!(sensor.with_threshold(0.0).is_err() && MatrixSize::new(65, 8).is_err());
     }
 }

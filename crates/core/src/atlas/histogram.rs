@@ -267,25 +267,4 @@ mod tests {
             assert_eq!(histogram.without, if empty { 360 } else { 0 });
         }
     }
-
-    #[test]
-    fn examples_of_histogram() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::atlas::{Histogram, features};
-        use crate::prelude::*;
-        let square = Source::Figure(Figure::default_of(
-            FigureKind::Rectangle,
-            &Sensor::default(),
-        ));
-        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
-        let result = Sweep::new(&grid).run();
-        let na = Histogram::of(
-            result.atlas(),
-            &features()[0],
-            &result.atlas().values(0),
-            10,
-        );
-        assert_eq!((na.width, na.without), (1.0, 0));
-        assert_eq!(na.poses.iter().sum::<u64>(), 3_600_000);
-        Ok(())
-    }
 }

@@ -188,29 +188,6 @@ mod tests {
     }
 
     #[test]
-    fn the_gain_applies_to_the_noise_of_a_cell_too() {
-        let mut tare = TareFrames::new(3);
-        for value in [10.0, 11.0, 12.0] {
-            tare.add(&Matrix::filled(MatrixSize::SMALLEST, value))
-                .expect("it fits");
-        }
-        let mut processing = Processing {
-            tare: Some(tare.finish().expect("three frames")),
-            gain: Some(Matrix::filled(MatrixSize::SMALLEST, 10.0)),
-            rule: Some(Rule::Noise(3.0)),
-            ..Processing::default()
-        };
-        let mut active = |value: f64| {
-            let mut frame = Frame::default();
-            frame.values_mut().copy_from_slice(&[value]);
-            let processed = processing.run(&frame).expect("it fits");
-            processed.imprint.map(|imprint| imprint.count())
-        };
-        // Three deviations of 1.4826 above 11.
-        assert_eq!((active(15.4), active(15.5)), (Some(0), Some(1)));
-    }
-
-    #[test]
     fn a_frame_without_cells_has_no_maximum() {
         let mut processing = Processing {
             rule: Some(Rule::Percent(50.0)),

@@ -429,17 +429,4 @@ mod tests {
         );
         Ok(())
     }
-
-    #[test]
-    fn examples_of_size() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::frame::FrameSize;
-        let size = FrameSize::new(28, 64)?;
-        assert_eq!((size.columns(), size.rows(), size.cells()), (28, 64, 1792));
-        assert_eq!(size.to_string(), "28 × 64");
-        assert_eq!(
-            FrameSize::new(28, 0).unwrap_err().to_string(),
-            "a frame of 28 × 0, expected 1 to 512 columns and rows"
-        );
-        Ok(())
-    }
 }

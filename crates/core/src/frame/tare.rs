@@ -447,28 +447,6 @@ mod tests {
     }
 
     #[test]
-    fn one_step_of_equal_values_is_1() {
-        let tare = tare(&[[7.0, f64::NAN], [7.0, 7.0]]).expect("two frames");
-        assert_eq!((tare.step(), tare.margin(0, 3.0)), (None, 1.0));
-    }
-
-    #[test]
-    fn examples_of_tare() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::frame::TareFrames;
-        use crate::matrix::Matrix;
-        use crate::prelude::*;
-        let step = |frames: [f64; 2]| {
-            let mut tare = TareFrames::new(2);
-            for value in frames {
-                tare.add(&Matrix::filled(MatrixSize::new(2, 1)?, value))?;
-            }
-            Ok::<_, Box<dyn std::error::Error>>(tare.finish()?.step())
-        };
-        assert_eq!((step([7.0, 7.25])?, step([7.0, 7.0])?), (Some(0.25), None));
-        Ok(())
-    }
-
-    #[test]
     fn a_tare_begins_again_with_frames_of_another_size_if_no_others_come() {
         for (wanted, sides, columns) in [
             (5, &[2, 6, 6, 6, 6, 6][..], 6),

@@ -261,15 +261,4 @@ mod tests {
         are_read_as_written(&parameters.collect::<Vec<_>>());
         assert_eq!(format!("{:>8}", FigureKind::Hexagon), " hexagon");
     }
-
-    #[test]
-    fn examples_of_unknown_name() {
-        use crate::figure::FigureKind;
-        let error = "hexagn".parse::<FigureKind>().unwrap_err();
-        let expected = "ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon";
-        assert_eq!(
-            error.to_string(),
-            format!("figure \"hexagn\" is unknown, expected one of {expected}")
-        );
-    }
 }

@@ -210,32 +210,13 @@ impl TryFrom<f64> for DecimalRange {
     }
 }
 
-const LARGEST_EXPONENT: i32 = 30;
-
 /// Writes a number with an exponent as a plain decimal: `1e-3` as `0.001`. Other text stays as it is.
 fn without_exponent(text: &str) -> Cow<'_, str> {
-    let written_out = || {
-        let (number, exponent) = text.split_once(['e', 'E'])?;
-        let exponent: i32 = exponent.parse().ok()?;
-        if !is_decimal(number) {
-            return None;
-        }
-        let exponent = exponent.clamp(-LARGEST_EXPONENT, LARGEST_EXPONENT);
-        let shift = usize::try_from(exponent.unsigned_abs()).ok()?;
-        let (whole, fraction) = parts(number);
-        let zeros = "0".repeat(shift);
-        let sign = if number.starts_with('-') { "-" } else { "" };
-        Some(if exponent < 0 {
-            let digits = format!("{zeros}{whole}");
-            let (whole, moved) = digits.split_at(digits.len() - shift);
-            format!("{sign}{whole}.{moved}{fraction}")
-        } else {
-            let digits = format!("{fraction}{zeros}");
-            let (moved, fraction) = digits.split_at(shift);
-            format!("{sign}{whole}{moved}.{fraction}")
-        })
-    };
-    written_out().map_or(Cow::Borrowed(text), Cow::Owned)
+    let number = text.contains(['e', 'E']).then(|| number::read(text));
+    // An `f64` is never displayed with an exponent.
+    number
+        .flatten()
+        .map_or(Cow::Borrowed(text), |number| Cow::Owned(number.to_string()))
 }
 
 fn places(text: &str) -> usize {

@@ -680,22 +680,6 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_classifiers() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::progress::ToTheEnd;
-        use crate::recognition::{
-            Classifier, ClassifierSettings, Evaluation, GridSteps, Training, equal_figures,
-        };
-        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
-        let settings = ClassifierSettings::default();
-        let result = Classifier::Knn
-            .evaluate(&model, &settings, &ToTheEnd)
-            .expect("not stopped");
-        // No classifier of one touch is better than the model.
-        assert!(result.evaluation.right <= Evaluation::of(&model).right);
-        Ok(())
-    }
-
-    #[test]
     fn an_empty_imprint_does_not_remove_counts_from_the_features() {
         let sensor = Sensor::default();
         let shapes = [

@@ -495,45 +495,4 @@ mod tests {
             assert!(!is_read(step), "{step}");
         }
     }
-
-    #[test]
-    fn examples_of_given() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::progress::ToTheEnd;
-        use crate::recognition::{
-            Evaluation, GivenDescriptors, GridSteps, Noise, NoisyTouches, Rounding,
-            ShapeDescriptor, Training, equal_figures,
-        };
-        let distance: ShapeDescriptor = "cg_cd".parse()?;
-        let rounding = Rounding::new(distance, 0.01)?;
-        assert_eq!(rounding, "cg_cd=0.01".parse()?);
-        assert_eq!((rounding.descriptor(), rounding.step()), (distance, 0.01));
-        assert!(Rounding::new(distance, 0.0).is_err());
-        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
-        let error = |given: &str| {
-            given
-                .parse()
-                .map(|given: GivenDescriptors| given.evaluate(&model).error())
-        };
-        // The perimeter helps, but the whole imprint says more.
-        assert!(error("na")? > error("na,p")?);
-        assert!(error("na,p")? > Evaluation::of(&model).error());
-        // The centre of gravity depends on the position of the imprint.
-        assert!(error("na,cg").is_err());
-        let steps = GridSteps::new(4, 15)?;
-        let model = Training::fitting(equal_figures(), steps)?.run()?;
-        let given: GivenDescriptors = "na,p".parse()?;
-        let rate = |noise: f64| {
-            let noise = Noise::new(noise).expect("below ½");
-            let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
-            given
-                .rate(&model, &touches, &ToTheEnd)
-                .expect("not stopped")
-        };
-        assert!(rate(0.0).accuracy() > rate(0.02).accuracy());
-        assert_eq!(rate(0.0).held_share(), 1.0);
-        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
-        let chosen = model.choose_descriptors(&[]);
-        assert!(chosen.is_sorted_by(|one, next| one.evaluation.right < next.evaluation.right));
-        Ok(())
-    }
 }

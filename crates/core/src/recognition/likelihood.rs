@@ -592,13 +592,4 @@ mod tests {
         assert_eq!(most.unexplained(&largest, 2100), None);
         assert!(most.unexplained(&largest, 2300).is_some());
     }
-
-    #[test]
-    fn examples_of_noise() -> Result<(), Box<dyn std::error::Error>> {
-        let touch = "#...\n....\n....\n....".parse()?;
-        let noise = Noise::new(0.01)?;
-        assert_eq!(noise.unexplained(&touch, 2), None);
-        assert!(noise.unexplained(&touch, 8).is_some());
-        Ok(())
-    }
 }

@@ -604,18 +604,4 @@ mod tests {
         assert_eq!(most.0, Some("####\n####".parse()?));
         Ok(())
     }
-
-    #[test]
-    fn examples_of_merge() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::recognition::{GridSteps, ModelMerge, Training, equal_figures};
-        use crate::sweep::Shard;
-        let training = Training::fitting(equal_figures(), GridSteps::new(4, 45)?)?;
-        let mut merge = ModelMerge::default();
-        for number in 1..=2 {
-            let shard = Shard::new(number, 2).unwrap();
-            merge.add(&training.clone().with_shard(shard).run()?)?;
-        }
-        assert_eq!(merge.finish()?, training.run()?);
-        Ok(())
-    }
 }

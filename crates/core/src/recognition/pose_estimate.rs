@@ -495,24 +495,4 @@ mod tests {
         assert_eq!(fewest(&[0, 0, 4], 4), (2, 1));
         assert_eq!(fewest(&[1, 1, 1, 1], 4), (0, 4));
     }
-
-    #[test]
-    fn examples_of_pose_estimate() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        use crate::progress::ToTheEnd;
-        use crate::recognition::{NamedShape, Training};
-        let sensor = Sensor::default();
-        let bar = NamedShape::new("bar", Figure::rectangle(6.0, 2.0).on(&sensor)?);
-        let ranges = Ranges::default().with(Axis::Angle, "0:350:10".parse()?);
-        let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
-        let touch = "........\n.######.\n.######.\n........".parse()?;
-        let pose = model
-            .pose_of(0, &touch, &ToTheEnd)
-            .expect("the bar leaves it");
-        let angle = pose.angle.expect("a bar has one");
-        assert_eq!((angle.period, angle.known().is_some()), (180.0, true));
-        assert!(angle.standard_deviation.is_some_and(|spread| spread < 10.0));
-        assert!((pose.position[0] - 4.0).abs() < 0.02 && (pose.position[1] - 2.0).abs() < 0.02);
-        Ok(())
-    }
 }

@@ -569,23 +569,4 @@ mod tests {
             assert!(is_there(64.0) && !is_there(64.01), "{source:?}");
         }
     }
-
-    #[test]
-    fn examples_of_separation() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        use crate::progress::ToTheEnd;
-        use crate::recognition::{CellPositions, NamedShape, Separation, SizeAxis};
-        let sensor = Sensor::default();
-        let shapes = vec![
-            NamedShape::new("square", Figure::rectangle(2.0, 2.0).on(&sensor)?),
-            NamedShape::new("disc", Figure::ellipse(1.13, 1.13).on(&sensor)?),
-        ];
-        let separation = Separation::new(shapes)?
-            .with_positions(CellPositions::COARSE)
-            .with_angles("0:350:10".parse()?);
-        let scales = "1:5:1".parse()?;
-        let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &ToTheEnd)?;
-        assert!(points[0].error() > 0.3 && points[4].error() < 0.05);
-        Ok(())
-    }
 }

@@ -589,24 +589,6 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_simulation() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::progress::ToTheEnd;
-        use crate::recognition::{GridSteps, Noise, NoisyTouches, Training, equal_figures};
-        let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
-        let noise = Noise::new(0.01)?;
-        let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
-        let rate = model
-            .recognition_rate(&touches, &noise, &ToTheEnd)
-            .expect("not stopped");
-        let touches = touches.with_random_dead(64);
-        let fewer = model
-            .recognition_rate(&touches, &noise, &ToTheEnd)
-            .expect("not stopped");
-        assert!(fewer.accuracy() < rate.accuracy());
-        Ok(())
-    }
-
-    #[test]
     fn drawing_more_taxels_than_there_are_draws_all() {
         let mut random = generator(0, 0);
         let taxels = random_taxels(MatrixSize::LARGEST, 5000, &mut random);

@@ -175,20 +175,6 @@ mod tests {
     }
 
     #[test]
-    fn a_stopped_count_gives_nothing() {
-        let sensor = Sensor::default();
-        let source = Figure::default_of(FigureKind::Heptagon, &sensor).into();
-        let grid = PoseGrid::new(source, sensor, Anchor::Corner, Ranges::default());
-        let grid = grid.expect("in range");
-        assert!(
-            Sweep::new(&grid)
-                .with_progress(&|_| ControlFlow::Break(()))
-                .count()
-                .is_none()
-        );
-    }
-
-    #[test]
     fn a_sweep_can_be_stopped_within_a_row() {
         let sensor = Sensor::default();
         let source = Figure::default_of(FigureKind::Rectangle, &sensor).into();
@@ -206,23 +192,5 @@ mod tests {
         };
         assert!(Sweep::new(&grid).with_progress(&progress).count().is_none());
         assert_eq!(done.into_inner(), 0);
-    }
-
-    #[test]
-    fn examples_of_count() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        let square = Source::Figure(Figure::default_of(
-            FigureKind::Rectangle,
-            &Sensor::default(),
-        ));
-        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
-        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
-        let counted = Sweep::new(&grid).count().expect("not stopped");
-        let counts: Vec<u64> = counted.iter().map(|(_, poses)| poses).collect();
-        assert_eq!(
-            (counted.poses, counts.iter().sum::<u64>()),
-            (10_000, 10_000)
-        );
-        Ok(())
     }
 }

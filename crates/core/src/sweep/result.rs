@@ -615,26 +615,4 @@ mod tests {
         );
         Ok(())
     }
-
-    #[test]
-    fn examples_of_merge() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        use crate::sweep::{Shard, SweepMerge};
-        let square = Source::Figure(Figure::default_of(
-            FigureKind::Rectangle,
-            &Sensor::default(),
-        ));
-        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
-        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
-        let mut merge = SweepMerge::default();
-        for number in 1..=2 {
-            merge.add(
-                Sweep::new(&grid)
-                    .with_shard(Shard::new(number, 2).unwrap())
-                    .run(),
-            )?;
-        }
-        assert_eq!(merge.finish()?, Sweep::new(&grid).run());
-        Ok(())
-    }
 }
