@@ -1,6 +1,6 @@
 //! A table of the values of all features of all imprints, from which statistics are computed.
 //!
-//! The values are fixed-point numbers ([`crate::atlas::values`]), because each one is added once per orientation.
+//! The values are fixed-point numbers ([`fixed`]), because each one is added once per orientation.
 
 use std::collections::BTreeMap;
 use std::ops::{AddAssign, Sub};

@@ -274,7 +274,7 @@ pub enum FrameError {
         /// The higher threshold.
         high: f64,
     },
-    /// A value times the gain of its cell is beyond ±[`LARGEST_VALUE`](crate::frame::LARGEST_VALUE).
+    /// A value times the gain of its cell is beyond ±[`LARGEST_VALUE`].
     Product {
         /// The value, after the tare.
         value: f64,

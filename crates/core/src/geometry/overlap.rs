@@ -1,7 +1,7 @@
 //! The exact area of a shape inside each cell of a grid.
 //!
 //! **Method.** The boundary is cut at the grid lines, and each piece adds to its own cell the sums from which areas are
-//! computed (`cell_grid`). Straight edges are cut here, ellipses in `arcs`.
+//! computed ([`CellGrid`]). Straight edges are cut here, ellipses in [`Arcs`].
 //!
 //! **Error.** There are a few rounding errors per piece, of sums below 10^4 for every shape of the program: together
 //! less than 1e-11 in `f64`, a tenth of what a touch considers doubtful. Edges that are horizontal or vertical up to a

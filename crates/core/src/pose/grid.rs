@@ -383,9 +383,8 @@ pub(crate) fn centre<T: Real>(upright: &Source) -> Point<T> {
 
 // The stored boundary of a shape: drawn once, and used for all positions that differ by a shift.
 //
-// Sweeps cut bands from it in `f64`; for cases that `f64` cannot decide, it is drawn as
-// [`Double`](crate::geometry::Double). The frame and the units are those of the plane; the anchor of the shape is at
-// the origin.
+// Sweeps cut bands from it in `f64`; for cases that `f64` cannot decide, it is drawn as `Double`. The frame and the
+// units are those of the plane; the anchor of the shape is at the origin.
 
 /// The boundary of a shape: straight edges with the material on their right, and ellipses.
 #[derive(Clone, Debug)]

@@ -293,9 +293,6 @@ fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
     one
 }
 
-// The noise of a sensor: each taxel flips with probability e, independently of the others, or is dead. See
-// [`likelihood`](super::likelihood) for what follows from it.
-
 /// The largest change of a probability that leaving out far keys may cause.
 pub(super) const NEGLIGIBLE: f64 = 1e-9;
 

@@ -2,12 +2,12 @@
 //!
 //! **Method.** Let `O` and `I` be the areas of the outer and the inner ellipse in the cell. A taxel is active where
 //! `O − I` reaches the threshold `t`. `O` reaches it between one rising and one falling passage
-//! ([`crate::sweep::ellipse`]), and outside of these nothing is active. If the cell lies inside the outer ellipse
+//! ([`Track`]), and outside of these nothing is active. If the cell lies inside the outer ellipse
 //! (`O = 1`), it matters where `I` exceeds `1 − t`: again between one rising and one falling passage. What remains
 //! are places where the cell reaches both the hole and the outside. There, `O` rises from its value at the first
 //! touch of the hole, `I` rises to its value at the last touch of the outside, and usually the difference of these
 //! two values stays above `t`. Whenever one of these conditions does not hold, the band is computed from scratch
-//! ([`crate::sweep::ellipse`]).
+//! ([`HollowEllipse::isolate_all`]).
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -150,7 +150,7 @@ fn learn(spans: &Spans, tracks: &mut Tracks) {
 /// The amount by which bounds of sections are widened.
 const SLACK: f64 = 1e-12;
 
-/// An ellipse prepared for bands; see `geometry::ellipse_cuts` for the formulas.
+/// An ellipse prepared for bands; see `geometry::ellipse` for the formulas.
 #[derive(Clone, Debug)]
 pub(crate) struct EllipseBand {
     pub(crate) x: f64,

@@ -182,8 +182,7 @@ impl Taxel {
 //
 // For one angle and one y0 the coverage of a taxel in row `j` depends only on `u = i − x0`, its column relative to the
 // shape's anchor: it is the shape's area inside the unit square whose top left corner is (`u`, `j − y0`). So one
-// function of `u` per row serves all columns and all x0. This module holds the set of `u` at which it reaches the
-// threshold.
+// function of `u` per row serves all columns and all x0. [`Spans`] is the set of `u` at which it reaches the threshold.
 
 /// The distance from the threshold below which a coverage is not decided in `f64`, as a share of a cell.
 pub(crate) const DOUBT: f64 = DOUBTFUL;

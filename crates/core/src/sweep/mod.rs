@@ -16,7 +16,7 @@
 //! **What is skipped.** If the shape looks the same at several angles, only one of them is swept ([`crate::pose`]).
 //! If the shape at one angle is the mirror image of itself at another, the spans of one follow from those of the
 //! other, with right and left exchanged. If a half turn of the plane maps the poses of an angle onto each other, only
-//! half of their rows are swept (`point_symmetry`, `reflected_rows`). Exact decimals decide all of this.
+//! half of their rows are swept (`plan`, `runs`). Exact decimals decide all of this.
 //!
 //! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads or shards.
 

@@ -1,8 +1,7 @@
 //! Finds the imprints of the rows of one orientation, run by run instead of pose by pose.
 //!
-//! [`crate::sweep::flips`] turns the spans of a band ([`crate::sweep::flips`]) into events; between two events the
-//! imprint is the same: one *run*. Rows that are images of rows swept before ([`crate::sweep::plan`])
-//! follow from those rows.
+//! [`crate::sweep::flips`] turns the spans of a band into events; between two events the imprint is the same: one *run*.
+//! Rows that are images of rows swept before ([`PointSymmetry`]) follow from those rows.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -339,7 +338,7 @@ fn lies_inside(grid: &PoseGrid, orientation: u64, extent: &Extent) -> bool {
     !off
 }
 
-// The runs of rows that are images of rows swept before ([`crate::sweep::plan`]), read backwards.
+// The runs of rows that are images of rows swept before, read backwards.
 //
 // The image of a row has the same runs in reverse order, cut in two where the range of x0 wraps around. The imprint of
 // each run is turned by 180° and shifted by whole cells. The counts and their order are the same as if the row had
