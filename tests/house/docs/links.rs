@@ -170,6 +170,7 @@ fn sources(folder: &Path, text: &mut String) {
 fn every_name_in_the_guide_for_contributors_exists() {
     let mut all = String::new();
     sources(&root().join("src"), &mut all);
+    sources(&root().join("crates"), &mut all);
     sources(&root().join("tests"), &mut all);
     let words: BTreeSet<_> = all
         .split(|letter: char| !letter.is_alphanumeric() && letter != '_')
