@@ -112,8 +112,6 @@ pub(crate) enum CliError {
     ReadOnlyLibrary { name: String },
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes { broken: usize, shapes: usize },
-    #[error("{} of unsaved work cannot be read", counted(*files as u64, "file"))]
-    UnsavedWork { files: usize },
     #[error("{place}: {message}")]
     Settings { place: String, message: String },
     #[error("{name}: {error}")]
@@ -171,7 +169,7 @@ impl From<FileError> for CliError {
         if error.exists() {
             Self::Taken { name }
         } else {
-            let error = error.into_io();
+            let error = error.error;
             Self::File { name, error }
         }
     }

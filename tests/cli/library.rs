@@ -215,7 +215,6 @@ fn ambiguous_names_are_reported() {
         format!(
             "name: MASS: {says}\n\
              name: Ma\u{df}: {says}\n\
-             name: Ma\u{df}: the same as \"MASS\" on a system that ignores case\n\
              {all} shapes, all intact\n"
         )
     );
@@ -247,28 +246,6 @@ fn a_check_of_a_folder_that_does_not_exist_fails_and_a_list_warns() {
     let run = super::taxel("library check", "");
     let said = "28 shapes, all intact\n".to_owned();
     assert_eq!((run.status, run.stdout), (Some(0), said));
-}
-
-#[test]
-fn unsaved_work_that_cannot_be_read_is_checked_as_damaged() {
-    let shelf = Shelf::new();
-    shelf.does("library|save|good|-", RING);
-    let journal = shelf.folder.join(".journal");
-    std::fs::create_dir(&journal).expect("made");
-    std::fs::write(journal.join("4711-0.json"), "").expect("written");
-    let whole = std::fs::read(shelf.folder.join("good.json")).expect("it is there");
-    std::fs::write(journal.join("4712-0.json"), whole).expect("written");
-    let run = shelf.run("library|check", "");
-    let folder = shelf.folder.display().to_string();
-    let said = run.stdout.replace(&folder, "FOLDER");
-    let findings = "other file: FOLDER/.journal/4712-0.json: unsaved work, of a running program or of one that died\n\
-        damaged: unsaved work: FOLDER/.journal/4711-0.json: line 1, column 1: EOF while parsing a value\n";
-    assert!(said.starts_with(findings), "{said}");
-    let error = "error: 1 file of unsaved work cannot be read\n".to_owned();
-    assert_eq!((run.status, run.stderr), (Some(1), error));
-    let json = shelf.run("library|check|--json", "").stdout;
-    let damaged = format!(r#"{{"finding":"damaged","path":"{folder}/.journal/4711-0.json","#);
-    assert!(json.contains(&damaged), "{json}");
 }
 
 #[test]

@@ -194,25 +194,3 @@ fn a_script_changes_nothing_outside_its_folder() {
         "{written}"
     );
 }
-
-#[test]
-fn the_next_script_removes_the_folder_of_a_killed_one() {
-    let place = tempfile::tempdir().expect("a folder");
-    let command = |script: &str| {
-        let mut command = super::program(&["script", "-"], "C.UTF-8");
-        command.env("TMPDIR", place.path());
-        super::finish(command.spawn().expect("it starts"), script.as_bytes())
-    };
-    let left = place.path().join(".taxel-tmp-Abc123Abc123Abc1");
-    std::fs::create_dir(&left).expect("made");
-    let lock = std::fs::File::create(left.join(".taxel-scratch")).expect("made");
-    let old = std::time::SystemTime::now() - std::time::Duration::from_secs(600);
-    lock.set_modified(old).expect("set");
-    lock.lock().expect("locked");
-    assert_eq!(command("Keys f<Enter>\n").status, Some(0));
-    assert!(left.exists(), "its program still runs");
-    drop(lock);
-    assert_eq!(command("Keys f<Enter>\n").status, Some(0));
-    let files = std::fs::read_dir(place.path()).expect("read");
-    assert_eq!(files.count(), 0, "neither that nor its own");
-}

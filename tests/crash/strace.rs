@@ -3,12 +3,11 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use super::state::finish;
+use super::state::{finish, piped};
 
 /// All system calls that can change files. The `?` lets strace ignore those that a machine does not have.
 const CALLS: &str = "?openat,?open,?creat,?write,?pwrite64,?writev,?fsync,?fdatasync,?rename,?renameat,?renameat2,\
-    ?unlink,?unlinkat,?link,?linkat,?symlink,?symlinkat,?mkdir,?mkdirat,?rmdir,?truncate,?ftruncate,?flock,?chmod,\
-    ?fchmod,?fchmodat,?fchown,?fsetxattr,?fremovexattr";
+    ?unlink,?unlinkat,?link,?linkat,?symlink,?symlinkat,?mkdir,?mkdirat,?rmdir,?truncate,?ftruncate,?flock,?fchmod";
 
 /// A system call: its name, and which call of that name it is, counted from 1.
 #[derive(Clone, Debug)]
@@ -63,16 +62,6 @@ pub(crate) fn tampered(command: &Command, call: &Call, how: &str) -> Output {
     )
 }
 
-/// Runs a command and refuses every call with one of these names, written as for strace's `trace=`.
-pub(crate) fn refused(command: &Command, names: &str, error: &str) -> Output {
-    let trace = format!("trace={names}");
-    let inject = format!("inject={names}:error={error}");
-    traced(
-        command,
-        &["-f", "-qq", "-o", "/dev/null", "-e", &trace, "-e", &inject],
-    )
-}
-
 fn traced(command: &Command, options: &[&str]) -> Output {
     let mut strace = Command::new("strace");
     strace
@@ -86,10 +75,6 @@ fn traced(command: &Command, options: &[&str]) -> Output {
             None => strace.env_remove(name),
         };
     }
-    finish(
-        strace
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped()),
-    )
+    piped(&mut strace);
+    finish(&mut strace)
 }

@@ -5,7 +5,7 @@
 
 use std::fmt;
 #[cfg(target_os = "linux")]
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,7 +18,6 @@ use crate::pose::PoseGrid;
 use crate::progress::{Progress, stop_if};
 use crate::sweep::{Sweep, TimingSample};
 
-/// The shortest time between two checks.
 const PAUSE: Duration = Duration::from_millis(20);
 
 /// Bytes that an imprint takes in an atlas in addition to its own: its count, hash, description and statistics
@@ -45,10 +44,6 @@ const UNITS: [(char, u64); 4] = [
 impl FromStr for MemorySize {
     type Err = &'static str;
 
-    /// Reads an amount.
-    ///
-    /// # Errors
-    /// Returns what was expected.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         const EXPECTED: &str = "expected an amount of memory such as 2G or 500M";
         let unit = UNITS.iter().find_map(|(letter, bytes)| {
@@ -94,14 +89,11 @@ pub struct MemoryGuard {
     limits: Option<Limits>,
 }
 
-/// The limit on the memory of a piece of work.
 #[derive(Debug)]
 struct Limits {
     /// The end of each message, which says what the user can do about too little memory.
     advice: &'static str,
-    /// The allowed memory.
     allowed: MemorySize,
-    /// The time of the next check.
     due: Mutex<Instant>,
     /// Whether too much memory was in use at a check.
     exceeded: AtomicBool,
@@ -135,9 +127,6 @@ impl MemoryGuard {
 
     /// Does work that reports to the progress it is given, which reports to `progress` and stops the work when memory
     /// runs short.
-    ///
-    /// # Errors
-    /// Returns a message if memory ran short. The result is given up then, as there is no memory to use it.
     pub fn limit<T, Done>(
         &self,
         progress: &dyn Progress<Done>,
@@ -157,9 +146,6 @@ impl MemoryGuard {
     }
 
     /// Checks memory between two steps of a merge, which are few and large.
-    ///
-    /// # Errors
-    /// Returns a message if memory ran short.
     pub fn check_merge(&self) -> Result<(), String> {
         match &self.limits {
             Some(limits) if !limits.allows_now() => Err(limits.message_of_merge()),
@@ -168,9 +154,6 @@ impl MemoryGuard {
     }
 
     /// Refuses a sweep, before it starts, if its grid needs far more memory than is allowed.
-    ///
-    /// # Errors
-    /// Returns a message with the estimate.
     pub fn check(&self, grid: &PoseGrid) -> Result<(), String> {
         let Some(limits) = &self.limits else {
             return Ok(());
@@ -209,23 +192,20 @@ impl Limits {
         self.allows()
     }
 
-    /// Returns true if the work was stopped.
     fn exceeded(&self) -> bool {
         self.exceeded.load(Ordering::Relaxed)
     }
 
-    /// Returns the part of the allowed memory that has addresses.
+    /// The part of the allowed memory that has addresses.
     fn addressable(&self) -> MemorySize {
         self.allowed.min(ADDRESSABLE)
     }
 
-    /// Returns the message about work that was stopped.
     fn message(&self) -> String {
         let (allowed, advice) = (self.addressable(), self.advice);
         format!("stopped: needs more memory than the {allowed} allowed; {advice}")
     }
 
-    /// Returns the message about shards that cannot be merged within the limit.
     fn message_of_merge(&self) -> String {
         let (allowed, advice) = (self.addressable(), self.advice);
         format!(
@@ -234,7 +214,6 @@ impl Limits {
         )
     }
 
-    /// Returns the message about work that is not begun.
     fn refusal(&self, needed: MemorySize) -> String {
         let (allowed, advice) = (self.allowed, self.advice);
         format!("about {needed} of memory needed, but only {allowed} allowed; {advice}")
@@ -266,63 +245,32 @@ fn listed(table: &str, name: &str) -> Option<MemorySize> {
     Some(MemorySize(kilobytes * 1024))
 }
 
-/// Returns the memory that the program is using.
 #[cfg(target_os = "linux")]
 fn used() -> Option<MemorySize> {
     listed("/proc/self/status", "VmRSS:")
 }
 
-/// Returns how much memory the program may use: the machine's free memory and what the program uses already, or less
-/// if a limit is set for the process, its control group or a group around it.
+/// How much memory the program may use: the machine's free memory and what the program uses already, or less if its
+/// control group or one around it has a limit (`memory.max`, see cgroups(7)).
 #[cfg(target_os = "linux")]
 fn free() -> Option<MemorySize> {
-    use rustix::process::{Resource, getrlimit};
-    let limits = [
-        Some(listed("/proc/meminfo", "MemAvailable:")?.0 + used()?.0),
-        getrlimit(Resource::As).current,
-        getrlimit(Resource::Data).current,
-    ];
-    let groups = std::fs::read_to_string("/proc/self/cgroup").ok();
-    let files = groups.iter().flat_map(|table| group_limits(table));
-    let of_groups = files.filter_map(|file| {
-        // A group without a limit has the word `max`; the outermost group may have no file.
-        let limit = std::fs::read_to_string(file).ok()?;
-        limit.trim().parse().ok()
+    let machine = listed("/proc/meminfo", "MemAvailable:")?.0 + used()?.0;
+    let groups = std::fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
+    let own = groups.lines().find_map(|line| line.strip_prefix("0::/"));
+    let around = own.into_iter().flat_map(|own| Path::new(own).ancestors());
+    let limits = around.filter_map(|group| {
+        let file = Path::new("/sys/fs/cgroup").join(group).join("memory.max");
+        // A group without a limit has the word `max`; the outermost group has no file.
+        std::fs::read_to_string(file).ok()?.trim().parse().ok()
     });
-    let all = limits.into_iter().flatten().chain(of_groups);
-    all.min().map(MemorySize)
+    limits.chain([machine]).min().map(MemorySize)
 }
 
-/// Returns the files with the memory limits of control groups, from the text of `/proc/self/cgroup`: those of the
-/// process's own group and of every group around it.
-///
-/// `0::/user.slice/job` is a group of version 2, `9:memory:/job` is one of version 1. See cgroups(7).
-#[cfg(target_os = "linux")]
-fn group_limits(table: &str) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    for line in table.lines() {
-        let mut parts = line.splitn(3, ':').skip(1);
-        let (Some(controllers), Some(group)) = (parts.next(), parts.next()) else {
-            continue;
-        };
-        let (root, name) = match controllers {
-            "" => ("/sys/fs/cgroup", "memory.max"),
-            "memory" => ("/sys/fs/cgroup/memory", "memory.limit_in_bytes"),
-            _ => continue,
-        };
-        let around = Path::new(group.trim_start_matches('/')).ancestors();
-        files.extend(around.map(|group| Path::new(root).join(group).join(name)));
-    }
-    files
-}
-
-/// Returns None: systems other than Linux are not asked.
 #[cfg(not(target_os = "linux"))]
 fn used() -> Option<MemorySize> {
     None
 }
 
-/// Returns None: systems other than Linux are not asked.
 #[cfg(not(target_os = "linux"))]
 fn free() -> Option<MemorySize> {
     None
@@ -394,33 +342,5 @@ mod tests {
         let guard = MemoryGuard::new(Some(MemorySize(1 << 50)), "");
         let stopped = guard.limit(&|_: u64| ControlFlow::Break(()), |progress| progress.add(1));
         assert_eq!(stopped, Ok(ControlFlow::Break(())));
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn limits_are_those_of_all_groups_around_the_process() {
-        let files = |table: &str| {
-            let files = group_limits(table).into_iter();
-            let names = files.map(|file| file.to_string_lossy().into_owned());
-            names.collect::<Vec<_>>()
-        };
-        assert_eq!(
-            files("0::/user.slice/job\n"),
-            [
-                "/sys/fs/cgroup/user.slice/job/memory.max",
-                "/sys/fs/cgroup/user.slice/memory.max",
-                "/sys/fs/cgroup/memory.max",
-            ]
-        );
-        assert_eq!(
-            files("12:cpu,cpuacct:/a\n9:memory:/slurm/uid_1\n0::/\n"),
-            [
-                "/sys/fs/cgroup/memory/slurm/uid_1/memory.limit_in_bytes",
-                "/sys/fs/cgroup/memory/slurm/memory.limit_in_bytes",
-                "/sys/fs/cgroup/memory/memory.limit_in_bytes",
-                "/sys/fs/cgroup/memory.max",
-            ]
-        );
-        assert_eq!(files("nonsense"), [""; 0]);
     }
 }

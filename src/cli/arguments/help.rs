@@ -440,13 +440,11 @@ Examples:
 
 /// `taxel library check`.
 pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape and lists broken ones, shapes whose file holds another name,
-names that differ only in case, damaged unsaved work, and other files in the
-folder. The exit status is 1 if a shape is broken or unsaved work is damaged, or
-if --library names a folder that does not exist. --json prints an array on one
+and other files in the folder. The exit status is 1 if a shape is broken, or if
+--library names a folder that does not exist. --json prints an array on one
 line, with an object for each finding:
   {"finding":"broken","name":"ring","reason":"..."}
   {"finding":"name","name":"Ring","reason":"..."}
-  {"finding":"damaged","path":"shapes/.journal/4711-0.json","reason":"..."}
   {"finding":"other file","path":"shapes/notes.txt","reason":"..."}
 
 Examples:

@@ -17,11 +17,10 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::description::{RegionKind, regions};
 use crate::formats::Content;
-use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape, json};
 use crate::quote::{as_argument, shortened_message};
 use crate::sensor::Sensor;
-use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, Orphan, ShapeOrigin};
+use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
 
 struct ListLine {
     name: String,
@@ -213,8 +212,6 @@ enum Finding {
     Name { name: String, reason: String },
     #[serde(rename = "other file")]
     OtherFile { path: String, reason: &'static str },
-    #[serde(rename = "damaged")]
-    Damaged { path: String, reason: String },
 }
 
 impl fmt::Display for Finding {
@@ -223,7 +220,6 @@ impl fmt::Display for Finding {
             Self::Broken { name, reason } => write!(f, "broken: {name}: {reason}"),
             Self::Name { name, reason } => write!(f, "name: {name}: {reason}"),
             Self::OtherFile { path, reason } => write!(f, "other file: {path}: {reason}"),
-            Self::Damaged { path, reason } => write!(f, "damaged: unsaved work: {path}: {reason}"),
         }
     }
 }
@@ -231,38 +227,24 @@ impl fmt::Display for Finding {
 fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let own = lines.iter().filter(|line| line.origin == ShapeOrigin::Own);
-    let mut before: Option<&ListLine> = None;
     for line in own {
-        let mut find = |reason| {
-            let name = line.name.clone();
-            findings.push(Finding::Name { name, reason });
-        };
         if let Ok(summary) = &line.found
             && summary.written_name.as_str() != line.name
         {
             let written = &summary.written_name;
-            find(format!(
+            let reason = format!(
                 "the name inside the file is {:?}; the name of the file counts",
                 written.as_str()
-            ));
+            );
+            let name = line.name.clone();
+            findings.push(Finding::Name { name, reason });
         }
-        // The shapes are sorted without regard to case.
-        if let Some(before) = before
-            && folded(&before.name) == folded(&line.name)
-        {
-            find(format!(
-                "the same as {:?} on a system that ignores case",
-                before.name
-            ));
-        }
-        before = Some(line);
     }
     findings
 }
 
 /// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or a JSON
-/// array of objects, and [`CliError::Shapes`] if a shape is damaged or [`CliError::UnsavedWork`] if unsaved work is, to
-/// be reported after it.
+/// array of objects, and [`CliError::Shapes`] if a shape is damaged, to be reported after it.
 pub(crate) fn check(
     shelf: &Shelf,
     as_json: bool,
@@ -284,19 +266,10 @@ pub(crate) fn check(
     let mut findings: Vec<Finding> = broken.collect();
     let broken = findings.len();
     findings.extend(names);
-    let damaged = Orphan::unreadable(&library);
-    let mut leftovers = library.leftovers()?;
-    leftovers.retain(|(path, _)| !damaged.iter().any(|(own, _)| own == path));
+    let leftovers = library.leftovers()?;
     findings.extend(leftovers.into_iter().map(|(path, reason)| {
         let path = path.display().to_string();
         Finding::OtherFile { path, reason }
-    }));
-    let files = damaged.len();
-    findings.extend(damaged.into_iter().map(|(path, error)| {
-        let path = path.display().to_string();
-        let (error, place) = (error.to_string(), format!("{path}: "));
-        let reason = shortened_message(error.strip_prefix(&place).unwrap_or(&error));
-        Finding::Damaged { path, reason }
     }));
     let text = if as_json {
         json::ascii(&findings) + "\n"
@@ -308,9 +281,8 @@ pub(crate) fn check(
             .map(|line| charset.line(&line).into_owned() + "\n")
             .collect()
     };
-    let result = match (broken, files) {
-        (0, 0) => Ok(()),
-        (0, _) => Err(CliError::UnsavedWork { files }),
+    let result = match broken {
+        0 => Ok(()),
         _ => Err(CliError::Shapes { broken, shapes }),
     };
     Ok((text, result))

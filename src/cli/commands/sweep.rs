@@ -39,7 +39,7 @@ use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, default_ranges, figure_ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile, persist_pair};
+use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile};
 use crate::sweep::{Shard, Sweep, SweepResult};
 
 impl Wanted {
@@ -163,12 +163,10 @@ fn write(
         }
         None => None,
     };
-    let named = match (atlas, poses) {
-        (Some(atlas), Some(poses)) => persist_pair(atlas, poses).and_then(|(_, synced)| synced),
-        (Some(file), None) | (None, Some(file)) => file.persist(),
-        (None, None) => Ok(()),
-    };
-    Ok(named.map_err(ArchiveFileError::from)?)
+    for file in [atlas, poses].into_iter().flatten() {
+        file.persist().map_err(ArchiveFileError::from)?;
+    }
+    Ok(())
 }
 
 fn text(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset) -> String {

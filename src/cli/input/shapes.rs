@@ -159,7 +159,6 @@ impl Shelf {
     /// to look.
     pub(crate) fn refused(&self, error: LibraryError) -> CliError {
         if let LibraryError::System(refused) = &error
-            && !refused.is_in_place()
             && refused.error.kind() == ErrorKind::ReadOnlyFilesystem
         {
             let folder = self.folder.as_ref().unwrap_or(&refused.path);

@@ -29,6 +29,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+use tempfile::TempDir;
+
 use crate::tui::runtime::disk::journal_writer::JournalWriter;
 use crate::tui::runtime::disk::leftover;
 use crate::tui::runtime::disk::queue::DiskQueue;
@@ -41,7 +43,8 @@ use crate::tui::runtime::work::models::ModelStore;
 use crate::tui::runtime::work::workers::Workers;
 
 use crate::formats::StoredShape;
-use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder};
+use crate::formats::file::system_reason;
+use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan};
 use crate::tui::app::library::{Leftover, LibraryEvent};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -51,12 +54,28 @@ use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork, TerminalEffect};
 
+/// A temporary folder that only its owner can look into.
+fn temporary_folder() -> io::Result<TempDir> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix("taxel-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+    // The message names the folder that the user can change, not the temporary one.
+    builder.tempdir().map_err(|error| {
+        let place = std::env::temp_dir();
+        let reason = system_reason(&error.kind().into());
+        let text = format!(
+            "{}: cannot make a folder for temporary files: {reason}",
+            place.display()
+        );
+        io::Error::new(error.kind(), text)
+    })
+}
+
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
 pub struct World {
     orphan: Option<(Box<Orphan>, usize)>,
-    /// The unsaved work that cannot be read and why, in a sentence; None if there is none.
-    unreadable: Option<String>,
     journal: JournalWriter,
     /// The reminders from run to run; None if nothing is remembered.
     reminders: Option<Reminders>,
@@ -64,7 +83,7 @@ pub struct World {
     later: VecDeque<Message>,
     workers: Workers,
     /// The folder of a temporary library. The last field: it is dropped after the journal has been written.
-    _scratch: Option<ScratchFolder>,
+    _scratch: Option<TempDir>,
 }
 
 impl World {
@@ -72,7 +91,6 @@ impl World {
         Self {
             journal: JournalWriter::new(library.clone()),
             orphan: newest_orphan(&library),
-            unreadable: leftover::unreadable(&library),
             reminders: Some(Reminders::of(&library)),
             ..Self::for_script(library)
         }
@@ -86,7 +104,6 @@ impl World {
             disk: DiskQueue::new(library),
             later: VecDeque::new(),
             orphan: None,
-            unreadable: None,
             reminders: None,
             journal: JournalWriter::idle(),
             workers,
@@ -95,7 +112,7 @@ impl World {
     }
 
     pub fn scratch() -> io::Result<Self> {
-        let folder = ScratchFolder::new()?;
+        let folder = temporary_folder()?;
         let world = Self::new(Library::open(folder.path().join("library")));
         Ok(Self {
             _scratch: Some(folder),
@@ -109,7 +126,7 @@ impl World {
         shapes: &[&StoredShape],
         leftovers: &[&StoredShape],
     ) -> Result<Self, String> {
-        let folder = ScratchFolder::new().map_err(|error| error.to_string())?;
+        let folder = temporary_folder().map_err(|error| error.to_string())?;
         let library = Library::open(folder.path().join("library"));
         let sentence = |error: LibraryError| error.to_string();
         for shape in shapes {
@@ -172,12 +189,10 @@ impl World {
         }
     }
 
-    /// Returns the first messages: one about unsaved work that cannot be read, and the offer of the unsaved work of a
-    /// crashed program.
-    pub fn greeting(&self) -> impl Iterator<Item = Message> + use<> {
-        let unreadable = self.unreadable.clone().map(LibraryEvent::Failed);
+    /// Returns the first message: the offer of the unsaved work of a crashed program.
+    pub fn greeting(&self) -> Option<Message> {
         let found = self.left().map(LibraryEvent::Found);
-        unreadable.into_iter().chain(found).map(Message::Library)
+        found.map(Message::Library)
     }
 
     /// Returns the offer of unsaved work, None if there is none.

@@ -185,7 +185,7 @@ impl<'a> EventLoop<'a> {
         if let Some(first) = self.first.take() {
             self.update(first)?;
         }
-        for greeting in self.world.greeting() {
+        if let Some(greeting) = self.world.greeting() {
             self.update(greeting)?;
         }
         self.draw(false)?;

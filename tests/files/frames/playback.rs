@@ -98,8 +98,11 @@ fn the_channels_of_a_file_that_is_rewritten_keep_their_names_and_count_on() {
             AcquireEvent::Frame { frame, .. } => {
                 frames.push((channels[frame.channel].clone(), frame.number));
                 if frames.len() == 3 {
-                    fs::write(&path, lines(&["right", "top", "left"])).expect("written");
+                    File::create(&path).expect("truncated");
                 }
+            }
+            AcquireEvent::Anew(_) => {
+                fs::write(&path, lines(&["right", "top", "left"])).expect("written");
             }
             _ => {}
         }
@@ -197,21 +200,20 @@ fn values_of_a_rewritten(
     fs::write(path, before).expect("written");
     let mut options = AcquireOptions::default();
     options.size = size;
-    let (mut values, mut ticks, mut dropped) = (Vec::new(), 0, 0);
-    let mut after = Some(after);
+    let (mut values, mut ticks, mut dropped, mut is_cut) = (Vec::new(), 0, 0, false);
     let result = run(path, &options, &AtomicBool::new(false), &mut |event| {
         match event {
             AcquireEvent::Frame { frame, .. } => values.push(frame.values()[0]),
             AcquireEvent::Tick(counts) => {
                 (ticks, dropped) = (ticks + 1, counts.dropped);
-                if values.len() == 2
-                    && let Some(after) = after.take()
-                {
-                    fs::write(path, after).expect("written");
+                if values.len() == 2 && !is_cut {
+                    is_cut = true;
+                    File::create(path).expect("truncated");
                 } else if values.len() == count || ticks == 100 {
                     return ControlFlow::Break(());
                 }
             }
+            AcquireEvent::Anew(_) => fs::write(path, after).expect("written"),
             _ => {}
         }
         ControlFlow::Continue(())

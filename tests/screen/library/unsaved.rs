@@ -18,27 +18,6 @@ use crate::session::started;
 use crate::session::then;
 
 #[test]
-fn unsaved_work_that_cannot_be_read_is_reported_and_stays() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let journal = folder.path().join(".journal");
-    std::fs::create_dir_all(&journal).expect("made");
-    let file = journal.join("4711-0.json");
-    std::fs::write(&file, "").expect("written");
-    let said = "! unsaved work cannot be read and stays where it is:";
-    let reason = "line 1, column 1: EOF while parsing a value";
-    let later = session_on(folder.path(), "");
-    let screen = later.screen().replace('\n', " ");
-    for text in [said, "4711-0.json", reason] {
-        assert!(screen.contains(text), "{screen}");
-    }
-    // Other work is offered all the same.
-    drop(session_on(folder.path(), "<Space>"));
-    let offered = session_on(folder.path(), "");
-    shows(&offered, &["There is unsaved work from last time: 1 taxel"]);
-    assert!(file.exists());
-}
-
-#[test]
 fn unsaved_work_is_offered_back_once() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let lost = session_on(folder.path(), "f<Enter><Space>");

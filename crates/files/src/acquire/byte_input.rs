@@ -4,21 +4,23 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::net::TcpStream;
 use std::ops::ControlFlow;
-use std::os::fd::{AsFd, BorrowedFd};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::fs::{Mode, OFlags, open};
+use rustix::fs::{FlockOperation, Mode, OFlags, flock, open};
+use rustix::io::Errno;
 use rustix::net::sockopt;
+use rustix::termios::{
+    ControlModes, OptionalActions, QueueSelector, ioctl_tiocexcl, tcflush, tcgetattr, tcsetattr,
+};
 
+use crate::acquire::clocks::TICK;
 use crate::acquire::event::{AcquireOptions, Playback};
-use crate::acquire::followed_file::{self, Growth};
-use crate::acquire::growing_file::{GrowingFile, ReadAnew};
-use crate::acquire::serial;
+use crate::acquire::followed_file::{self, GrowingFile, Growth, ReadAnew};
 use crate::acquire::source::{FrameSource, check_address};
-use crate::acquire::ticker::TICK;
 
 /// The number of times that a pipe that is still open is tried again before it counts as another program's.
 const RELEASES: u32 = 5;
@@ -73,7 +75,7 @@ impl ByteInput {
                 Some(stream) => Self::Tcp(stream),
                 None => return Ok(None),
             },
-            FrameSource::Serial(path) => Self::Device(serial::open_line(path, options.baud)?),
+            FrameSource::Serial(path) => Self::Device(open_line(path, options.baud)?),
             FrameSource::Fifo(path) => match open_fifo_unless(path, waiting)? {
                 Some(pipe) => Self::Device(pipe),
                 None => return Ok(None),
@@ -110,7 +112,7 @@ impl ByteInput {
                 tv_nsec: TICK.subsec_nanos().into(),
             };
             match poll(&mut fds, Some(&moment)) {
-                Ok(0) | Err(rustix::io::Errno::INTR) => return Ok(ReadOutcome::Bytes(0)),
+                Ok(0) | Err(Errno::INTR) => return Ok(ReadOutcome::Bytes(0)),
                 Ok(_) => {}
                 Err(error) => return Err(error.into()),
             }
@@ -173,7 +175,7 @@ fn open_fifo_unless(
 fn open_fifo(path: &Path) -> io::Result<File> {
     let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let pipe = open(path, flags, Mode::empty())?;
-    serial::lock(&pipe)?;
+    lock(&pipe)?;
     Ok(pipe.into())
 }
 
@@ -233,6 +235,54 @@ fn kept_alive(stream: &TcpStream) -> io::Result<()> {
     sockopt::set_tcp_keepintvl(stream, BETWEEN_PROBES)?;
     sockopt::set_tcp_keepcnt(stream, PROBES)?;
     Ok(())
+}
+
+/// Returns the error for a source that must not have two readers.
+fn busy() -> io::Error {
+    io::Error::new(ErrorKind::ResourceBusy, "another program has it open")
+}
+
+/// Locks a line or a pipe until it is closed. Not every system locks devices: then two programs may read them.
+///
+/// # Errors
+/// Returns an error of the kind [`io::ErrorKind::ResourceBusy`] if another program has locked it.
+pub(super) fn lock(file: &OwnedFd) -> io::Result<()> {
+    match flock(file, FlockOperation::NonBlockingLockExclusive) {
+        Err(Errno::WOULDBLOCK) => Err(busy()),
+        _ => Ok(()),
+    }
+}
+
+/// Opens a line at a speed in bits per second. Many boards restart when a line is opened; bytes that they sent before
+/// are discarded.
+///
+/// # Errors
+/// Returns an error of the kind [`io::ErrorKind::ResourceBusy`] if another program has it open, or of the kind
+/// [`io::ErrorKind::InvalidInput`] if it is another kind of device, which trying again does not change; otherwise the
+/// system's error.
+pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    let line: OwnedFd = match open(path, flags, Mode::empty()) {
+        Err(Errno::BUSY) => return Err(busy()),
+        opened => opened?,
+    };
+    lock(&line)?;
+    let mut settings = match tcgetattr(&line) {
+        // Devices that do not know this request report one or the other.
+        Err(Errno::NOTTY | Errno::INVAL) => {
+            let reason = "it is not a serial line; 'taxel watch -' reads it from standard input";
+            return Err(io::Error::new(ErrorKind::InvalidInput, reason));
+        }
+        settings => settings?,
+    };
+    settings.make_raw();
+    settings.control_modes |= ControlModes::CREAD | ControlModes::CLOCAL;
+    settings.set_speed(baud)?;
+    tcsetattr(&line, OptionalActions::Now, &settings)?;
+    // A pseudo-terminal has no such mode.
+    let _ = ioctl_tiocexcl(&line);
+    tcflush(&line, QueueSelector::IFlush)?;
+    Ok(File::from(line))
 }
 
 #[cfg(test)]

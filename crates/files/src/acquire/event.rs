@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-use crate::acquire::growing_file::ReadAnew;
+use crate::acquire::followed_file::ReadAnew;
 use crate::formats::file::system_reason;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingFormat, RecordingNote};
 use crate::formats::stream::{Silence, StreamCounts, StreamFormat, StreamOptions};

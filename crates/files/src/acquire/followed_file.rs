@@ -1,16 +1,17 @@
-//! A recording that may still grow: at its end, it waits for more, like `tail -f`.
+//! A file that is read while it grows, like `tail -f`: a stream of bytes, or a recording that is played meanwhile.
 //!
-//! A file that has grown since it was opened is followed until it is truncated or replaced. A file that has not grown
-//! but was changed shortly before gets a moment to grow; any other file is read to its end.
+//! A recording that has grown since it was opened is followed until it is truncated or replaced. One that has not grown
+//! but was changed shortly before gets a moment to grow; any other is read to its end.
 
 use std::cell::Cell;
-use std::fs::File;
+use std::fmt;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use crate::acquire::growing_file::{GrowingFile, ReadAnew};
+use crate::storage::FileId;
 
 /// The time without a change after which a file is complete, if it has not grown since it was opened.
 const UNCHANGED: Duration = Duration::from_secs(2);
@@ -177,5 +178,174 @@ impl Seek for FollowedFile<'_> {
         let again = std::mem::take(&mut self.offset);
         self.growth.bytes.update(|bytes| bytes - again);
         self.file.rewind().map(|()| 0)
+    }
+}
+
+/// The pause at the end of a file before it is checked for growth again.
+const GROWTH: Duration = Duration::from_millis(50);
+
+/// The reason why a file is read from its start again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ReadAnew {
+    /// The file is shorter than what was read of it.
+    Cut,
+    /// Another file has its name.
+    Replaced,
+}
+
+impl fmt::Display for ReadAnew {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cut => "was truncated: reading it again from its start",
+            Self::Replaced => "was replaced: reading the new file from its start",
+        })
+    }
+}
+
+/// A file with a name, read up to its present end.
+#[derive(Debug)]
+pub(super) struct GrowingFile {
+    path: PathBuf,
+    file: File,
+    /// The number of bytes that were read.
+    offset: u64,
+    /// Whether everything that was there has been read.
+    at_end: bool,
+}
+
+impl GrowingFile {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub(super) fn open(path: &Path) -> io::Result<Self> {
+        Ok(Self::new(path, File::open(path)?))
+    }
+
+    /// Takes an open file, before its first byte.
+    pub(super) fn new(path: &Path, file: File) -> Self {
+        Self {
+            path: path.to_owned(),
+            file,
+            offset: 0,
+            at_end: false,
+        }
+    }
+
+    /// Goes back to the first byte.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub(super) fn rewind(&mut self) -> io::Result<()> {
+        self.file.rewind()?;
+        (self.offset, self.at_end) = (0, false);
+        Ok(())
+    }
+
+    /// Reads the bytes that have arrived; waits a moment if there are none.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = read_some(&mut self.file, bytes)?;
+        self.at_end = count == 0;
+        if self.at_end {
+            std::thread::sleep(GROWTH);
+        }
+        self.offset += count as u64;
+        Ok(count)
+    }
+
+    /// Goes back to the start of the file if it was truncated or replaced, and returns which. Must be called before
+    /// each read.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub(super) fn anew(&mut self) -> io::Result<Option<ReadAnew>> {
+        if !self.at_end {
+            return Ok(None);
+        }
+        let own = self.file.metadata()?;
+        if own.len() < self.offset {
+            self.rewind()?;
+            return Ok(Some(ReadAnew::Cut));
+        }
+        // While no file has that name, the open file is the only one.
+        let Ok(named) = fs::metadata(&self.path) else {
+            return Ok(None);
+        };
+        // Read the old file to its end before switching: bytes may have been appended before the rename.
+        let is_own = FileId::in_metadata(&named) == FileId::in_metadata(&own);
+        if is_own || !named.is_file() || own.len() > self.offset {
+            return Ok(None);
+        }
+        self.switched(Self::open(&self.path))
+    }
+
+    /// Continues with the file that now has the name. If it has vanished since it was checked, waits for another one.
+    fn switched(&mut self, opened: io::Result<Self>) -> io::Result<Option<ReadAnew>> {
+        match opened {
+            Ok(file) => {
+                *self = file;
+                Ok(Some(ReadAnew::Replaced))
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Reads the bytes that are there. A read that a signal interrupted is repeated: without bytes, it would count as the
+/// end of the file.
+///
+/// # Errors
+/// Returns the system's error.
+fn read_some(file: &mut impl Read, bytes: &mut [u8]) -> io::Result<usize> {
+    loop {
+        match file.read(bytes) {
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            read => return read,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file whose first read is interrupted.
+    struct Interrupted(bool);
+
+    impl Read for Interrupted {
+        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+            if std::mem::replace(&mut self.0, true) {
+                bytes.fill(1);
+                return Ok(bytes.len());
+            }
+            Err(ErrorKind::Interrupted.into())
+        }
+    }
+
+    #[test]
+    fn an_interrupted_read_is_not_the_end_of_a_file() {
+        assert!(matches!(
+            read_some(&mut Interrupted(false), &mut [0; 8]),
+            Ok(8)
+        ));
+    }
+
+    #[test]
+    fn a_new_file_that_vanishes_at_once_does_not_end_the_watch() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("growing");
+        fs::write(&path, "1 2").expect("written");
+        let mut growing = GrowingFile::open(&path).expect("opened");
+        // The file was removed between the look at its name and its opening.
+        let vanished = GrowingFile::open(&folder.path().join("vanished"));
+        assert!(matches!(growing.switched(vanished), Ok(None)));
+        let mut bytes = [0; 8];
+        assert!(matches!(growing.read(&mut bytes), Ok(3)));
+        let refused = Err(ErrorKind::PermissionDenied.into());
+        assert!(growing.switched(refused).is_err());
     }
 }

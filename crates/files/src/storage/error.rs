@@ -19,8 +19,6 @@ pub struct FileError {
     pub path: PathBuf,
     /// The error that the system reports.
     pub error: io::Error,
-    /// Whether the new file is in its place.
-    is_in_place: bool,
 }
 
 impl FileError {
@@ -30,29 +28,7 @@ impl FileError {
             doing,
             path: path.to_owned(),
             error,
-            is_in_place: false,
         }
-    }
-
-    /// Creates the error for a folder that was not synced: the last step of writing a file, when the file is already
-    /// in its place.
-    pub(crate) fn syncing(folder: &Path, error: io::Error) -> Self {
-        let doing = "sync the folder; it was changed, but a power cut may undo that";
-        Self {
-            is_in_place: true,
-            ..Self::new(doing, folder, error)
-        }
-    }
-
-    /// Adds a note to the message, if there is one.
-    #[must_use]
-    pub(crate) fn and(self, note: Option<String>) -> Self {
-        let Some(note) = note else { return self };
-        let error = io::Error::new(
-            self.error.kind(),
-            format!("{}; {note}", system_reason(&self.error)),
-        );
-        Self { error, ..self }
     }
 
     /// Returns true if there is a file already, which was to be kept.
@@ -60,29 +36,9 @@ impl FileError {
         self.error.kind() == io::ErrorKind::AlreadyExists
     }
 
-    /// Returns true if the new file is in its place, though a power cut may undo that.
-    pub fn is_in_place(&self) -> bool {
-        self.is_in_place
-    }
-
     /// Returns true if there is no such file, or if a file is where a folder is expected.
     pub fn is_missing(&self) -> bool {
         is_missing(&self.error)
-    }
-
-    /// Returns the system's error, for a message that names the file itself.
-    #[must_use]
-    pub fn into_io(self) -> io::Error {
-        if self.is_in_place {
-            let message =
-                "the folder was changed but cannot be synced, so a power cut may undo that";
-            io::Error::new(
-                self.error.kind(),
-                format!("{message}: {}", system_reason(&self.error)),
-            )
-        } else {
-            self.error
-        }
     }
 }
 
@@ -100,7 +56,7 @@ impl From<FileError> for ArchiveFileError {
     /// Converts the error of a file or folder that is written.
     fn from(error: FileError) -> Self {
         let path = error.path.clone();
-        Self::doing("write", &path, &error.into_io())
+        Self::doing("write", &path, &error.error)
     }
 }
 

@@ -1,21 +1,22 @@
 //! Unsaved work: kept in a file while the program runs, and offered again if it died.
 //!
-//! Each running program holds the lock of a file of its own in the folder's `.journal`. A journal whose lock is free
-//! was left by a program that died; the program that takes its lock offers it, so several programs do not take each
-//! other's.
+//! Each journal is a file in the folder's `.journal`, beside it a file whose lock its program holds. A journal whose
+//! lock is free was left by a program that died; the program that takes its lock offers it, so several programs do not
+//! take each other's.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::formats::shape::StoredShape;
-use crate::storage::access::is_removable;
-use crate::storage::atomic_file;
 use crate::storage::error::{FileError, LibraryError};
-use crate::storage::folder::{self, InnerFolder, JOURNAL, is_journal};
+use crate::storage::file;
+use crate::storage::folder;
 use crate::storage::library::Library;
-use crate::storage::lock::{Lock, LockAttempt};
+
+/// The folder inside a library with unsaved work.
+pub(super) const FOLDER: &str = ".journal";
 
 /// The largest number of journals that are offered at once. Each keeps a file open, and a program may have about a
 /// thousand; the others wait for the next start.
@@ -28,17 +29,16 @@ pub const UNNAMED: &str = "unsaved";
 /// until it is cleared: a program that ends without clearing it has lost nothing.
 #[derive(Debug)]
 pub struct Journal {
-    /// The folder of the library.
-    library: PathBuf,
-    /// The journal's file, with the lock if the file system has locks.
-    open: Option<(PathBuf, Option<Lock>)>,
+    folder: PathBuf,
+    /// The file, and its lock.
+    open: Option<(PathBuf, File)>,
 }
 
 impl Journal {
     /// Creates a journal in a library.
     pub fn new(library: &Library) -> Self {
         Self {
-            library: library.folder().to_owned(),
+            folder: library.folder().join(FOLDER),
             open: None,
         }
     }
@@ -46,66 +46,45 @@ impl Journal {
     /// Keeps a shape in place of the one kept before; durable on return.
     ///
     /// # Errors
-    /// Returns the system's error. The shape kept before is still there.
+    /// The system's error. The shape kept before is still there.
     pub fn keep(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
-        let path = self.file()?;
-        let content = shape.write();
-        Ok(atomic_file::write(
-            &path,
-            Some(&temporary_of(&path)),
-            content.as_bytes(),
-        )?)
+        // Someone may have removed the whole folder.
+        let open = self.open.take().filter(|(path, _)| lock_of(path).exists());
+        let (path, _) = self.open.insert(match open {
+            Some(open) => open,
+            None => self.begin()?,
+        });
+        Ok(file::write(path, shape.write().as_bytes())?)
     }
 
-    /// Returns true if the shape that was kept last is still there: someone may have removed it, or the whole folder.
+    /// Whether the shape that was kept last is still there: someone may have removed it, or the whole folder.
     pub fn is_intact(&self) -> bool {
-        self.is_locked() && self.open.as_ref().is_some_and(|(path, _)| path.exists())
+        let open = self.open.as_ref();
+        open.is_some_and(|(path, _)| path.exists() && lock_of(path).exists())
     }
 
-    /// Returns true if other programs find the lock of the file, or its folder if there are no locks.
-    fn is_locked(&self) -> bool {
-        let is_there = |(path, lock): &(PathBuf, Option<Lock>)| match lock {
-            Some(lock) => lock.is_at(&lock_of(path)),
-            None => path.parent().is_some_and(Path::is_dir),
-        };
-        self.open.as_ref().is_some_and(is_there)
-    }
-
-    /// Returns the journal's file. Its name is chosen at the first use. If someone has removed its lock, it gets
-    /// another lock, or else another name: other programs would take the file for that of a dead one.
-    fn file(&mut self) -> Result<PathBuf, LibraryError> {
-        if let Some((path, _)) = self.open.as_ref().filter(|_| self.is_locked()) {
-            return Ok(path.clone());
-        }
-        // The file itself may still be there.
-        if let Some((path, _)) = self.open.take()
-            && path.exists()
-            && let Some(lock) = Lock::if_free(&lock_of(&path))
-        {
-            self.open = Some((path.clone(), Some(lock)));
-            return Ok(path);
-        }
-        let folder = InnerFolder::of(&self.library, JOURNAL)?;
-        folder.make()?;
+    /// Takes a name that no other journal has or had, with its lock.
+    fn begin(&self) -> Result<(PathBuf, File), LibraryError> {
+        folder::make(&self.folder)?;
+        let refuse = |path: &Path, error| FileError::new("create a journal", path, error);
         let process = std::process::id();
-        for number in 0..1000 {
-            let path = folder.path().join(format!("{process}-{number}.json"));
+        for number in 0_u32.. {
+            let path = self.folder.join(format!("{process}-{number}.json"));
             // Left by a dead program with the same process number.
             if path.exists() {
                 continue;
             }
-            let lock = match Lock::attempt(&lock_of(&path))? {
-                LockAttempt::Free(lock) => Some(lock),
-                LockAttempt::Held => continue,
-                // What is kept can be found in the folder. It is not offered, because nobody can tell whether its
-                // program still runs.
-                LockAttempt::Unsupported => None,
-            };
-            self.open = Some((path.clone(), lock));
-            return Ok(path);
+            match File::create_new(lock_of(&path)) {
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                made => {
+                    let lock = made.map_err(|error| refuse(&path, error))?;
+                    lock.try_lock()
+                        .map_err(|error| refuse(&path, error.into()))?;
+                    return Ok((path, lock));
+                }
+            }
         }
-        let none = io::Error::other("no journal could be locked");
-        Err(FileError::new("create a journal", folder.path(), none).into())
+        Err(refuse(&self.folder, io::Error::other("no name is free")).into())
     }
 
     /// Forgets the shape that was kept, because it is saved or given up.
@@ -122,99 +101,43 @@ pub struct Orphan {
     /// The shape that was on the program's matrix.
     pub shape: StoredShape,
     path: PathBuf,
-    lock: Lock,
+    lock: File,
 }
 
 impl Orphan {
-    /// Returns the newest journals that wait in a library, at most 100, the oldest of them first. Removes work that
-    /// is identical to the saved shape of its name. Leaves a journal alone if it cannot be read: it may be of a later
-    /// version; and if this user may not remove it: it is another user's. Leaves files of other names alone, too, and
-    /// a folder outside of the library that a link leads to.
+    /// The newest journals that wait in a library, at most 100, the oldest of them first. Removes work that is
+    /// identical to the saved shape of its name. Leaves a journal alone if it cannot be read: it may be of a later
+    /// version.
     pub fn all(library: &Library) -> Vec<Self> {
-        let mut paths = files_of(library);
+        let folder = library.folder().join(FOLDER);
+        // A folder that cannot be read must not keep the program from starting.
+        let names = folder::names(&folder).unwrap_or_default().into_iter();
+        let mut paths: Vec<PathBuf> = names.map(|name| folder.join(name)).collect();
+        paths.retain(|path| path.extension().is_some_and(|ending| ending == "json"));
         paths.sort_by_cached_key(|path| {
             let changed = fs::symlink_metadata(path).and_then(|file| file.modified());
-            // Of files with the same time, `1-10.json` comes after `1-9.json`.
-            (changed.ok(), path.as_os_str().len(), path.clone())
+            (changed.ok(), path.clone())
         });
         let newest = paths.into_iter().rev();
-        let mut found: Vec<Self> = newest
-            .filter_map(|path| {
-                let journal = path.with_extension("json");
-                match path.extension()?.to_str()? {
-                    "json" => Self::of(library, path),
-                    // Left by a program that died while it began or cleared a journal.
-                    "lock" if !journal.exists() => {
-                        if let Some(lock) = Lock::if_free(&path)
-                            && !journal.exists()
-                        {
-                            remove(&journal, Some(lock));
-                        }
-                        None
-                    }
-                    _ => None,
-                }
-            })
-            .take(MOST_ORPHANS)
-            .collect();
+        let orphans = newest.filter_map(|path| Self::of(library, path));
+        let mut found: Vec<Self> = orphans.take(MOST_ORPHANS).collect();
         found.reverse();
         found
     }
 
-    /// Returns the work in a journal, if its program is dead and the work would be lost.
+    /// The work in a journal, if its program is dead and the work would be lost.
     fn of(library: &Library, path: PathBuf) -> Option<Self> {
-        let lock = Lock::if_free(&lock_of(&path))?;
-        let content = match folder::read(&path) {
-            // Its program has cleared it just now.
-            Err(LibraryError::System(refused)) if refused.error.kind() == ErrorKind::NotFound => {
-                remove(&path, Some(lock));
-                return None;
-            }
-            content => content.ok()?,
-        };
-        let shape = StoredShape::read(&content).ok()?;
-        if !is_removable(&path) {
-            return None;
-        }
+        let lock = folder::open_lock(&lock_of(&path)).ok()?;
+        lock.try_lock().ok()?;
+        let shape = StoredShape::read(&folder::read(&path).ok()?).ok()?;
         if is_saved(library, &shape) {
-            remove(&path, Some(lock));
+            remove(&path, lock);
             return None;
         }
         Some(Self { shape, path, lock })
     }
 
-    /// Returns the work that cannot be offered, each with its file and the reason, sorted by file: a journal that is
-    /// damaged or of a later version. It stays where it is. Leaves out what this user may not remove or read: it is
-    /// another user's.
-    pub fn unreadable(library: &Library) -> Vec<(PathBuf, LibraryError)> {
-        let mut paths = files_of(library);
-        paths.retain(|path| path.extension().is_some_and(|ending| ending == "json"));
-        paths.sort();
-        let journals = paths.into_iter().filter(|path| is_removable(path));
-        let unread = journals.filter_map(|path| {
-            let reason = match folder::read(&path) {
-                Ok(content) => {
-                    let error = StoredShape::read(&content).err()?;
-                    let path = path.clone();
-                    LibraryError::Broken { path, error }
-                }
-                Err(LibraryError::System(refused))
-                    if matches!(
-                        refused.error.kind(),
-                        ErrorKind::NotFound | ErrorKind::PermissionDenied
-                    ) =>
-                {
-                    return None;
-                }
-                Err(error) => error,
-            };
-            Some((path, reason))
-        });
-        unread.collect()
-    }
-
-    /// Returns how long ago the work was written; None if the system does not say, or if its clock was set back
-    /// since.
+    /// How long ago the work was written; None if the system does not say, or if its clock was set back since.
     pub fn age(&self) -> Option<Duration> {
         let written = fs::symlink_metadata(&self.path).ok()?.modified().ok()?;
         written.elapsed().ok()
@@ -223,22 +146,11 @@ impl Orphan {
     /// Removes the work, because it is stored elsewhere now or is not wanted. Returns false if the system refuses: then
     /// it is still there.
     pub fn discard(self) -> bool {
-        remove(&self.path, Some(self.lock))
+        remove(&self.path, self.lock)
     }
 }
 
-/// Returns the files of journals in a library, in no order. A folder that cannot be read must not keep the program from
-/// starting, so it counts as empty.
-fn files_of(library: &Library) -> Vec<PathBuf> {
-    let folder = InnerFolder::of(library.folder(), JOURNAL);
-    let Ok(Ok(mut paths)) = folder.map(|folder| folder.paths()) else {
-        return Vec::new();
-    };
-    paths.retain(|path| is_journal(path));
-    paths
-}
-
-/// Returns true if a library holds exactly this work under its name, or if there is nothing to hold.
+/// Whether a library holds exactly this work under its name, or there is nothing to hold.
 fn is_saved(library: &Library, shape: &StoredShape) -> bool {
     let same = |saved: &StoredShape| {
         (saved.sensor, saved.imprint, &saved.source) == (shape.sensor, shape.imprint, &shape.source)
@@ -253,18 +165,15 @@ fn lock_of(path: &Path) -> PathBuf {
     path.with_extension("lock")
 }
 
-fn temporary_of(path: &Path) -> PathBuf {
-    path.with_extension("tmp")
-}
-
 /// Removes a journal, and returns whether its file is gone. The lock goes last, so that nobody finds the file without
 /// it.
-fn remove(path: &Path, lock: Option<Lock>) -> bool {
+fn remove(path: &Path, lock: File) -> bool {
     // What cannot be removed is offered again: better twice than never.
-    let _ = fs::remove_file(temporary_of(path));
     let _ = fs::remove_file(path);
     let is_gone = path.symlink_metadata().is_err();
-    let _ = fs::remove_file(lock_of(path));
+    if is_gone {
+        let _ = fs::remove_file(lock_of(path));
+    }
     drop(lock);
     is_gone
 }

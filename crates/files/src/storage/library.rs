@@ -2,27 +2,29 @@
 //! restoring.
 
 use std::collections::HashSet;
-use std::ffi::OsString;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::formats::file::is_missing;
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
 use crate::quote::did_you_mean;
-use crate::storage::atomic_file::{self, sync_folder};
 use crate::storage::error::{FileError, LibraryError};
-use crate::storage::folder::{self, InnerFolder, JOURNAL, TRASH, is_journal, stamp};
-use crate::storage::lock::{self, LOCK, Lock};
-use crate::storage::name_index::NameIndex;
-use crate::storage::shipped;
-use crate::storage::temporary::is_temporary;
-use crate::storage::trash::Trash;
+use crate::storage::file::{self, PREFIX, sync_folder};
+use crate::storage::folder::{self, stamp};
+use crate::storage::{journal, shipped};
 
-/// The origin of a shape.
+/// The folder inside a library with its deleted shapes.
+const TRASH: &str = ".trash";
+
+/// The number of deleted shapes that are kept; older ones are removed for good.
+pub const TRASH_KEPT: usize = 50;
+
+/// Where a shape comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ShapeOrigin {
     /// The user's folder.
@@ -36,7 +38,7 @@ pub enum ShapeOrigin {
 pub struct LibraryEntry {
     /// The name of the shape: the name of its file without `.json`.
     pub name: String,
-    /// The origin of the shape.
+    /// Where it comes from.
     pub origin: ShapeOrigin,
 }
 
@@ -49,7 +51,7 @@ pub struct LoadedShape {
     pub written_name: Name,
     /// A hash of the file's content.
     pub stamp: u64,
-    /// The origin of the shape.
+    /// Where it comes from.
     pub origin: ShapeOrigin,
 }
 
@@ -61,15 +63,6 @@ pub enum Expected {
     /// A file with this stamp.
     Stamp(u64),
 }
-
-/// The name of a file that is being written. Its writer holds the lock, so one name is enough.
-const TEMPORARY: &str = ".taxel-tmp";
-
-/// The name of the file with the commands that were typed.
-pub(super) const COMMANDS: &str = ".commands";
-
-/// The name of the file with the set of shapes that was recognised last.
-pub(super) const RECOGNISED_SET: &str = ".recognise";
 
 /// A library in a folder. The folder is made when the first shape is saved.
 ///
@@ -101,44 +94,32 @@ pub(super) const RECOGNISED_SET: &str = ".recognise";
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
-    names: Arc<NameIndex>,
     /// Whether a thread waits for the lock.
     waits: Arc<AtomicBool>,
 }
 
 impl Library {
-    /// Opens the library in a folder, and removes half-written files that a program left in it or in its trash when it
-    /// died.
+    /// Opens the library in a folder, which may not exist yet.
     pub fn open(folder: PathBuf) -> Self {
-        let half_written = half_written_in(&folder);
-        if !half_written.is_empty()
-            && let Some(_lock) = Lock::if_free(&lock::path_in(&folder))
-        {
-            for path in half_written {
-                // If this fails it does no harm, and the next start tries again.
-                let _ = fs::remove_file(path);
-            }
-        }
         Self {
             folder,
-            names: Arc::default(),
             waits: Arc::default(),
         }
     }
 
-    /// Returns true if a change, on another thread, waits because another program holds the lock. A change waits for
-    /// at most five seconds.
+    /// Whether a change, on another thread, waits because another program holds the lock. A change waits for at most
+    /// five seconds.
     pub fn waits_for_lock(&self) -> bool {
         self.waits.load(Ordering::Relaxed)
     }
 
-    /// Returns the file, if any, in the place of a folder above the library's folder. Then only shapes that come with
-    /// the program can be loaded, and none can be saved.
+    /// The file, if any, in the place of a folder above the library's folder. Then only shapes that come with the
+    /// program can be loaded, and none can be saved.
     pub fn file_above(&self) -> Option<&Path> {
         folder::file_above(&self.folder)
     }
 
-    /// Returns the folder of the library.
+    /// The folder of the library.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -147,7 +128,7 @@ impl Library {
     /// `NAME.json`, and shapes that come with the program if the user has one of the same name.
     ///
     /// # Errors
-    /// Returns an error if the folder exists but cannot be read.
+    /// If the folder exists but cannot be read.
     pub fn list(&self) -> Result<Vec<LibraryEntry>, LibraryError> {
         let own = |name| LibraryEntry {
             name,
@@ -168,12 +149,12 @@ impl Library {
     }
 
     fn own_names(&self) -> Result<Vec<String>, LibraryError> {
-        let own = |file: OsString| file.to_str().and_then(name_of).map(str::to_owned);
         let files = folder::names(&self.folder)?.into_iter();
-        Ok(files.filter_map(own).collect())
+        let own = files.filter_map(|file| Some(name_of(file.to_str()?)?.to_owned()));
+        Ok(own.collect())
     }
 
-    /// Returns the name of the user's shape, spelled as in its file; None if the user has none of that name.
+    /// The name of the user's shape, spelled as in its file; None if the user has none of that name.
     fn own_name(&self, name: &Name) -> Result<Option<String>, LibraryError> {
         // The usual case needs no search.
         let path = self.path(name.as_str());
@@ -182,10 +163,10 @@ impl Library {
             Err(error) if is_missing(&error) => {}
             Err(error) => return Err(FileError::new("access it", &path, error).into()),
         }
-        self.names.find(&self.folder, name, || self.own_names())
+        let own = self.own_names()?;
+        Ok(own.into_iter().find(|own| name.same(own)))
     }
 
-    /// Returns the path of the user's shape of that name. A name cannot lead out of the folder.
     fn path(&self, name: &str) -> PathBuf {
         self.folder.join(format!("{name}.json"))
     }
@@ -194,10 +175,10 @@ impl Library {
     /// program.
     ///
     /// # Errors
-    /// Returns an error if there is no such shape, or if its file is broken or cannot be read.
+    /// If there is no such shape, or if its file is broken or cannot be read.
     pub fn load(&self, name: &str) -> Result<LoadedShape, LibraryError> {
         let name = Name::new(name)?;
-        let Some((own, content)) = self.read_own(&name)? else {
+        let Some(own) = self.own_name(&name)? else {
             let unknown = || LibraryError::Unknown {
                 name: name.to_string(),
             };
@@ -210,6 +191,7 @@ impl Library {
             });
         };
         let path = self.path(&own);
+        let content = folder::read(&path)?;
         let shape =
             StoredShape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
         // A file that was renamed by hand goes by its new name.
@@ -221,26 +203,11 @@ impl Library {
         })
     }
 
-    /// Returns the name of the user's shape, spelled as in its file, and the content of the file; None if the user has
-    /// none of that name.
-    fn read_own(&self, name: &Name) -> Result<Option<(String, Vec<u8>)>, LibraryError> {
-        // The usual case needs no search, and no look at the file before it is read.
-        match folder::read(&self.path(name.as_str())) {
-            Err(LibraryError::System(refused)) if refused.is_missing() => {}
-            read => return Ok(Some((name.to_string(), read?))),
-        }
-        let Some(own) = self.names.find(&self.folder, name, || self.own_names())? else {
-            return Ok(None);
-        };
-        let content = folder::read(&self.path(&own))?;
-        Ok(Some((own, content)))
-    }
-
-    /// Returns the name under which a shape of that name is or would be stored: the name of its file, which may
-    /// differ in case.
+    /// The name under which a shape of that name is or would be stored: the name of its file, which may differ in
+    /// case.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be read.
+    /// If the folder cannot be read.
     pub fn stored_name(&self, name: &Name) -> Result<String, LibraryError> {
         Ok(self.own_name(name)?.unwrap_or_else(|| name.to_string()))
     }
@@ -248,12 +215,12 @@ impl Library {
     /// Saves a shape under its name, and returns the stamp of its file.
     ///
     /// # Errors
-    /// Returns [`LibraryError::Exists`] if the name is taken, [`LibraryError::Changed`] if the file's stamp is not
-    /// the expected one, [`LibraryError::Shipped`] for the name of a shipped shape, or the system's error.
+    /// [`LibraryError::Exists`] if the name is taken, [`LibraryError::Changed`] if the file's stamp is not the
+    /// expected one, [`LibraryError::Shipped`] for the name of a shipped shape, or the system's error.
     pub fn save(&self, shape: &StoredShape, expected: Expected) -> Result<u64, LibraryError> {
         let name = &shape.name;
         folder::make(&self.folder)?;
-        let lock = Lock::wait(&self.folder, &self.waits)?;
+        let _lock = folder::lock(&self.folder, &self.waits)?;
         let own = self.own_name(name)?;
         match &own {
             Some(own) => self.check_replaceable(own, expected)?,
@@ -268,8 +235,7 @@ impl Library {
         let name = own.map_or_else(|| Ok(name.clone()), |own| Name::new(&own))?;
         let path = self.path(name.as_str());
         let content = shape.clone().renamed(name).write();
-        let temporary = temporary_in(&self.folder, lock.as_ref());
-        atomic_file::write(&path, temporary.as_deref(), content.as_bytes())?;
+        file::write(&path, content.as_bytes())?;
         Ok(stamp(content.as_bytes()))
     }
 
@@ -277,7 +243,7 @@ impl Library {
     fn check_replaceable(&self, own: &str, expected: Expected) -> Result<(), LibraryError> {
         let path = self.path(own);
         let now = stamp(&folder::read(&path)?);
-        if folder::regular(&path)?.permissions().readonly() {
+        if (path.metadata()).is_ok_and(|found| found.permissions().readonly()) {
             let protected = io::Error::from(ErrorKind::PermissionDenied);
             return Err(FileError::new("replace it, it is read-only", &path, protected).into());
         }
@@ -289,15 +255,13 @@ impl Library {
         }
     }
 
-    /// Returns the name of a shape that can be deleted, spelled as in its file.
+    /// The name of a shape that can be deleted, spelled as in its file.
     ///
     /// # Errors
-    /// Returns an error if no such shape is stored, if it comes with the program, or if the folder cannot be read.
+    /// If no such shape is stored, if it comes with the program, or if the folder cannot be read.
     pub fn deletable(&self, name: &str) -> Result<String, LibraryError> {
         let name = Name::new(name)?;
-        if self.folder.is_dir()
-            && let Some(own) = self.own_name(&name)?
-        {
+        if let Some(own) = self.own_name(&name)? {
             return Ok(own);
         }
         let shipped = shipped::has(&name);
@@ -312,18 +276,17 @@ impl Library {
     /// Moves a shape into the trash without reading its file, and returns its name, spelled as in its file.
     ///
     /// # Errors
-    /// Returns an error if no such shape is stored, if it comes with the program, or if the system refuses.
+    /// If no such shape is stored, if it comes with the program, or if the system refuses.
     pub fn delete(&self, name: &str) -> Result<String, LibraryError> {
         // Checked before the lock is taken: the lock is a file in the folder, which may not exist.
         self.deletable(name)?;
-        let _lock = Lock::wait(&self.folder, &self.waits)?;
+        let _lock = folder::lock(&self.folder, &self.waits)?;
         let own = self.deletable(name)?;
         let path = self.path(&own);
-        folder::regular(&path)?;
-        let mut trash = Trash::made(&self.folder)?;
-        fs::rename(&path, trash.next_path(&own)?)
+        let trash = self.made_trash()?;
+        fs::rename(&path, trash.next_path(&own))
             .map_err(|error| FileError::new("move it into the trash", &path, error))?;
-        sync_folder(trash.folder())?;
+        sync_folder(&trash.folder)?;
         sync_folder(&self.folder)?;
         trash.forget_oldest();
         Ok(own)
@@ -332,13 +295,13 @@ impl Library {
     /// Puts a shape that was never saved into the trash, under its name with a free number, and returns that name.
     ///
     /// # Errors
-    /// Returns the system's error; then the shape is stored nowhere.
+    /// The system's error; then the shape is stored nowhere.
     pub fn throw_away(&self, shape: &StoredShape) -> Result<String, LibraryError> {
         folder::make(&self.folder)?;
-        let lock = Lock::wait(&self.folder, &self.waits)?;
-        let mut trash = Trash::made(&self.folder)?;
+        let _lock = folder::lock(&self.folder, &self.waits)?;
+        let trash = self.made_trash()?;
         let free = |name: &Name| {
-            let thrown = trash.newest_first().any(|thrown| name.same(&thrown.name));
+            let thrown = trash.shapes.iter().any(|thrown| name.same(&thrown.name));
             !thrown && matches!(self.own_name(name), Ok(None))
         };
         let mut numbered = (1..1000).filter_map(|number| {
@@ -349,15 +312,13 @@ impl Library {
         let name = numbered.find(free);
         let name = name.unwrap_or_else(|| shape.name.clone());
         let thrown = shape.clone().renamed(name.clone());
-        let path = trash.next_path(name.as_str())?;
-        let temporary = temporary_in(trash.folder(), lock.as_ref());
-        atomic_file::write(&path, temporary.as_deref(), thrown.write().as_bytes())?;
+        file::write(&trash.next_path(name.as_str()), thrown.write().as_bytes())?;
         trash.forget_oldest();
         Ok(name.to_string())
     }
 
-    /// Returns the end of a message about the unknown name of a shape, or of a shape in the trash: a suggestion of a
-    /// similar name. Empty if there is none, and for other errors.
+    /// The end of a message about the unknown name of a shape, or of a shape in the trash: a suggestion of a similar
+    /// name. Empty if there is none, and for other errors.
     pub fn suggestion(&self, error: &LibraryError) -> String {
         match error {
             LibraryError::Unknown { name } => self.list().map_or_else(
@@ -372,24 +333,20 @@ impl Library {
         }
     }
 
-    /// Returns the names of the shapes in the trash, the last deleted first, each once.
+    /// The names of the shapes in the trash, the last deleted first, each once.
     ///
     /// # Errors
-    /// Returns an error if the folder exists but cannot be read.
+    /// If the folder exists but cannot be read.
     pub fn in_trash(&self) -> Result<Vec<String>, LibraryError> {
         let mut met = HashSet::new();
-        let trash = Trash::read(&self.folder)?;
-        let names = trash.newest_first().map(|deleted| &deleted.name);
-        Ok(names
-            .filter(|name| met.insert(folded(name)))
-            .cloned()
-            .collect())
+        let names = self.trash()?.shapes.into_iter().map(|deleted| deleted.name);
+        Ok(names.filter(|name| met.insert(folded(name))).collect())
     }
 
     /// Restores the last deleted shape of that name, and returns its name.
     ///
     /// # Errors
-    /// Returns an error if no shape of that name is in the trash, the name is taken again, or the system refuses.
+    /// If no shape of that name is in the trash, the name is taken again, or the system refuses.
     pub fn restore(&self, name: &str) -> Result<String, LibraryError> {
         let name = Name::new(name)?;
         let missing = || LibraryError::NotInTrash {
@@ -401,12 +358,11 @@ impl Library {
     /// Restores the last deleted shape, whether this program deleted it or another one, and returns its name.
     ///
     /// # Errors
-    /// Returns an error if the trash is empty, the name is taken again, or the system refuses.
+    /// If the trash is empty, the name is taken again, or the system refuses.
     pub fn restore_last(&self) -> Result<String, LibraryError> {
         self.restore_newest(|_| true, || LibraryError::TrashEmpty)
     }
 
-    /// Restores the newest shape in the trash whose name is wanted.
     fn restore_newest(
         &self,
         is_wanted: impl Fn(&str) -> bool,
@@ -415,12 +371,11 @@ impl Library {
         if !self.folder.is_dir() {
             return Err(missing());
         }
-        let _lock = Lock::wait(&self.folder, &self.waits)?;
-        let trash = Trash::read(&self.folder)?;
-        let mut newest = trash.newest_first();
+        let _lock = folder::lock(&self.folder, &self.waits)?;
+        let trash = self.trash()?;
+        let mut newest = trash.shapes.into_iter();
         let deleted = newest.find(|deleted| is_wanted(&deleted.name));
         let deleted = deleted.ok_or_else(missing)?;
-        folder::regular(&deleted.path)?;
         if let Some(name) = self.own_name(&Name::new(&deleted.name)?)? {
             let stamp = stamp(&folder::read(&self.path(&name))?);
             return Err(LibraryError::Exists { name, stamp });
@@ -428,73 +383,208 @@ impl Library {
         fs::rename(&deleted.path, self.path(&deleted.name))
             .map_err(|error| FileError::new("bring it back", &deleted.path, error))?;
         sync_folder(&self.folder)?;
-        sync_folder(trash.folder())?;
-        Ok(deleted.name.clone())
+        sync_folder(&trash.folder)?;
+        Ok(deleted.name)
     }
 
-    /// Lists everything in the folder and its journal that is neither a shape nor one of the library's own files, and
-    /// half-written files in its trash, by path, each with a description: files of others, half-written ones, unsaved
-    /// work. None of them is harmful.
+    fn trash(&self) -> Result<Trash, LibraryError> {
+        let folder = self.folder.join(TRASH);
+        let files = folder::names(&folder)?.into_iter();
+        let mut shapes: Vec<DeletedShape> = files
+            .filter_map(|file| DeletedShape::at(folder.join(file)))
+            .collect();
+        shapes.sort_by_key(|shape| std::cmp::Reverse(shape.time));
+        Ok(Trash { folder, shapes })
+    }
+
+    fn made_trash(&self) -> Result<Trash, LibraryError> {
+        folder::make(&self.folder.join(TRASH))?;
+        self.trash()
+    }
+
+    /// Lists what is in the folder, its trash and its journal and is neither a shape nor one of the library's own
+    /// files, by path, each with a description. None of it is harmful.
     ///
     /// # Errors
-    /// Returns an error if the folder exists but cannot be read.
+    /// If a folder exists but cannot be read.
     pub fn leftovers(&self) -> Result<Vec<(PathBuf, &'static str)>, LibraryError> {
         let mut found = Vec::new();
-        for name in folder::names(&self.folder)? {
-            let what = match name.to_str() {
-                Some(LOCK | COMMANDS | RECOGNISED_SET | TEMPORARY) => continue,
-                Some(inner @ (TRASH | JOURNAL)) => match InnerFolder::of(&self.folder, inner) {
-                    Ok(_) => continue,
-                    Err(_) => "a symbolic link, which is not followed",
-                },
-                Some(name) if is_temporary(name) => HALF_WRITTEN,
-                Some(name) if name_of(name).is_some() => continue,
-                Some(name) if name.strip_suffix(".json").is_some() => {
+        let inner = [TRASH, journal::FOLDER].map(|name| self.folder.join(name));
+        for folder in inner.iter().chain([&self.folder]) {
+            for name in folder::names(folder)? {
+                let path = folder.join(&name);
+                let name = name.to_string_lossy();
+                let what = if name.starts_with(PREFIX) {
+                    "half-written by a program that died, or being written"
+                } else if folder.ends_with(journal::FOLDER) && name.ends_with(".json") {
+                    "unsaved work, of a running program or of one that died"
+                } else if inner.contains(folder)
+                    || name.starts_with('.')
+                    || name_of(&name).is_some()
+                {
+                    continue;
+                } else if name.ends_with(".json") {
                     "not a shape: shapes cannot have this name"
-                }
-                _ => "not a shape: its name is not NAME.json",
-            };
-            found.push((self.folder.join(name), what));
-        }
-        let half_written = half_written_in(&self.folder).into_iter();
-        found.extend(half_written.map(|path| (path, HALF_WRITTEN)));
-        let journal = InnerFolder::of(&self.folder, JOURNAL);
-        for path in journal.map_or(Ok(Vec::new()), |journal| journal.paths())? {
-            let ending = path.extension().and_then(|ending| ending.to_str());
-            let what = match ending.filter(|_| is_journal(&path)) {
-                Some("json") => "unsaved work, of a running program or of one that died",
-                Some("lock" | "tmp") => continue,
-                _ => "not a journal",
-            };
-            found.push((path, what));
+                } else {
+                    "not a shape: its name is not NAME.json"
+                };
+                found.push((path, what));
+            }
         }
         found.sort();
         Ok(found)
     }
 }
 
-/// The description of a half-written file.
-const HALF_WRITTEN: &str = "half-written by a program that died, or being written";
-
-/// Returns the files that the holder of the library's lock is writing, or was writing when it died: in the folder, in
-/// its trash, or both.
-fn half_written_in(folder: &Path) -> Vec<PathBuf> {
-    let trash = InnerFolder::of(folder, TRASH).ok();
-    let folders = [Some(folder), trash.as_ref().map(InnerFolder::path)];
-    let paths = folders.into_iter().flatten().map(|own| own.join(TEMPORARY));
-    paths
-        .filter(|path| fs::symlink_metadata(path).is_ok())
-        .collect()
+/// The trash inside a library when its folder was read.
+struct Trash {
+    folder: PathBuf,
+    /// The shapes, the last deleted first.
+    shapes: Vec<DeletedShape>,
 }
 
-/// Returns the temporary path that the holder of the library's lock uses in a folder; None on a file system without
-/// locks, where another program may be writing too.
-fn temporary_in(folder: &Path, lock: Option<&Lock>) -> Option<PathBuf> {
-    lock.map(|_| folder.join(TEMPORARY))
+/// A deleted shape: `NAME-TIME.json`.
+struct DeletedShape {
+    name: String,
+    /// The time when it was deleted, in milliseconds since 1970.
+    time: u64,
+    path: PathBuf,
 }
 
-/// Returns the name of the shape in a file with this name; None if it is not `NAME.json`.
+impl Trash {
+    /// The path of the next shape, whose time is later than all others, even if the clock was set back.
+    fn next_path(&self, name: &str) -> PathBuf {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        let now = now.map_or(0, |now| u64::try_from(now.as_millis()).unwrap_or(u64::MAX));
+        let last = self.shapes.first().map_or(0, |last| last.time);
+        let time = now.max(last.saturating_add(1));
+        self.folder.join(format!("{name}-{time}.json"))
+    }
+
+    /// Removes the oldest shapes, so that [`TRASH_KEPT`] are left, together with the one just added.
+    fn forget_oldest(self) {
+        for old in self.shapes.iter().skip(TRASH_KEPT - 1) {
+            // One too many does no harm; the next deletion tries again.
+            let _ = fs::remove_file(&old.path);
+        }
+    }
+}
+
+impl DeletedShape {
+    /// The deleted shape at a path; None if the file's name is not that of a deleted shape.
+    fn at(path: PathBuf) -> Option<Self> {
+        let name = path.file_name()?.to_str()?.strip_suffix(".json")?;
+        let (name, time) = name.rsplit_once('-')?;
+        Some(Self {
+            time: time.parse().ok()?,
+            name: Name::new(name).ok()?.to_string(),
+            path,
+        })
+    }
+}
+
+/// The name of the shape in a file with this name; None if it is not `NAME.json`.
 fn name_of(file: &str) -> Option<&str> {
     let name = file.strip_suffix(".json")?;
     Name::new(name).is_ok().then_some(name)
+}
+
+/// The size, in bytes, beyond which a file is not read: a hundred commands of the longest kind are shorter.
+const MOST_BYTES: u64 = 1 << 17;
+
+/// A small file in the library's folder in which the screen keeps its memory between runs: one entry per line, the
+/// newest last. Errors are ignored: a file that cannot be read counts as empty, and lines that cannot be written are
+/// dropped.
+#[derive(Clone, Debug)]
+pub struct RememberedFile {
+    path: PathBuf,
+    /// The largest number of lines that the file keeps.
+    most: usize,
+}
+
+impl RememberedFile {
+    /// Returns the file with the commands that were typed.
+    pub fn commands(library: &Library) -> Self {
+        Self::of(library, ".commands", 100)
+    }
+
+    /// Returns the file with the name of the set of shapes that was recognised last.
+    pub fn recognised_set(library: &Library) -> Self {
+        Self::of(library, ".recognise", 1)
+    }
+
+    /// Returns the file of that name in the folder of a library.
+    fn of(library: &Library, name: &str, most: usize) -> Self {
+        Self {
+            path: library.folder().join(name),
+            most,
+        }
+    }
+
+    /// Returns the lines, the newest last, without empty lines and lines with control characters; empty if there is
+    /// no such file.
+    pub fn read(&self) -> Vec<String> {
+        let small = fs::symlink_metadata(&self.path)
+            .is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
+        let text = small.then(|| fs::read_to_string(&self.path));
+        let Some(Ok(text)) = text else {
+            return Vec::new();
+        };
+        let clean = |line: &&str| !line.is_empty() && !line.contains(char::is_control);
+        let lines: Vec<&str> = text.lines().filter(clean).collect();
+        let first = lines.len().saturating_sub(self.most);
+        lines[first..].iter().map(|&line| line.to_owned()).collect()
+    }
+
+    /// Adds lines to those of the file, which another program may have changed, and keeps only the last ones if there
+    /// are too many.
+    pub fn add(&self, lines: Vec<String>) {
+        let mut all = self.read();
+        all.extend(lines);
+        self.write(&all);
+    }
+
+    /// Replaces the lines of the file, and keeps only the last ones if there are too many. Makes the folder if there
+    /// is none.
+    pub fn write(&self, lines: &[String]) {
+        if let Some(folder) = self.path.parent() {
+            // Without the folder nothing can be written, which does no harm.
+            let _ = folder::make(folder);
+        }
+        let kept = &lines[lines.len().saturating_sub(self.most)..];
+        let text: String = kept.iter().map(|line| format!("{line}\n")).collect();
+        // On a full disk, it is not worth a message.
+        let _ = file::write(&self.path, text.as_bytes());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_lines_come_back_and_nonsense_is_left_out() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let library = Library::open(folder.path().join("new"));
+        let file = RememberedFile::commands(&library);
+        assert!(file.read().is_empty());
+        let lines: Vec<String> = (0..150).map(|number| format!("turn {number}")).collect();
+        file.write(&lines);
+        assert_eq!(file.read(), lines[50..]);
+        let path = library.folder().join(".commands");
+        fs::write(path, "new\n\u{1b}[31m\n\ngrab\n").expect("written");
+        assert_eq!(file.read(), ["new", "grab"]);
+        // Another program has written meanwhile.
+        file.add(vec!["turn 20".to_owned()]);
+        assert_eq!(file.read(), ["new", "grab", "turn 20"]);
+        let set = RememberedFile::recognised_set(&library);
+        set.write(&["my parts".to_owned()]);
+        assert_eq!(
+            (set.read(), file.read().len()),
+            (vec!["my parts".to_owned()], 3)
+        );
+        let path = library.folder().join(".recognise");
+        fs::write(path, "x".repeat(1 << 18)).expect("written");
+        assert!(set.read().is_empty());
+    }
 }

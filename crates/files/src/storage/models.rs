@@ -6,10 +6,12 @@
 //! taxel/models/parts.npz         a model
 //! ```
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
+use std::fmt;
 use std::fs;
 use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::SystemTime;
 
@@ -17,20 +19,24 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::formats::file::without_mark;
 use crate::formats::name::folded;
-use crate::formats::{ArchiveError, Name, model_header, read_model, write_model};
-use crate::recognition::{Model, Training};
-use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile, sync_folder};
+use crate::formats::{ArchiveError, Name, StoredShape, model_header, read_model, write_model};
+use crate::picture::Picture;
+use crate::quote::{did_you_mean, shortened};
+use crate::recognition::{
+    GridSteps, Model, NamedShape, Training, TrainingError, default_figures, equal_figures,
+};
 use crate::storage::error::{ArchiveFileError, LibraryError};
-use crate::storage::first_error::FirstErrorWriter;
+use crate::storage::file::{self, Existing, UnfinishedFile, sync_folder};
 use crate::storage::folder;
-use crate::storage::sweep_file::open_archive;
+use crate::storage::shipped;
+use crate::storage::sweep_file::{FirstErrorWriter, open_archive};
 use crate::sweep::Shard;
 
 /// The ending of a model's file.
 const ENDING: &str = "npz";
 
 /// The largest size of a cached model, in bytes.
-const MAX_CACHED: u64 = 64 << 20;
+const MAX_CACHED: usize = 64 << 20;
 
 /// The version of the algorithms that count the keys of a model. Increase it when the same training makes another
 /// model, so that models cached before are not used.
@@ -109,7 +115,7 @@ pub fn save_model(
     stopped: &AtomicBool,
 ) -> Result<(), ArchiveFileError> {
     let mut file = UnfinishedFile::new(path, existing)?;
-    let mut output = FirstErrorWriter::new(&mut file.output, u64::MAX, stopped);
+    let mut output = FirstErrorWriter::new(&mut file.output, stopped);
     let written = write_model(model, &mut output);
     let written = output.finish(written);
     written.map_err(|error| ArchiveFileError::new(path, error))?;
@@ -179,22 +185,20 @@ impl ModelFolder {
     /// Creates the folder if there is none, for a model that will be written there.
     ///
     /// # Errors
-    /// Returns the system's error, with the folder's name.
-    pub fn make(&self) -> Result<MadeFolder, ArchiveFileError> {
-        let is_new = !self.0.is_dir();
-        match folder::make(&self.0) {
-            Ok(()) => Ok(MadeFolder(is_new.then(|| self.0.clone()))),
-            Err(LibraryError::System(refused)) => Err(refused.into()),
-            Err(LibraryError::InTheWay {
+    /// The system's error, with the folder's name.
+    pub fn make(&self) -> Result<(), ArchiveFileError> {
+        folder::make(&self.0).map_err(|error| match error {
+            LibraryError::System(refused) => refused.into(),
+            LibraryError::InTheWay {
                 path,
                 what,
                 expected,
-            }) => {
+            } => {
                 let text = format!("is {what}, expected {expected}");
-                Err(ArchiveFileError::new(&path, io::Error::other(text)))
+                ArchiveFileError::new(&path, io::Error::other(text))
             }
-            Err(other) => Err(ArchiveFileError::new(&self.0, io::Error::other(other))),
-        }
+            other => ArchiveFileError::new(&self.0, io::Error::other(other)),
+        })
     }
 
     /// Writes a model under a name, and makes the folder for it.
@@ -208,7 +212,7 @@ impl ModelFolder {
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<PathBuf, ArchiveFileError> {
-        let _folder = self.make()?;
+        self.make()?;
         let path = self.file(name);
         save_model(model, &path, existing, stopped)?;
         Ok(path)
@@ -223,22 +227,8 @@ impl ModelFolder {
         let path = self.path_of(&stored);
         fs::remove_file(&path).map_err(|error| ArchiveFileError::new(&path, error))?;
         sync_folder(&self.0)
-            .map_err(|error| ArchiveFileError::doing("delete", &path, &error.into_io()))?;
+            .map_err(|error| ArchiveFileError::doing("delete", &path, &error.error))?;
         Ok(stored)
-    }
-}
-
-/// A folder that exists. If it is new and still empty when this is dropped, it is removed again.
-#[derive(Debug)]
-#[must_use = "an empty folder is removed when this is dropped"]
-pub struct MadeFolder(Option<PathBuf>);
-
-impl Drop for MadeFolder {
-    fn drop(&mut self) {
-        if let Some(folder) = &self.0 {
-            // The system refuses if something is in it.
-            let _ = fs::remove_dir(folder);
-        }
     }
 }
 
@@ -268,27 +258,12 @@ impl ModelCache {
         self.0.join(format!("{:032x}.{ENDING}", xxh3_128(&content)))
     }
 
-    /// Returns the model of a training if its file exists and is complete.
-    fn load(path: &Path, training: &Training<'_>) -> Option<Model> {
-        let model = load_model(path).ok()?;
-        training.would_make(&model).then_some(model)
-    }
-
     /// Keeps a model. A cache that cannot be written to is not an error: the model is trained again next time. A
     /// model that takes more than 64 MiB is not kept.
     fn keep(&self, path: &Path, model: &Model) {
-        self.keep_up_to(MAX_CACHED, path, model);
-    }
-
-    fn keep_up_to(&self, most: u64, path: &Path, model: &Model) {
-        // In memory first, so that nothing of a model that is too large is written to the disk.
-        let mut bytes = Cursor::new(Vec::new());
-        let stopped = AtomicBool::new(false);
-        let mut output = FirstErrorWriter::new(&mut bytes, most, &stopped);
-        let written = write_model(model, &mut output);
-        if output.finish(written).is_ok() && folder::make(&self.0).is_ok() {
-            let _ = FinishedFile::new(path, bytes.get_ref(), Existing::Replaced)
-                .and_then(FinishedFile::persist);
+        let bytes = file_content(model);
+        if bytes.len() <= MAX_CACHED && folder::make(&self.0).is_ok() {
+            let _ = file::write(path, &bytes);
         }
     }
 }
@@ -307,7 +282,8 @@ pub fn cached_or_trained<'a, E>(
         return train(training);
     };
     let path = cache.file(&training);
-    if let Some(model) = ModelCache::load(&path, &training) {
+    let kept = load_model(&path).ok();
+    if let Some(model) = kept.filter(|model| training.would_make(model)) {
         return Ok(model);
     }
     let model = train(training)?;
@@ -328,12 +304,113 @@ fn file_content(model: &Model) -> Vec<u8> {
     bytes.into_inner()
 }
 
+/// A set of shapes that can be chosen for recognition.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum ModelChoice {
+    /// The seven figures at the sizes that forms propose.
+    Figures,
+    /// The seven figures of about 30 cells.
+    EqualFigures,
+    /// The shapes that come with the program.
+    Shipped,
+    /// A stored model.
+    Stored(Name),
+    /// A model in a file.
+    File(PathBuf),
+}
+
+/// The steps of the grid of the shapes that come with the program. In hundredths and whole degrees they leave 5.2
+/// million imprints; in these steps they are trained in a second or two.
+const SHIPPED_STEPS: GridSteps = GridSteps::COARSE;
+
+impl ModelChoice {
+    /// The choices that need no file.
+    pub const BUILT_IN: &'static [Self] = &[Self::Figures, Self::EqualFigures, Self::Shipped];
+
+    /// Returns the choice of that name: a built-in one, otherwise a stored model.
+    pub fn from_name(name: Name) -> Self {
+        let own = Self::BUILT_IN.iter().find(|own| name.same(own.name()));
+        own.cloned().unwrap_or(Self::Stored(name))
+    }
+
+    /// Reads the text after `:recognise`: the name of a set or model, otherwise the path of a file.
+    pub fn from_text(text: &str) -> Self {
+        Name::new(text).map_or_else(|_| Self::File(text.into()), Self::from_name)
+    }
+
+    /// Returns the name that is used after `:recognise`.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Figures => "figures",
+            Self::EqualFigures => "figures-30",
+            Self::Shipped => "shapes",
+            Self::Stored(name) => name.as_str(),
+            Self::File(path) => path.file_name().and_then(OsStr::to_str).unwrap_or("file"),
+        }
+    }
+
+    /// Returns the training of a built-in set; None for a stored model or a file. How far its shapes reach is
+    /// computed once.
+    ///
+    /// # Errors
+    /// Returns an error if the set cannot be trained.
+    pub fn training(&self) -> Option<Result<Training<'static>, TrainingError>> {
+        static FITTED: [OnceLock<Result<Training<'static>, TrainingError>>; 3] =
+            [const { OnceLock::new() }; 3];
+        let (number, shapes, steps): (_, fn() -> Vec<NamedShape>, _) = match self {
+            Self::Figures => (0, default_figures, GridSteps::FINE),
+            Self::EqualFigures => (1, equal_figures, GridSteps::FINE),
+            Self::Shipped => (2, shipped_shapes, SHIPPED_STEPS),
+            Self::Stored(_) | Self::File(_) => return None,
+        };
+        let fitted = FITTED[number].get_or_init(|| Training::fitting(shapes(), steps));
+        Some(fitted.clone())
+    }
+
+    /// Returns true if the model is read from a file of the user's rather than trained.
+    pub fn is_read(&self) -> bool {
+        matches!(self, Self::Stored(_) | Self::File(_))
+    }
+}
+
+/// Returns the message for an unknown set; it lists the built-in sets and the stored models.
+pub fn unknown_set(name: &str, stored: &[Name]) -> String {
+    let own = ModelChoice::BUILT_IN.iter().map(ModelChoice::name);
+    let is_own = |stored: &&Name| {
+        let mut own = ModelChoice::BUILT_IN.iter();
+        own.any(|own| stored.same(own.name()))
+    };
+    let stored = stored.iter().filter(|stored| !is_own(stored));
+    let all: Vec<&str> = own.chain(stored.map(Name::as_str)).collect();
+    format!(
+        "no model or file named {:?}; models: {}{}",
+        shortened(name),
+        all.join(", "),
+        did_you_mean(name, all.iter().copied())
+    )
+}
+
+impl fmt::Display for ModelChoice {
+    /// Writes "model" and the name that is used after `:recognise`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "model {}", self.name())
+    }
+}
+
+/// Returns the shapes that come with the program, as pictures.
+fn shipped_shapes() -> Vec<NamedShape> {
+    let picture = |shape: StoredShape| {
+        NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))
+    };
+    shipped::all().map(picture).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::figure::Figure;
     use crate::pose::{Anchor, Axis, Ranges};
-    use crate::recognition::{Evaluation, NamedShape};
+    use crate::recognition::Evaluation;
     use crate::sensor::Sensor;
 
     fn training(side: f64) -> Training<'static> {
@@ -398,11 +475,7 @@ mod tests {
         };
         let trained = training(4.0).run().expect("not stopped");
         let path = cache.file(&training(4.0));
-        // A model that is too large is not written.
-        cache.keep_up_to(99, &path, &trained);
-        assert!(!folder.path().join("cache").exists());
         assert!(model(4.0).0);
-        cache.keep_up_to(99, &path, &trained);
         let (is_trained, cached) = model(4.0);
         assert!(!is_trained);
         assert_eq!(Evaluation::of(&cached), Evaluation::of(&trained));
@@ -421,39 +494,29 @@ mod tests {
     }
 
     #[test]
-    fn an_exact_name_comes_before_one_that_differs_in_case() {
+    fn models_are_listed_by_alphabet_and_an_exact_name_comes_first() {
         let folder = tempfile::tempdir().expect("a folder");
         let models = ModelFolder::beside(&folder.path().join("library"));
-        fs::create_dir_all(models.path()).expect("made");
-        for name in ["SET", "set"] {
-            fs::write(models.path().join(format!("{name}.npz")), "").expect("written");
-        }
-        // There is only one of them if the file system ignores case.
-        for name in models.names().expect("there") {
-            let file = models.path().join(format!("{name}.npz"));
-            assert_eq!(models.file(&name), file);
-        }
-    }
-
-    #[test]
-    fn models_are_listed_in_the_order_of_the_alphabet_as_shapes_are() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let models = ModelFolder::beside(&folder.path().join("library"));
-        fs::create_dir_all(models.path()).expect("made");
-        for name in ["Bar", "apple", "cup"] {
+        models.make().expect("made");
+        for name in ["Bar", "apple", "cup", "CUP"] {
             fs::write(models.path().join(format!("{name}.npz")), "").expect("written");
         }
         let names = models.names().expect("there");
-        let names: Vec<&str> = names.iter().map(Name::as_str).collect();
-        assert_eq!(names, ["apple", "Bar", "cup"]);
+        // There is only one cup if the file system ignores case.
+        let shown: Vec<&str> = names.iter().map(Name::as_str).take(2).collect();
+        assert_eq!(shown, ["apple", "Bar"]);
+        for name in names {
+            let file = models.path().join(format!("{name}.npz"));
+            assert_eq!(models.file(&name), file);
+        }
+        let other_case = Name::new("BAR").expect("a name");
+        assert_eq!(models.file(&other_case), models.path().join("Bar.npz"));
     }
 
     #[test]
-    fn a_model_of_other_shapes_or_poses_is_not_taken_for_that_of_a_training() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let cache = ModelCache::in_folder(folder.path());
+    fn another_training_has_another_file() {
+        let cache = ModelCache::in_folder("cache");
         let whole = training(4.0);
-        let own = cache.file(&whole);
         let of = |shapes: &[NamedShape], anchor| {
             let grid = &whole.grids()[0];
             let other = Training::new(shapes.to_vec(), *grid.sensor(), anchor, *grid.ranges());
@@ -471,30 +534,7 @@ mod tests {
         .into_iter()
         .enumerate()
         {
-            assert_ne!(cache.file(&other), own, "{index}");
-            let model = other.clone().run().expect("not stopped");
-            let stopped = AtomicBool::new(false);
-            save_model(&model, &own, Existing::Replaced, &stopped).expect("written");
-            assert!(ModelCache::load(&own, &other).is_some(), "{index}");
-            assert!(ModelCache::load(&own, &whole).is_none(), "{index}");
+            assert_ne!(cache.file(&other), cache.file(&whole), "{index}");
         }
-    }
-
-    #[test]
-    fn a_model_of_poses_that_are_cut_off_is_only_for_a_training_that_allows_them() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("cut.npz");
-        let sensor = Sensor::default();
-        let shapes = [NamedShape::new(
-            "bar",
-            Figure::rectangle(8.0, 2.0).on(&sensor).expect("in range"),
-        )];
-        let ranges = Ranges::default().with(Axis::X0, "12:12.9:0.1".parse().expect("a range"));
-        let training = Training::new(shapes, sensor, Anchor::Corner, ranges).expect("a set");
-        let allowed = training.clone().allow_cut(true);
-        let model = allowed.clone().run().expect("not stopped");
-        save_model(&model, &path, Existing::Kept, &AtomicBool::new(false)).expect("written");
-        assert!(ModelCache::load(&path, &allowed).is_some());
-        assert!(ModelCache::load(&path, &training).is_none());
     }
 }

@@ -1,13 +1,13 @@
 //! The files that a sweep writes: its atlas, in the format given by the extension of the name, and the atlas number
 //! of every pose.
 //!
-//! At any time, either the complete new file or the complete old one exists ([`crate::storage::atomic_file`]).
+//! At any time, either the complete new file or the complete old one exists ([`crate::storage::file`]).
 
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::atlas;
 use crate::formats::atlas::{write_csv, write_jsonl};
@@ -16,9 +16,8 @@ use crate::formats::npy::Dtype;
 use crate::formats::{ArchiveError, npy};
 use crate::pose::PoseGrid;
 use crate::progress::stop_if;
-use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile, check_writable};
 use crate::storage::error::ArchiveFileError;
-use crate::storage::first_error::FirstErrorWriter;
+use crate::storage::file::{Existing, FinishedFile, UnfinishedFile, check_writable};
 use crate::sweep::SweepResult;
 
 /// The file for an atlas: its path and its format.
@@ -100,7 +99,7 @@ impl AtlasFile {
         stopped: &AtomicBool,
     ) -> Result<FinishedFile, ArchiveFileError> {
         let mut file = UnfinishedFile::new(&self.path, existing)?;
-        let mut output = FirstErrorWriter::new(&mut file.output, u64::MAX, stopped);
+        let mut output = FirstErrorWriter::new(&mut file.output, stopped);
         let written = match self.format {
             AtlasFormat::Csv => write_csv(result, &mut output).map_err(ArchiveError::from),
             AtlasFormat::JsonLines => write_jsonl(result, &mut output).map_err(ArchiveError::from),
@@ -253,6 +252,77 @@ impl PoseFile {
     }
 }
 
+/// A writer that stops writing at the first error, or when it is to stop. From then on it only counts what would have
+/// been written, since a zip whose writer fails complains on standard error, where the screen is.
+pub(crate) struct FirstErrorWriter<'a, W> {
+    output: W,
+    stopped: &'a AtomicBool,
+    /// The first error.
+    error: Option<io::Error>,
+    place: u64,
+    end: u64,
+}
+
+impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
+    pub(crate) fn new(output: W, stopped: &'a AtomicBool) -> Self {
+        Self {
+            output,
+            stopped,
+            error: None,
+            place: 0,
+            end: 0,
+        }
+    }
+
+    /// Returns the first error of the system or of stopping, otherwise `written`, the result of the function that
+    /// wrote: it may not have noticed that error.
+    pub(crate) fn finish<E: From<io::Error>>(self, written: Result<(), E>) -> Result<(), E> {
+        match self.error {
+            Some(error) => Err(error.into()),
+            None => written,
+        }
+    }
+
+    fn attempt<T>(&mut self, act: impl FnOnce(&mut W) -> io::Result<T>) -> Option<T> {
+        if self.stopped.load(Ordering::Relaxed) && self.error.is_none() {
+            self.error = Some(io::Error::other("stopped"));
+        }
+        if self.error.is_some() {
+            return None;
+        }
+        act(&mut self.output)
+            .map_err(|error| self.error = Some(error))
+            .ok()
+    }
+}
+
+impl<W: Write + Seek> Write for FirstErrorWriter<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let _ = self.attempt(|output| output.write_all(bytes));
+        self.place += bytes.len() as u64;
+        self.end = self.end.max(self.place);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let _ = self.attempt(Write::flush);
+        Ok(())
+    }
+}
+
+impl<W: Write + Seek> Seek for FirstErrorWriter<'_, W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let _ = self.attempt(|output| output.seek(to));
+        let place = match to {
+            SeekFrom::Start(place) => Some(place),
+            SeekFrom::End(by) => self.end.checked_add_signed(by),
+            SeekFrom::Current(by) => self.place.checked_add_signed(by),
+        };
+        self.place = place.ok_or(io::ErrorKind::InvalidInput)?;
+        Ok(self.place)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -261,7 +331,6 @@ mod tests {
     use crate::pose::{Anchor, Axis, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::storage::persist_pair;
     use crate::sweep::{Shard, Sweep};
 
     fn result() -> SweepResult {
@@ -321,99 +390,6 @@ mod tests {
             error.ends_with("a.csv: cannot write: no such folder"),
             "{error}"
         );
-    }
-
-    #[test]
-    fn a_pair_is_never_of_two_sweeps() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let result = result();
-        let stopped = AtomicBool::new(false);
-        let (atlas, poses) = (folder.path().join("a.csv"), folder.path().join("a.npy"));
-        let pair = |existing| {
-            let file = AtlasFile::new(&atlas).expect("a format");
-            let first = file.prepare(&result, existing, &stopped).expect("written");
-            (first, whole(&poses, &result.grid, existing))
-        };
-        let (first, second) = pair(Existing::Kept);
-        std::fs::write(&poses, "theirs").expect("written");
-        let refused = persist_pair(first, second).expect_err("one is there");
-        assert!(refused.exists() && !atlas.exists(), "neither is named");
-        std::fs::write(&atlas, "old").expect("written");
-        let (first, second) = pair(Existing::Replaced);
-        // The program dies after the first step: the old poses are gone, the old atlas is there.
-        std::fs::remove_file(&poses).expect("there");
-        assert_eq!(std::fs::read_to_string(&atlas).ok().as_deref(), Some("old"));
-        let (_, synced) = persist_pair(first, second).expect("named");
-        synced.expect("synced");
-        assert!(std::fs::read(&poses).is_ok_and(|bytes| bytes.starts_with(b"\x93NUMPY")));
-        assert!(std::fs::read_to_string(&atlas).is_ok_and(|text| text.starts_with("id,")));
-    }
-
-    /// Programs that replace one pair at once take turns.
-    #[test]
-    fn a_pair_comes_from_one_program_even_if_several_write_it_at_once() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let paths = [folder.path().join("a.csv"), folder.path().join("a.npy")];
-        let write = |number: u32| {
-            let [first, second] = paths.each_ref().map(|path| {
-                let mut file = UnfinishedFile::new(path, Existing::Replaced).expect("begun");
-                file.write(number.to_string().as_bytes()).expect("written");
-                file.finish().expect("synced")
-            });
-            let (_, synced) = persist_pair(first, second).expect("named");
-            synced.expect("synced");
-        };
-        for round in 0..20 {
-            std::thread::scope(|scope| {
-                for thread in 0..4 {
-                    let write = &write;
-                    scope.spawn(move || write(4 * round + thread));
-                }
-            });
-            let [first, second] = paths.each_ref().map(std::fs::read_to_string);
-            assert_eq!(first.expect("there"), second.expect("there"));
-        }
-    }
-
-    #[test]
-    fn a_pair_whose_second_file_cannot_be_named_leaves_neither() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let (atlas, elsewhere) = (folder.path().join("a.csv"), folder.path().join("gone"));
-        let (result, stopped) = (result(), AtomicBool::new(false));
-        for existing in [Existing::Kept, Existing::Replaced] {
-            std::fs::create_dir(&elsewhere).expect("made");
-            let file = AtlasFile::new(&atlas).expect("a format");
-            let first = file.prepare(&result, existing, &stopped).expect("written");
-            let second = whole(&elsewhere.join("a.npy"), &result.grid, existing);
-            std::fs::remove_dir_all(&elsewhere).expect("removed");
-            let refused = persist_pair(first, second).expect_err("its folder is gone");
-            assert!(refused.is_missing(), "{refused}");
-            assert_eq!(files(folder.path()), [""; 0], "neither is there");
-        }
-    }
-
-    #[test]
-    fn a_pair_that_cannot_be_named_leaves_the_old_files() {
-        let (result, stopped) = (result(), AtomicBool::new(false));
-        for (first, second) in [("gone/a.csv", "a.npy"), ("a.csv", "gone/a.npy")] {
-            let folder = tempfile::tempdir().expect("a folder");
-            let (atlas, poses) = (folder.path().join(first), folder.path().join(second));
-            let elsewhere = folder.path().join("gone");
-            std::fs::create_dir(&elsewhere).expect("made");
-            for path in [&atlas, &poses] {
-                std::fs::write(path, "old").expect("written");
-            }
-            let file = AtlasFile::new(&atlas).expect("a format");
-            let first = file.prepare(&result, Existing::Replaced, &stopped);
-            let second = whole(&poses, &result.grid, Existing::Replaced);
-            std::fs::remove_dir_all(&elsewhere).expect("removed");
-            let refused = persist_pair(first.expect("written"), second);
-            let refused = refused.expect_err("a folder is gone");
-            assert!(refused.is_missing(), "{refused}");
-            let left = if atlas.exists() { atlas } else { poses };
-            assert_eq!(std::fs::read_to_string(left).ok().as_deref(), Some("old"));
-            assert_eq!(files(folder.path()).len(), 1, "nothing else is there");
-        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::formats::value::counted;
 use crate::source::Source;
-use crate::storage::{Library, Orphan, UNNAMED};
+use crate::storage::{Orphan, UNNAMED};
 use crate::tui::explore::ranges::view::about;
 
 /// Returns the name, the size and the age of the work: `hexagon side 4.00, 40 taxels, about 12 minutes ago`.
@@ -19,19 +19,6 @@ pub(in crate::tui::runtime) fn described(orphan: &Orphan) -> String {
     let taxels = counted(shape.imprint.count(), "taxel");
     let pieces = [called, Some(taxels), orphan.age().map(ago)];
     pieces.into_iter().flatten().collect::<Vec<_>>().join(", ")
-}
-
-/// Returns which unsaved work of a library cannot be read and why, in a sentence; None if all can be.
-pub(in crate::tui::runtime) fn unreadable(library: &Library) -> Option<String> {
-    let found = Orphan::unreadable(library);
-    let (_, reason) = found.first()?;
-    let others = match found.len() - 1 {
-        0 => String::new(),
-        others => format!(" (and {})", counted(others as u64, "other file")),
-    };
-    Some(format!(
-        "unsaved work cannot be read and stays where it is: {reason}{others}"
-    ))
 }
 
 /// Returns how long ago something happened, in words. Within the first minute, seconds would say nothing useful.

@@ -13,7 +13,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use crate::acquire::{FrameRecorder, PreparedMetadata, RecorderError};
+use crate::acquire::{FrameRecorder, RecorderError};
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::formats::value::grouped;
 use crate::frame::Frame;
@@ -150,13 +150,8 @@ impl Recording {
     /// Writes threshold, tare and marks into the metadata, in place of those before. Frames are added meanwhile.
     pub(in crate::tui::runtime) fn write_metadata(&self, view: RecordedView) -> Result<(), String> {
         let one_at_a_time = locked(&self.metadata);
-        let Some(draft) = self.open(|recorder| recorder.set_view(view)) else {
-            return Ok(());
-        };
-        let written = draft.prepare().and_then(|file| {
-            let file = self.open(|recorder| recorder.take_metadata(file));
-            file.flatten().map_or(Ok(()), PreparedMetadata::give_name)
-        });
+        let draft = self.open(|recorder| recorder.set_view(view)).flatten();
+        let written = draft.map_or(Ok(()), |draft| draft.write());
         drop(one_at_a_time);
         written.map_err(|error| {
             self.open(|recorder| recorder.note_failure(&error));

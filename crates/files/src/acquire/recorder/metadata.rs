@@ -1,99 +1,58 @@
-//! The metadata beside an array: `touch.json` for `touch.npy`.
+//! The metadata beside an array, `touch.json` for `touch.npy`, and what is noted for it while frames come: their numbers,
+//! their rate, and the reason of an early end.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use crate::acquire::recorder::error::{MetadataFileError, RecorderError, refused};
+use crate::acquire::clocks::FrameRate;
+use crate::acquire::recorder::RecorderError;
 use crate::acquire::recorder::record_array::{HEADER, is_own};
 use crate::formats::file::has_ending;
-use crate::formats::recording::RecordingMetadata;
-use crate::storage::{Existing, FileId, FinishedFile, persist_beside};
+use crate::formats::file::system_reason;
+use crate::formats::recording::{MetadataError, RecordedView, RecordingMetadata};
+use crate::frame::Frame;
+use crate::storage::{Existing, FileId, FinishedFile};
 
 /// The size limit of metadata in bytes, 4 MiB.
 const LARGEST_METADATA: u64 = 1 << 22;
 
-/// Metadata that is to be written. Writing it takes as long as the disk does, and needs no recorder: meanwhile,
-/// frames can be added to the recorder.
-/// ```text
-/// set_view -> MetadataDraft -> prepare -> take_metadata -> PreparedMetadata -> give_name
-/// ```
+/// The largest number of bursts over which the rate is measured: several minutes.
+const MOST_BURSTS: usize = 4096;
+
+/// Metadata that is to be written beside an array. Writing it takes as long as the disk does, and needs no recorder:
+/// meanwhile, frames can be added.
 #[derive(Debug)]
 pub struct MetadataDraft {
-    /// The path of the array.
-    pub(super) path: PathBuf,
-    pub(super) metadata: RecordingMetadata,
+    /// The path of the array, and its identity; None if it is not known.
+    path: PathBuf,
+    array: Option<FileId>,
+    metadata: RecordingMetadata,
 }
 
 impl MetadataDraft {
-    /// Writes the metadata to the disk, without its name. A file under that name does not matter yet: meanwhile, the
-    /// array and the previous metadata may get their names.
-    ///
-    /// # Errors
-    /// Returns the system's error.
-    pub fn prepare(&self) -> Result<FinishedFile, RecorderError> {
-        prepared(&self.path, Existing::Replaced, &self.metadata)
-    }
-}
-
-/// Metadata on the disk, which must get its name at once, beside an array that already has its name.
-#[derive(Debug)]
-pub struct PreparedMetadata {
-    pub(super) file: FinishedFile,
-    /// The array, which is open until the metadata has its name.
-    pub(super) array: FileId,
-    /// The path of the array.
-    pub(super) path: PathBuf,
-}
-
-impl PreparedMetadata {
-    /// Gives the metadata its name.
-    ///
-    /// # Errors
-    /// Returns [`RecorderError::Replaced`] if the name of the array now belongs to another file, which the metadata
-    /// does not describe, or the system's error.
-    pub fn give_name(self) -> Result<(), RecorderError> {
-        let Self { file, array, path } = self;
-        if persist_beside((array, &path), file).map_err(refused)? {
-            Ok(())
-        } else {
-            Err(RecorderError::Replaced { path })
+    pub(super) fn new(path: &Path, array: Option<FileId>, metadata: &RecordingMetadata) -> Self {
+        Self {
+            path: path.to_owned(),
+            array,
+            metadata: metadata.clone(),
         }
     }
-}
 
-/// Writes metadata to the disk, without its name.
-///
-/// # Errors
-/// Returns the system's error.
-pub(super) fn prepared(
-    array: &Path,
-    existing: Existing,
-    metadata: &RecordingMetadata,
-) -> Result<FinishedFile, RecorderError> {
-    let path = array.with_extension("json");
-    FinishedFile::new(&path, &metadata.text(), existing).map_err(refused)
-}
-
-/// Writes the metadata over the old one, if a full disk has no room for both.
-///
-/// # Errors
-/// Returns the system's error.
-pub(super) fn overwrite(array: &Path, metadata: &RecordingMetadata) -> io::Result<()> {
-    let text = metadata.text();
-    let path = array.with_extension("json");
-    let mut file = File::options().write(true).open(path)?;
-    let old = file.seek(SeekFrom::End(0))?;
-    let missing = (text.len() as u64).saturating_sub(old);
-    // Blanks after the text change nothing. The text is replaced only if there is room for them.
-    if let Err(error) = io::copy(&mut io::repeat(b' ').take(missing), &mut file) {
-        file.set_len(old)?;
-        return Err(error);
+    /// Writes the metadata, unless the name of the array now belongs to another file, which it does not describe.
+    pub fn write(self) -> Result<(), RecorderError> {
+        let Self {
+            path,
+            array,
+            metadata,
+        } = self;
+        if !array.is_none_or(|array| array.is_at(&path)) {
+            return Err(RecorderError::Replaced { path });
+        }
+        let beside = path.with_extension("json");
+        let file = FinishedFile::new(&beside, &metadata.text(), Existing::Replaced)?;
+        Ok(file.persist()?)
     }
-    file.seek(SeekFrom::Start(0))?;
-    file.write_all(&text)?;
-    file.set_len(text.len() as u64)?;
-    file.sync_all()
 }
 
 /// Returns true if a path ends like the file of an array.
@@ -165,9 +124,151 @@ pub(super) fn read_beside(path: &Path) -> Option<Result<RecordingMetadata, Metad
     }
 }
 
+/// The consequence of missing metadata.
+const UNKNOWN: &str = "the recording's threshold and tare are unknown";
+
+/// The error for metadata beside an array that is missing or cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum MetadataFileError {
+    /// The system cannot read the file.
+    #[error("{}: cannot read: {}; {UNKNOWN}", path.display(), system_reason(error))]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The error that the system reports.
+        error: io::Error,
+    },
+    /// The metadata is larger than 4 MiB, and was not read.
+    #[error("{}: larger than 4 MiB, the limit for metadata; {UNKNOWN}", path.display())]
+    Large {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The metadata is damaged, of another version, or was changed.
+    #[error("{}: {error}; {UNKNOWN}", path.display())]
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// The error in the metadata.
+        error: MetadataError,
+    },
+    /// The array was recorded by taxel, but has no metadata beside it.
+    #[error("{}: missing; {UNKNOWN}", path.display())]
+    Missing {
+        /// The path of the metadata.
+        path: PathBuf,
+    },
+    /// The array was recorded by taxel, but the file beside it is empty or something other than metadata.
+    #[error("{}: empty or not written by taxel; {UNKNOWN}", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// The metadata of a recording, and the notes for it.
+#[derive(Debug)]
+pub(super) struct MetadataNotes {
+    metadata: RecordingMetadata,
+    /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have started again,
+    /// as when a recording is played in a loop.
+    numbers: Option<(u64, u64)>,
+    /// The message of the first error.
+    reason: Option<String>,
+    /// The measurement of the rate of frames.
+    rate: FrameRate,
+    /// Whether frames carry times, so that they are not only those of arrival.
+    carries_times: bool,
+}
+
+impl MetadataNotes {
+    /// Begins the notes for a recording that has not ended yet.
+    pub(super) fn new(metadata: &RecordingMetadata) -> Self {
+        let mut metadata = metadata.clone();
+        metadata.ended = Some(false);
+        Self {
+            metadata,
+            numbers: None,
+            reason: None,
+            rate: FrameRate::over(MOST_BURSTS),
+            carries_times: false,
+        }
+    }
+
+    /// Returns the metadata as it is to be written now.
+    pub(super) fn metadata(&self) -> &RecordingMetadata {
+        &self.metadata
+    }
+
+    /// Replaces the metadata; the recording has not ended yet.
+    pub(super) fn describe(&mut self, metadata: &RecordingMetadata) {
+        self.metadata.clone_from(metadata);
+        self.metadata.ended = Some(false);
+    }
+
+    /// Replaces threshold, tare and marks.
+    pub(super) fn set_view(&mut self, view: RecordedView) {
+        let RecordedView { rule, tare, marks } = view;
+        (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);
+        self.leave_out_marks();
+    }
+
+    /// Drops the marks of frames before the first recorded one.
+    fn leave_out_marks(&mut self) {
+        if let Some((first, _)) = self.numbers {
+            self.metadata.marks.retain(|mark| mark.number >= first);
+        }
+    }
+
+    /// Notes the number and the time of a frame that is recorded.
+    pub(super) fn note_frame(&mut self, frame: &Frame, time: Option<f64>) {
+        if let Some(time) = time {
+            self.rate.add(time);
+            self.carries_times |= frame.time.is_some();
+        }
+        let (first, last) = self.numbers.unwrap_or((frame.number, frame.number));
+        let first = if frame.number < last { 0 } else { first };
+        let is_first = self.numbers.replace((first, frame.number)).is_none();
+        if is_first {
+            self.leave_out_marks();
+        }
+    }
+
+    /// Keeps the message of a failure, if it is the first.
+    pub(super) fn note_failure(&mut self, error: &RecorderError) {
+        match error {
+            RecorderError::Io { error, .. } => self.note_reason(&system_reason(error)),
+            error => self.note_reason(&error.to_string()),
+        }
+    }
+
+    /// Keeps the reason why the recording ends early, if it is the first.
+    pub(super) fn note_reason(&mut self, reason: &str) {
+        self.reason.get_or_insert_with(|| reason.to_owned());
+    }
+
+    /// Completes the metadata at the end of the recording: the time of a frame, unless the source has stated it, and
+    /// the reason of an early end.
+    pub(super) fn end(&mut self) {
+        let stated = self.metadata.seconds_per_frame;
+        self.metadata.seconds_per_frame = stated.or_else(|| {
+            if self.carries_times {
+                self.rate.even_seconds_per_frame()
+            } else {
+                self.rate.seconds_per_frame()
+            }
+        });
+        self.metadata.ended = Some(true);
+        self.metadata.ended_by = self.reason.take();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::acquire::recorder::FrameRecorder;
+    use crate::acquire::recorder::tests::begun;
+    use crate::formats::recording::FrameMark;
 
     #[test]
     fn metadata_that_is_too_large_is_not_called_damaged() {
@@ -188,6 +289,92 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn marks_of_frames_that_are_not_recorded_are_left_out() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let mut recorder = begun(&path);
+        let mark = |number| FrameMark { number, time: None };
+        let view = |numbers: &[u64]| RecordedView {
+            marks: numbers.iter().copied().map(mark).collect(),
+            ..RecordedView::default()
+        };
+        recorder.set_view(view(&[3]));
+        for number in [5, 6] {
+            let mut frame = Frame::default();
+            frame.number = number;
+            recorder.add(&frame, None).expect("recorded");
+        }
+        recorder.set_view(view(&[4, 5, 6]));
+        recorder.finish().expect("finished");
+        let beside = metadata_beside(&path).expect("there").expect("read");
+        assert_eq!(beside.marks, [mark(5), mark(6)]);
+    }
+
+    #[test]
+    fn marks_of_frames_whose_numbers_begin_again_are_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let mut recorder = begun(&path);
+        for number in [5, 6, 0, 1] {
+            let mut frame = Frame::default();
+            frame.number = number;
+            recorder.add(&frame, None).expect("recorded");
+        }
+        let marks = vec![FrameMark {
+            number: 1,
+            time: None,
+        }];
+        recorder.set_view(RecordedView {
+            marks: marks.clone(),
+            ..RecordedView::default()
+        });
+        recorder.finish().expect("finished");
+        let beside = metadata_beside(&path).expect("there").expect("read");
+        assert_eq!(beside.marks, marks);
+    }
+
+    #[test]
+    fn the_time_of_a_frame_is_measured_unless_the_source_states_it() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for (name, stated, expected) in [("a.npy", None, 0.25), ("b.npy", Some(0.2), 0.2)] {
+            let path = folder.path().join(name);
+            let metadata = RecordingMetadata {
+                seconds_per_frame: stated,
+                ..RecordingMetadata::default()
+            };
+            let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+            let mut recorder = recorder.expect("begun");
+            for time in [0.0, 0.25, 0.5, 0.75] {
+                let added = recorder.add(&Frame::default(), Some(time));
+                added.expect("recorded");
+            }
+            recorder.finish().expect("finished");
+            let beside = metadata_beside(&path).expect("there").expect("read");
+            assert_eq!(beside.seconds_per_frame, Some(expected));
+        }
+    }
+
+    #[test]
+    fn times_that_the_source_gives_have_a_step_only_if_they_are_even() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for (name, times, expected) in [
+            ("a.npy", [0.0, 0.25, 0.5, 0.75], Some(0.25)),
+            ("b.npy", [0.0, 0.1, 5.0, 5.2], None),
+        ] {
+            let path = folder.path().join(name);
+            let mut recorder = begun(&path);
+            for time in times.map(Some) {
+                let mut frame = Frame::default();
+                frame.time = time;
+                recorder.add(&frame, time).expect("recorded");
+            }
+            recorder.finish().expect("finished");
+            let beside = metadata_beside(&path).expect("there").expect("read");
+            assert_eq!(beside.seconds_per_frame, expected);
         }
     }
 }

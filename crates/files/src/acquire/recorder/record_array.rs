@@ -2,18 +2,18 @@
 //!
 //! A record has a time in seconds (NaN if it is unknown), a number, and values. The header has spare room and states
 //! the number of records in the file. The records are written first and their number after them, at least twice a
-//! second, so a killed program loses less than half a second. A thread syncs the file each second, so a power cut loses
-//! hardly more. A power cut may leave a number that is too large; then taxel reads the complete records, and numpy
-//! refuses the file. Values are f64, as every format of frames is read: nothing is rounded.
+//! second, so a killed program loses less than half a second. A power cut may lose what the system has not written yet,
+//! and may leave a number that is too large; then taxel reads the complete records, and numpy refuses the file. Values
+//! are f64, as every format of frames is read: nothing is rounded.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::time::{Duration, Instant};
 
-use crate::acquire::recorder::syncer::Syncer;
 use crate::formats::npy::{BEFORE_TEXT, header_of};
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::index::index;
+use crate::storage::FileId;
 
 /// The beginning of the header's text, before the rows and columns of a frame.
 const DESCRIPTION: &str = "{'descr': [('time', '<f8'), ('number', '<u8'), ('values', '<f8', (";
@@ -34,70 +34,42 @@ const BUFFER: usize = 1 << 18;
 #[derive(Debug)]
 pub(super) struct RecordArray {
     file: File,
-    /// The size of the frames; None before the first one.
-    size: Option<FrameSize>,
+    size: FrameSize,
     buffer: Vec<u8>,
     /// The number of records in the file and in the buffer.
     records: u64,
     /// The number of records in the file.
     in_file: u64,
     written: Instant,
-    syncer: Syncer,
 }
 
 impl RecordArray {
-    /// Creates an array without records, in a file that holds [`empty`].
-    pub(super) fn new(file: File) -> Self {
+    /// Takes a file that holds a header without records, for frames of this size.
+    pub(super) fn new(file: File, size: FrameSize) -> Self {
         Self {
-            size: None,
+            file,
+            size,
             buffer: Vec::new(),
             records: 0,
             in_file: 0,
             written: Instant::now(),
-            syncer: Syncer::new(&file),
-            file,
         }
     }
 
-    /// Continues in another file with the same content.
-    pub(super) fn move_to(&mut self, file: File) {
-        self.syncer = Syncer::new(&file);
-        self.file = file;
+    /// The identity of the file; None if the system does not tell.
+    pub(super) fn id(&self) -> Option<FileId> {
+        FileId::of(&self.file).ok()
     }
 
-    /// Returns the size of the frames; None before the first one.
-    pub(super) fn size(&self) -> Option<FrameSize> {
+    pub(super) fn size(&self) -> FrameSize {
         self.size
     }
 
-    /// Notes the size of the first frame, which all frames have.
-    ///
-    /// # Errors
-    /// Returns the system's error.
-    pub(super) fn begin(&mut self, size: FrameSize) -> io::Result<()> {
-        self.size = Some(size);
-        self.count()
-    }
-
-    /// Returns the number of records.
     pub(super) fn records(&self) -> u64 {
         self.records
     }
 
-    /// Returns true if no record waits to be written out.
-    pub(super) fn is_written_out(&self) -> bool {
-        self.buffer.is_empty()
-    }
-
-    /// Drops the records that wait to be written out.
-    pub(super) fn give_up(&mut self) {
-        self.buffer.clear();
-    }
-
     /// Adds a frame of the size of all frames, with its time in seconds.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn add(&mut self, frame: &Frame, time: Option<f64>) -> io::Result<()> {
         let time = time.unwrap_or(f64::NAN);
         self.buffer.extend(time.to_le_bytes());
@@ -120,95 +92,50 @@ impl RecordArray {
     }
 
     /// Writes out the records if they have waited too long.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn tick(&mut self) -> io::Result<()> {
-        if self.buffer.is_empty() || self.written.elapsed() < WRITTEN_OUT {
+        if self.written.elapsed() < WRITTEN_OUT {
             return Ok(());
         }
         self.write_out()
     }
 
-    /// Writes out all records, then their count. Records for which the disk has no room stay in the buffer.
-    ///
-    /// # Errors
-    /// Returns the system's error.
+    /// Writes out all records, then their count. Records for which the disk has no room are given up.
     pub(super) fn write_out(&mut self) -> io::Result<()> {
-        let size = self.record_bytes();
-        let start = HEADER + self.in_file * size;
-        let written = self
-            .file
-            .seek(SeekFrom::Start(start))
-            .and_then(|_| self.file.write_all(&self.buffer));
+        if self.buffer.is_empty() {
+            return Ok(());
+        }
+        let record = RECORD_HEAD + 8 * self.size.cells() as u64;
+        let start = HEADER + self.in_file * record;
+        self.file.seek(SeekFrom::Start(start))?;
+        let written = self.file.write_all(&self.buffer);
+        self.buffer.clear();
         if let Err(error) = written {
-            // The first error is the one that is reported.
-            let _ = self.keep_whole(start, size);
+            // The file ends after a whole record. The first error is the one that is reported.
+            let _ = self.file.set_len(start);
+            self.records = self.in_file;
             return Err(error);
         }
-        self.buffer.clear();
         self.in_file = self.records;
         self.written = Instant::now();
-        self.count()?;
-        self.syncer.tick()
-    }
-
-    /// Waits until everything that was written out is on the disk.
-    ///
-    /// # Errors
-    /// Returns the system's error, from this call or from the thread that syncs.
-    pub(super) fn end(&mut self) -> io::Result<()> {
-        let earlier = self.syncer.end();
-        earlier.and(self.file.sync_all())
-    }
-
-    /// Waits until everything that was written out is on the disk, but lets the thread go on: more records may come.
-    ///
-    /// # Errors
-    /// Returns the system's error.
-    pub(super) fn sync(&self) -> io::Result<()> {
-        self.file.sync_data()
-    }
-
-    /// Cuts off a torn record after `start`, and counts the complete ones.
-    fn keep_whole(&mut self, start: u64, size: u64) -> io::Result<()> {
-        let end = self.file.metadata()?.len();
-        let whole = end.saturating_sub(start) / size;
-        let whole = whole.min(self.records - self.in_file);
-        self.file.set_len(start + whole * size)?;
-        let bytes = index(whole * size);
-        self.buffer.drain(..bytes.min(self.buffer.len()));
-        self.in_file += whole;
-        self.count()
-    }
-
-    /// Returns the number of bytes of a record.
-    fn record_bytes(&self) -> u64 {
-        let size = self.size.unwrap_or(FrameSize::SMALLEST);
-        RECORD_HEAD + 8 * size.cells() as u64
-    }
-
-    /// Writes the header with the number of records in the file, in one piece.
-    fn count(&mut self) -> io::Result<()> {
-        let header = header(self.size, self.in_file);
         self.file.seek(SeekFrom::Start(0))?;
-        self.file.write_all(&header)
+        self.file.write_all(&header(self.size, self.in_file))
+    }
+
+    /// Writes out all records, and waits until they are on the disk.
+    pub(super) fn flush(&mut self) -> io::Result<()> {
+        self.write_out()?;
+        self.file.sync_all()
     }
 }
 
-/// Returns the content of a file before the first frame comes: no records of one cell, which numpy opens too.
-pub(super) fn empty() -> Vec<u8> {
-    header(None, 0)
-}
-
-/// Returns true if a file begins like an array of records that taxel has written.
+/// Whether a file begins like an array of records that taxel has written.
 pub(super) fn is_own(start: &[u8]) -> bool {
-    start.starts_with(&empty()[..BEFORE_TEXT + DESCRIPTION.len()])
+    let own = header(FrameSize::SMALLEST, 0);
+    start.starts_with(&own[..BEFORE_TEXT + DESCRIPTION.len()])
 }
 
-/// Returns the header of an array of records.
-pub(super) fn header(size: Option<FrameSize>, records: u64) -> Vec<u8> {
-    let size = size.unwrap_or(FrameSize::SMALLEST);
+/// The header of an array of records.
+pub(super) fn header(size: FrameSize, records: u64) -> Vec<u8> {
     let (rows, columns) = (size.rows(), size.columns());
     let text = format!(
         "{DESCRIPTION}{rows}, {columns}))], 'fortran_order': False, 'shape': ({records},), }}"
