@@ -70,7 +70,7 @@ use settings::resolved::Effective;
 
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::tui::live::request::WatchRequest;
+use crate::tui::live::message::WatchRequest;
 
 /// Runs the program with the given arguments and returns its exit status. The first argument is the program's own name.
 ///

@@ -9,7 +9,7 @@ use crate::acquire::AcquireOptions;
 use crate::formats::stream::StreamFormat;
 use crate::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
 use crate::tui::live::history::HISTORY_BYTES;
-use crate::tui::live::request::WatchRequest;
+use crate::tui::live::message::WatchRequest;
 
 fn fill<T, U: TryFrom<T>>(value: T, field: &mut Option<U>) -> bool {
     *field = U::try_from(value).ok();

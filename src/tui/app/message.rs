@@ -12,9 +12,8 @@ use crate::tui::app::library::{LibraryEvent, LibraryRequest};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::keys::key::{Arrow, Key};
-use crate::tui::live::message::LiveMessage;
-use crate::tui::live::request::WatchRequest;
-use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::live::message::{LiveMessage, WatchRequest};
+use crate::tui::recognise::state::RecogniseMessage;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {

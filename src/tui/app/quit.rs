@@ -6,7 +6,7 @@ use crate::tui::app::history::{StatePlace, UnsavedState};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::keys::action;
-use crate::tui::live::watch::recording;
+use crate::tui::live::update::recording;
 
 /// Quits, after a question if work would be lost.
 /// The imprint on the matrix can be saved from the question; another shape must be brought back first, so there is no

@@ -25,7 +25,7 @@ use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::live::request::WatchRequest;
+use crate::tui::live::message::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::matrix::layout::TaxelGrid;

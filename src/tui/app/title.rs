@@ -10,7 +10,7 @@ use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::tui::app::change::is_other;
 use crate::tui::app::state::App;
-use crate::tui::live::watch::recording;
+use crate::tui::live::update::recording;
 
 pub fn title(app: &App) -> String {
     let sensor = &app.shown().sensor;

@@ -255,7 +255,7 @@ fn on_worker(app: &mut App, event: WorkerEvent) -> Option<Effect> {
             }
         }
         WorkerEvent::Recognition(event) => return recognise::update::on_worker(app, event),
-        WorkerEvent::Live(number, event) => return live::report::on_worker(app, number, &event),
+        WorkerEvent::Live(number, event) => return live::update::on_worker(app, number, &event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
         WorkerEvent::Waiting(what) => app.waiting = what,
         WorkerEvent::GivenUp(what) => inform(app, format!("{what}: stopped waiting")),

@@ -7,7 +7,7 @@ use crate::pose::{PoseGrid, PoseIndex};
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::message::{Findings, SweepProgress};
 use crate::tui::live::message::LiveEvent;
-use crate::tui::recognise::message::RecognitionEvent;
+use crate::tui::recognise::state::RecognitionEvent;
 
 /// An event of a worker. It carries the number of its work; events of work that is no longer waited for are dropped.
 #[derive(Clone, Debug, PartialEq)]

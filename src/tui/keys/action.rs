@@ -19,7 +19,7 @@ use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::message::{ExploreMessage, ExploreTab};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
-use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::state::RecogniseMessage;
 
 #[derive(Debug, PartialEq)]
 pub struct Action {

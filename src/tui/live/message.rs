@@ -1,15 +1,28 @@
 //! Requests to the live page, and reports from its source.
 
+use std::ffi::OsStr;
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+use std::str::FromStr;
 use std::sync::Arc;
+
+use taxel_core::frame::{FrameError, FrameSize, Processing, RuleOrigin, SetRule};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::{UnknownName, number};
+use taxel_core::quote::shortened;
+use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
+use taxel_files::acquire::{AcquireOptions, Playback, SourceName};
+use taxel_files::formats::stream::StreamFormat;
+use taxel_files::storage::{Existing, ModelChoice};
 
 use crate::formats::recording::ChannelInfo;
 use crate::formats::stream::StreamCounts;
 use crate::formats::value::decimal;
 use crate::frame::{Frame, Rule};
 use crate::tui::keys::key::Arrow;
-use crate::tui::live::named_source::NamedSource;
-use crate::tui::live::naming::NamedImprint;
-use crate::tui::live::request::WatchRequest;
+use crate::tui::live::history::HISTORY_BYTES;
+use crate::tui::prompt::flags;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum LiveMessage {
@@ -174,5 +187,413 @@ pub enum SourceState {
 impl SourceState {
     pub fn is_final(&self) -> bool {
         matches!(self, Self::Ended | Self::Failed(_))
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct WatchRequest {
+    pub source: SourceName,
+    pub options: AcquireOptions,
+    pub baud_named: bool,
+    /// The processing of frames: crop, flip, turn, mask and gain.
+    pub processing: Processing,
+    /// The threshold; None takes the threshold of the recording, if it has one.
+    pub rule: Option<SetRule>,
+    /// The number of first frames that a tare is made of; 0 for no tare.
+    pub tare: u64,
+    pub own_tare: bool,
+    pub write: Option<(PathBuf, Existing)>,
+    pub model: Option<ModelChoice>,
+    /// The noise for that comparison: how often a taxel flips.
+    pub noise: Option<Noise>,
+    /// The memory for the frames that can be scrubbed through, in bytes.
+    pub history_bytes: usize,
+}
+
+impl PartialEq for WatchRequest {
+    /// Returns true if both are the same object in memory; a request never changes.
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
+impl WatchRequest {
+    pub fn new(source: impl AsRef<OsStr>) -> Self {
+        Self {
+            source: SourceName::new(source),
+            options: AcquireOptions::default(),
+            baud_named: false,
+            processing: Processing::default(),
+            rule: None,
+            tare: 0,
+            own_tare: true,
+            write: None,
+            model: None,
+            noise: None,
+            history_bytes: HISTORY_BYTES,
+        }
+    }
+
+    #[must_use]
+    pub fn for_source(&self, source: impl AsRef<OsStr>) -> Self {
+        Self {
+            source: SourceName::new(source),
+            ..self.clone()
+        }
+    }
+
+    pub fn noise(&self) -> Option<Noise> {
+        let noise = self.noise?;
+        Some(match self.processing.view.mask {
+            Some(mask) => noise.with_dead(mask),
+            None => noise,
+        })
+    }
+
+    pub fn name(&self) -> String {
+        self.source.short()
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedImprint {
+    pub imprint: Imprint,
+    pub state: AnswerState,
+    /// The likeliest shapes: one, several in a tie, or none for an imprint that no shape leaves.
+    pub names: Vec<String>,
+    pub probability: Option<f64>,
+    pub nearest: Option<(String, u32)>,
+    pub unexplained: Option<UnexplainedDifference>,
+}
+
+impl NamedImprint {
+    /// Computes the answer of a model about an imprint, under a noise if one is given. A single touch is the
+    /// evidence, because the frames of a source may show different shapes.
+    pub fn new(model: &Model, imprint: &Imprint, noise: Option<&Noise>) -> Self {
+        let touches = [*imprint];
+        let evidence = Evidence::of(&touches).under(noise);
+        let answer = model.recognise(evidence);
+        let name = |shape: usize| model.shapes()[shape].name.clone();
+        let shapes = match answer.state {
+            AnswerState::Tied => answer.tied,
+            _ => answer.shape.into_iter().collect(),
+        };
+        let nearest = model.nearest_of(evidence);
+        let distance = nearest.as_ref().map_or(0, |nearest| nearest.distance);
+        let unexplained = noise.and_then(|noise| noise.unexplained(imprint, distance));
+        Self {
+            imprint: *imprint,
+            state: answer.state,
+            names: shapes.into_iter().map(name).collect(),
+            probability: answer.ranking.first().map(|&(_, probability)| probability),
+            nearest: nearest.map(|nearest| (name(nearest.shape), nearest.distance)),
+            unexplained: unexplained.filter(|_| !answer.ranking.is_empty()),
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamingRequest {
+    /// The number of this request. Answers carry it, so late ones of an earlier model can be dropped.
+    pub number: u64,
+    pub choice: ModelChoice,
+    /// The noise: how often a taxel flips.
+    pub noise: Option<Noise>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Naming {
+    pub request: NamingRequest,
+    pub answer: Option<Box<NamedImprint>>,
+    pub failure: Option<String>,
+    asked: bool,
+}
+
+impl Naming {
+    pub fn new(request: NamingRequest) -> Self {
+        Self {
+            request,
+            answer: None,
+            failure: None,
+            asked: false,
+        }
+    }
+
+    pub fn ask(&mut self, imprint: &Imprint) -> bool {
+        let known = self
+            .answer
+            .as_ref()
+            .is_some_and(|own| own.imprint == *imprint);
+        let asks = !self.asked && !known && self.failure.is_none() && !imprint.is_empty();
+        self.asked |= asks;
+        asks
+    }
+
+    pub fn take(&mut self, answer: NamedImprint) {
+        self.asked = false;
+        self.answer = Some(Box::new(answer));
+    }
+
+    pub fn fail(&mut self, reason: String) {
+        self.asked = false;
+        self.failure = Some(reason);
+    }
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NamedSource {
+    /// The name: a path, `tcp://HOST:PORT`, or `-` for standard input.
+    name: String,
+    rows: Option<u16>,
+    columns: Option<u16>,
+    format: Option<StreamFormat>,
+    baud: Option<u32>,
+    channel: Option<String>,
+    speed: Option<f64>,
+    rule: Option<Rule>,
+    model: Option<ModelChoice>,
+}
+
+impl NamedSource {
+    const FLAGS: [(&'static str, Take); 9] = [
+        ("--rows", |source, value| {
+            source.rows = Some(value.side()?);
+            Ok(())
+        }),
+        ("--columns", |source, value| {
+            source.columns = Some(value.side()?);
+            Ok(())
+        }),
+        ("--format", |source, value| {
+            let format = value.text.parse();
+            source.format = Some(format.map_err(|error: UnknownName| error.to_string())?);
+            Ok(())
+        }),
+        ("--baud", |source, value| {
+            source.baud = Some(value.within(&AcquireOptions::BAUDS, "a number")?);
+            Ok(())
+        }),
+        ("--channel", |source, value| {
+            source.channel = Some(value.text.to_owned());
+            Ok(())
+        }),
+        ("--speed", |source, value| {
+            let speed = number::read(value.text).filter(|&speed| Playback::allows(speed));
+            source.speed = Some(speed.ok_or_else(|| value.refused(&Playback::SPEEDS))?);
+            Ok(())
+        }),
+        ("--at-least", |source, value| {
+            source.set_rule(value, Rule::at_least)
+        }),
+        ("--percent", |source, value| {
+            source.set_rule(value, Rule::percent)
+        }),
+        ("--model", |source, value| {
+            source.model = Some(ModelChoice::from_text(value.text));
+            Ok(())
+        }),
+    ];
+
+    pub fn flags() -> [&'static str; 9] {
+        Self::FLAGS.map(|(name, _)| name)
+    }
+
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+
+    pub fn read(text: &str) -> Result<Self, String> {
+        let (name, rest) = text.split_at(flags_start(text).unwrap_or(text.len()));
+        let mut source = Self::new(name.trim());
+        let words: Vec<&str> = rest.split_whitespace().collect();
+        let known = |flag: &str| Self::FLAGS.iter().position(|(name, _)| *name == flag);
+        for (flag, index, text) in flags::read(&words, &Self::flags(), known)? {
+            if let Some((_, take)) = Self::FLAGS.get(index) {
+                take(&mut source, &FlagValue { flag, text })?;
+            }
+        }
+        if source.rows.is_some() != source.columns.is_some() {
+            return Err("--rows and --columns go together".to_owned());
+        }
+        Ok(source)
+    }
+
+    /// Takes the value of a threshold, unless there is one already.
+    fn set_rule(
+        &mut self,
+        value: &FlagValue,
+        rule: fn(f64) -> Result<Rule, FrameError>,
+    ) -> Result<(), String> {
+        if self.rule.is_some() {
+            return Err("--at-least and --percent do not go together".to_owned());
+        }
+        let threshold = number::read(value.text).ok_or_else(|| value.refused(&"a number"))?;
+        self.rule = Some(rule(threshold).map_err(|error| match error {
+            FrameError::Rule { allowed, .. } => value.refused(&format!("a number {allowed}")),
+            error => format!("{}: {error}", value.flag),
+        })?);
+        Ok(())
+    }
+
+    /// Returns the request for this source; `settings` provides what is not given.
+    pub fn request(&self, settings: &WatchRequest) -> WatchRequest {
+        let mut request = settings.for_source(&self.name);
+        request.baud_named = self.baud.is_some();
+        let options = &mut request.options;
+        options.size = FrameSize::of_sides(self.columns, self.rows).or(options.size);
+        options.format = self.format.or(options.format);
+        options.baud = self.baud.unwrap_or(options.baud);
+        options.channel = self.channel.clone().or(options.channel.take());
+        if let Some(speed) = self.speed {
+            options.playback = Playback::paced(speed, options.playback.repeats());
+        }
+        request.model = self.model.clone().or(request.model);
+        if let Some(rule) = self.rule {
+            let least = request.rule.as_ref().map_or(0, |set| set.least);
+            let from = RuleOrigin::Flag;
+            request.rule = Some(SetRule { rule, least, from });
+        }
+        request
+    }
+}
+
+type Take = fn(&mut NamedSource, &FlagValue) -> Result<(), String>;
+
+struct FlagValue<'a> {
+    flag: &'a str,
+    text: &'a str,
+}
+
+impl FlagValue<'_> {
+    fn refused(&self, expected: &dyn fmt::Display) -> String {
+        let found = shortened(self.text);
+        format!("{} takes {expected}, found {found}", self.flag)
+    }
+
+    /// Returns the value as a number in this range; `what` names such numbers.
+    fn within<N: FromStr + PartialOrd + fmt::Display>(
+        &self,
+        range: &RangeInclusive<N>,
+        what: &str,
+    ) -> Result<N, String> {
+        let number = self.text.parse().ok();
+        let number = number.filter(|number| range.contains(number));
+        number.ok_or_else(|| self.refused(&format!("{what} {}", bounds(range))))
+    }
+
+    fn side(&self) -> Result<u16, String> {
+        self.within(&FrameSize::SIDES, "a whole number")
+    }
+}
+
+/// Returns the index of the first flag in the text after `:watch`; None without flags.
+pub(in crate::tui) fn flags_start(text: &str) -> Option<usize> {
+    text.find(" --").map(|blank| blank + 1)
+}
+
+/// Returns the bounds of a number: `from 1 to 512`.
+fn bounds(range: &RangeInclusive<impl fmt::Display>) -> String {
+    format!("from {} to {}", range.start(), range.end())
+}
+
+#[cfg(test)]
+mod tests {
+    use taxel_core::sensor::MatrixSize;
+
+    use super::*;
+
+    #[test]
+    fn one_imprint_is_asked_for_at_a_time_and_none_twice() {
+        let mut naming = Naming::new(NamingRequest {
+            number: 1,
+            choice: ModelChoice::Figures,
+            noise: None,
+        });
+        let [one, other]: [Imprint; 2] = ["##", "#."].map(|text| text.parse().expect("rows"));
+        assert!(!naming.ask(&Imprint::empty(
+            MatrixSize::new(2, 1).expect("an allowed size")
+        )));
+        assert!(naming.ask(&one));
+        assert!(!naming.ask(&other));
+        naming.take(NamedImprint {
+            imprint: one,
+            state: AnswerState::Unknown,
+            names: Vec::new(),
+            probability: None,
+            nearest: None,
+            unexplained: None,
+        });
+        assert!(!naming.ask(&one));
+        assert!(naming.ask(&other));
+        naming.fail("no model".to_owned());
+        assert!(!naming.ask(&other));
+    }
+
+    #[test]
+    fn a_name_may_have_spaces_and_flags_follow_it() {
+        let settings = WatchRequest::new("");
+        let request = |text: &str| NamedSource::read(text).map(|source| source.request(&settings));
+        let whole = request(
+            "my run.csv --rows 4 --columns=5 --baud 9600 --at-least 10 --channel left --speed 0.5 --model figures-30",
+        );
+        let whole = whole.expect("flags");
+        assert_eq!(whole.source, SourceName::new("my run.csv"));
+        let options = &whole.options;
+        assert_eq!(
+            (options.size, options.baud),
+            (Some(FrameSize::new(5, 4).expect("an allowed size")), 9600)
+        );
+        assert_eq!(
+            (options.channel.as_deref(), options.playback),
+            (
+                Some("left"),
+                Playback::Paced {
+                    speed: 0.5,
+                    repeat: false
+                }
+            )
+        );
+        assert_eq!(whole.model, Some(ModelChoice::EqualFigures));
+        let rule = whole.rule.expect("a rule");
+        assert_eq!(rule.rule, Rule::at_least(10.0).expect("in range"));
+        let plain = request("a--b.csv").expect("no flags");
+        assert_eq!(
+            (plain.source.to_string(), plain.rule),
+            ("a--b.csv".to_owned(), None)
+        );
+        for (text, error) in [
+            ("x --rows 4", "--rows and --columns go together"),
+            (
+                "x --rows 0 --columns 4",
+                "--rows takes a whole number from 1 to 512, found 0",
+            ),
+            (
+                "x --at-least 1 --percent 2",
+                "--at-least and --percent do not go together",
+            ),
+            (
+                "x --percent 200",
+                "--percent takes a number above 0, up to 100, found 200",
+            ),
+            (
+                "x --speed 0",
+                "--speed takes a number above 0, up to 1000000, found 0",
+            ),
+            ("x --baud", "--baud needs a value"),
+            (
+                "x --format line",
+                "format \"line\" is unknown, expected one of lines, jsonl, ros2, flexitac, matsense",
+            ),
+        ] {
+            assert_eq!(request(text).expect_err(text), error);
+        }
+        let unknown = request("x --at-last 3").expect_err("unknown");
+        assert!(
+            unknown.ends_with("did you mean \"--at-least\"?"),
+            "{unknown}"
+        );
     }
 }

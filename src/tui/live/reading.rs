@@ -2,10 +2,23 @@
 
 use std::sync::Arc;
 
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::Name;
+use taxel_files::formats::recording::ChannelInfo;
+
 use crate::description::{Description, main_region, regions};
 use crate::frame::{Frame, FrameError, Processing};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
+use crate::tui::app::change::{begin, inform, refuse};
+use crate::tui::app::document::Document;
+use crate::tui::app::history::DocumentOrigin;
+use crate::tui::app::state::App;
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::live::state::Live;
+use crate::tui::live::update::LiveRefusal;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeatLayer {
@@ -132,8 +145,138 @@ pub(super) fn nine_digits(value: f64) -> f64 {
     text.parse::<f64>().map_or(value, |value| value + 0.0)
 }
 
+/// The span of the values so far, which the fixed range covers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ShadeRange {
+    raw: Span,
+    tared: Span,
+    pub(super) is_own: bool,
+}
+
+/// The span of some values; it only grows.
+#[derive(Clone, Copy, Debug, Default)]
+struct Span {
+    /// The largest value, rounded up to a round number; None as long as no value is above 0. The size of values
+    /// depends on the sensor: one may measure thousands of pascals, another one fractions of a newton.
+    top: Option<f64>,
+    bottom: f64,
+}
+
+impl Span {
+    fn add(&mut self, values: &Matrix<f64>) {
+        let values = values.values().iter().copied();
+        let (least, largest) = values.fold((0.0, 0.0), |(least, largest): (f64, f64), value| {
+            (least.min(value), largest.max(value))
+        });
+        self.bottom = self.bottom.min(least);
+        if largest > 0.0 {
+            let top = round_up(largest);
+            self.top = Some(self.top.map_or(top, |before| before.max(top)));
+        }
+    }
+
+    /// Returns the upper end of the fixed range; 1 as long as no value is above 0.
+    fn top(&self) -> f64 {
+        self.top.unwrap_or(1.0)
+    }
+}
+
+impl ShadeRange {
+    pub(super) fn add(&mut self, [raw, tared]: [&Matrix<f64>; 2]) {
+        self.raw.add(raw);
+        self.tared.add(tared);
+    }
+
+    /// Forgets the values so far, since another tare is subtracted now.
+    pub(super) fn begin_anew(&mut self) {
+        (self.raw, self.tared) = (Span::default(), Span::default());
+    }
+
+    /// Returns the largest value so far after tare and gain, rounded up to a round number. Thresholds depend on these
+    /// values.
+    pub(super) fn tared_top(&self) -> f64 {
+        self.tared.top()
+    }
+
+    pub(super) fn ends(&self, layer: HeatLayer, reading: Option<&LiveReading>) -> (f64, f64) {
+        let largest = reading
+            .and_then(|reading| reading.shown_max)
+            .map(|(largest, _)| largest);
+        let least = reading.map_or(0.0, |reading| reading.least);
+        let span = match layer {
+            HeatLayer::Raw => self.raw,
+            HeatLayer::Tared | HeatLayer::Imprint => self.tared,
+        };
+        match largest {
+            Some(largest) if self.is_own && (largest > 0.0 || least < 0.0) => {
+                (least.min(0.0), largest.max(0.0))
+            }
+            // Values a little below 0 are noise that the tare has left.
+            _ if span.bottom < -span.top() / 20.0 => (-round_up(-span.bottom), span.top()),
+            _ => (0.0, span.top()),
+        }
+    }
+}
+
+/// Returns the shown imprint as a drawn one; None without one. The sensor has the size of the frame, and its pitch in
+/// mm if that is known and cells are square; otherwise the default pitch is kept, with which lengths are shown in
+/// taxels only.
+pub(super) fn document(page: &Live) -> Option<Document> {
+    let imprint = page.reading()?.imprint?;
+    let sensor = Sensor::of_size(imprint.size());
+    let channel = page.status().channel.as_deref();
+    let pitch = channel.and_then(ChannelInfo::square_pitch_mm);
+    let scaled = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
+    Some(Document::drawn(scaled.unwrap_or(sensor), imprint))
+}
+
+/// Puts the imprint onto the matrix; the source keeps running. The imprint counts as unsaved, because no source sends
+/// the same frame again. If the recording gives the size of its cells but lengths are not in mm, the notice says why.
+pub(super) fn take(app: &mut App, page: Box<Live>, document: Document) {
+    let number = page.reading().map(|reading| reading.frame.number);
+    let channel = page.status().channel.as_deref();
+    let without_mm = channel.and_then(ChannelInfo::why_not_in_mm);
+    let source = page.request().name();
+    app.live = Some(page);
+    let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
+    let brought_by = format!("imprint of {frame}, {source}");
+    // Not every source has a name that a shape may have.
+    let stem = source.rsplit_once('.').map_or(&*source, |(stem, _)| stem);
+    let named = Name::new(&format!("{frame} of {stem}"));
+    let proposed = named.map_or_else(|_| frame.clone(), |name| name.to_string());
+    let origin = DocumentOrigin::unsaved(&document)
+        .called(brought_by)
+        .proposing(proposed);
+    begin(app, origin, document);
+    let back = app.key_of(&action::WATCH);
+    let mut text = format!("the imprint of {frame}; {back} goes back to the source");
+    if let Some(reason) = without_mm {
+        text += &format!("; {reason}");
+    }
+    inform(app, text);
+}
+
+pub(super) fn refuse_imprint(app: &mut App, page: &Live) {
+    let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
+    let text = match page.no_imprint() {
+        refusal @ LiveRefusal::NoThreshold => format!("{refusal}; {key} sets one"),
+        refusal => refusal.to_string(),
+    };
+    refuse(app, text);
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LiveDisplay {
+    pub numbers: bool,
+    /// The taxel that stays in sight if not all taxels are visible; None keeps the contact in sight.
+    pub looked_at: Option<(u8, u8)>,
+    pub only_panel: bool,
+}
+
 #[cfg(test)]
 mod tests {
+    use taxel_core::sensor::MatrixSize;
+
     use super::*;
 
     #[test]
@@ -141,5 +284,24 @@ mod tests {
         let rounded = [0.0, 0.03, 1.0, 1.2, 45.0, 100.0, 255.0, 1e300].map(round_up);
         assert_eq!(rounded, [1.0, 0.05, 1.0, 2.0, 50.0, 100.0, 500.0, 1e300]);
         assert_eq!(nine_digits(0.1 + 0.2), 0.3);
+    }
+
+    #[test]
+    fn the_top_follows_the_values_even_if_they_are_small() {
+        let mut range = ShadeRange::default();
+        let mut top = |value: f64| {
+            let [raw, tared] = [10.0 * value, value].map(|value| {
+                Matrix::filled(MatrixSize::new(2, 1).expect("an allowed size"), value)
+            });
+            range.add([&raw, &tared]);
+            range.tared_top()
+        };
+        assert_eq!([top(0.0), top(-3.0), top(f64::NAN)], [1.0, 1.0, 1.0]);
+        assert_eq!([top(0.004), top(0.001)], [0.005, 0.005]);
+        assert_eq!([top(30.0), top(2.0)], [50.0, 50.0]);
+        let ends = [HeatLayer::Raw, HeatLayer::Tared].map(|layer| range.ends(layer, None));
+        assert_eq!(ends, [(-50.0, 500.0), (-5.0, 50.0)]);
+        range.begin_anew();
+        assert_eq!(range.ends(HeatLayer::Raw, None), (0.0, 1.0));
     }
 }

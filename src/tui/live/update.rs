@@ -1,6 +1,14 @@
 //! How the live page handles messages. The source keeps running while the imprint is on the matrix, and ends when the
 //! page is closed.
 
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use taxel_core::frame::FrameError;
+use taxel_files::acquire::SourceName;
+use taxel_files::formats::value::grouped;
+use taxel_files::storage::Existing;
+
 use crate::formats::recording::RecordingMetadata;
 use crate::formats::value::counted;
 use crate::frame::Rule;
@@ -14,24 +22,22 @@ use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
-use crate::tui::live::message::LiveMessage;
-use crate::tui::live::reading::HeatLayer;
-use crate::tui::live::refusal::LiveRefusal;
+use crate::tui::live::message::{
+    LiveEvent, LiveMessage, NamedSource, RecordedFrames, WatchRequest,
+};
+use crate::tui::live::reading::{self, HeatLayer};
 use crate::tui::live::state::Live;
-use crate::tui::live::taken_imprint;
-use crate::tui::live::threshold;
-use crate::tui::live::view;
-use crate::tui::live::watch;
+use crate::tui::live::{tare, view};
 use crate::tui::prompt::state::CommandDialog;
-use crate::tui::runtime::effect::{Effect, FrameWork};
+use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork};
 
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
 /// is open.
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
-        LiveMessage::Watch(request) => Some(watch::watch(app, request)),
-        LiveMessage::Source(source) => watch::check_source(app, source),
-        LiveMessage::Open => watch::open(app),
+        LiveMessage::Watch(request) => Some(watch(app, request)),
+        LiveMessage::Source(source) => check_source(app, source),
+        LiveMessage::Open => open(app),
         LiveMessage::AtLeast(rule) => {
             set_threshold(app, *rule);
             None
@@ -41,12 +47,12 @@ pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> 
 }
 
 fn set_threshold(app: &mut App, rule: Rule) {
-    let Some(page) = watch::page(app) else {
-        refuse(app, watch::NO_SOURCE);
+    let Some(page) = page(app) else {
+        refuse(app, NO_SOURCE);
         return;
     };
     page.choose(rule);
-    let value = threshold::text(rule, &page.unit());
+    let value = tare::text(rule, &page.unit());
     let text = format!("{}: threshold {value}", page.request().name());
     inform(app, text);
 }
@@ -66,12 +72,12 @@ pub(in crate::tui) fn in_live(
             app.live = Some(page);
             return Some(Effect::Frames(FrameWork::StopWatching));
         }
-        Message::Accept => match taken_imprint::document(&page) {
+        Message::Accept => match reading::document(&page) {
             Some(document) => {
-                taken_imprint::take(app, page, document);
+                reading::take(app, page, document);
                 return None;
             }
-            None => taken_imprint::refuse_imprint(app, &page),
+            None => reading::refuse_imprint(app, &page),
         },
         Message::Scroll(by) => scrub(app, &mut page, by),
         Message::ScrollTo(Endpoint::First) => page.to_oldest(),
@@ -141,8 +147,8 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             page.names.awaits_models = true;
             return Some(Effect::Library(LibraryRequest::Models));
         }
-        LiveMessage::Again => return watch::watch_again(app, page),
-        LiveMessage::Source(source) => return watch::check_source(app, source),
+        LiveMessage::Again => return watch_again(app, page),
+        LiveMessage::Source(source) => return check_source(app, source),
         // These are typed after `:`, and reach the page from there.
         LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::AtLeast(_) => {}
     }
@@ -189,7 +195,7 @@ pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effe
     app.works = number;
     let own = own.iter().map(|name| ModelChoice::from_text(name));
     page.names.next(own, number);
-    let effect = watch::name_by(page);
+    let effect = name_by(page);
     let text = match page.names.request() {
         Some(naming) => format!("shapes are named by {}", naming.choice),
         None => "shapes are not named".to_owned(),
@@ -240,7 +246,7 @@ fn mark(app: &mut App, page: &mut Live) {
 ///
 /// They change by keys, by frames that are withdrawn with their marks, and while the recording is being begun.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
-    let page = watch::page(app).filter(|page| !page.stopped())?;
+    let page = page(app).filter(|page| !page.stopped())?;
     if let Some(view) = page.take_changed_view() {
         return Some(Effect::Frames(FrameWork::WriteMetadata(Box::new(view))));
     }
@@ -275,15 +281,253 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     Ok(Effect::Frames(FrameWork::Record(Box::new(metadata))))
 }
 
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LiveRefusal {
+    #[error("no frame yet")]
+    NoFrame,
+    #[error("this frame is no longer in the history")]
+    LeftHistory,
+    #[error("frame {0} came before the source was watched again; frames since then can be marked")]
+    EarlierWatch(u64),
+    /// The frames cannot be processed together.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    #[error("the source has ended, so there is nothing to record")]
+    SourceEnded,
+    /// The source is standard input, whose bytes are gone once they are read.
+    #[error("standard input cannot be read twice")]
+    ReadOnce,
+    #[error("the source has not ended yet")]
+    NotEnded,
+    /// There is no threshold, so it is unknown which values are active.
+    #[error("no threshold, so no imprint")]
+    NoThreshold,
+    #[error("no imprint before the tare: {taken} of {wanted} frames")]
+    TareIsMade { taken: u64, wanted: u64 },
+    /// The frame cannot be made into an imprint.
+    #[error("no imprint: {0}")]
+    NoImprint(FrameError),
+}
+
+/// Handles a report of the source. Reports of a source that is no longer watched are dropped, by their number; except
+/// reports of a finished recording, because a recording is finished after its source is left.
+pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) -> Option<Effect> {
+    if let LiveEvent::NotNamed(by, reason) = event {
+        return on_no_name(app, number, *by, reason);
+    }
+    on_frames(app, number, event);
+    None
+}
+
+fn watched(app: &mut App, number: u64) -> Option<&mut Live> {
+    page(app).filter(|page| page.number() == number && !page.stopped())
+}
+
+/// Handles a model that cannot be used: shows the reason, and names imprints by the model before it, if there was one.
+fn on_no_name(app: &mut App, source: u64, by: u64, reason: &str) -> Option<Effect> {
+    let next = app.works + 1;
+    let page = watched(app, source).filter(|page| page.names.is_by(by))?;
+    page.names.fail(reason, next);
+    let returned = (!page.names.is_by(by)).then(|| name_by(page));
+    app.works = next;
+    refuse(app, reason);
+    returned
+}
+
+fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
+    match event {
+        LiveEvent::Recorded(name, RecordedFrames { frames: 0, .. }) => {
+            return inform(
+                app,
+                format!("{name}: no frame came, so nothing was written"),
+            );
+        }
+        LiveEvent::Recorded(name, RecordedFrames { frames, left_out }) => {
+            let frames = counted(*frames, "frame");
+            let mut text = format!("{name}: {frames} recorded");
+            if *left_out > 0 {
+                text += &format!(", {} of another size left out", grouped(*left_out));
+            }
+            return inform(app, text);
+        }
+        LiveEvent::NotFinished(reason) => return refuse(app, reason.clone()),
+        _ => {}
+    }
+    let is_open = matches!(app.dialogs.last(), Some(Dialog::Live(_)));
+    let Some(page) = watched(app, number) else {
+        return;
+    };
+    let troubles = |page: &Live| {
+        let refusal = page.recording().refusal().map(str::to_owned);
+        (page.trouble(), refusal)
+    };
+    let before = troubles(page);
+    let error = page.error().cloned();
+    match event {
+        LiveEvent::Waiting
+        | LiveEvent::NotNamed(..)
+        | LiveEvent::Recorded(..)
+        | LiveEvent::NotFinished(_) => {}
+        LiveEvent::Arrived(batch) => {
+            let moved = page.follow_recording(&batch.status);
+            page.take(batch);
+            if let Some(text) = moved {
+                return inform(app, text);
+            }
+        }
+        LiveEvent::Recording(name) => {
+            page.set_recording(Some(name.clone()));
+            return inform(app, format!("recording in {name}"));
+        }
+        LiveEvent::Named(by, named) => page.names.take(*by, (**named).clone()),
+        LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
+    }
+    let (trouble, refusal) = troubles(page);
+    let is_wrong = page.error().is_some() && page.error() != error.as_ref();
+    if is_open && (is_wrong || trouble.is_some() && trouble != before.0) {
+        // The page shows the trouble; an old notice, such as that of the beginning of a recording, is no longer true.
+        app.notice = None;
+    } else if !is_open
+        && let Some(reason) = refusal
+        && before.1.as_ref() != Some(&reason)
+    {
+        refuse(app, reason);
+    }
+}
+
+pub(super) const NO_SOURCE: &str =
+    "no source yet: ':watch SOURCE' watches a sensor or plays a recording";
+
+const OPEN_ALREADY: &str = "this is the watched source; ':watch SOURCE' watches another one";
+
+pub(in crate::tui) fn last_page(app: &App) -> Option<&Live> {
+    let page = topmost!(&app.dialogs, Live).or(app.live.as_ref())?;
+    Some(page)
+}
+
+/// Returns the file in which frames are recorded now, whether the page is open or not; None if nothing is recorded.
+pub(in crate::tui) fn recording(app: &App) -> Option<&str> {
+    let page = last_page(app).filter(|page| !page.stopped())?;
+    page.recording().name()
+}
+
+/// Returns the page of the source that was watched last, open or not, to change it.
+pub(super) fn page(app: &mut App) -> Option<&mut Live> {
+    let page = topmost!(&mut app.dialogs, Live).or(app.live.as_mut())?;
+    Some(page)
+}
+
+pub(in crate::tui) fn set_aside(app: &mut App) {
+    if let Some(Dialog::Live(page)) = app
+        .dialogs
+        .pop_if(|dialog| matches!(dialog, Dialog::Live(_)))
+    {
+        app.live = Some(page);
+    }
+}
+
+/// Requests a check of a source; it is watched if it can be read.
+pub(super) fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
+    let request = source.request(&app.watch_settings);
+    // A second page would have no bytes to read, and the first one and its history would be gone.
+    let reads_standard = |request: &WatchRequest| request.source == SourceName::Standard;
+    if reads_standard(&request) && page(app).is_some_and(|page| reads_standard(page.request())) {
+        refuse(app, LiveRefusal::ReadOnce.to_string());
+        return None;
+    }
+    Some(Effect::File(FileRequest::Source(Arc::new(request))))
+}
+
+/// Opens a page for a source, in place of the one before. Late reports of the source before have its own number, and
+/// are dropped.
+pub(super) fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
+    app.works += 1;
+    let mut page = Live::new(Arc::clone(request), app.works);
+    page.set_recording(
+        request
+            .write
+            .as_ref()
+            .map(|(path, _)| path.to_string_lossy().into_owned()),
+    );
+    let write = request.write.clone();
+    let watched = watch_source(&page, write);
+    // It has led to this page, and is not opened again by what is refused here.
+    app.prompt = None;
+    app.live = None;
+    app.dialogs
+        .retain(|dialog| !matches!(dialog, Dialog::Live(_)));
+    app.dialogs.push(Dialog::Live(Box::new(page)));
+    watched
+}
+
+fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
+    Effect::Frames(FrameWork::Watch {
+        number: page.number(),
+        request: Arc::clone(page.request()),
+        write,
+        naming: page.names.request().cloned().map(Box::new),
+    })
+}
+
+/// Opens the page of the last source. A source that was left is watched again: its history and settings are still
+/// there; frames that came meanwhile are not. One that has ended is not: the page shows the frame that it showed. The
+/// recording that was requested at the start is finished, and stays as it is.
+pub(super) fn open(app: &mut App) -> Option<Effect> {
+    if topmost!(&app.dialogs, Live).is_some() {
+        refuse(app, OPEN_ALREADY);
+        return None;
+    }
+    let Some(mut page) = app.live.take() else {
+        refuse(app, NO_SOURCE);
+        return None;
+    };
+    let mut effect = None;
+    if page.stopped() {
+        app.works += 1;
+        effect = Some(if page.has_ended() {
+            page.reopen(app.works);
+            name_by(&page)
+        } else {
+            page.restart(app.works);
+            say_not_recording(app, &mut page);
+            watch_source(&page, None)
+        });
+    }
+    app.dialogs.push(Dialog::Live(page));
+    effect
+}
+
+pub(super) fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
+    if let Err(refused) = page.check_again() {
+        refuse(app, refused.to_string());
+        return None;
+    }
+    app.works += 1;
+    page.watch_again(app.works);
+    say_not_recording(app, page);
+    Some(watch_source(page, None))
+}
+
+fn say_not_recording(app: &mut App, page: &mut Live) {
+    if page.take_stopped_recording() {
+        let record = app.keymap().label(Context::Live, &action::RECORD);
+        inform(
+            app,
+            format!("not recording any more; {record} records in a new file"),
+        );
+    }
+}
+
+pub(super) fn name_by(page: &Live) -> Effect {
+    let naming = page.names.request().cloned().map(Box::new);
+    Effect::Frames(FrameWork::NameBy(page.number(), naming))
+}
+
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
-    use crate::frame::Frame;
-    use crate::frame::FrameSize;
+    use crate::frame::{Frame, FrameSize};
     use crate::tui::live::message::{FeedStatus, FrameBatch};
-    use crate::tui::live::request::WatchRequest;
 
     #[test]
     fn a_recording_that_moves_to_another_file_says_so_once() {

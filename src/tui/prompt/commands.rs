@@ -23,7 +23,7 @@ use crate::tui::app::message::Message;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
-use crate::tui::live::named_source::{NamedSource, flags_start};
+use crate::tui::live::message::{NamedSource, flags_start};
 use crate::tui::prompt::flags::{is_given, lacks_value};
 
 pub(super) const ANCHOR: &str = "--anchor";

@@ -30,11 +30,10 @@ use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::work::explored;
 use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
-use crate::tui::live::message::LiveMessage;
-use crate::tui::live::named_source::NamedSource;
+use crate::tui::live::message::{LiveMessage, NamedSource};
 use crate::tui::prompt::commands::{ANCHOR, PromptCommand, commands, find};
 use crate::tui::prompt::flags::{self, Flag};
-use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::state::RecogniseMessage;
 
 const IN_SHELL: [(&str, &str); 5] = [
     ("batch", "taxel batch"),

@@ -43,7 +43,7 @@ pub(in crate::tui) fn in_command(
                         message,
                         Message::Live(_) | Message::Help | Message::Redraw | Message::Suspend
                     ) {
-                        live::watch::set_aside(app);
+                        live::update::set_aside(app);
                     }
                     return match message {
                         Message::Redraw => Some(Effect::Terminal(TerminalEffect::Redraw)),

@@ -2,8 +2,6 @@
 //!
 //! ```text
 //! trained        a model, how well it tells its shapes apart, examples, a random touch
-//! message        what keys ask for, and what the worker reports
-//! pose_searches  which search for poses is needed, in progress, or done
 //! state          the set, its model, the touches, the answer
 //! view           the panel beside the matrix: shapes with bars, the nearest imprint, the pose
 //! update         what messages do; the answer follows the matrix
@@ -11,12 +9,6 @@
 //! ```
 
 pub mod trained;
-
-pub mod confused;
-
-pub mod message;
-
-pub mod pose_searches;
 
 pub mod state;
 

@@ -9,7 +9,7 @@ use crate::recognition::{Evaluation, Model, below};
 use crate::sensor::Sensor;
 use crate::storage::{FileVersion, ModelChoice};
 use crate::touch::Plane;
-use crate::tui::recognise::confused::Examples;
+use crate::tui::recognise::confusion::Examples;
 
 #[derive(Debug)]
 pub struct TrainedModel {

@@ -16,9 +16,9 @@ use crate::tui::keys::action;
 use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::confusion::Confusion;
-use crate::tui::recognise::message::{RecogniseMessage, RecognitionEvent};
-use crate::tui::recognise::pose_searches::SearchStep;
-use crate::tui::recognise::state::{ModelState, NoModel};
+use crate::tui::recognise::state::{
+    ModelState, NoModel, RecogniseMessage, RecognitionEvent, SearchStep,
+};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::effect::{Effect, Work};
 

@@ -31,8 +31,9 @@ use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::recognise::message::{PoseSearchResult, RecogniseMessage};
-use crate::tui::recognise::state::{ModelState, Preparation, Recognition};
+use crate::tui::recognise::state::{
+    ModelState, PoseSearchResult, Preparation, RecogniseMessage, Recognition,
+};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};

@@ -10,9 +10,8 @@ use crate::storage::Existing;
 use crate::storage::ModelChoice;
 use crate::tui::app::library::LibraryRequest;
 use crate::tui::explore::message::Findings;
-use crate::tui::live::naming::NamingRequest;
-use crate::tui::live::request::WatchRequest;
-use crate::tui::recognise::message::PoseSearch;
+use crate::tui::live::message::{NamingRequest, WatchRequest};
+use crate::tui::recognise::state::PoseSearch;
 use crate::tui::recognise::trained::TrainedModel;
 
 #[derive(Clone, Debug, PartialEq)]

@@ -31,12 +31,12 @@ use std::time::Instant;
 
 use tempfile::TempDir;
 
+use crate::tui::runtime::disk::files::WriteAccess;
 use crate::tui::runtime::disk::journal_writer::JournalWriter;
-use crate::tui::runtime::disk::leftover;
 use crate::tui::runtime::disk::queue::DiskQueue;
-use crate::tui::runtime::disk::reminders::Reminders;
-use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest, newest_orphan, not_recorded};
-use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::disk::request::{
+    DiskAnswer, DiskRequest, Reminders, newest_orphan, not_recorded,
+};
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::work::execution::PATIENCE;
 use crate::tui::runtime::work::models::ModelStore;
@@ -199,7 +199,7 @@ impl World {
     fn left(&self) -> Option<Leftover> {
         let (orphan, waiting) = self.orphan.as_ref()?;
         Some(Leftover {
-            what: leftover::described(orphan),
+            what: disk::request::described(orphan),
             waiting: *waiting,
         })
     }

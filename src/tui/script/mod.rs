@@ -3,18 +3,11 @@
 //!
 //! ```text
 //! command   the lines of a script              runner    carries them out
-//! setting   those before the first screen      start     the world that they describe
 //! session   the program on a screen in memory  drawing   that screen as SVG
 //! record    writes a script while a user works
 //! ```
 
-mod drawing;
-
 pub mod session;
-
-pub mod setting;
-
-mod start;
 
 pub mod command;
 

@@ -2,7 +2,7 @@
 //! press with drags as a drag.
 
 use crate::tui::app::message::{Mouse, MouseKind};
-use crate::tui::script::setting::ScriptSetting;
+use crate::tui::script::command::ScriptSetting;
 use crate::tui::terminal::input::Input;
 
 #[derive(Clone, Debug)]

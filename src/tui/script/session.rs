@@ -14,22 +14,24 @@
 //! ```
 
 use std::cell::{Ref, RefCell};
+use std::fmt::Write as _;
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Rect};
+use ratatui::style::{Color, Modifier};
+use taxel_files::formats::value::escaped;
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Notice, Options};
 use crate::tui::app::view::draw;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::{Key, KeyError, parse};
-use crate::tui::live::message::{LiveEvent, LiveMessage, SourceState};
-use crate::tui::live::named_source::NamedSource;
+use crate::tui::live::message::{LiveEvent, LiveMessage, NamedSource, SourceState};
 use crate::tui::live::state::Live;
-use crate::tui::live::watch::last_page;
+use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
-use crate::tui::script::drawing;
-use crate::tui::widget::theme::letter;
+use crate::tui::widget::number::narrow;
+use crate::tui::widget::theme::{Palette, Theme, letter};
 use crate::tui::widget::write;
 
 #[derive(Debug)]
@@ -169,7 +171,7 @@ impl Session {
     }
 
     pub fn svg(&self, title: &str) -> String {
-        drawing::svg(&self.drawn().buffer, *self.app.theme(), title)
+        svg(&self.drawn().buffer, *self.app.theme(), title)
     }
 
     fn rows(&self, add: impl Fn(&Cell, &str, &mut String)) -> String {
@@ -191,5 +193,245 @@ impl Session {
             rows.push('\n');
         }
         rows
+    }
+}
+
+const WIDTH: u32 = 9;
+const HEIGHT: u32 = 18;
+const FONT: u32 = 15;
+const BASE: u32 = 14;
+const MARGIN: u32 = 12;
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct TextStyle {
+    ink: [u8; 3],
+    paper: [u8; 3],
+    bold: bool,
+    dim: bool,
+}
+
+fn colors(palette: Palette) -> ([u8; 3], [u8; 3]) {
+    match palette {
+        Palette::Dark => ([212, 212, 212], [28, 28, 28]),
+        Palette::Light | Palette::Mono => ([32, 32, 32], [255, 255, 255]),
+    }
+}
+
+/// Draws a screen as SVG; its title is for people who cannot see it.
+pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String {
+    let (ink, paper) = colors(theme.palette);
+    let area = buffer.area;
+    let width = u32::from(area.width) * WIDTH + 2 * MARGIN;
+    let height = u32::from(area.height) * HEIGHT + 2 * MARGIN;
+    let (fore, back, title) = (hex(ink), hex(paper), escaped(title));
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {width} {height}\" role=\"img\" shape-rendering=\"crispEdges\">\n<title>{title}</title>\n\
+         <rect width=\"{width}\" height=\"{height}\" rx=\"6\" fill=\"{back}\"/>\n\
+         <g transform=\"translate({MARGIN} {MARGIN})\" font-size=\"{FONT}\" fill=\"{fore}\" \
+         font-family=\"'DejaVu Sans Mono', 'Noto Sans Mono', Menlo, Consolas, monospace\">\n"
+    );
+    for row in 0..area.height {
+        let mut runs: Vec<(u16, TextStyle, Vec<&str>)> = Vec::new();
+        let mut covered = 0;
+        for column in 0..area.width {
+            let cell = &buffer[(area.x + column, area.y + row)];
+            // A wide character covers the cell after it.
+            if covered > 0 {
+                covered -= 1;
+                if let Some((.., symbols)) = runs.last_mut() {
+                    symbols.push("");
+                }
+                continue;
+            }
+            covered = write::width(cell.symbol()).saturating_sub(1);
+            let look = TextStyle::of(cell, ink, paper);
+            match runs.last_mut() {
+                Some((_, last, symbols)) if *last == look => symbols.push(cell.symbol()),
+                _ => runs.push((column, look, vec![cell.symbol()])),
+            }
+        }
+        for (column, look, symbols) in runs {
+            draw_run(&mut svg, (column, row), look, paper, &symbols);
+        }
+    }
+    svg + "</g>\n</svg>\n"
+}
+
+impl TextStyle {
+    /// Returns the style of a cell; in reversed cells, ink and paper are exchanged.
+    fn of(cell: &Cell, ink: [u8; 3], paper: [u8; 3]) -> Self {
+        let color = |color: Color, other: [u8; 3]| match color {
+            Color::Rgb(red, green, blue) => [red, green, blue],
+            _ => other,
+        };
+        let (ink, paper) = (color(cell.fg, ink), color(cell.bg, paper));
+        let has = |modifier| cell.modifier.contains(modifier);
+        let (ink, paper) = if has(Modifier::REVERSED) {
+            (paper, ink)
+        } else {
+            (ink, paper)
+        };
+        Self {
+            ink,
+            paper,
+            bold: has(Modifier::BOLD),
+            dim: has(Modifier::DIM),
+        }
+    }
+}
+
+fn units(columns: usize) -> u32 {
+    u32::from(narrow(columns)) * WIDTH
+}
+
+/// Draws a run of characters: the paper if it differs from the screen's, the blocks, then the text.
+fn draw_run(
+    svg: &mut String,
+    (column, row): (u16, u16),
+    look: TextStyle,
+    paper: [u8; 3],
+    symbols: &[&str],
+) {
+    let (x, y) = (u32::from(column) * WIDTH, u32::from(row) * HEIGHT);
+    if look.paper != paper {
+        rectangle(svg, (x, y), (units(symbols.len()), HEIGHT), look.paper, 4);
+    }
+    let mut at = 0;
+    while let Some(symbol) = symbols.get(at) {
+        let alike = symbols[at..].iter().take_while(|other| *other == symbol);
+        let alike = alike.count();
+        if let Some((down, high, quarters)) = block(symbol) {
+            let (left, wide) = (x + units(at), units(alike));
+            let quarters = if look.dim { quarters.min(2) } else { quarters };
+            rectangle(svg, (left, y + down), (wide, high), look.ink, quarters);
+        }
+        at += alike;
+    }
+    let mut style = format!(" fill=\"{}\"", hex(look.ink));
+    for (wanted, attribute) in [
+        (look.bold, " font-weight=\"bold\""),
+        (look.dim, " opacity=\"0.6\""),
+    ] {
+        if wanted {
+            style += attribute;
+        }
+    }
+    for (from, text) in pieces(symbols) {
+        let length = write::width(&text);
+        let (x, y, length) = (x + units(from), y + BASE, units(length));
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            svg,
+            "<text x=\"{x}\" y=\"{y}\" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\" \
+             xml:space=\"preserve\"{style}>{}</text>",
+            escaped(&text)
+        );
+    }
+}
+
+/// Returns the texts of a run with their first columns. Two blanks separate texts: columns stay aligned even if a
+/// viewer has no font of fixed width and does not stretch.
+fn pieces(symbols: &[&str]) -> Vec<(usize, String)> {
+    let mut pieces: Vec<(usize, String)> = Vec::new();
+    let mut blanks = usize::MAX;
+    for (column, &symbol) in symbols.iter().enumerate() {
+        if symbol.is_empty() {
+            continue;
+        }
+        if symbol.trim().is_empty() || block(symbol).is_some() {
+            blanks = blanks.saturating_add(1);
+            continue;
+        }
+        match pieces.last_mut() {
+            Some((_, text)) if blanks < 2 => {
+                text.extend((0..blanks).map(|_| ' '));
+                text.push_str(symbol);
+            }
+            _ => pieces.push((column, symbol.to_owned())),
+        }
+        blanks = 0;
+    }
+    pieces
+}
+
+/// Returns the rectangle of a block character: its distance from the top, its height, and its ink in quarters.
+fn block(symbol: &str) -> Option<(u32, u32, u8)> {
+    let half = HEIGHT / 2;
+    match symbol {
+        "█" => Some((0, HEIGHT, 4)),
+        "▓" => Some((0, HEIGHT, 3)),
+        "▒" => Some((0, HEIGHT, 2)),
+        "░" => Some((0, HEIGHT, 1)),
+        "▀" => Some((0, half, 4)),
+        "▄" => Some((half, half, 4)),
+        _ => None,
+    }
+}
+
+fn rectangle(
+    svg: &mut String,
+    (x, y): (u32, u32),
+    (width, height): (u32, u32),
+    color: [u8; 3],
+    quarters: u8,
+) {
+    let fill = hex(color);
+    let share = match quarters {
+        1 => " opacity=\"0.25\"",
+        2 => " opacity=\"0.5\"",
+        3 => " opacity=\"0.75\"",
+        _ => "",
+    };
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        svg,
+        "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"{share}/>"
+    );
+}
+
+fn hex([red, green, blue]: [u8; 3]) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::style::Style;
+
+    use super::*;
+
+    #[test]
+    fn a_run_is_one_text_and_blocks_are_rectangles() {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 8, 2));
+        buffer.set_string(0, 0, " a<b", Style::new());
+        buffer.set_string(0, 1, "1   2 3", Style::new());
+        buffer.set_string(4, 0, "██▀", Style::new().fg(Color::Rgb(1, 2, 3)));
+        buffer.set_string(7, 0, "x", Style::new().add_modifier(Modifier::REVERSED));
+        let svg = svg(&buffer, Theme::plain(false), "a & b");
+        for part in [
+            "<title>a &amp; b</title>",
+            "<text x=\"9\" y=\"14\" textLength=\"27\" lengthAdjust=\"spacingAndGlyphs\" xml:space=\"preserve\" \
+             fill=\"#202020\">a&lt;b</text>",
+            "<rect x=\"36\" y=\"0\" width=\"18\" height=\"18\" fill=\"#010203\"/>",
+            "<rect x=\"54\" y=\"0\" width=\"9\" height=\"9\" fill=\"#010203\"/>",
+            "<rect x=\"63\" y=\"0\" width=\"9\" height=\"18\" fill=\"#202020\"/>",
+            "fill=\"#ffffff\">x</text>",
+            "<text x=\"0\" y=\"32\" textLength=\"9\" ",
+            "<text x=\"36\" y=\"32\" textLength=\"27\" ",
+            ">2 3</text>",
+        ] {
+            assert!(svg.contains(part), "no {part}\n{svg}");
+        }
+        assert_eq!(svg.matches("<text").count(), 4);
+        // The text under a wide character is not drawn.
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 6, 1));
+        buffer.set_string(0, 0, "foobar", Style::new());
+        buffer[(0, 0)].set_symbol("字");
+        buffer[(2, 0)].set_symbol("字");
+        let svg = super::svg(&buffer, Theme::plain(false), "");
+        assert!(
+            svg.contains("textLength=\"54\"") && svg.contains(">字字ar</text>"),
+            "{svg}"
+        );
     }
 }

@@ -22,24 +22,22 @@ use ratatui::Terminal;
 use ratatui::layout::Size;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
+use signal_hook::consts::SIGHUP;
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::app::view::view;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::action;
-use crate::tui::live::watch::last_page;
+use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::mailbox::{Mailbox, Sender};
 use crate::tui::terminal::device::{Device, WriteOutcome};
 use crate::tui::terminal::input::{Input, InputReader};
-use crate::tui::terminal::outcome::Outcome;
-use crate::tui::terminal::pacing::PicturePacing;
 use crate::tui::terminal::screen::Screen;
+use crate::tui::terminal::session::{self, SignalEvent, SignalReceiver};
 use crate::tui::terminal::settings::TerminalSettings;
-use crate::tui::terminal::signals::{SignalEvent, SignalReceiver};
-use crate::tui::terminal::{job, session};
 
 const PICTURE: Duration = Duration::from_millis(34);
 
@@ -423,7 +421,7 @@ impl<'a> EventLoop<'a> {
     }
 
     fn suspend(&mut self) -> io::Result<()> {
-        if !job::has_shell() {
+        if !session::has_shell() {
             self.refuse("there is no shell to go back to");
             return Ok(());
         }
@@ -437,7 +435,7 @@ impl<'a> EventLoop<'a> {
             self.outcome.get_or_insert(Outcome::Signal(signal));
             return Ok(());
         }
-        job::stop()?;
+        session::stop()?;
         while self.outcome.is_none() {
             for said in self.signals.received() {
                 match said {
@@ -491,4 +489,176 @@ fn is_lost(error: &io::Error) -> bool {
     error
         .raw_os_error()
         .is_some_and(|number| lost.iter().any(|errno| errno.raw_os_error() == number))
+}
+
+const QUESTION: &[u8] = b"\x1b[5n";
+
+const TRIES: u32 = 3;
+
+/// How long the next picture waits for a first answer; it doubles with each question that is not answered. A slow
+/// line may take a few seconds for the first screens, and should not be taken for a terminal that does not answer.
+const FIRST_ANSWER: Duration = Duration::from_secs(1);
+
+/// How long the next picture waits for a later answer: a line may stand still for a while. Only if an answer was
+/// lost, as on a noisy serial line, is there nothing to wait for.
+const NEXT_ANSWER: Duration = Duration::from_secs(10);
+
+#[derive(Debug)]
+pub(in crate::tui) struct PicturePacing {
+    answers: Answers,
+    open: u32,
+    /// The end of the wait for these answers; None if the next picture does not wait.
+    deadline: Option<Instant>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Answers {
+    Unknown,
+    Yes,
+    /// It has not answered, and is not asked again unless a late answer comes.
+    No,
+}
+
+impl PicturePacing {
+    /// Creates a pacing with no picture under way. A terminal that cannot answer is never asked.
+    pub(in crate::tui) fn new(can_answer: bool) -> Self {
+        let answers = if can_answer {
+            Answers::Unknown
+        } else {
+            Answers::No
+        };
+        Self {
+            answers,
+            open: 0,
+            deadline: None,
+        }
+    }
+
+    /// Returns the question to send after a picture; it is empty if the terminal would not answer.
+    pub(in crate::tui) fn ask(&mut self, now: Instant) -> &'static [u8] {
+        let patience = match self.answers {
+            Answers::Unknown => FIRST_ANSWER * 2_u32.pow(self.open),
+            Answers::Yes => NEXT_ANSWER,
+            Answers::No => return b"",
+        };
+        self.open += 1;
+        self.deadline = Some(now + patience);
+        QUESTION
+    }
+
+    pub(in crate::tui) fn on_answer(&mut self) {
+        self.answers = Answers::Yes;
+        self.open = self.open.saturating_sub(1);
+        if self.open == 0 {
+            self.deadline = None;
+        }
+    }
+
+    /// Stops waiting for answers: a question was not sent, or another program has read the answers.
+    pub(in crate::tui) fn forget(&mut self) {
+        (self.open, self.deadline) = (0, None);
+    }
+
+    pub(in crate::tui) fn is_waiting(&self) -> bool {
+        self.deadline.is_some()
+    }
+
+    /// Returns true if an answer may still come.
+    pub(in crate::tui) fn is_asked(&self) -> bool {
+        self.open > 0
+    }
+
+    /// Returns the time until which the next picture waits; None if it does not wait.
+    pub(in crate::tui) fn deadline(&self) -> Option<Instant> {
+        self.deadline
+    }
+
+    pub(in crate::tui) fn on_time(&mut self, now: Instant) {
+        if self.deadline.is_none_or(|deadline| deadline > now) {
+            return;
+        }
+        self.deadline = None;
+        match self.answers {
+            Answers::Unknown if self.open < TRIES => {}
+            Answers::Unknown => (self.answers, self.open) = (Answers::No, 0),
+            Answers::Yes | Answers::No => self.open = 0,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    Quit,
+    RecordingFailed,
+    Signal(i32),
+    Hangup,
+}
+
+impl Outcome {
+    /// Returns the exit status: 0, 1 after a failure, or 128 and the signal's number as in a shell. A lost terminal
+    /// counts as SIGHUP.
+    pub fn status(self) -> u8 {
+        match self {
+            Self::Quit => 0,
+            Self::RecordingFailed => 1,
+            Self::Signal(number) => 128_u8.saturating_add(u8::try_from(number).unwrap_or(127)),
+            Self::Hangup => Self::Signal(SIGHUP).status(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn next(pacing: &mut PicturePacing, now: Instant) -> &'static [u8] {
+        pacing.on_time(pacing.deadline().unwrap_or(now));
+        assert!(!pacing.is_waiting());
+        pacing.ask(now)
+    }
+
+    #[test]
+    fn a_terminal_that_answers_is_asked_after_each_picture() {
+        let (mut pacing, start) = (PicturePacing::new(true), Instant::now());
+        for _ in 0..9 {
+            assert_eq!(pacing.ask(start), QUESTION);
+            assert!(pacing.is_waiting());
+            pacing.on_answer();
+            assert!(!pacing.is_waiting());
+        }
+        // A line may stand still for longer than FIRST_ANSWER, but not for ever.
+        pacing.ask(start);
+        pacing.on_time(start + FIRST_ANSWER);
+        assert!(pacing.is_waiting());
+        pacing.on_time(start + NEXT_ANSWER);
+        assert!(!pacing.is_waiting() && !pacing.is_asked());
+        assert_eq!(pacing.ask(start), QUESTION);
+    }
+
+    #[test]
+    fn a_terminal_that_does_not_answer_is_asked_a_few_times() {
+        let (mut pacing, start) = (PicturePacing::new(true), Instant::now());
+        for _ in 0..TRIES {
+            assert_eq!(next(&mut pacing, start), QUESTION);
+            assert!(pacing.is_waiting());
+        }
+        assert_eq!(next(&mut pacing, start), b"");
+        assert!(!pacing.is_waiting() && !pacing.is_asked());
+        // It was only slow.
+        pacing.on_answer();
+        assert_eq!(pacing.ask(start), QUESTION);
+        assert_eq!(PicturePacing::new(false).ask(start), b"");
+    }
+
+    #[test]
+    fn a_slow_first_answer_leaves_one_picture_under_way() {
+        let (mut pacing, start) = (PicturePacing::new(true), Instant::now());
+        for _ in 0..2 {
+            assert_eq!(next(&mut pacing, start), QUESTION);
+        }
+        pacing.on_answer();
+        assert!(pacing.is_waiting(), "the second one");
+        pacing.on_answer();
+        assert!(!pacing.is_waiting());
+    }
 }

@@ -5,11 +5,7 @@
 //! input      bytes -> key, paste, mouse
 //! screen     changed cells -> bytes, frame by frame
 //! device     the terminal's two files
-//! pacing     pictures of a source, no faster than the line
 //! session    one way in, one way out
-//! signals    what the system says
-//! job        stopped and continued by a shell
-//! outcome    how it ended
 //! event_loop waits for all of them, and for messages from workers (`runtime::mailbox`)
 //! ```
 //! The loop sleeps until there is something to do, without a tick. It writes only what has changed on the screen, in
@@ -25,18 +21,9 @@ pub mod screen;
 
 mod device;
 
-mod pacing;
-
 mod session;
-
-mod signals;
-
-mod job;
-
-mod outcome;
 
 mod event_loop;
 
-pub use event_loop::run;
-pub use outcome::Outcome;
+pub use event_loop::{Outcome, run};
 pub use settings::TerminalSettings;

@@ -51,7 +51,7 @@ use crate::cli::signals::Signals;
 use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::stream::StreamCounts;
 use crate::frame::{Frame, FrameSize, Processing, SetRule};
-use crate::tui::live::request::WatchRequest;
+use crate::tui::live::message::WatchRequest;
 use crate::tui::runtime::check_source;
 
 struct Watcher<'a> {

@@ -16,8 +16,8 @@ use std::time::{Duration, Instant};
 use crate::storage::Library;
 use crate::tui::app::library::{LibraryEvent, LibraryRequest};
 use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::runtime::disk::files::WriteAccess;
 use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest};
-use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::work::execution::{WorkerEventSink, caught, start};
 
 /// The time that a key waits for an answer. Nearly all answers come within it, so that the next key finds the work

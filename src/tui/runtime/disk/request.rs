@@ -2,18 +2,25 @@
 
 use std::io::ErrorKind;
 use std::sync::Arc;
+use std::time::Duration;
 
 use rustix::fs::{Access, access};
 use rustix::io::Errno;
+use taxel_core::source::Source;
+use taxel_files::formats::value::counted;
+use taxel_files::storage::ModelChoice;
 
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::formats::{Name, StoredShape};
 use crate::storage::{Expected, Library, LibraryError, Orphan, RememberedFile, UNNAMED};
 use crate::tui::app::library::{LibraryEvent, LibraryRequest, Purpose};
 use crate::tui::app::message::FileEvent;
+use crate::tui::app::state::App;
+use crate::tui::explore::ranges::view::about;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::disk::files;
-use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::disk::files::WriteAccess;
+use crate::tui::runtime::disk::queue::DiskQueue;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::work::models::ModelStore;
@@ -252,6 +259,80 @@ pub(in crate::tui::runtime) fn newest_orphan(library: &Library) -> Option<(Box<O
     all.pop().map(|newest| (Box::new(newest), count))
 }
 
+/// Returns the name, the size and the age of the work: `hexagon side 4.00, 40 taxels, about 12 minutes ago`.
+pub(in crate::tui::runtime) fn described(orphan: &Orphan) -> String {
+    let shape = &orphan.shape;
+    let called = match (shape.name.as_str(), &shape.source) {
+        (UNNAMED, Some(Source::Figure(figure))) => Some(figure.kind_and_sizes()),
+        (UNNAMED, Some(Source::Picture(picture))) => picture.name().map(str::to_owned),
+        (UNNAMED, None) => None,
+        (name, _) => Some(name.to_owned()),
+    };
+    let taxels = counted(shape.imprint.count(), "taxel");
+    let pieces = [called, Some(taxels), orphan.age().map(ago)];
+    pieces.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// Returns how long ago something happened, in words. Within the first minute, seconds would say nothing useful.
+fn ago(time: Duration) -> String {
+    if time < Duration::from_secs(60) {
+        "less than a minute ago".to_owned()
+    } else {
+        format!("{} ago", about(time))
+    }
+}
+
+#[derive(Debug)]
+pub(in crate::tui::runtime) struct Reminders {
+    commands: RememberedFile,
+    remembered: usize,
+    set: RememberedFile,
+    chosen: Option<ModelChoice>,
+}
+
+impl Reminders {
+    pub(in crate::tui::runtime) fn of(library: &Library) -> Self {
+        Self {
+            commands: RememberedFile::commands(library),
+            remembered: 0,
+            set: RememberedFile::recognised_set(library),
+            chosen: None,
+        }
+    }
+
+    pub(in crate::tui::runtime) fn remind(&mut self, app: &mut App) {
+        app.commands = self.commands.read();
+        self.remembered = app.commands.len();
+        let set = self.set.read().pop();
+        self.chosen = set
+            .and_then(|name| Name::new(&name).ok())
+            .map(ModelChoice::from_name);
+        if let Some(own) = &self.chosen {
+            app.recognition.begin_with(own.clone());
+        }
+    }
+
+    /// Remembers everything new. A set is remembered once its model is ready, so that it surely exists. A model from
+    /// a file is not, since the next run may begin in another folder.
+    pub(in crate::tui::runtime) fn note(&mut self, app: &App, queue: &mut DiskQueue) {
+        if let Some(new @ [_, ..]) = app.commands.get(self.remembered..) {
+            let (file, new) = (self.commands.clone(), new.to_vec());
+            queue.begin(DiskRequest::RememberMore(file, new));
+            self.remembered = app.commands.len();
+        }
+        let is_new = |now: &&ModelChoice| {
+            !matches!(now, ModelChoice::File(_)) && self.chosen.as_ref() != Some(*now)
+        };
+        let trained = app.recognition.trained();
+        let now = trained.map(|trained| &trained.choice).filter(is_new);
+        if let Some(now) = now {
+            let name = vec![now.name().to_owned()];
+            queue.begin(DiskRequest::Remember(self.set.clone(), name));
+            self.chosen = Some(now.clone());
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -268,5 +349,20 @@ mod tests {
         let expected = "not deleted: the library is read-only";
         assert_eq!(said(ErrorKind::ReadOnlyFilesystem), expected);
         assert!(said(ErrorKind::StorageFull).contains("cannot write it"));
+    }
+
+    #[test]
+    fn an_age_is_given_in_the_unit_that_fits() {
+        let said = [0, 59, 60, 720, 400_000].map(|seconds| ago(Duration::from_secs(seconds)));
+        assert_eq!(
+            said,
+            [
+                "less than a minute ago",
+                "less than a minute ago",
+                "about 60 seconds ago",
+                "about 12 minutes ago",
+                "about 5 days ago",
+            ]
+        );
     }
 }

@@ -6,9 +6,15 @@
 //! ```
 //! The thread that reads the source adds frames, and the screen's thread takes them; neither waits long for the other.
 
+use std::io;
+use std::mem::take;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use taxel_files::formats::recording::{ChannelChoice, ChannelInfo};
+use taxel_files::formats::stream::StreamCounts;
 
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 use crate::formats::file::system_reason;
@@ -16,10 +22,10 @@ use crate::formats::recording::RecordingMetadata;
 use crate::frame::Frame;
 use crate::lock::locked;
 use crate::storage::Existing;
-use crate::tui::live::message::{FrameBatch, ProvisionalChange, RecordedFrames, SourceState};
-use crate::tui::live::request::WatchRequest;
-use crate::tui::runtime::frames::no_frame;
-use crate::tui::runtime::frames::pending::Pending;
+use crate::tui::live::history::bytes_of;
+use crate::tui::live::message::{
+    FeedStatus, FrameBatch, ProvisionalChange, RecordedFrames, SourceState, WatchRequest,
+};
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::frames::source;
 use crate::tui::runtime::work::execution::caught;
@@ -131,7 +137,7 @@ impl FrameFeed {
             wanted
         };
         let ended = caught(|| acquire(source, options, stop, &mut consumer));
-        let ended = ended.and_then(|ended| ended.map_err(|error| no_frame::reason(source, &error)));
+        let ended = ended.and_then(|ended| ended.map_err(|error| source::reason(source, &error)));
         if wanted.is_break() {
             return;
         }
@@ -204,7 +210,7 @@ impl FrameFeed {
             AcquireEvent::Silent(silence) => self.change(|pending| {
                 let source = source::named(&request.source);
                 let has_baud = source.unused_baud().is_none();
-                let why = no_frame::silence(&source, silence.counts, &silence.reason(has_baud));
+                let why = source::silence(&source, silence.counts, &silence.reason(has_baud));
                 pending.status().state = SourceState::Silent(why);
             }),
             AcquireEvent::Absent(error) => self.change(|pending| {
@@ -226,7 +232,7 @@ impl FrameFeed {
                 pending.status().set_note(format!("the file {how}"));
             }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
-                let reason = no_frame::reason_at_end(&source::named(&request.source), counts);
+                let reason = source::reason_at_end(&source::named(&request.source), counts);
                 pending.end_stream(counts, reason);
             }),
             _ => false,
@@ -234,10 +240,144 @@ impl FrameFeed {
     }
 }
 
+/// The frames and the state that the screen takes next. They are swapped out under a short lock, so that the source
+/// hardly waits.
+#[derive(Debug, Default)]
+pub(super) struct Pending {
+    batch: FrameBatch,
+    bytes: usize,
+    is_new: bool,
+    /// The channels so far, and the one that is watched.
+    channels: ChannelChoice,
+    begun: bool,
+    no_frame_reason: Option<String>,
+    last_time: Option<f64>,
+    /// The time for which the source has been lost since that frame; None if it was not lost.
+    gap: Option<Duration>,
+}
+
+impl Pending {
+    pub(super) fn new(channel: Option<&str>) -> Self {
+        Self {
+            channels: ChannelChoice::new(channel),
+            ..Self::default()
+        }
+    }
+
+    /// Returns the state of the source, to change it.
+    pub(super) fn status(&mut self) -> &mut FeedStatus {
+        &mut self.batch.status
+    }
+
+    pub(super) fn is_new(&self) -> bool {
+        self.is_new
+    }
+
+    pub(super) fn set_new(&mut self) -> bool {
+        !std::mem::replace(&mut self.is_new, true)
+    }
+
+    /// Takes the frames and the state; None if nothing is new.
+    pub(super) fn take(&mut self) -> Option<FrameBatch> {
+        if !take(&mut self.is_new) {
+            return None;
+        }
+        self.bytes = 0;
+        Some(FrameBatch {
+            frames: take(&mut self.batch.frames),
+            provisional: take(&mut self.batch.provisional),
+            status: self.batch.status.clone(),
+        })
+    }
+
+    pub(super) fn watches(&self, channel: usize) -> bool {
+        self.channels.takes(channel)
+    }
+
+    pub(super) fn add_channel(&mut self, info: &ChannelInfo) {
+        if self.channels.add(info) {
+            self.batch.status.channel = Some(Arc::new(info.clone()));
+        }
+        self.batch.status.channels = self.channels.names().len();
+    }
+
+    /// Notes a change of the frame that is not confirmed yet.
+    pub(super) fn change_provisional(&mut self, change: ProvisionalChange) {
+        self.batch.provisional = change;
+    }
+
+    pub(super) fn lose(&mut self, error: &io::Error) {
+        self.gap.get_or_insert_default();
+        self.batch.status.state = SourceState::Lost(AcquireEvent::lost(error));
+    }
+
+    pub(super) fn back_after(&mut self, time: Duration) {
+        self.batch.status.state = match &mut self.gap {
+            None => SourceState::Waiting,
+            Some(gap) => {
+                *gap += time;
+                let back = AcquireEvent::back_after(*gap);
+                SourceState::Silent(format!("{back}; no frame yet"))
+            }
+        };
+    }
+
+    pub(super) fn end_stream(&mut self, counts: &StreamCounts, no_frame_reason: Option<String>) {
+        self.batch.status.note_dropped(counts);
+        self.no_frame_reason = no_frame_reason;
+    }
+
+    /// Notes the end of the source. One from which no frame came was not what the user expected: the state is the
+    /// reason.
+    pub(super) fn end(&mut self) {
+        self.batch.status.state = if self.begun {
+            SourceState::Ended
+        } else {
+            let reason = self.channels.missing().or(self.no_frame_reason.take());
+            SourceState::Failed(reason.unwrap_or_else(|| "no frames".to_owned()))
+        };
+    }
+
+    /// Adds a frame. If nobody takes the frames and they exceed `most` bytes, the older half is dropped.
+    /// Half of them go at once, so that a full buffer does not move all frames for each new one. At least one stays.
+    pub(super) fn push(&mut self, frame: Arc<Frame>, most: usize) {
+        self.begun = true;
+        self.note_time(frame.time);
+        self.batch.status.state = SourceState::Live;
+        self.batch.provisional = ProvisionalChange::Gone;
+        self.bytes += bytes_of(&frame);
+        self.batch.frames.push(frame);
+        if self.bytes > most && self.batch.frames.len() > 1 {
+            let half = self.batch.frames.len() / 2;
+            let dropped = self.batch.frames.drain(..half);
+            self.bytes -= dropped.map(|frame| bytes_of(&frame)).sum::<usize>();
+            self.batch.status.overflowed += half as u64;
+        }
+    }
+
+    pub(super) fn note_recorded(&mut self, recorded: Result<Option<RecordedFrames>, String>) {
+        match recorded {
+            Ok(recorded) => self.batch.status.recorded = recorded,
+            Err(error) => {
+                self.batch.status.recorded = None;
+                self.batch.status.record_error = Some(error);
+            }
+        }
+    }
+
+    fn note_time(&mut self, time: Option<f64>) {
+        let before = std::mem::replace(&mut self.last_time, time);
+        if let (Some(gap), Some((before, now))) = (self.gap.take(), before.zip(time)) {
+            let gaps = &mut self.batch.status.gaps;
+            gaps.count += 1;
+            gaps.waited += gap.as_secs_f64();
+            gaps.missing += now - before;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::*;
     use crate::formats::recording::ChannelInfo;
     use crate::formats::stream::StreamCounts;
@@ -376,7 +516,7 @@ mod tests {
             frame: &frame,
             time: Some(time),
         };
-        let error = std::io::Error::other("cut");
+        let error = io::Error::other("cut");
         // The source was waited for before it was there at all: nothing is missing.
         for event in [
             AcquireEvent::Absent(&error),

@@ -20,7 +20,7 @@ use crate::frame::Frame;
 use crate::lock::locked;
 use crate::storage::Existing;
 use crate::tui::live::message::{LiveEvent, RecordedFrames};
-use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::disk::files::WriteAccess;
 
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct Recording {

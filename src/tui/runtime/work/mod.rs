@@ -4,8 +4,6 @@
 //! workers    sweeps and exports; begins all other work, too
 //! execution  work at once or on threads, how it is stopped, and how it reports
 //! models     models for recognition: trained, read
-//! poses      searches a model for an imprint
-//! naming     the shapes that left the imprints of frames
 //! ```
 
 pub mod workers;
@@ -13,7 +11,3 @@ pub mod workers;
 pub mod execution;
 
 pub(super) mod models;
-
-pub(super) mod poses;
-
-pub(super) mod naming;

@@ -24,19 +24,16 @@ use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::message::Findings;
-use crate::tui::live::naming::NamingRequest;
-use crate::tui::live::request::WatchRequest;
-use crate::tui::runtime::disk::files::absolute;
-use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::live::message::{NamingRequest, WatchRequest};
+use crate::tui::recognise::state::{PoseSearch, PoseSearchResult, RecognitionEvent};
+use crate::tui::runtime::disk::files::{WriteAccess, absolute};
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::watcher::FrameWatcher;
 use crate::tui::runtime::work::execution::{
     Execution, PoseLimit, ProgressReporter, StopFlag, WorkProgress, WorkerEventSink, caught,
     guarded, on_a_thread, start, wait_until_finished,
 };
-use crate::tui::runtime::work::models::{ModelStore, ModelWorker};
-use crate::tui::runtime::work::naming::ShapeNamer;
-use crate::tui::runtime::work::poses;
+use crate::tui::runtime::work::models::{ModelStore, ModelWorker, ShapeNamer};
 
 const WRITING: Duration = Duration::from_millis(400);
 
@@ -94,7 +91,7 @@ impl Workers {
                 None
             }
             Work::FindPoses(number, search) => {
-                poses::find(number, search, &mut self.finding_poses, &self.execution)
+                find(number, search, &mut self.finding_poses, &self.execution)
             }
             Work::StopFindingPoses => {
                 self.finding_poses.stop();
@@ -307,14 +304,79 @@ fn write_poses(
     Ok(true)
 }
 
+/// The largest number of poses whose outlines are drawn; more cannot be told apart over a matrix.
+const POSES: usize = 13;
+
+/// Begins a search on a thread of its own, in place of the one before; or searches at once and returns the event.
+pub(in crate::tui::runtime) fn find(
+    number: u64,
+    request: Box<PoseSearch>,
+    stop: &mut StopFlag,
+    execution: &Execution,
+) -> Option<WorkerEvent> {
+    let stop = stop.renew();
+    let event = move |found: Result<PoseSearchResult, String>| {
+        let searched = RecognitionEvent::Searched(number, found.map(Box::new));
+        WorkerEvent::Recognition(searched)
+    };
+    let run = move |progress: &WorkProgress<'_>| {
+        search(&request, &MemoryGuard::of_pose_search(), progress)
+    };
+    let post = match execution {
+        Execution::AtOnce(limit) => return Some(event(Ok(run(&WorkProgress::up_to(*limit))))),
+        Execution::OnThreads(post) => Arc::clone(post),
+    };
+    let work = move || {
+        let progress = WorkProgress::until(&stop, None);
+        post(event(caught(|| run(&progress))));
+    };
+    let thread = start(work);
+    thread.err().map(|reason| event(Err(reason)))
+}
+
+/// Searches, and stops the sweep when `progress` says so.
+fn search(
+    request: &PoseSearch,
+    memory: &MemoryGuard,
+    progress: &WorkProgress<'_>,
+) -> PoseSearchResult {
+    let model = &request.trained.model;
+    let nearest = model.nearest(&request.imprint);
+    let found = progress.within(memory, |progress| {
+        let nearest = nearest.as_ref()?;
+        let shape = request.named.unwrap_or(nearest.shape);
+        let (pose, poses) = model.poses_of(shape, &nearest.imprint, POSES, progress)?;
+        Some(((shape, pose), poses))
+    });
+    let (pose, poses, refused) = match found {
+        Ok(Some((pose, poses))) => (Some(pose), poses, None),
+        Ok(None) => (None, Vec::new(), None),
+        Err(refused) => (None, Vec::new(), Some(refused)),
+    };
+    PoseSearchResult {
+        nearest,
+        pose,
+        poses,
+        refused,
+    }
+}
+
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
+    #[cfg(test)]
+    use std::sync::mpsc::channel;
+
+    #[cfg(test)]
+    use taxel_files::storage::ModelChoice;
+
     use super::*;
     use crate::figure::{Figure, FigureKind};
     use crate::memory::MemorySize;
     use crate::pose::{Anchor, Axis, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
+    #[cfg(test)]
+    use crate::tui::recognise::trained::TrainedModel;
 
     #[test]
     fn poses_that_need_too_much_memory_are_not_written_and_the_event_says_why() {
@@ -334,5 +396,65 @@ mod tests {
         assert_eq!(left, 0, "nothing is left");
         let large = MemoryGuard::new(Some(MemorySize(1 << 50)), "");
         assert!(matches!(written(large), WorkerEvent::Written(7, _)));
+    }
+
+    #[cfg(test)]
+    fn request() -> PoseSearch {
+        let touch = "........\n.######.\n.######.\n........";
+        PoseSearch {
+            trained: Arc::new(TrainedModel::of_a_bar(ModelChoice::Figures)),
+            imprint: touch.parse().expect("an imprint"),
+            named: Some(0),
+        }
+    }
+
+    #[cfg(test)]
+    fn found(event: Option<WorkerEvent>) -> PoseSearchResult {
+        match event {
+            Some(WorkerEvent::Recognition(RecognitionEvent::Searched(7, Ok(found)))) => *found,
+            event => panic!("{event:?}"),
+        }
+    }
+
+    #[cfg(test)]
+    #[test]
+    fn a_stopped_search_answers_without_poses() {
+        let searched = |limit| {
+            let execution = Execution::AtOnce(PoseLimit(limit));
+            let request = Box::new(request());
+            found(find(7, request, &mut StopFlag::default(), &execution))
+        };
+        let whole = searched(None);
+        assert!(whole.pose.is_some() && whole.refused.is_none());
+        let stopped = searched(Some(0));
+        assert_eq!((stopped.pose, stopped.nearest), (None, whole.nearest));
+    }
+
+    #[cfg(test)]
+    #[test]
+    fn a_replaced_search_answers_too() {
+        let (post, events) = channel();
+        let execution = Execution::OnThreads(Arc::new(move |event| {
+            // The test may be over.
+            let _ = post.send(event);
+        }));
+        let mut stop = StopFlag::default();
+        for _ in 0..2 {
+            assert_eq!(find(7, Box::new(request()), &mut stop, &execution), None);
+        }
+        for _ in 0..2 {
+            let event = events.recv_timeout(Duration::from_secs(60));
+            assert!(found(event.ok()).nearest.is_some());
+        }
+    }
+
+    #[cfg(test)]
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_search_that_needs_too_much_memory_keeps_the_nearest_imprint_and_says_why() {
+        let small = MemoryGuard::new(Some(MemorySize(1)), "less");
+        let found = search(&request(), &small, &WorkProgress::up_to(PoseLimit(None)));
+        assert!(found.pose.is_none() && found.nearest.is_some());
+        assert!(found.refused.is_some_and(|why| why.contains("more memory")));
     }
 }
