@@ -22,7 +22,7 @@ use crate::cli::output::answer::{AnswerJson, AnswerText, PoseReport};
 use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::progress::ProgressDisplay;
 use crate::formats::file::without_mark;
-use crate::formats::framed::{FrameRows, RuleRecord};
+use crate::formats::job::{FrameRows, RuleRecord};
 use crate::formats::record::Text;
 use crate::formats::value::counted;
 use crate::formats::{Content, json};

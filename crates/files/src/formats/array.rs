@@ -15,7 +15,6 @@ use crate::sensor::MatrixSize;
 /// The meaning of an array's numbers in an imprint, by their bits: no value has to be computed.
 #[derive(Clone, Copy, Debug)]
 struct TaxelType {
-    /// The type of a number in the file.
     number: NumberType,
     /// The bits of infinity, if the type is a float: numbers have smaller bits, apart from the sign, which is the
     /// highest bit.

@@ -18,8 +18,8 @@ use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 
 use crate::atlas::{Atlas, AtlasEntry, ImprintSummary, feature_values, features};
-use crate::formats::described::RegionRecord;
 use crate::formats::json;
+use crate::formats::json::RegionRecord;
 use crate::formats::npy::Dtype;
 use crate::formats::npz::{
     ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
@@ -87,7 +87,6 @@ pub fn write_jsonl(result: &SweepResult, mut output: impl Write) -> io::Result<(
     output.flush()
 }
 
-/// An imprint of an atlas as a line of JSON.
 struct AtlasLine<'a>(&'a SweepResult, &'a AtlasEntry);
 
 impl Serialize for AtlasLine<'_> {
@@ -127,11 +126,8 @@ pub const FORMAT: &str = "taxel-atlas/1";
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 struct ArchiveHeader<Shape, Size> {
-    /// [`FORMAT`].
     format: String,
-    /// The shape that was swept.
     source: Shape,
-    /// The sensor.
     sensor: Size,
     /// The point that x0 and y0 place: `corner` or `centre`.
     anchor: String,
@@ -145,7 +141,6 @@ struct ArchiveHeader<Shape, Size> {
     shard: String,
     /// The number of poses of this shard.
     poses: u64,
-    /// The number of poses in which the shape reaches beyond the sensor.
     partly_off: u64,
 }
 
@@ -194,7 +189,6 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), 
     archive.finish()
 }
 
-/// Returns the header as JSON: what was swept, over which ranges, and the counts of the whole result.
 fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
     let (grid, ranges) = (result.grid(), result.grid().ranges());
     json::written(serde_json::to_vec(&ArchiveHeader {
@@ -213,7 +207,6 @@ fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
     }))
 }
 
-/// Returns the number of pieces, or of holes, of each imprint, as the bytes of an array.
 fn regions_of_each(atlas: &Atlas, number: fn(&ImprintSummary) -> u16) -> Vec<u8> {
     let summaries = atlas.entries().map(|entry| entry.summary);
     summaries
@@ -269,7 +262,6 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     Ok(SweepResult::from_parts(grid, shard, &parts)?)
 }
 
-/// Returns the anchor of that name.
 pub(super) fn anchor(name: &str) -> Result<Anchor, ArchiveError> {
     name.parse().map_err(|_| {
         ArchiveError::Header(format!(

@@ -40,7 +40,6 @@ pub fn write_reason(error: &Error) -> String {
     }
 }
 
-/// The bytes of the mark.
 pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Returns a text without the mark at its start, if it has one.

@@ -189,7 +189,6 @@ fn of_text(text: &str) -> Result<Imprint, String> {
 /// Decides which of two values is active: masks of other programs consist of 0 and 1, 0 and 255, or 0 and any other
 /// number.
 pub(crate) struct Mask<T> {
-    /// The value other than 0, once it has been seen.
     other: Option<T>,
     zero: bool,
 }

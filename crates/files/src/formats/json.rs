@@ -1,12 +1,16 @@
-//! Values as JSON text, objects read from it, Python's `NaN`.
+//! Values as JSON text, objects read from it, Python's `NaN`; an imprint with its descriptors, the answer of
+//! `taxel batch` and of `--json`.
 
 use std::borrow::Cow;
 use std::fmt;
 use std::io::{self, Write};
 
 use serde::de::{MapAccess, Visitor};
+use serde::ser::{SerializeMap, SerializeSeq, Serializer};
 use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
 
+use crate::description::{DESCRIPTORS, Description, each_region};
+use crate::imprint::Imprint;
 use crate::quote::shortened_message;
 
 /// Returns a value as JSON on one line.
@@ -176,6 +180,59 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for ObjectOnly<V> {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<V::Value, A::Error> {
         self.0.visit_map(map)
+    }
+}
+
+/// An imprint that serialises as `{"imprint":[…],"na":…,"regions":[{"kind":…,…},…]}`.
+///
+/// ```
+/// use taxel_files::formats::DescribedImprint;
+/// use taxel_core::prelude::*;
+/// let one: Imprint = "..\n.#".parse().unwrap();
+/// let json = serde_json::to_string(&DescribedImprint(&one)).unwrap();
+/// assert!(json.starts_with(r#"{"imprint":["..",".#"],"na":1,"regions":[{"kind":"exterior","na":1,"nae":1,"ce":1,"#));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct DescribedImprint<'a>(pub &'a Imprint);
+
+impl Serialize for DescribedImprint<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(3))?;
+        map.serialize_entry("imprint", self.0)?;
+        map.serialize_entry("na", &self.0.count())?;
+        map.serialize_entry("regions", &Regions(self.0))?;
+        map.end()
+    }
+}
+
+/// The regions of an imprint as a list, serialised one by one: a batch describes millions of imprints.
+struct Regions<'a>(&'a Imprint);
+
+impl Serialize for Regions<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(None)?;
+        let mut written = Ok(());
+        each_region(self.0, |region| {
+            if written.is_ok() {
+                written = list.serialize_element(&RegionRecord(Description::of(region)));
+            }
+        });
+        written?;
+        list.end()
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RegionRecord(pub Description);
+
+impl Serialize for RegionRecord {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("kind", self.0.kind.name())?;
+        for descriptor in DESCRIPTORS.iter().filter(|descriptor| descriptor.in_answer) {
+            map.serialize_entry(descriptor.key, &(descriptor.measure)(&self.0))?;
+        }
+        map.end()
     }
 }
 

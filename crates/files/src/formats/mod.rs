@@ -10,12 +10,10 @@
 
 mod array;
 pub mod atlas;
-pub(crate) mod described;
 mod drawing;
 pub mod file;
-pub mod framed;
 pub mod imprint_file;
-mod job;
+pub mod job;
 pub mod json;
 mod model;
 pub mod name;
@@ -26,14 +24,13 @@ mod pbm;
 pub mod record;
 pub mod recording;
 pub(crate) mod seconds;
-pub mod separation;
 pub mod shape;
 pub mod stream;
 pub(crate) mod table;
 pub mod value;
 
-pub use described::DescribedImprint;
 pub use drawing::{axis_ends, axis_marks};
+pub use json::DescribedImprint;
 
 pub use drawing::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
 pub use imprint_file::{

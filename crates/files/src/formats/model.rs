@@ -26,11 +26,9 @@ pub const FORMAT: &str = "taxel-model/1";
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 struct ModelHeader<Shape, Size> {
-    /// [`FORMAT`].
     format: String,
     /// The shapes of the set, in order; ties go to the first.
     shapes: Vec<ShapeHeader<Shape>>,
-    /// Columns, rows and threshold of the sensor.
     sensor: Size,
     /// The point that x0 and y0 place: `corner` or `centre`.
     anchor: String,
@@ -46,17 +44,14 @@ struct ModelHeader<Shape, Size> {
     poses: u64,
 }
 
-/// A shape of the set.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object")]
 struct ShapeHeader<Shape> {
-    /// The name.
     name: String,
     /// The weight: how often the shape is expected, compared with the others.
     weight: u32,
     /// The number of poses in which the sensor cuts the shape off.
     cut: u64,
-    /// The figure or the imprint.
     source: Shape,
 }
 
@@ -109,7 +104,6 @@ pub fn write(model: &Model, mut output: impl Write + Seek) -> Result<(), Archive
     archive.finish()
 }
 
-/// Returns the largest side; 0 if there are none.
 fn largest(sides: &[u8]) -> u8 {
     sides.iter().fold(0, |largest, &side| largest.max(side))
 }
@@ -217,7 +211,6 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, Archiv
     Ok(keys)
 }
 
-/// Reads the shapes that leave each key, with their numbers of poses.
 fn counts<R: Read + Seek>(
     archive: &mut ArrayReader<R>,
     keys: usize,

@@ -108,18 +108,14 @@ fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, Na
     Ok(record.source(&Sensor::LARGEST, lookup)?)
 }
 
-/// A line of a set.
 #[derive(Default)]
 struct Line<'a> {
-    /// The name, which the set needs.
     name: Option<String>,
     /// The weight: how often the shape is expected; 1 if not given.
     weight: Option<NonZeroU32>,
-    /// The shape itself.
     record: Record<'a>,
 }
 
-/// The keys of a line.
 const LINE_KEYS: KnownKeys = KnownKeys {
     named: &["name", "weight", "figure", "picture", "imprint"],
     others: &[],

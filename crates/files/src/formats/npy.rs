@@ -6,9 +6,7 @@
 
 use std::fmt::Write;
 
-/// The beginning of every file.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
-/// The version of the format that is written.
 const VERSION: &[u8] = &[1, 0];
 /// The number of bytes before the text of a header: the last two are its length.
 pub(crate) const BEFORE_TEXT: usize = 10;
@@ -93,7 +91,6 @@ impl Dtype {
 pub(super) struct NumberType {
     /// The type apart from the order of bytes.
     pub(super) dtype: Dtype,
-    /// Whether the highest byte comes first.
     pub(super) big_endian: bool,
 }
 
@@ -109,12 +106,10 @@ impl NumberType {
         })
     }
 
-    /// Returns the size of a number in bytes.
     pub(super) fn size(self) -> usize {
         self.dtype.width()
     }
 
-    /// Returns the bits of a number, from its bytes.
     pub(super) fn word(self, bytes: &[u8]) -> u64 {
         let mut word = [0; 8];
         for (slot, byte) in word.iter_mut().zip(bytes) {
@@ -157,7 +152,6 @@ impl NumberType {
         }
     }
 
-    /// Iterates over the values of numbers that follow each other.
     pub(super) fn values(self, bytes: &[u8]) -> impl Iterator<Item = f64> {
         let numbers = bytes.chunks(self.size());
         numbers.map(move |number| self.value(number))

@@ -42,7 +42,6 @@ impl<W: Write + Seek> WriteSeek for W {}
 pub(crate) struct ArrayWriter<'a>(ZipWriter<&'a mut dyn WriteSeek>);
 
 impl<'a> ArrayWriter<'a> {
-    /// Makes an archive without arrays.
     pub(crate) fn new(output: &'a mut dyn WriteSeek) -> Self {
         Self(ZipWriter::new(output))
     }
@@ -66,19 +65,15 @@ impl<'a> ArrayWriter<'a> {
         Ok(())
     }
 
-    /// Writes the directory of the archive.
     pub(crate) fn finish(self) -> Result<(), ArchiveError> {
         self.0.finish().map_err(zip_error)?.flush()?;
         Ok(())
     }
 }
 
-/// Reads arrays by name.
 pub(crate) struct ArrayReader<R> {
     archive: ZipArchive<R>,
-    /// The number of bytes of the whole archive.
     length: u64,
-    /// The names of the arrays that have been read.
     read: Vec<&'static str>,
 }
 
@@ -93,7 +88,6 @@ impl<R: Read + Seek> ArrayReader<R> {
         })
     }
 
-    /// Returns the bytes of an array's file.
     fn file(&mut self, name: &'static str) -> Result<Vec<u8>, ArchiveError> {
         self.read.push(name);
         let mut file = match self.archive.by_name(&format!("{name}.npy")) {
@@ -155,18 +149,15 @@ impl<R: Read + Seek> ArrayReader<R> {
         Ok(file)
     }
 
-    /// Returns an array of whole numbers.
     pub(crate) fn words(&mut self, name: &'static str) -> Result<Vec<u64>, ArchiveError> {
         npy::words(&self.file(name)?).ok_or(ArchiveError::Array(name))
     }
 
-    /// Returns the JSON that describes the archive.
     pub(crate) fn header(&mut self) -> Result<Vec<u8>, ArchiveError> {
         self.bytes(HEADER, Dtype::U8)
     }
 }
 
-/// Returns an error if an archive is too long to be read.
 fn check_length(length: u64, longest: u64) -> Result<(), ArchiveError> {
     if length > longest {
         return Err(ArchiveError::Long { length, longest });
@@ -190,7 +181,6 @@ fn damaged(name: &str, error: io::Error) -> ArchiveError {
     ArchiveError::Damaged(shortened(name))
 }
 
-/// Returns whole numbers as bytes.
 pub(crate) fn little_endian(words: &[u64]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
@@ -232,15 +222,11 @@ fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
     Ok(format.format)
 }
 
-/// Parses a header.
 fn parsed<'a, T: Deserialize<'a>>(header: &'a [u8]) -> Result<T, ArchiveError> {
     json::object(header).map_err(|error| ArchiveError::Header(json::message(&error)))
 }
 
 /// Parses a header of the format `expected`.
-///
-/// # Errors
-/// Returns an error if the header is that of another format, or if keys are missing or wrong.
 pub(crate) fn header_of<'a, T: Deserialize<'a>>(
     header: &'a [u8],
     expected: &'static str,

@@ -51,7 +51,6 @@ pub(super) fn raw(imprint: &Imprint) -> Vec<u8> {
     bytes
 }
 
-/// A position in the bytes of a file.
 struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,

@@ -58,7 +58,6 @@ fn figure_meant(found: &str) -> String {
     }
 }
 
-/// Returns `a` or `an`, by the first letter.
 fn article(noun: &str) -> &'static str {
     if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
         "an"
@@ -72,12 +71,10 @@ fn article(noun: &str) -> &'static str {
 pub(crate) struct Values([Option<f64>; PARAMETERS.len()]);
 
 impl Values {
-    /// Returns the value of a parameter; None if it was not given.
     pub(crate) fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0[parameter as usize]
     }
 
-    /// Sets the value of a parameter.
     pub(crate) fn set(&mut self, parameter: Parameter, value: f64) {
         self.0[parameter as usize] = Some(value);
     }
@@ -110,19 +107,11 @@ impl Values {
         })
     }
 
-    /// Makes a figure from these values.
-    ///
-    /// # Errors
-    /// Returns an error for the first value that is missing, out of range, or not of this kind of figure.
     pub(crate) fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Result<Figure, RecordError> {
         self.only(kind.name(), kind.parameters())?;
         Ok(Figure::new(kind, sensor, |parameter| self.get(parameter))?)
     }
 
-    /// Makes a picture from these values.
-    ///
-    /// # Errors
-    /// Returns an error for the first value that is missing, out of range, or not of a picture.
     fn picture(&self, imprint: &Imprint, sensor: &Sensor) -> Result<Picture, RecordError> {
         self.only("picture", PICTURE_PARAMETERS)?;
         Ok(Picture::new(*imprint, sensor, |parameter| {
@@ -131,9 +120,6 @@ impl Values {
     }
 
     /// Makes a sensor from these values; the missing ones are those of `base`.
-    ///
-    /// # Errors
-    /// Returns an error for the first value that is out of range or not of a sensor.
     pub(crate) fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
         self.only("sensor", SENSOR_PARAMETERS)?;
         SENSOR_PARAMETERS
@@ -146,7 +132,6 @@ impl Values {
     }
 }
 
-/// An imprint, or the name of a shape.
 #[derive(Clone, Debug)]
 pub(crate) enum ImprintOrName<'a> {
     /// An imprint, given as rows of `#` and `.`.
@@ -156,10 +141,6 @@ pub(crate) enum ImprintOrName<'a> {
 }
 
 impl ImprintOrName<'_> {
-    /// Returns the imprint; a name is looked up.
-    ///
-    /// # Errors
-    /// Returns an error if the lookup of the name fails.
     pub(crate) fn imprint(
         &self,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
@@ -179,13 +160,10 @@ pub(crate) fn no_names(_: &str) -> Result<Imprint, String> {
 /// An object with any of the keys that occur in jobs, sensors and sources.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record<'a> {
-    /// The name of a figure.
     pub(crate) figure: Option<Cow<'a, str>>,
     /// The rows or the name of a picture.
     pub(crate) picture: Option<ImprintOrName<'a>>,
-    /// A whole matrix.
     pub(crate) imprint: Option<Imprint>,
-    /// A sensor.
     pub(crate) sensor: Option<Values>,
     /// The values of all keys that are parameters.
     pub(crate) values: Values,
@@ -193,9 +171,6 @@ pub(crate) struct Record<'a> {
 
 impl Record<'_> {
     /// Returns the figure or the picture of the record. Exactly one of the two keys must be there, and not `imprint`.
-    ///
-    /// # Errors
-    /// Returns any [`RecordError`].
     pub(crate) fn source(
         &self,
         sensor: &Sensor,
@@ -229,19 +204,13 @@ impl Record<'_> {
     }
 }
 
-/// A JSON object that is read key by key.
 pub(crate) trait KeyedObject<'de>: Default {
     /// The kind of object, with its article, for the message about anything else.
     const EXPECTED: &'static str;
 
-    /// Reads the value of a key.
-    ///
-    /// # Errors
-    /// Returns an error if the key is unknown or was given before, or if its value is wrong.
     fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error>;
 }
 
-/// Reads an object key by key.
 pub(crate) fn keyed_object<'de, T: KeyedObject<'de>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<T, D::Error> {
@@ -277,7 +246,6 @@ impl<'de> KeyedObject<'de> for Record<'de> {
 }
 
 impl<'a> Record<'a> {
-    /// Reads the value of a key, which should be one of `known`.
     pub(crate) fn take<'de: 'a, A: MapAccess<'de>>(
         &mut self,
         key: &str,
@@ -310,13 +278,11 @@ pub(crate) struct KnownKeys {
     pub(crate) parameters: bool,
 }
 
-/// The keys of a record by itself.
 const RECORD_KEYS: KnownKeys = KnownKeys {
     named: &["figure", "picture", "imprint", "sensor"],
     others: &[],
     parameters: true,
 };
-/// The keys of a sensor.
 const SENSOR_KEYS: KnownKeys = KnownKeys {
     named: &{
         let mut keys = [""; SENSOR_PARAMETERS.len()];
@@ -332,7 +298,6 @@ const SENSOR_KEYS: KnownKeys = KnownKeys {
 };
 
 impl KnownKeys {
-    /// Returns the message about an unknown key.
     pub(crate) fn unknown(&self, key: &str) -> String {
         let mut named = [self.named, self.others].concat();
         let parameters = self
@@ -366,9 +331,6 @@ pub(crate) fn value_of<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
 }
 
 /// Stores the value of a key.
-///
-/// # Errors
-/// Returns an error if there was a value already: neither would be more right than the other.
 pub(crate) fn once<T, E: Error>(
     key: &'static str,
     slot: &mut Option<T>,

@@ -184,7 +184,6 @@ impl<'de> Deserialize<'de> for NameRecord {
     }
 }
 
-/// The sensor in a file.
 struct SensorRecord(Sensor);
 
 impl<'de> Deserialize<'de> for SensorRecord {
@@ -194,16 +193,11 @@ impl<'de> Deserialize<'de> for SensorRecord {
     }
 }
 
-/// A file as it is parsed.
 #[derive(Default)]
 struct ShapeFile<'a> {
-    /// The format.
     format: Option<FormatRecord>,
-    /// The name.
     name: Option<NameRecord>,
-    /// The sensor.
     sensor: Option<SensorRecord>,
-    /// The imprint.
     imprint: Option<ImprintRecord>,
     /// The figure or picture that left the imprint, if it is known.
     source: Option<Record<'a>>,
@@ -215,7 +209,6 @@ impl<'de: 'a, 'a> Deserialize<'de> for ShapeFile<'a> {
     }
 }
 
-/// The keys of a file.
 const SHAPE_KEYS: KnownKeys = KnownKeys {
     named: &["format", "name", "sensor", "imprint", "source"],
     others: &[],

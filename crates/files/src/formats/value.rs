@@ -141,7 +141,6 @@ pub fn percentage(share: f64, decimals: usize) -> String {
     }
 }
 
-/// The number of decimals of the smallest positive f64.
 const MOST_DECIMALS: usize = 1074;
 
 /// Formats a number with at most `decimals` decimals, without trailing zeros, and without a minus before a zero.

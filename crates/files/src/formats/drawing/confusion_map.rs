@@ -29,11 +29,9 @@ const DARKEST: f64 = 160.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct ConfusionMap {
-    /// The names of the shapes, as rows and as columns.
     labels: Vec<String>,
     /// The touches by true shape and by the name given.
     counts: Vec<Vec<u128>>,
-    /// The title above the matrix.
     title: Option<String>,
 }
 
@@ -59,7 +57,6 @@ impl ConfusionMap {
         self
     }
 
-    /// Returns the count of a cell; 0 if its row is too short.
     fn count(&self, row: usize, column: usize) -> u128 {
         let cell = self.counts.get(row).and_then(|row| row.get(column));
         cell.copied().unwrap_or_default()
@@ -70,7 +67,6 @@ impl ConfusionMap {
         svg::write(&self.page())
     }
 
-    /// Lays the matrix out, with the names above and on the left.
     fn page(&self) -> DrawingPage {
         let longest = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or_default();
         let names = longest(&mut self.labels.iter().map(|label| label.chars().count()));
@@ -120,7 +116,6 @@ impl ConfusionMap {
     }
 }
 
-/// A page while it is being laid out.
 struct MapLayout<'a> {
     map: &'a ConfusionMap,
     marks: Vec<Element>,
@@ -129,7 +124,6 @@ struct MapLayout<'a> {
 }
 
 impl MapLayout<'_> {
-    /// Returns the top left corner of a cell.
     #[expect(clippy::cast_precision_loss, reason = "at most 64 cells")]
     fn position(&self, row: usize, column: usize) -> Position {
         (
@@ -194,7 +188,6 @@ impl MapLayout<'_> {
         }
     }
 
-    /// Draws the names of rows and columns, and the titles of both axes.
     fn names(&mut self, upright: bool) {
         let (shapes, map) = (self.map.labels.len(), self.map);
         for (index, label) in map.labels.iter().enumerate() {

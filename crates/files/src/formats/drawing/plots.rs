@@ -18,7 +18,6 @@ use crate::formats::drawing::svg::{
     label, path_of, rectangle, upright_title, width,
 };
 
-/// The lines of a grid.
 const GRID: Stroke = Stroke {
     width: 0.4,
     grey: 200,
@@ -79,7 +78,6 @@ pub(super) fn axes(
     marks
 }
 
-/// The page of a plot while it is being laid out.
 pub(super) struct PlotLayout {
     /// The title of the page, for screen readers.
     title: String,
@@ -89,13 +87,11 @@ pub(super) struct PlotLayout {
     origin: Position,
     /// The points for each unit of the numbers.
     scale: Position,
-    /// The marks so far.
     marks: Vec<Element>,
     /// The right end of everything so far.
     right: f64,
     /// The middle of the last line of text so far.
     bottom: f64,
-    /// The number of rows of the legend so far.
     rows: u32,
 }
 
@@ -133,7 +129,6 @@ impl PlotLayout {
         plot
     }
 
-    /// Returns the position on the page of a point of the plot.
     pub(super) fn place(&self, (x, y): Position) -> Position {
         let ((left, _), (_, bottom)) = self.plane;
         (
@@ -142,7 +137,6 @@ impl PlotLayout {
         )
     }
 
-    /// Adds a path on the page; `what` is the class in SVG.
     pub(super) fn draw(&mut self, what: &'static str, path: Vec<Segment>, line: Stroke) {
         self.marks.push(path_of(what, path, line));
     }
@@ -182,7 +176,6 @@ impl PlotLayout {
         self.marks.push(label(text, place, TextAnchor::Start));
     }
 
-    /// Returns the page.
     pub(super) fn page(self) -> DrawingPage {
         DrawingPage {
             size: (self.right + MARGIN, self.bottom + TEXT * 0.5 + MARGIN),
@@ -193,12 +186,10 @@ impl PlotLayout {
     }
 }
 
-/// Returns true if a point can be drawn.
 fn is_drawable(point: &Position) -> bool {
     point.0.abs() <= 1e300 && point.1.abs() <= 1e300
 }
 
-/// The most steps between the first and the last mark.
 const STEPS: f64 = 8.0;
 
 /// The marks of an axis: their places in its unit, and their labels.
@@ -212,7 +203,6 @@ impl Ticks {
         Self::between(ends, least, STEPS)
     }
 
-    /// Makes such marks, at most about `steps` of them.
     pub(super) fn between((low, high): (f64, f64), least: f64, steps: f64) -> Self {
         let smallest = ((high - low) / steps).max(least);
         let power = libm::pow(10.0, libm::log10(smallest).floor());
@@ -234,7 +224,6 @@ impl Ticks {
         )
     }
 
-    /// Returns the number of characters of the longest label.
     pub(super) fn width(&self) -> usize {
         let widths = self.0.iter().map(|(_, label)| label.chars().count());
         widths.max().unwrap_or(0)
@@ -269,13 +258,11 @@ pub fn axis_ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - beyond, high + beyond)
 }
 
-/// The width and height of the plane, in points.
 const LINES: Position = (324.0, 200.0);
 
 /// The dashes of the curves, in turn; after the last they repeat.
 const DASHES: [Option<[f64; 2]>; 4] = [None, Some([6.0, 3.0]), Some([1.0, 3.0]), Some([12.0, 4.0])];
 
-/// The most curves.
 const MOST: usize = 32;
 
 /// Curves to draw.
@@ -287,9 +274,7 @@ const MOST: usize = 32;
 /// ```
 #[derive(Clone, Debug)]
 pub struct LinePlot {
-    /// The names of the axes with their units: x, y.
     labels: [String; 2],
-    /// The name of each curve in the legend, and its points in their order.
     curves: Vec<(String, Vec<Position>)>,
 }
 
@@ -317,7 +302,6 @@ impl LinePlot {
         self
     }
 
-    /// Returns the ends of an axis: 0 and the largest number, or 1 if that is 0.
     fn ends(&self, number: fn(&Position) -> f64) -> (f64, f64) {
         let points = self.curves.iter().flat_map(|(_, points)| points);
         let end = points.map(number).fold(0.0, f64::max);
@@ -330,7 +314,6 @@ impl LinePlot {
         svg::write(&self.page())
     }
 
-    /// Lays out axes, grid, curves and legend.
     fn page(&self) -> DrawingPage {
         let ends = [self.ends(|point| point.0), self.ends(|point| point.1)];
         let titles = self.labels.each_ref().map(String::as_str);
@@ -352,7 +335,6 @@ impl LinePlot {
     }
 }
 
-/// The width and height of the plane, in points.
 const POINTS: Position = (324.0, 243.0);
 
 /// The fineness of the plane's width: points closer than one part in this many are drawn once.
@@ -370,7 +352,6 @@ pub struct PointPlot {
     labels: [String; 2],
     title: String,
     points: Vec<Position>,
-    /// The curves: their names, their points, and whether each is dashed.
     curves: Vec<(String, Vec<Position>, bool)>,
     chosen: Option<Position>,
 }
@@ -423,7 +404,6 @@ impl PointPlot {
         self
     }
 
-    /// Returns all points, including those of the curves.
     fn all(&self) -> impl Iterator<Item = &Position> {
         let curves = self.curves.iter().flat_map(|(_, points, _)| points);
         curves
@@ -436,7 +416,6 @@ impl PointPlot {
         svg::write(&self.page())
     }
 
-    /// Lays out frame, marks, points and the legend of the curves.
     fn page(&self) -> DrawingPage {
         let ends = [
             axis_ends(self.all().map(|point| point.0)),

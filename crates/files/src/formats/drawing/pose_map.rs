@@ -11,20 +11,16 @@ use crate::formats::drawing::svg::{
 };
 use crate::formats::value::decimal;
 
-/// The larger side of the plane, in points.
 const PLANE: f64 = 288.0;
 
 /// The most cells along a side; more cannot be told apart in print.
 const MOST: usize = 1024;
 
-/// The greys of areas, by the number of the imprint.
 const GREYS: [u8; 5] = [255, 232, 209, 186, 163];
 
-/// The titles of the axes.
 const X_TITLE: &str = "x0 / cells";
 const Y_TITLE: &str = "y0 / cells";
 
-/// The line between two areas.
 const BORDER: Stroke = Stroke::black(0.5);
 
 /// A map of positions to draw.
@@ -83,12 +79,10 @@ impl PoseMap {
         self
     }
 
-    /// Returns the number of rows.
     fn rows(&self) -> usize {
         self.ids.len() / self.columns
     }
 
-    /// Returns the number of a cell's imprint.
     fn id(&self, column: usize, row: usize) -> Option<u32> {
         let index = row * self.columns + column;
         self.ids.get(index).copied().flatten()
@@ -99,7 +93,6 @@ impl PoseMap {
         svg::write(&self.page())
     }
 
-    /// Lays out areas, borders and axes.
     fn page(&self) -> DrawingPage {
         let side = PLANE / count(self.columns.max(self.rows()));
         let [x0, y0] = self.ends;
@@ -217,13 +210,11 @@ fn cells_before(value: f64, (low, high): (f64, f64), cells: usize) -> f64 {
     share * last + 0.5
 }
 
-/// Converts a number of cells for use in lengths.
 #[expect(clippy::cast_precision_loss, reason = "at most 1,024")]
 fn count(cells: usize) -> f64 {
     cells as f64
 }
 
-/// Returns the index of an imprint's grey.
 fn shade(id: u32) -> usize {
     // The remainder fits into one byte.
     let [shade, ..] = (id % 5).to_le_bytes();

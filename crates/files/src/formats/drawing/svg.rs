@@ -9,11 +9,9 @@ use crate::formats::value::{decimal, escaped};
 /// A point on the page, or on the plane in cell sides.
 pub(super) type Position = (f64, f64);
 
-/// The size of all text, in points.
 pub(super) const TEXT: f64 = 8.0;
 /// The width of a character in a monospaced font, as a share of its size.
 const ADVANCE: f64 = 0.6;
-/// The margin on all sides.
 pub(super) const MARGIN: f64 = 8.0;
 /// The height of a line of the title or the legend.
 pub(super) const ROW: f64 = 13.0;
@@ -22,22 +20,17 @@ const LONGEST: usize = 100;
 
 /// A page: its size in points, the place of the plane, and the marks.
 pub(super) struct DrawingPage {
-    /// The width and the height.
     pub(super) size: Position,
     /// The top left and the bottom right corner of the sensory plane.
     pub(super) plane: (Position, Position),
     /// The name of the drawing for those who cannot see it, as read by screen readers.
     pub(super) title: String,
-    /// The marks, in drawing order.
     pub(super) marks: Vec<Element>,
 }
 
-/// A step of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Segment {
-    /// Begins a new piece at a point.
     Move(Position),
-    /// A straight line to a point.
     Line(Position),
     /// A cubic curve: its two control points and its end.
     Curve(Position, Position, Position),
@@ -46,7 +39,6 @@ pub(super) enum Segment {
 }
 
 impl Segment {
-    /// Returns the step with each of its points mapped by a function.
     pub(super) fn map(self, place: impl Fn(Position) -> Position) -> Self {
         match self {
             Self::Move(to) => Self::Move(place(to)),
@@ -57,7 +49,6 @@ impl Segment {
     }
 }
 
-/// Returns the path of a rectangle.
 pub(super) fn rectangle((left, top): Position, (right, bottom): Position) -> Vec<Segment> {
     vec![
         Segment::Move((left, top)),
@@ -68,7 +59,6 @@ pub(super) fn rectangle((left, top): Position, (right, bottom): Position) -> Vec
     ]
 }
 
-/// Returns the path of a circle.
 pub(super) fn circle((x, y): Position, radius: f64) -> Vec<Segment> {
     ellipse((x, y), (radius, 0.0), (0.0, radius))
 }
@@ -103,7 +93,6 @@ pub(super) fn ellipse(centre: Position, across: Position, along: Position) -> Ve
 /// The style of a line; its ends are round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stroke {
-    /// The width in points.
     pub(super) width: f64,
     /// The grey: 0 is black, 255 white.
     pub(super) grey: u8,
@@ -112,7 +101,6 @@ pub(super) struct Stroke {
 }
 
 impl Stroke {
-    /// Returns the stroke of an unbroken black line.
     pub(super) const fn black(width: f64) -> Self {
         Self {
             width,
@@ -122,7 +110,6 @@ impl Stroke {
     }
 }
 
-/// The lines between cells.
 pub(super) const CELLS: Stroke = Stroke {
     width: 0.4,
     grey: 150,
@@ -132,11 +119,8 @@ pub(super) const CELLS: Stroke = Stroke {
 /// The point of a text that lies at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TextAnchor {
-    /// The start of the text.
     Start,
-    /// The middle of the text.
     Middle,
-    /// The end of the text.
     End,
 }
 
@@ -168,7 +152,6 @@ pub(super) enum Element {
     },
 }
 
-/// Makes a line on the page; `what` is the kind of line.
 pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
     Element::Line {
         what,
@@ -178,7 +161,6 @@ pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> 
     }
 }
 
-/// Makes a text on the page.
 pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
     Element::Text {
         text: text.to_owned(),
@@ -188,7 +170,6 @@ pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element 
     }
 }
 
-/// Makes the title of the upright axis; `y` is the middle of the axis.
 pub(super) fn upright_title(title: &str, y: f64) -> Element {
     Element::Text {
         text: title.to_owned(),
@@ -198,18 +179,15 @@ pub(super) fn upright_title(title: &str, y: f64) -> Element {
     }
 }
 
-/// Returns as much of a text as fits onto a page.
 pub(super) fn cut(text: &str) -> String {
     text.chars().take(LONGEST).collect()
 }
 
-/// Returns the width of a text of that many characters.
 #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
 pub(super) fn width(characters: usize) -> f64 {
     TEXT * ADVANCE * characters as f64
 }
 
-/// Returns the content of the file.
 pub(super) fn write(page: &DrawingPage) -> String {
     let (width, height) = (number(page.size.0), number(page.size.1));
     let title = escaped(&page.title);
@@ -288,7 +266,6 @@ fn text_of(text: &str, (x, y): Position, anchor: TextAnchor, upright: bool) -> S
     format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\"{turned}>{text}</text>\n")
 }
 
-/// Returns the attribute `d` of a path, in points with at most three decimals.
 fn data(steps: &[Segment]) -> String {
     let at = |(x, y): Position| format!("{} {}", number(x), number(y));
     let steps = steps.iter().map(|step| match step {
@@ -300,7 +277,6 @@ fn data(steps: &[Segment]) -> String {
     steps.collect()
 }
 
-/// Returns the attributes of a line.
 fn stroke(line: Stroke) -> String {
     let dash = line.dash.map_or(String::new(), |[dash, gap]| {
         format!(" stroke-dasharray=\"{dash} {gap}\"")
@@ -309,7 +285,6 @@ fn stroke(line: Stroke) -> String {
     format!(" stroke=\"{grey}\" stroke-width=\"{width}\"{dash}")
 }
 
-/// Returns a grey as `#rrggbb`.
 fn paint(grey: u8) -> String {
     format!("#{grey:02x}{grey:02x}{grey:02x}")
 }

@@ -32,12 +32,9 @@ use crate::sensor::Sensor;
 const PLANE: f64 = 288.0;
 /// The largest side of a cell, for small matrices.
 const LARGEST_CELL: f64 = 24.0;
-/// The width of a sign in the legend.
 const SWATCH: f64 = 16.0;
 
-/// The grey of taxels of the described region.
 const DESCRIBED: u8 = 168;
-/// The grey of taxels of other regions.
 const OTHER: u8 = 220;
 /// The hatching of taxels of other regions: a shade alone is lost on a bad printer.
 const HATCH: Stroke = Stroke {
@@ -45,17 +42,14 @@ const HATCH: Stroke = Stroke {
     grey: 110,
     dash: None,
 };
-/// The true outline of the shape.
 const OUTLINE: Stroke = Stroke::black(1.3);
 /// The edge around active taxels when shades show values.
 const EDGE: Stroke = Stroke::black(2.0);
-/// The rectangle around the region.
 const RECTANGLE: Stroke = Stroke {
     width: 0.9,
     grey: 0,
     dash: Some([4.0, 2.5]),
 };
-/// The signs of CG and CD.
 const POINT: Stroke = Stroke::black(1.1);
 
 /// The least pitch in mm: smaller than any atom.
@@ -181,23 +175,17 @@ impl Drawing {
     }
 }
 
-/// A page while it is being laid out.
 struct PageLayout<'a> {
     drawing: &'a Drawing,
-    /// That of the chosen region.
     description: Option<Description>,
-    /// The marks so far.
     marks: Vec<Element>,
-    /// The top left corner of the plane.
     corner: Position,
-    /// The side of a cell.
     cell: f64,
     /// The right and the lower end of everything so far.
     end: Position,
 }
 
 impl PageLayout<'_> {
-    /// Returns the position on the page of a point of the plane, given in cell sides.
     fn position(&self, (x, y): Position) -> Position {
         (self.corner.0 + x * self.cell, self.corner.1 + y * self.cell)
     }
@@ -211,7 +199,6 @@ impl PageLayout<'_> {
         self.marks.push(label(text, place, anchor));
     }
 
-    /// Adds rectangles in one grey; `what` is the class of the group in SVG.
     fn filled(&mut self, what: &'static str, rectangles: Vec<(Position, Position)>, grey: u8) {
         self.marks.push(Element::Fill {
             what,
@@ -220,7 +207,6 @@ impl PageLayout<'_> {
         });
     }
 
-    /// Adds a path with a line of that width, grey and dashes.
     fn line(&mut self, what: &'static str, steps: Vec<Segment>, line: Stroke) {
         self.marks.push(path_of(what, steps, line));
     }
@@ -267,7 +253,6 @@ impl PageLayout<'_> {
         }
     }
 
-    /// Draws the lines between all cells.
     fn cells(&mut self) {
         let imprint = &self.drawing.imprint;
         let (columns, rows) = (f64::from(imprint.columns()), f64::from(imprint.rows()));
@@ -285,7 +270,6 @@ impl PageLayout<'_> {
         self.line("cells", lines, CELLS);
     }
 
-    /// Draws the frame, and both axes with their units.
     fn axes(&mut self, across: &Ticks, along: &Ticks, plane: (Position, Position)) {
         let scale = self.cell / self.drawing.pitch_mm.unwrap_or(1.0);
         let place = |(x, y): Position| (plane.0.0 + x * scale, plane.0.1 + y * scale);
@@ -325,7 +309,6 @@ impl PageLayout<'_> {
         self.line("cg", cross(cg, 3.5), POINT);
     }
 
-    /// Returns the unit of axes and legend.
     fn unit(&self) -> &'static str {
         self.drawing.pitch_mm.map_or("cells", |_| "mm")
     }
@@ -363,7 +346,6 @@ impl PageLayout<'_> {
         });
     }
 
-    /// Draws the legend's first rows: the taxels of the described region, and the other active ones.
     fn legend_of_taxels(&mut self, y: &mut f64) {
         let all = self.drawing.imprint.count();
         let described = self.description.as_ref().map(|it| (it.kind, it.na));
@@ -426,12 +408,10 @@ impl PageLayout<'_> {
     }
 }
 
-/// Returns the box of a sign in the legend.
 fn box_of((x, y): Position) -> (Position, Position) {
     ((x - 6.0, y - 4.0), (x + 6.0, y + 4.0))
 }
 
-/// Returns a piece of line for the legend.
 fn stretch((x, y): Position) -> Vec<Segment> {
     let half = SWATCH / 2.0;
     vec![Segment::Move((x - half, y)), Segment::Line((x + half, y))]
@@ -445,7 +425,6 @@ fn hatch(cells: &[(Position, Position)]) -> Vec<Segment> {
     cells.iter().flat_map(stroke).collect()
 }
 
-/// Returns an upright cross.
 fn cross((x, y): Position, arm: f64) -> Vec<Segment> {
     vec![
         Segment::Move((x - arm, y)),
@@ -455,7 +434,6 @@ fn cross((x, y): Position, arm: f64) -> Vec<Segment> {
     ]
 }
 
-/// The number of shades from white to black.
 const SHADES: u8 = 16;
 
 /// Returns the largest value; None if no value is above 0.
@@ -507,7 +485,6 @@ fn edges(imprint: &Imprint) -> Vec<Segment> {
     edges
 }
 
-/// Returns the legend of the shades.
 fn legend_of_shades(values: &Matrix<f64>) -> String {
     match largest(values) {
         Some(largest) => format!("values from 0 (white) to {} (black)", fitting(largest, 9)),
@@ -524,17 +501,14 @@ fn steps(solid: &impl Solid) -> Vec<Segment> {
     tracer.steps
 }
 
-/// A pen that records the path it draws.
 #[derive(Debug, Default)]
 struct Tracer {
-    /// The path so far.
     steps: Vec<Segment>,
     /// The corners of the current piece. It grows at its end, or at its start if a ring is drawn backwards.
     piece: VecDeque<Position>,
 }
 
 impl Tracer {
-    /// Adds the current piece to the path.
     fn end(&mut self, closed: bool) {
         let mut corners = self.piece.drain(..);
         self.steps.extend(corners.next().map(Segment::Move));

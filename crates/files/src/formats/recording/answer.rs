@@ -3,7 +3,7 @@
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::description::{Description, regions};
-use crate::formats::described::RegionRecord;
+use crate::formats::json::RegionRecord;
 use crate::frame::{Frame, Processed, SetRule};
 use crate::serialize::Shortest;
 

@@ -4,7 +4,7 @@
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
-use crate::formats::framed::{FrameRows, LeastTaxels, RuleRecord, matrix};
+use crate::formats::job::{FrameRows, LeastTaxels, RuleRecord, matrix};
 use crate::formats::json;
 use crate::formats::recording::length::{LengthUnit, pitches_in_mm};
 use crate::formats::recording::time::unit::TimeUnit;

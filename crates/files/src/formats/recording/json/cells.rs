@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
 
-use crate::formats::framed::too_large;
+use crate::formats::job::too_large;
 use crate::frame::{LARGEST_VALUE, MAX_FRAME_CELLS};
 use crate::parameter::number::counted;
 

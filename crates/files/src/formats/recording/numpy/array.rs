@@ -16,7 +16,7 @@
 
 use std::io::{ErrorKind, Read};
 
-use crate::formats::framed::too_large;
+use crate::formats::job::too_large;
 use crate::formats::npy;
 use crate::formats::npy::{Header, NumberType};
 use crate::formats::recording::error::RecordingError;

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::rc::Rc;
 
-use crate::formats::framed::too_large;
+use crate::formats::job::too_large;
 use crate::formats::npy::Dtype;
 use crate::formats::recording::channel_table::ChannelTable;
 use crate::formats::recording::error::RecordingError;

@@ -3,7 +3,7 @@
 //! The reader decides whether a field is a value ([`Field`]): formats differ in how they write a cell without a
 //! value. The messages are the same in all formats: `line 7, column 3: found "x", expected a number`.
 
-use crate::formats::framed::too_large;
+use crate::formats::job::too_large;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::text::lines::text;
 use crate::formats::recording::text::number;
