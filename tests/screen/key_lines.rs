@@ -75,7 +75,7 @@ fn the_menu_shows_the_keys_of_the_page() {
     let (_, hints) = lines(&sized((60, 20), false, "ri"));
     assert!(hints.starts_with("i answer"), "{hints}");
     let (menu, hints) = lines("f<CR>r");
-    assert!(menu.starts_with("t random touch"), "{menu}");
+    assert!(menu.starts_with("t touch"), "{menu}");
     assert!(
         menu.ends_with("? Help") || menu.ends_with("? help"),
         "{menu}"
@@ -135,7 +135,7 @@ fn keys_that_can_do_nothing_at_the_moment_are_not_shown() {
     shows("f<CR>", &["c coverage  g hold"]);
     shows(
         "r",
-        &["t random touch   o O other model   v confusion   Esc close   ? help\n"],
+        &["t touch   o O other model   v confusion   Esc close   ? help\n"],
     );
 }
 

@@ -656,64 +656,6 @@ fn touches_are_kept_combined_and_forgotten() {
 }
 
 #[test]
-fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
-    let touch = ":seed 7<Enter>:recognise figures-30<Enter>t";
-    shows(
-        touch,
-        &["Which shape is this?", "> 1 ellipse", "random touch"],
-    );
-    // Space has another meaning there.
-    hides(touch, &["%", "Space draws"]);
-    shows(
-        &format!("{touch}<Enter>"),
-        &["right: ellipse", "1 of 1 right"],
-    );
-    shows(
-        &format!("{touch}<Down><Enter>"),
-        &["wrong: the shape is ellipse, not rectangle", "0 of 1 right"],
-    );
-    shows(
-        &format!("{touch}o<Enter>"),
-        &["wrong: the shape is ellipse, not octagon"],
-    );
-    shows(
-        &format!("{touch}5"),
-        &["wrong: the shape is ellipse, not hexagon"],
-    );
-    for (key, refused) in [
-        ("9", "no shape 9, expected 1 to 7"),
-        ("x", "no shape begins with 'x'"),
-        ("'", "no shape begins with \"'\""),
-    ] {
-        shows(&format!("{touch}{key}"), &["Which shape is this?", refused]);
-    }
-    shows(
-        &format!("{touch}<Esc>"),
-        &[
-            "it was the ellipse; u brings back what was there before",
-            "0 of 1 right",
-        ],
-    );
-    shows(
-        &format!("{touch}<Space><Esc>"),
-        &["it was the ellipse; u brings back what was there before"],
-    );
-    let drawn = "<Space>:seed 7<Enter>:recognise figures-30<Enter>t";
-    shows(
-        &format!("{drawn}<Esc>u"),
-        &["undone: random touch", "NA 1 in all"],
-    );
-    let many = ":seed 7<Enter>:recognise shapes<Enter>t";
-    shows(many, &["> 1 ", "  0 above, 13 below"]);
-    shows(&format!("{many}<End>"), &["  13 above, 0 below"]);
-    shows(
-        &format!("{touch}<Space><Space>1"),
-        &["right: ellipse", "3 touches kept"],
-    );
-    shows(&format!("{touch}1u"), &["NA 0 in all"]);
-}
-
-#[test]
 fn the_confusion_matrix_starts_at_the_worst_pair() {
     let open = ":recognise figures-30<Enter>v";
     shows(
@@ -763,7 +705,7 @@ fn the_cursor_is_back_when_the_sensor_is_as_large_as_before() {
 #[test]
 fn the_key_of_narrow_screens_says_that_nothing_is_hidden() {
     let text = "both sides of the screen are visible";
-    for keys in ["i", "f<Enter>ri", "rt<Tab>"] {
+    for keys in ["i", "f<Enter>ri"] {
         shows(keys, &[text]);
     }
 }

@@ -12,8 +12,8 @@ use taxel::tui::app::message::Message;
 use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::live::message::{
     FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, RecordedFrames, SourceState,
+    WatchRequest,
 };
-use taxel::tui::live::request::WatchRequest;
 use taxel::tui::script::Session;
 
 use crate::array::{self, array};
@@ -91,116 +91,27 @@ fn a_recording_that_has_ended_stays_at_its_frame_and_plays_again_by_key() {
 }
 
 #[test]
-fn the_command_that_opens_the_page_knows_that_it_is_open() {
-    let mut page = watched(2, ":watch<Enter>");
-    shows(&page, &["frame 1", "this is the watched source"]);
-    hides(&page, &["no source yet"]);
-    page.frames(1);
-    then(&mut page, "<Esc>:watch<Enter>", &["frame 2"]);
-}
-
-#[test]
-fn standard_input_is_not_offered_to_be_read_twice() {
-    let mut session = session("");
-    let request = WatchRequest::new("-");
-    session.send(Message::Live(LiveMessage::Watch(Arc::new(request))));
-    send_frames(&mut session, &[2, 2]);
-    let mut batch = FrameBatch::default();
-    batch.status.state = SourceState::Ended;
-    send(&mut session, LiveEvent::Arrived(Arc::new(batch)));
-    shows(
-        &session,
-        &["standard input", "ended; ", "Home: the first one"],
-    );
-    hides(&session, &["w: again", "w again"]);
-    then(
-        &mut session,
-        "w",
-        &["! standard input cannot be read twice", "  source ended"],
-    );
-    then(&mut session, "<Home>", &["frozen, 1 frame behind"]);
-    let refused = "! standard input cannot be read twice";
-    then(&mut session, ":watch -<Enter>", &[refused, "frozen"]);
-    then(&mut session, "<Esc>:watch -<Enter>", &[refused]);
-}
-
-#[test]
-fn the_first_and_the_last_frame_say_that_there_is_no_other() {
-    let mut page = watched(3, "<Home>");
-    then(
-        &mut page,
-        "<Left>",
-        &["frame 0", "no earlier frame in the history"],
-    );
-    then(
-        &mut page,
-        "<End><Right>",
-        &["frame 2", "no later frame yet"],
-    );
-    hides(&watched(3, "<Left>"), &["no earlier"]);
-}
-
-#[test]
-fn keys_for_the_shades_say_what_they_do() {
-    let mut page = watched(6, "g");
-    shows(&page, &["the shades cover this frame's values"]);
-    then(&mut page, "g", &["the shades cover all values so far"]);
-    then(&mut page, "v", &["no threshold, so there is no imprint"]);
-    then(&mut page, "vv", &["no tare: the values are the raw ones"]);
-}
-
-#[test]
-fn a_source_from_which_no_frame_came_says_why() {
-    let folder = tempfile::tempdir().expect("a folder");
-    for (content, flags, reason) in [
-        ("", "", "the source is empty"),
-        (
-            "some words\nand more\n",
-            "",
-            "not a recording of a known format",
-        ),
-        ("r0c0,r0c1\n", "", "no frames"),
-        (
-            "r0c0,r0c1\n1,2\n",
-            " --channel x",
-            "no channel named \"x\": the recording has one channel",
-        ),
-    ] {
-        let file = folder.path().join("a.csv");
-        std::fs::write(&file, content).expect("written");
-        let mut page = session(&format!(":watch {}{flags}<Enter>", file.display()));
-        page.frames(1);
-        shows(&page, &[reason]);
-    }
-}
-
-#[test]
-fn an_unreadable_source_or_a_missing_model_opens_no_page() {
+fn an_unreadable_source_opens_no_page() {
     let keys = ":watch nowhere.csv<Enter>";
     shows(
         keys,
         &["! nowhere.csv: cannot open: no such", ":watch nowhere"],
     );
     hides(keys, &["no frame yet"]);
-    let keys = ":watch tcp://robot<Enter>";
-    shows(keys, &["! tcp://robot: cannot open: expected tcp://HOST"]);
-    let keys = ":watch tests/scripts/touch.csv --model nope<Enter>".replace(' ', "<Space>");
-    shows(
-        &keys,
-        &[
-            "! no model or file named \"nope\"; models: figures",
-            ":watch tests",
-        ],
-    );
-    hides(&keys, &["no frame yet"]);
     // The open page remains.
     let mut page = watched(2, "");
     let refused = page.watch("nowhere.csv");
     assert!(refused.is_err_and(|reason| reason.contains("nowhere.csv")));
     shows(&page, &["touch.csv", "frame 1"]);
-    assert_eq!(page.watch("tests/scripts/touch.csv"), Ok(()));
-    shows(&page, &["touch.csv", "no frame yet"]);
-    then(&mut page, "<Esc>", &["Space draws"]);
+}
+
+#[test]
+fn the_name_comes_with_its_probability() {
+    let keys = ":watch<Space>examples/recording.csv<Space>--at-least<Space>10<Enter>";
+    let mut page = session(keys);
+    page.frames(4);
+    let named = ["shape      hexagon 100 %, certain", "nearest    hexagon, "];
+    then(&mut page, "n", &named);
 }
 
 #[test]
@@ -348,17 +259,13 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
 #[test]
 fn a_notice_does_not_hide_a_lost_source() {
     let lost = "lost: Connection reset by peer; trying again each second";
-    for (width, height) in [(80, 24), (60, 20)] {
-        let mut page = watched(2, "t");
-        page.resize(width, height);
-        let mut batch = FrameBatch::default();
-        batch.status.state = SourceState::Lost(lost.to_owned());
-        let event = LiveEvent::Arrived(Arc::new(batch));
-        page.send(Message::Worker(WorkerEvent::Live(1, event)));
-        shows(&page, &["! lost: Connection reset by peer"]);
-        hides(&page, &["tare of the last"]);
-        then(&mut page, "T", &["tare removed; ! lost: Connection reset"]);
-    }
+    let mut page = watched(2, "t");
+    let mut batch = FrameBatch::default();
+    batch.status.state = SourceState::Lost(lost.to_owned());
+    send(&mut page, LiveEvent::Arrived(Arc::new(batch)));
+    shows(&page, &["! lost: Connection reset by peer"]);
+    hides(&page, &["tare of the last"]);
+    then(&mut page, "T", &["tare removed; ! lost: Connection reset"]);
 }
 
 /// Sends an event of the source of the first page.
@@ -413,41 +320,12 @@ fn a_tare_by_key_is_made_of_frames_of_the_present_size() {
 }
 
 #[test]
-fn taxels_are_not_hidden_by_a_message_of_several_lines() {
-    let mut page = watched(6, "#");
-    page.resize(60, 20);
-    // The last row of the window, as the title says, and whether the ruler shows it.
-    let last_row = |page: &Session| {
-        let screen = page.screen();
-        let title = screen.lines().nth(1).expect("a title").trim_end();
-        let (_, last) = title.rsplit_once('-').expect("a window");
-        let last: u8 = last.parse().expect("a row");
-        let is_shown = screen
-            .lines()
-            .any(|line| line.starts_with(&format!("{last:>2} ")));
-        (last, is_shown)
-    };
-    let (all, is_shown) = last_row(&page);
-    assert!(is_shown);
-    let mut batch = FrameBatch::default();
-    batch.status.state = SourceState::Silent("no frame for more than 2 s: ".repeat(5));
-    send(&mut page, LiveEvent::Arrived(Arc::new(batch)));
-    then(&mut page, "<S-Up><S-Up><S-Up><S-Up>", &[]);
-    let (with_message, is_shown) = last_row(&page);
-    assert!(with_message < all && is_shown, "{with_message} of {all}");
-    then(&mut page, "<S-Down>", &[]);
-    let (further, is_shown) = last_row(&page);
-    assert!(further > with_message && is_shown, "{further}");
-}
-
-#[test]
 fn a_silent_source_has_no_rate() {
     let mut page = watched(3, "");
     shows(&page, &["rate       10/s"]);
     let mut batch = FrameBatch::default();
     batch.status.state = SourceState::Silent("no frame for more than 2 s".to_owned());
-    let event = LiveEvent::Arrived(Arc::new(batch));
-    page.send(Message::Worker(WorkerEvent::Live(1, event)));
+    send(&mut page, LiveEvent::Arrived(Arc::new(batch)));
     shows(&page, &["! no frame for more than 2 s", "rate       –"]);
     page.frames(1);
     shows(&page, &["frame 3", "rate       10/s"]);
@@ -483,23 +361,6 @@ fn a_frame_that_cannot_be_processed_is_still_shown() {
         "<Enter>",
         &["! no imprint: the gain has 2 columns"],
     );
-}
-
-#[test]
-fn a_frame_that_cannot_be_processed_is_shown_after_it_has_left_the_history() {
-    let mut page = set(|request| {
-        request.processing.gain = Some(gain_of(2, 2, 1.0));
-        // Memory for the newest frame only.
-        request.history_bytes = 1;
-    });
-    page.frames(2);
-    then(&mut page, "<Space>", &["frame 1", "frozen"]);
-    page.frames(3);
-    shows(
-        &page,
-        &["frame 1  0.1 s", "frozen, 3", "! the gain has 2 columns"],
-    );
-    hides(&page, &["no frame yet"]);
 }
 
 #[test]
@@ -576,68 +437,6 @@ fn a_frozen_frame_is_the_shown_one_even_if_it_is_not_confirmed() {
     shows(&withdrawn, &["frame 1", "frozen"]);
     then(&mut frozen(), "<Left>", &["frame 1", "frozen"]);
     then(&mut frozen(), "t", &["tare of the 2 frames up to frame 1"]);
-}
-
-#[test]
-fn a_narrow_title_keeps_unusual_states() {
-    let mut page = watched(6, "p<Left>m");
-    shows(
-        &page,
-        &["touch.csv  frame 4  0.4 s  frozen, 1 frame behind  raw  max held  marked"],
-    );
-    for (columns, title) in [
-        (
-            66,
-            "touch.csv  frame 4  frozen, 1 frame behind  max held  marked",
-        ),
-        (50, "touch.csv  frame 4  frozen, 1 frame behind"),
-        (36, "touch.csv  frozen, 1 frame behind"),
-        (30, "touch…  frozen, 1 frame behind"),
-    ] {
-        page.resize(columns, 20);
-        let screen = page.screen();
-        assert_eq!(screen.lines().nth(1), Some(title), "{screen}");
-    }
-}
-
-#[test]
-fn a_narrow_title_mentions_maxima_and_recording() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("a-recording-of-the-left-hand.npy");
-    let values: Vec<f64> = (0..5 * 48 * 48).map(f64::from).collect();
-    std::fs::write(&path, array("(5, 48, 48)", false, &values)).expect("written");
-    let world = world().confined_to(folder.path().to_owned());
-    let mut page = started(world, &format!(":watch {}<Enter>", path.display()));
-    page.frames(2);
-    then(&mut page, "r", &["recording in touch-1.npy"]);
-    then(&mut page, "p", &["max held"]);
-    page.frames(1);
-    for (size, title) in [
-        (
-            (80, 24),
-            "a-recording-of-the-left-…  frame 2  recording  max held  columns 0-47, rows 8-47",
-        ),
-        (
-            (60, 20),
-            "a-recording-of-the-left-hand.…  frame 2  recording  max held",
-        ),
-        ((40, 12), "a-recording-of-the…  recording  max held"),
-    ] {
-        page.resize(size.0, size.1);
-        let screen = page.screen();
-        assert_eq!(screen.lines().nth(1), Some(title), "{screen}");
-    }
-    // A frozen frame is shown as it came.
-    page.resize(60, 20);
-    then(&mut page, "<Space>", &["frozen", "recording"]);
-}
-
-#[test]
-fn a_low_screen_says_how_many_lines_it_leaves_out() {
-    let mut page = watched(6, "");
-    hides(&page, &["on a larger screen"]);
-    page.resize(80, 12);
-    shows(&page, &["\nt T tare", "and 8 more on a larger screen"]);
 }
 
 #[test]
@@ -746,21 +545,6 @@ fn recording_in(folder: &Path) -> Session {
 }
 
 #[test]
-fn a_source_that_is_watched_again_says_that_it_is_not_recorded_any_more() {
-    let said = "not recording any more; r records in a new file";
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut page = recording_in(folder.path());
-    then(&mut page, "<Esc>w", &[said]);
-    hides(&page, &["  recording"]);
-    // Once, and not of a recording that was ended by its key.
-    then(&mut page, "<Esc>w", &[]);
-    hides(&page, &[said]);
-    then(&mut page, "r", &["recording in touch-2.npy"]);
-    then(&mut page, "r<Esc>w", &[]);
-    hides(&page, &[said]);
-}
-
-#[test]
 fn a_script_records_each_frame_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut page = recording_in(folder.path());
@@ -857,25 +641,6 @@ fn a_recording_stores_the_threshold_and_tare_at_its_end() {
 }
 
 #[test]
-fn an_error_replaces_an_older_notice_at_once() {
-    let mut page = watched(6, "t");
-    shows(&page, &["tare of the last 6 frames"]);
-    let frame = Arc::new(Frame::new(FrameSize::new(3, 3).expect("1 to 512")));
-    let frames = vec![frame];
-    let batch = FrameBatch {
-        frames,
-        ..FrameBatch::default()
-    };
-    let event = LiveEvent::Arrived(Arc::new(batch));
-    page.send(Message::Worker(WorkerEvent::Live(1, event)));
-    shows(
-        &page,
-        &["! the tare has 16 columns and 16 rows, expected 3 and 3"],
-    );
-    hides(&page, &["tare of the last"]);
-}
-
-#[test]
 fn a_key_selects_the_next_model_that_names_shapes() {
     let mut page = watched(6, "nnn");
     shows(&page, &["shapes are named by model shapes"]);
@@ -900,21 +665,6 @@ fn a_key_selects_the_next_model_that_names_shapes() {
     page.frames(2);
     shows(&page, &["frame 7", "nearest    "]);
     hides(&page, &["…", "training or"]);
-}
-
-#[test]
-fn a_name_is_shortened_if_there_is_little_room() {
-    let keys = ":watch<Space>examples/recording.csv<Space>--at-least<Space>10<Enter>";
-    for (columns, shape) in [
-        (80, "shape      hexagon 100 %, certain"),
-        (62, "shape      hexagon, certain"),
-        (60, "shape      hexagon 100 %"),
-    ] {
-        let mut page = sized((columns, 20), false, keys);
-        page.frames(4);
-        then(&mut page, "n", &[shape, "nearest    hexagon, "]);
-        hides(&page, &["…"]);
-    }
 }
 
 /// The error of a source names flags that can be appended to the command.
@@ -942,18 +692,6 @@ fn watch_accepts_the_flags_of_the_command_line() {
             "threshold  4",
             "max        7 at 2, 1",
         ],
-    );
-    then(&mut page, "<Esc>", &[]);
-    then(
-        &mut page,
-        &line(" --rows 2"),
-        &["! --rows and --columns go together"],
-    );
-    then(&mut page, "<Esc>", &[]);
-    then(
-        &mut page,
-        &line(" --baud 9600"),
-        &["! --baud has no effect on"],
     );
 }
 
@@ -1056,61 +794,6 @@ fn values_far_below_1_have_shades_and_fine_steps() {
 }
 
 #[test]
-fn a_broken_description_beside_a_recording_is_reported() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("a.npy");
-    std::fs::write(&path, array("(1, 1, 2)", false, &[9.0, 1.0])).expect("written");
-    let broken = "{\"format\":\"taxel-touch/1\",\"unit\":3}";
-    std::fs::write(path.with_extension("json"), broken).expect("written");
-    // The path comes first, and the end of the message may not fit.
-    let mut page = sized(
-        (160, 24),
-        false,
-        &format!(":watch {}<Enter>", path.display()),
-    );
-    page.frames(1);
-    shows(
-        &page,
-        &[
-            "frame 0",
-            "a.json: line 1, column 34: invalid type: integer `3`",
-        ],
-    );
-}
-
-#[test]
-fn a_note_about_a_recording_stays_until_a_key_is_pressed() {
-    let mut page = watched(0, "");
-    let mut batch = FrameBatch::default();
-    batch.status.note = Some("the file was truncated or rewritten".to_owned());
-    batch.status.notes = 1;
-    let again = |batch: &FrameBatch| LiveEvent::Arrived(Arc::new(batch.clone()));
-    send(&mut page, again(&batch));
-    shows(&page, &["! the file was truncated or rewritten"]);
-    batch.status.state = SourceState::Ended;
-    send(&mut page, again(&batch));
-    shows(&page, &["! the file was truncated or rewritten"]);
-    then(&mut page, "#", &["ended; Left: earlier frames"]);
-    batch.status.notes = 2;
-    send(&mut page, again(&batch));
-    shows(&page, &["! the file was truncated or rewritten"]);
-}
-
-#[test]
-fn the_hint_at_the_end_leaves_room_for_the_taxels() {
-    let mut page = watched(20, "");
-    for ((width, height), hint) in [
-        ((80, 24), "Home: the first one, w: again, Esc: close"),
-        ((60, 14), "ended; w: again, Esc: close"),
-        ((20, 6), "\nended"),
-    ] {
-        page.resize(width, height);
-        shows(&page, &[hint]);
-    }
-    hides(&page, &["w: again", "earlier frames"]);
-}
-
-#[test]
 fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("tall.npy");
@@ -1174,16 +857,6 @@ fn the_marks_on_taxels_are_explained() {
 }
 
 #[test]
-fn a_key_gives_the_numbers_the_whole_page() {
-    let mut page = watched(6, "+");
-    page.resize(40, 20);
-    hides(&page, &["not drawn"]);
-    then(&mut page, "i", &["threshold  5", "not drawn  0"]);
-    then(&mut page, "i", &["threshold"]);
-    hides(&page, &["not drawn"]);
-}
-
-#[test]
 fn the_range_and_the_first_threshold_depend_on_the_values_shown() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("offset.npy");
@@ -1218,34 +891,4 @@ fn the_range_and_the_first_threshold_depend_on_the_values_shown() {
     });
     shows(&page, &["range      0 ░▒▓█ 50\n"]);
     then(&mut page, "+", &["threshold  25\n"]);
-}
-
-/// On a narrow panel a line says less, but no word and no number is cut off.
-#[test]
-fn numbers_on_a_narrow_panel_are_not_cut_off() {
-    let mut page = watched(3, "t+");
-    page.frames(3);
-    shows(
-        &page,
-        &[
-            "2, largest above; NA",
-            "3 frames, 0.3 s ago",
-            "16 × 16, 256 cells",
-        ],
-    );
-    then(
-        &mut page,
-        "#",
-        &[
-            "regions    2; NA 46 in all\n",
-            "tare       3 frames\n",
-            "size       16 × 16\n",
-        ],
-    );
-    hides(&page, &["…"]);
-    let mut narrow = sized((40, 12), false, ":watch tests/scripts/touch.csv<Enter>");
-    narrow.frames(3);
-    then(&mut narrow, "t+", &[]);
-    narrow.frames(3);
-    shows(&narrow, &["CG         8.8, 8.43\n", "regions    2\n"]);
 }

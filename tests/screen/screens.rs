@@ -192,8 +192,6 @@ fn matrix_and_descriptors_are_swapped_only_if_one_is_visible() {
     };
     named("f<Enter>", "i descriptors");
     named("f<Enter>i", "i matrix");
-    named(":recognise figures-30<Enter>t", "Tab matrix");
-    named(":recognise figures-30<Enter>t<Tab>", "Tab list");
     // A click on the descriptors does not draw on the matrix that they hide.
     press(&mut wide, "f<Enter>i");
     let before = wide.app().shown().clone();

@@ -287,7 +287,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     }
 
     Recognise {
-        [Char('t') => RANDOM_TOUCH] "random touch" "a random touch of a shape of the model";
+        [Char('t') => RANDOM_TOUCH] "touch" "a random touch of a shape of the model";
         [Char('a') => KEEP, Char('x') => FORGET]
             "keep, forget" "keep this touch as one of several; forget them";
         [Char('o') => NEXT_MODEL, Char('O') => PREVIOUS_MODEL]

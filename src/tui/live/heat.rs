@@ -438,6 +438,8 @@ fn ruler(taxels: u16, side: u16, ruler: u16, taxel: u16) -> u16 {
     }
 }
 
+/// A taxel is two columns wide, or a multiple of that, if all fit; otherwise it is half a character, so that two stand
+/// above each other. If not all fit even then, a window follows the contact until keys move it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LivePanes {
     /// The title line: the source and the frame.
@@ -498,32 +500,6 @@ impl LivePanes {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn visible(columns: u16, rows: u16, numbers: bool) -> u16 {
-        // Menu, notice and hints have a line each.
-        let area = Rect::new(0, 1, columns, rows - 3);
-        let panes = LivePanes::of(area, Some((16, 16)), numbers);
-        assert!(panes.panel.width >= NARROW_PANEL && panes.panel.height > 0);
-        HeatGrid::of(panes.map, (16, 16), numbers, (0, 0)).visible()
-    }
-
-    #[test]
-    fn all_taxels_are_visible_on_small_screens() {
-        for (columns, rows) in [(40, 12), (40, 20), (60, 20), (80, 16), (80, 24), (200, 60)] {
-            assert_eq!(visible(columns, rows, false), 256, "{columns} x {rows}");
-        }
-        // As numbers, all rows are visible.
-        assert_eq!(visible(80, 24, true), 8 * 16);
-        assert_eq!(visible(60, 20, true), 4 * 16);
-        // Taxels are larger if the numbers beside them keep their room.
-        let map = |columns, rows: u16| {
-            let area = Rect::new(0, 1, columns, rows - 3);
-            LivePanes::of(area, Some((16, 16)), false).map.width
-        };
-        assert_eq!([map(80, 24), map(120, 40), map(200, 60)], [32, 64, 96]);
-        // The smallest screen.
-        assert!(visible(20, 6, false) >= 32);
-    }
 
     #[test]
     fn the_last_row_of_an_odd_number_is_visible() {

@@ -340,6 +340,8 @@ impl Naming {
     }
 }
 
+/// The text after `:watch`: a source, whose name may contain spaces, then flags as on the command line:
+/// `grip 2.csv --rows 4 --columns 5 --at-least 10`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedSource {
     /// The name: a path, `tcp://HOST:PORT`, or `-` for standard input.
@@ -501,36 +503,8 @@ fn bounds(range: &RangeInclusive<impl fmt::Display>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use taxel_core::sensor::MatrixSize;
 
     use super::*;
-
-    #[test]
-    fn one_imprint_is_asked_for_at_a_time_and_none_twice() {
-        let mut naming = Naming::new(NamingRequest {
-            number: 1,
-            choice: ModelChoice::Figures,
-            noise: None,
-        });
-        let [one, other]: [Imprint; 2] = ["##", "#."].map(|text| text.parse().expect("rows"));
-        assert!(!naming.ask(&Imprint::empty(
-            MatrixSize::new(2, 1).expect("an allowed size")
-        )));
-        assert!(naming.ask(&one));
-        assert!(!naming.ask(&other));
-        naming.take(NamedImprint {
-            imprint: one,
-            state: AnswerState::Unknown,
-            names: Vec::new(),
-            probability: None,
-            nearest: None,
-            unexplained: None,
-        });
-        assert!(!naming.ask(&one));
-        assert!(naming.ask(&other));
-        naming.fail("no model".to_owned());
-        assert!(!naming.ask(&other));
-    }
 
     #[test]
     fn a_name_may_have_spaces_and_flags_follow_it() {

@@ -527,23 +527,7 @@ pub(super) fn name_by(page: &Live) -> Effect {
 mod tests {
     use super::*;
     use crate::frame::{Frame, FrameSize};
-    use crate::tui::live::message::{FeedStatus, FrameBatch};
-
-    #[test]
-    fn a_recording_that_moves_to_another_file_says_so_once() {
-        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let status = FeedStatus {
-            recorded_in: Some("touch-2.npy".to_owned()),
-            ..FeedStatus::default()
-        };
-        assert_eq!(page.follow_recording(&status), None, "nothing is recorded");
-        page.set_recording(Some("touch-1.npy".to_owned()));
-        let moved = page.follow_recording(&status);
-        let said = "recording in touch-2.npy, because touch-1.npy exists by now";
-        assert_eq!(moved.as_deref(), Some(said));
-        assert_eq!(page.recording().name(), Some("touch-2.npy"));
-        assert_eq!(page.follow_recording(&status), None);
-    }
+    use crate::tui::live::message::FrameBatch;
 
     /// A recording that is played in a loop: its numbers begin again.
     #[test]

@@ -457,25 +457,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hidden_rows_and_columns_are_counted_in_words_where_there_is_room() {
-        assert_eq!(in_words([0, 0, 0, 0]), "");
-        assert_eq!(
-            in_words([0, 12, 18, 4]),
-            "12 rows below; 18 columns left, 4 right"
-        );
-        assert_eq!(
-            in_words([3, 12, 0, 1]),
-            "3 rows above, 12 below; 1 column right"
-        );
-        let all =
-            "rows: true; columns: named; %  13 rows above, 12 below; 18 columns left, 4 right";
-        assert_eq!(meaning([13, 12, 18, 4], 80), (all.to_owned(), true));
-        let none = ("rows: true shape; columns: name given; %".to_owned(), false);
-        assert_eq!(meaning([0, 12, 18, 4], 50), none);
-        assert_eq!(in_arrows(&Theme::plain(true), [0, 12, 18, 4]), "v12 <18 >4");
-    }
-
-    #[test]
     fn the_example_of_a_cell_is_the_most_frequent_imprint_that_is_named_so() {
         let sensor = Sensor::default();
         let shape = |name: &str, length: f64| {

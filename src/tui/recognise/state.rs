@@ -32,7 +32,6 @@ pub struct Preparation {
     pub done: u64,
     pub stopping: bool,
     request: Option<RecogniseMessage>,
-    /// The model of the same set so far, which stays if the user gives up reading it again.
     known: Option<Arc<TrainedModel>>,
     opened: bool,
     /// The set to return to if this one cannot be read.
@@ -426,18 +425,6 @@ pub struct PoseSearchResult {
     pub refused: Option<String>,
 }
 
-#[cfg(test)]
-impl PoseSearchResult {
-    pub(super) fn of_nothing() -> Box<Self> {
-        Box::new(Self {
-            nearest: None,
-            pose: None,
-            poses: Vec::new(),
-            refused: None,
-        })
-    }
-}
-
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
     pub number: u64,
@@ -564,56 +551,6 @@ mod tests {
     }
 
     #[test]
-    fn a_late_result_of_a_search_in_another_model_is_dropped() {
-        let mut page = Recognition::new(0);
-        page.show(touch(), None);
-        with_model(&mut page, ModelChoice::Figures, 1);
-        assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
-        assert!(page.step_search(3).is_none(), "it is in progress");
-        with_model(&mut page, ModelChoice::Shipped, 4);
-        assert!(matches!(page.step_search(5), Some(SearchStep::Begin(_))));
-        assert_eq!(
-            page.take_result(2, Ok(PoseSearchResult::of_nothing())),
-            None
-        );
-        assert!(page.found().is_none(), "that was another model");
-        assert!(page.step_search(6).is_none(), "the new one is in progress");
-        assert_eq!(
-            page.take_result(5, Ok(PoseSearchResult::of_nothing())),
-            None
-        );
-        assert!(page.found().is_some());
-    }
-
-    #[test]
-    fn a_preparation_that_fails_forgets_no_stored_model() {
-        let mut page = Recognition::new(0);
-        page.stored = vec![Name::new("mine").expect("a name")];
-        page.prepare(ModelChoice::Shipped, 1, false);
-        assert!(page.fail(1, "a thread panicked".to_owned()).is_some());
-        let sets: Vec<ModelChoice> = (0..10).map(|by| page.other(by)).collect();
-        assert!(sets.contains(&ModelChoice::Stored(page.stored[0].clone())));
-    }
-
-    #[test]
-    fn a_step_goes_on_from_a_model_that_cannot_be_read() {
-        let stored = ["broken", "mine"].map(|name| Name::new(name).expect("a name"));
-        let mut page = Recognition::new(0);
-        page.stored = stored.to_vec();
-        with_model(&mut page, ModelChoice::Shipped, 1);
-        page.stored = stored.to_vec();
-        let [broken, mine] = stored.map(ModelChoice::Stored);
-        assert_eq!(page.other(1), broken);
-        page.prepare(broken, 2, false);
-        assert!(page.fail(2, "damaged".to_owned()).is_some());
-        assert_eq!(page.choice(), &ModelChoice::Shipped, "the earlier set");
-        assert_eq!(
-            (page.other(1), page.other(-1)),
-            (mine, ModelChoice::EqualFigures)
-        );
-    }
-
-    #[test]
     fn a_training_that_made_way_for_a_damaged_model_begins_again() {
         let mut page = Recognition::new(0);
         let damaged = ModelChoice::File("damaged.npz".into());
@@ -637,52 +574,5 @@ mod tests {
         assert!(page.add_touch());
         with_model(&mut page, ModelChoice::Shipped, 2);
         assert_eq!(page.touches(), [touch()]);
-    }
-
-    fn search(rows: &str) -> PoseSearch {
-        PoseSearch {
-            trained: Arc::new(TrainedModel::of_a_bar(ModelChoice::Figures)),
-            imprint: rows.parse::<Imprint>().expect("an imprint"),
-            named: None,
-        }
-    }
-
-    #[test]
-    fn a_search_for_another_imprint_is_stopped_before_the_next_begins() {
-        let (one, other) = (Some(search("##")), Some(search("#.")));
-        let mut searches = PoseSearches::default();
-        assert!(matches!(
-            searches.step(one.clone(), 2),
-            Some(SearchStep::Begin(_))
-        ));
-        assert!(matches!(
-            searches.step(other.clone(), 3),
-            Some(SearchStep::Stop)
-        ));
-        assert!(searches.step(other, 3).is_none(), "it was stopped");
-        // The result of a stopped search is incomplete, even if the same imprint is on the matrix again.
-        assert_eq!(
-            searches.take_result(2, Ok(PoseSearchResult::of_nothing())),
-            None
-        );
-        assert!(searches.found(one.as_ref()).is_none());
-        assert!(matches!(searches.step(one, 3), Some(SearchStep::Begin(_))));
-    }
-
-    #[test]
-    fn a_failed_search_gives_its_reason_and_is_not_repeated() {
-        let one = Some(search("##"));
-        let mut searches = PoseSearches::default();
-        assert!(matches!(
-            searches.step(one.clone(), 2),
-            Some(SearchStep::Begin(_))
-        ));
-        let failed = searches.take_result(2, Err("no thread".to_owned()));
-        assert_eq!(failed.as_deref(), Some("no thread"));
-        assert!(
-            searches.found(one.as_ref()).is_none(),
-            "nothing is known of the imprint"
-        );
-        assert!(searches.step(one, 3).is_none());
     }
 }

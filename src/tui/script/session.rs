@@ -218,6 +218,9 @@ fn colors(palette: Palette) -> ([u8; 3], [u8; 3]) {
 }
 
 /// Draws a screen as SVG; its title is for people who cannot see it.
+///
+/// The same bytes on every machine. Block characters are drawn as rectangles, so that taxels join in any font. A run of
+/// one style is one element that is stretched to its columns, so that columns stay aligned in any font, too.
 pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String {
     let (ink, paper) = colors(theme.palette);
     let area = buffer.area;

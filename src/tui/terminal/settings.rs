@@ -166,35 +166,6 @@ mod tests {
     }
 
     #[test]
-    fn the_kind_decides_what_is_sent() {
-        for (name, kind) in [
-            ("", TerminalKind::Dumb),
-            ("dumb", TerminalKind::Dumb),
-            ("vt100", TerminalKind::Serial),
-            ("vt220", TerminalKind::Serial),
-            ("vte", TerminalKind::Window),
-            ("vte-256color", TerminalKind::Window),
-            ("linux", TerminalKind::Console),
-            ("xterm-256color", TerminalKind::Window),
-            ("tmux", TerminalKind::Window),
-        ] {
-            let settings = term(name);
-            assert_eq!(settings.kind, kind, "{name}");
-            assert_eq!(settings.mouse, kind == TerminalKind::Window, "{name}");
-            let abilities = settings.abilities;
-            assert_eq!(
-                abilities.synchronized,
-                kind == TerminalKind::Window,
-                "{name}"
-            );
-            assert_eq!(kind.has_clipboard(), kind == TerminalKind::Window, "{name}");
-            assert_eq!(settings.ascii, kind <= TerminalKind::Serial, "{name}");
-            assert_eq!(abilities.styles, kind != TerminalKind::Dumb, "{name}");
-        }
-        assert_eq!(settings(&[], Flags::default()), term("dumb"));
-    }
-
-    #[test]
     fn colours_follow_the_terminal_unless_a_variable_or_flag_overrides_it() {
         assert_eq!(term("linux").color, ColorDepth::Sixteen);
         assert_eq!(term("xterm").color, ColorDepth::Sixteen);

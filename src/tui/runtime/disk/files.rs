@@ -152,6 +152,10 @@ fn paths(start: &str) -> Vec<String> {
     paths
 }
 
+/// The rule for where the program may write files. On a terminal a person names the file, and is asked before an existing
+/// one is replaced. A script does both itself, and may come from a stranger: it may write only below its own folder, no
+/// hidden files, and may replace only files that it has written itself. `taxel script --allow-outside` lifts these
+/// limits.
 #[derive(Debug, Default)]
 pub(in crate::tui) struct WriteAccess {
     /// The folder that a script is confined to; None for anywhere.

@@ -282,6 +282,7 @@ fn ago(time: Duration) -> String {
     }
 }
 
+/// Scripts and recorded runs remember nothing, so that they do the same every time.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct Reminders {
     commands: RememberedFile,

@@ -393,27 +393,6 @@ mod tests {
     }
 
     #[test]
-    fn a_panic_of_the_reader_is_an_error_of_the_source() {
-        let file = tempfile::NamedTempFile::new().expect("a file");
-        std::fs::write(&file, "r0c0,r0c1\n1,2\n").expect("written");
-        let (feed, request) = (FrameFeed::default(), WatchRequest::new("none"));
-        let source = FrameSource::File(file.path().to_owned());
-        let mut sound = false;
-        feed.run(
-            &source,
-            &request,
-            &AcquireOptions::default(),
-            &AtomicBool::new(false),
-            &mut |_| {
-                assert!(std::mem::replace(&mut sound, true), "a bug");
-                ControlFlow::Continue(())
-            },
-        );
-        let batch = feed.take().expect("a state");
-        assert!(matches!(batch.status.state, SourceState::Failed(_)));
-    }
-
-    #[test]
     fn a_provisional_frame_is_shown_until_it_is_withdrawn() {
         let feed = FrameFeed::default();
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
@@ -449,59 +428,6 @@ mod tests {
         };
         assert_eq!(after(&mut page, &feed, whole), Some(1));
         assert!(page.is_marked());
-    }
-
-    #[test]
-    fn a_mark_does_not_pass_to_the_frame_that_comes_in_place_of_a_withdrawn_one() {
-        let feed = FrameFeed::default();
-        let request = WatchRequest::new("none");
-        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let [first, mut second] = [
-            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
-            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
-        ];
-        second.values_mut()[0] = 9.0;
-        let whole = AcquireEvent::Frame {
-            frame: &second,
-            time: None,
-        };
-        page.set_recording(Some("a.npy".to_owned()));
-        for event in [AcquireEvent::Provisional(&second), whole] {
-            after(&mut page, &feed, AcquireEvent::Provisional(&first));
-            assert_eq!(page.mark(), Ok((0, true)));
-            let view = page.take_changed_view().expect("it was marked");
-            assert_eq!(view.marks.len(), 1);
-            // Both events come before the page takes anything.
-            feed.take_in(AcquireEvent::Withdrawn, &request);
-            assert_eq!(after(&mut page, &feed, event), Some(0));
-            assert!(!page.is_marked() && page.marks().is_empty());
-            // The metadata of the recording has the mark until then.
-            assert!(page.take_changed_view().is_some());
-        }
-    }
-
-    #[test]
-    fn a_held_peak_does_not_begin_with_a_frame_that_may_be_withdrawn() {
-        let feed = FrameFeed::default();
-        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let [mut first, mut garbled] = [
-            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
-            Frame::new(FrameSize::new(2, 2).expect("an allowed size")),
-        ];
-        first.values_mut().fill(1.0);
-        garbled.values_mut()[0] = 9.0;
-        let whole = AcquireEvent::Frame {
-            frame: &first,
-            time: None,
-        };
-        after(&mut page, &feed, whole);
-        after(&mut page, &feed, AcquireEvent::Provisional(&garbled));
-        page.switch_peak();
-        after(&mut page, &feed, AcquireEvent::Withdrawn);
-        assert_eq!(
-            page.reading().and_then(|reading| Some(reading.max?.0)),
-            Some(1.0)
-        );
     }
 
     #[test]

@@ -224,20 +224,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_message_about_too_many_recordings_counts_them_right() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let access = WriteAccess::below(folder.path().to_owned());
-        for name in chosen_names() {
-            std::fs::write(folder.path().join(name), "").expect("written");
-        }
-        let refused = Recording::in_free_file(&access, &RecordingMetadata::default());
-        let expected = "10,000 recordings are here already; move some elsewhere";
-        assert_eq!(refused.err().as_deref(), Some(expected));
-        let found = std::fs::read_dir(folder.path()).expect("a folder").count();
-        assert_eq!(found, 10_000);
-    }
-
-    #[test]
     fn a_chosen_name_that_another_program_has_taken_is_replaced_by_the_next_free_one() {
         let folder = tempfile::tempdir().expect("a folder");
         let access = WriteAccess::below(folder.path().to_owned());

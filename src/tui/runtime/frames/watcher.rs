@@ -287,6 +287,8 @@ impl ScriptSource {
     }
 }
 
+/// A script has no clock: a frame comes when it is asked for. The file stays open between two requests, so a recording is
+/// read once. Script and thread take turns, so a script does the same every time.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct ScriptReader {
     /// The channel that lets the thread read on; dropped to end it.
@@ -349,38 +351,6 @@ impl Drop for ScriptReader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::recording::RecordingMetadata;
-    use crate::tui::live::message::RecordedFrames;
-
-    #[test]
-    fn a_recording_that_is_replaced_is_finished() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let write = Some((folder.path().join("a.npy"), Existing::Kept));
-        let request = Arc::new(WatchRequest::new("none"));
-        let mut watcher = FrameWatcher::default();
-        assert_eq!(watcher.start_recording(), Err("no source is watched"));
-        assert_eq!(
-            watcher.watch(7, request, write, &Execution::default()),
-            None
-        );
-        assert_eq!(watcher.start_recording(), Ok(7));
-        let already = "a recording is already starting";
-        assert_eq!(watcher.start_recording(), Err(already));
-        let access = WriteAccess::below(folder.path().to_owned());
-        let metadata = RecordingMetadata::default();
-        let next = Recording::in_free_file(&access, &metadata).map(|(_, next)| next);
-        let over = watcher
-            .recording_started(7, next.ok())
-            .expect("the one before");
-        assert!(over.path().ends_with("a.npy"));
-        assert_eq!(
-            over.finish(),
-            Some(LiveEvent::Recorded(
-                over.path().to_string_lossy().into(),
-                RecordedFrames::default(),
-            ))
-        );
-    }
 
     fn frames(numbers: std::ops::Range<u32>) -> String {
         let line = |number| format!("{number},{number},{number},{number}\n");

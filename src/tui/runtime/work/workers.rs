@@ -364,8 +364,6 @@ fn search(
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
     #[cfg(test)]
-    use std::sync::mpsc::channel;
-
     #[cfg(test)]
     use taxel_files::storage::ModelChoice;
 
@@ -428,24 +426,6 @@ mod tests {
         assert!(whole.pose.is_some() && whole.refused.is_none());
         let stopped = searched(Some(0));
         assert_eq!((stopped.pose, stopped.nearest), (None, whole.nearest));
-    }
-
-    #[cfg(test)]
-    #[test]
-    fn a_replaced_search_answers_too() {
-        let (post, events) = channel();
-        let execution = Execution::OnThreads(Arc::new(move |event| {
-            // The test may be over.
-            let _ = post.send(event);
-        }));
-        let mut stop = StopFlag::default();
-        for _ in 0..2 {
-            assert_eq!(find(7, Box::new(request()), &mut stop, &execution), None);
-        }
-        for _ in 0..2 {
-            let event = events.recv_timeout(Duration::from_secs(60));
-            assert!(found(event.ok()).nearest.is_some());
-        }
     }
 
     #[cfg(test)]

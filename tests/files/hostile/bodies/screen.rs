@@ -15,15 +15,13 @@ use taxel::tui::app::state::{App, Options};
 use taxel::tui::app::update::{next_work, update};
 use taxel::tui::keys::key::{Arrow, Key};
 use taxel::tui::keys::keymap::Keymap;
-use taxel::tui::live::message::LiveMessage;
-use taxel::tui::live::named_source::NamedSource;
+use taxel::tui::live::message::{LiveMessage, NamedSource};
 use taxel::tui::prompt::commands::complete;
 use taxel::tui::prompt::read::read as read_command;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
-use taxel::tui::script::command::{ScriptCommand, read};
+use taxel::tui::script::command::{ScriptCommand, ScriptSetting, read};
 use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, run};
-use taxel::tui::script::setting::ScriptSetting;
 use tempfile::TempDir;
 
 use super::refused;
