@@ -294,25 +294,3 @@ impl CliError {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_flags_that_help_follow_the_message_of_the_library() {
-        let recording = |error| {
-            let name = "a.csv".to_owned();
-            CliError::Recording { name, error }.to_string()
-        };
-        let advice = "; give --rows and --columns";
-        let expected =
-            format!("a.csv: 1 value a frame, but its rows and columns are not stated{advice}");
-        assert_eq!(recording(RecordingError::Shape { values: 1 }), expected);
-        let columns = recording(RecordingError::Columns { numbers: 2 });
-        assert!(columns.ends_with(advice), "{columns}");
-        assert!(!recording(RecordingError::Unknown).contains("--"));
-        let place = CliError::Library(LibraryError::NoPlace).to_string();
-        assert!(place.ends_with("--library DIR or TAXEL_LIBRARY"), "{place}");
-    }
-}

@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 
 use super::Run;
-use super::finish;
 use super::misused;
-use super::program;
 use super::refused;
 use super::run_in;
 
@@ -121,24 +119,6 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     assert_eq!(shelf.does("library|check|--json", ""), "[]\n");
     let path = shelf.does("library|path", "");
     assert_eq!(path, format!("{}\n", shelf.folder.display()));
-}
-
-/// A Chinese character takes two columns of the terminal.
-#[test]
-fn a_table_is_aligned_below_wide_names() {
-    let shelf = Shelf::new();
-    shelf.does("library|save|字字字|-", RING);
-    shelf.does("library|save|sixteen letters.|-", RING);
-    let list = shelf.does("library|list", "");
-    let lines: Vec<&str> = list.lines().take(3).collect();
-    assert_eq!(
-        lines,
-        [
-            "name              origin      size   NA  pieces  holes",
-            "sixteen letters.  own        4 × 3    6       1      1",
-            "字字字            own        4 × 3    6       1      1",
-        ]
-    );
 }
 
 #[test]
@@ -336,23 +316,13 @@ fn the_library_flag_may_stand_anywhere() {
 #[test]
 fn wrong_usage_exits_with_status_2() {
     misused("library", "'taxel library' requires a subcommand");
-    misused("library show", "the following required arguments");
-    misused("library save name", "the following required arguments");
     misused(
         "library show ../x",
         "invalid value '../x' for '<NAME>': '/' cannot be in a name, only letters, digits, space, - _ .\n",
     );
     misused(
-        "figure hexagon --save a/b",
-        "invalid value 'a/b' for '--save <NAME>': '/' cannot be in a name, only letters, digits, space, - _ .\n",
-    );
-    misused(
         "figure hexagon --force",
         "the following required arguments were not provided:\n  <--save <NAME>|--export <FILE>>\n",
-    );
-    misused(
-        "library list --library",
-        "a value is required for '--library <DIR>'",
     );
 }
 
@@ -372,9 +342,7 @@ fn a_library_path_below_a_file_still_has_the_shipped_shapes() {
     );
     for line in [
         "describe washer",
-        "library show WASHER --json",
         "library list",
-        "library check",
         "sweep --picture washer --x0 2 --y0 2 --angle 0 --json",
         "model list --json",
     ] {
@@ -386,13 +354,6 @@ fn a_library_path_below_a_file_still_has_the_shipped_shapes() {
         );
         assert_eq!(run.stdout.is_empty(), line.starts_with("model"), "{line}");
     }
-    refused(
-        &run("library show nothing"),
-        1,
-        &format!(
-            "no shape named \"nothing\"; to list all shapes: taxel library list --library {below}"
-        ),
-    );
     let saved = run("library save mine washer");
     assert_eq!(saved.status, Some(1));
     assert!(
@@ -400,65 +361,4 @@ fn a_library_path_below_a_file_still_has_the_shipped_shapes() {
         "{}",
         saved.stderr
     );
-    // A file with the name of the folder itself is an error.
-    let file = run_in("C.UTF-8", &["library", "list", "--library", &file], b"");
-    assert_eq!(file.status, Some(1), "{}", file.stderr);
-}
-
-#[test]
-fn saving_with_name_and_file_swapped_explains_the_order() {
-    let shelf = Shelf::new();
-    let imprint = shelf.file("imprint.txt", RING);
-    let folder = std::path::Path::new(&imprint).parent().expect("a folder");
-    let save = |what: &str| {
-        let arguments = ["library", "save", "imprint.txt", what];
-        let mut program = program(&arguments, "C.UTF-8");
-        program.current_dir(folder);
-        finish(program.spawn().expect("it starts"), b"")
-    };
-    let missing = |name: &str| format!("no stored shape or file named {name:?}");
-    let order = "; the name comes first: taxel library save";
-    let told = missing("ring") + order + " ring imprint.txt";
-    refused(&save("ring"), 1, &told);
-    let told = missing("my ring") + order + " 'my ring' imprint.txt";
-    refused(&save("my ring"), 1, &told);
-    let told = missing("ring") + "; to list all shapes: taxel library list --library FOLDER";
-    shelf.refuses("library|save|none.txt|ring", &told);
-}
-
-/// A command that cannot be typed, or that would be refused, is not proposed.
-#[test]
-fn the_command_that_restores_a_deleted_shape_can_be_typed() {
-    use std::os::unix::ffi::OsStringExt;
-    let folder = tempfile::tempdir().expect("a folder");
-    let plain = folder.path().join("plain").into_os_string();
-    let mut latin = folder.path().join("caf").into_os_string().into_vec();
-    latin.push(0xe9);
-    let latin = std::ffi::OsString::from_vec(latin);
-    for (library, name, locale, hint) in [
-        (&plain, "-x", "C.UTF-8", Some(" -- -x\n")),
-        (
-            &plain,
-            "schl\u{fc}ssel",
-            "C.UTF-8",
-            Some(" schl\u{fc}ssel\n"),
-        ),
-        (&plain, "schl\u{fc}ssel", "C", None),
-        (&latin, "ring", "C.UTF-8", None),
-    ] {
-        let run = |words: &[&str], input: &str| {
-            let mut arguments: Vec<&std::ffi::OsStr> = vec!["library".as_ref()];
-            arguments.extend([std::ffi::OsStr::new("--library"), library.as_os_str()]);
-            arguments.extend(words.iter().map(std::ffi::OsStr::new));
-            let run = run_in(locale, &arguments, input.as_bytes());
-            assert_eq!(run.status, Some(0), "{words:?}: {}", run.stderr);
-            run.stdout
-        };
-        run(&["save", "--", name, "-"], "##\n#.\n");
-        let deleted = run(&["delete", "--", name], "");
-        match hint {
-            Some(ending) => assert!(deleted.ends_with(ending), "{deleted}"),
-            None => assert!(!deleted.contains("restore"), "{deleted}"),
-        }
-    }
 }

@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -422,35 +421,6 @@ fn an_evaluation_says_if_touches_count_with_weights() {
 }
 
 #[test]
-fn similar_names_are_suggested() {
-    let place = Place::new();
-    for (line, message) in [
-        (
-            "model confusion figurs",
-            "no model or file named \"figurs\"; models: figures, figures-30, shapes; did you mean \"figures\"?",
-        ),
-        (
-            "model train gaer --out m.npz",
-            "no shape named \"gaer\"; did you mean \"gear\"?",
-        ),
-    ] {
-        refused(&place.run(line, ""), 1, message);
-    }
-    for (figure, meant) in [
-        ("elipse", "did you mean \"ellipse\"?"),
-        ("circle", "a circle is an ellipse with equal radii"),
-    ] {
-        let shape = format!("{{\"name\":\"disc\",\"figure\":{figure:?}}}\n");
-        let run = place.run("model train - --out m.npz", &shape);
-        let message = format!(
-            "standard input: line 1: figure: {figure:?} is unknown, expected one of ellipse, rectangle, triangle, \
-             pentagon, hexagon, heptagon, octagon; {meant}"
-        );
-        refused(&run, 1, &message);
-    }
-}
-
-#[test]
 fn meaningless_sets_are_refused_in_one_sentence() {
     let place = Place::new();
     let train = |what: &str, input: &str| {
@@ -528,14 +498,6 @@ fn meaningless_sets_are_refused_in_one_sentence() {
         &taxel("model confusion nowhere", ""),
         1,
         "no model or file named \"nowhere\"; models: figures, figures-30, shapes",
-    );
-    misused(
-        "model train parts.jsonl",
-        "the following required arguments",
-    );
-    misused(
-        "model train --out m.npz",
-        "the following required arguments",
     );
     misused(
         "model train parts.jsonl --out m.npz --positions 3",
@@ -641,16 +603,7 @@ fn a_shape_of_a_set_has_no_pose() {
     let disc = r#""name":"disc","figure":"ellipse","radius_x":3,"radius_y":3"#;
     for (shape, key) in [
         (format!("{disc},\"angle\":90,\"x0\":900"), "x0"),
-        (format!("{disc},\"y0\":0"), "y0"),
         (format!("{disc},\"zoom_x\":2"), "zoom_x"),
-        (
-            r##""name":"big","picture":["#.","#."],"zoom_x":3,"zoom_y":3"##.to_owned(),
-            "zoom_x",
-        ),
-        (
-            r#""name":"big","picture":"washer","angle":0"#.to_owned(),
-            "angle",
-        ),
         (
             r##""name":"big","imprint":["#.","#."],"zoom_y":1"##.to_owned(),
             "zoom_y",
@@ -735,14 +688,6 @@ fn the_confusion_matrix_is_exported_to_files() {
     misused(
         "model confusion m.npz --export m.txt",
         "invalid value 'm.txt' for '--export <FILE>': expected a name that ends in .csv or .svg",
-    );
-    misused(
-        "model confusion m.npz --greedy --export m.csv",
-        "the argument '--greedy' cannot be used with '--export <FILE>'",
-    );
-    misused(
-        "model confusion m.npz --round cg_cd=0.01",
-        "the following required arguments were not provided",
     );
 }
 
@@ -834,25 +779,6 @@ assert (bits.any(axis=1).sum(axis=1) == model['width']).all()
     assert!(python.status.success(), "{said}");
 }
 
-#[test]
-fn output_of_model_commands_is_ascii_if_the_locale_is_not_utf_8() {
-    let place = Place::new();
-    place.done(&format!(
-        "model train rectangles.jsonl {COARSE} --out m.npz"
-    ));
-    let file = place.path("m.npz");
-    for line in [
-        "model confusion",
-        "model show",
-        "model confusion --classifier all",
-    ] {
-        let arguments: Vec<&str> = line.split(' ').chain([file.as_str()]).collect();
-        let run = run_in("C", &arguments, b"");
-        assert_eq!(run.status, Some(0), "{}", run.stderr);
-        assert!(run.stdout.is_ascii(), "{}", run.stdout);
-    }
-}
-
 /// A table of 20,000 shapes would take more than 12 GB.
 #[test]
 fn the_table_of_pairs_is_limited() {
@@ -864,26 +790,16 @@ fn the_table_of_pairs_is_limited() {
     fs::write(place.path("many.jsonl"), lines).expect("written");
     let train = "model train many.jsonl --quiet --out";
     place.done(&format!("{train} many.npz --positions 1 --angle 0"));
-    // The second shard is not read: it is of another grid.
-    for shard in 1..=2 {
-        let grid = format!("--positions 2 --angle {shard} --shard {shard}/2");
-        place.done(&format!("{train} many-{shard}.npz {grid}"));
-    }
     for (line, table) in [
         ("model confusion many.npz --pairs", "--pairs"),
         ("model confusion many.npz", "confusion matrix"),
         ("model confusion many.npz --json", "confusion matrix"),
         ("model confusion many.npz --given na", "confusion matrix"),
-        (
-            "merge many-1.npz many-2.npz --json --quiet --out merged.npz",
-            "confusion matrix",
-        ),
     ] {
         let run = place.run(line, "");
         let message = format!("{table}: the model has 4097 shapes (allowed: up to 4096)");
         refused(&run, 1, &message);
     }
-    assert!(!Path::new(&place.path("merged.npz")).exists());
     // A drawing is limited to fewer shapes. This is found before the file that exists, and so before the work.
     let lines: String = (0..65).map(line).collect();
     place.write("65.jsonl", &lines);
@@ -936,19 +852,6 @@ fn files_that_cannot_be_used_are_refused_before_any_work() {
     let run = place.run("model train missing.jsonl --out x.npz", "");
     let message = "missing.jsonl: cannot read: no such file or folder";
     refused(&run, 1, message);
-    std::os::unix::fs::symlink("loop", place.path("loop")).expect("a link");
-    for line in [
-        "model train loop --out x.npz",
-        "model confusion loop",
-        "recognise washer --model loop",
-    ] {
-        let run = place.run(line, "");
-        let message = "Too many levels of symbolic links";
-        assert!(run.stderr.contains(message), "{line}: {}", run.stderr);
-    }
-    let run = place.run("model train parts.jsonl/ --out x.npz", "");
-    let message = "parts.jsonl/: cannot read: not a folder";
-    refused(&run, 1, message);
     for shard in ["1/2", "2/2"] {
         let out = format!("part-{}.npz", &shard[..1]);
         place.done(&format!(
@@ -964,27 +867,6 @@ fn files_that_cannot_be_used_are_refused_before_any_work() {
         "model.csv: expected a name that ends in .npz, for a model",
     );
     assert_eq!(place.read("model.csv"), b"kept");
-    // An atlas has other keys than a model.
-    place.done("sweep rectangle --length 3 --width 2 --angle 0 --atlas atlas.npz --quiet");
-    let run = place.run("merge atlas.npz part-2.npz --out all.npz --quiet", "");
-    assert_eq!(run.status, Some(1));
-    let kinds = "part-2.npz: a model, but atlas.npz is an atlas";
-    assert!(run.stderr.contains(kinds), "{}", run.stderr);
-}
-
-/// `.` has no name of its own to derive another from: the models are placed beside the folder that it stands for.
-#[test]
-fn the_models_of_a_library_named_dot_are_beside_its_folder() {
-    let place = Place::new();
-    let folder = place.0.path().join("library");
-    fs::create_dir(&folder).expect("a folder");
-    let line = format!("--library . model train ../parts.jsonl --name p {COARSE}");
-    let mut program = program(&line.split_whitespace().collect::<Vec<_>>(), "C.UTF-8");
-    program.current_dir(&folder);
-    let run = finish(program.spawn().expect("it starts"), b"");
-    assert_eq!(run.status, Some(0), "{}", run.stderr);
-    assert!(place.0.path().join("models/p.npz").exists());
-    place.done("model show p");
 }
 
 #[test]
@@ -1025,20 +907,8 @@ fn flags_that_would_be_ignored_are_refused() {
             "--neighbours has no effect with --classifier z",
         ),
         (
-            "model confusion figures --classifier knn --templates 3",
-            "--templates has no effect with --classifier knn",
-        ),
-        (
-            "model confusion figures --classifier template --given na",
-            "--given has no effect with --classifier template",
-        ),
-        (
             "model confusion figures --given na --round cg_cd=0.01",
             "--round has no effect for cg_cd, which --given does not name",
-        ),
-        (
-            "model confusion figures --given cg_cd --round cg_cd=0.5 --round cg_cd=0.1",
-            "--round has no effect for cg_cd, which has a step already",
         ),
         (
             "model train a.jsonl --out a.npz --positions 10 --x0 5 --y0 5",
@@ -1049,12 +919,8 @@ fn flags_that_would_be_ignored_are_refused() {
     }
     for line in [
         "model confusion figures --force",
-        "model confusion figures --touches 10",
-        "model separate figures --scale 1 --force",
         "model confusion figures --dead 4 --matrix 16x16 --touches 50 --pairs",
-        "model confusion figures --dead 4 --classifier knn",
         "model confusion figures --neighbours 3 --greedy",
-        "model confusion figures --force --pairs",
     ] {
         misused(line, "the following required arguments were not provided");
     }
@@ -1088,10 +954,6 @@ fn impossible_requests_are_refused_with_the_reason() {
     assert!(run.stderr.contains("parts.npz"), "{}", run.stderr);
     place.done("model show PARTS");
     for (line, message) in [
-        (
-            "model separate parts --pitch 0:2:1",
-            "--pitch 0 is out of range (allowed: above 0, up to 1000)",
-        ),
         (
             "model separate parts --pitch 1000:2000:1000",
             "--pitch 2000 is out of range (allowed: above 0, up to 1000)",
@@ -1130,29 +992,4 @@ fn the_name_of_a_written_file_stays_on_its_line() {
         said.starts_with("written: a\\u{a}right 100 %.npz\n"),
         "{said}"
     );
-}
-
-#[test]
-fn a_folder_and_a_fifo_in_place_of_a_set_are_told_apart() {
-    let place = Place::new();
-    fs::create_dir(place.0.path().join("parts")).expect("made");
-    let train = |what: &str| format!("model train {what} {COARSE} --out m.npz");
-    let said = "no shape named \"parts\"; there is a folder of this name, but a set is a file";
-    refused(&place.run(&train("parts"), ""), 1, said);
-    let pipe = place.0.path().join("ff");
-    if super::wait::fifo(&pipe) {
-        let writer = std::thread::spawn(move || fs::write(pipe, PARTS));
-        place.done(&train("ff"));
-        writer.join().expect("ended").expect("written");
-    }
-    for weight in ["0", "-1"] {
-        let line = format!("{{\"name\":\"a\",\"imprint\":[\"#\"],\"weight\":{weight}}}\n");
-        place.write("w.jsonl", &line);
-        let run = place.run(&train("w.jsonl"), "");
-        let said = format!("weight: invalid value: integer `{weight}`, expected a nonzero u32\n");
-        assert!(run.stderr.ends_with(&said), "{}", run.stderr);
-    }
-    let run = place.run("sweep rectangle --x0 5 --y0 5 --atlas none/a.npz", "");
-    let said = "none/a.npz: cannot write: no such folder";
-    refused(&run, 1, said);
 }

@@ -470,26 +470,15 @@ fn the_seven_figures_are_built_in() {
     assert!(card.contains("hexagon: hexagon side 4.00"), "{card}");
 }
 
-/// The message of the command line quotes the number, so what follows does not.
-#[test]
-fn a_noise_out_of_range_is_quoted_once() {
-    misused(
-        "recognise - --noise 0.7",
-        "invalid value '0.7' for '--noise <E>': expected a probability from 0 to below 0.5\n",
-    );
-}
-
 /// Each of these lines is refused before a built-in set is trained.
 #[test]
 fn mistyped_names_are_refused_before_training() {
     let place = place();
     place.write("there.svg", "");
     for line in [
-        "recognise nowhere",
         "recognise square.txt --noise 0.01 --mask nowhere",
         "frames nowhere --all --at-least 1 --model figures",
         "model confusion figures --export there.svg",
-        "model confusion figures --classifier all --export nowhere.svg",
         "model confusion figures --noise 0.1 --dead 4000",
     ] {
         let arguments: Vec<&str> = line.split(' ').collect();
@@ -505,9 +494,6 @@ fn mistyped_names_are_refused_before_training() {
         let is_trained = fs::exists(place.path("cache")).expect("it can be looked at");
         assert!(!is_trained, "{line}");
     }
-    let run = place.run("recognise square.txt --noise 0.01 --mask there.svg", "");
-    let message = "error: --mask there.svg: ";
-    assert!(run.stderr.starts_with(message), "{}", run.stderr);
 }
 
 /// One thread only: every further thread has a stack, which is counted, too.

@@ -515,18 +515,3 @@ fn remedy(
         (false, false) => "use smaller shapes",
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn without_a_folder_the_built_in_models_are_listed() {
-        let shelf = Shelf::new(None, false);
-        let text = list(false, &shelf, Charset::Unicode).expect("listed");
-        assert_eq!(
-            text,
-            "figures: built in\nfigures-30: built in\nshapes: built in\n"
-        );
-    }
-}

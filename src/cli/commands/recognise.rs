@@ -503,8 +503,6 @@ impl<'a> FrameNamer<'a> {
 
 #[cfg(test)]
 mod tests {
-    use std::fmt::Write as _;
-
     use super::*;
 
     #[test]
@@ -514,41 +512,5 @@ mod tests {
         assert!(!is_line(b"{\"format\":\"taxel-shape/1\"}\n"));
         assert!(!is_line(b"##..\n"));
         assert!(!is_line(b"{\n"));
-    }
-
-    #[test]
-    fn the_error_of_a_line_says_what_is_wrong() {
-        let error = |line: &str| {
-            RecogniseLine::read(line.as_bytes())
-                .err()
-                .unwrap_or_default()
-        };
-        let mut text = String::new();
-        for line in [
-            "{}",
-            "{\"imprint\":[\"##\",\"#\"]}",
-            "{\"touches\":[[\"##\"],[\"x\"]]}",
-            "{\"touches\":[]}",
-            "{\"frame\":3,\"rule\":null,\"imprint\":null}",
-            "{\"imprint\":null,\"touches\":[[\"##\"]]}",
-            "{\"figure\":\"hexagon\",\"side\":3,\"x0\":2,\"y0\":2}",
-            "{\"picture\":\"washer\",\"x0\":2}",
-            "{\"name\":\"ring\",\"picture\":\"washer\"}",
-        ] {
-            let _ = writeln!(text, "{}", error(line));
-        }
-        assert_eq!(
-            text,
-            "expected exactly one of the keys frame (with values), imprint, touches\n\
-             imprint: row 2 has 1 character, expected 2 as in the first row\n\
-             touches, number 2: row 1, column 1: found 'x', expected '#' or '.'\n\
-             touches: empty, expected at least one\n\
-             imprint: null, as of a frame without a threshold; set one where the frame is read, such as \
-             --at-least\n\
-             expected exactly one of the keys frame (with values), imprint, touches\n\
-             expected exactly one of the keys frame (with values), imprint, touches; if this is a list of poses, use taxel batch\n\
-             expected exactly one of the keys frame (with values), imprint, touches; if this is a list of poses, use taxel batch\n\
-             expected exactly one of the keys frame (with values), imprint, touches; if this is a set of shapes, use taxel model train\n"
-        );
     }
 }

@@ -257,30 +257,3 @@ impl<'a> SourceReports<'a> {
         })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use taxel_files::formats::recording::RecordingFormat;
-
-    use super::*;
-
-    #[test]
-    fn a_recording_that_is_not_a_stream_comes_with_advice_for_its_source() {
-        for (source, expected) in [
-            (
-                FrameSource::Fifo("pipe".into()),
-                "pipe: a recording (npy), not a stream; save it to a file, then type taxel frames FILE",
-            ),
-            (
-                FrameSource::File("a.npy".into()),
-                "a.npy: a recording (npy), not a stream; watch it again when it is complete",
-            ),
-        ] {
-            let mut note = |_: &str| ();
-            let reports = SourceReports::new(&source, &AcquireOptions::default(), &mut note);
-            let format = RecordingFormat::Npy;
-            let error = reports.damage(AcquireError::NotStream { format });
-            assert_eq!(error.to_string(), expected);
-        }
-    }
-}

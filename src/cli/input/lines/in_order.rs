@@ -151,57 +151,8 @@ fn hand_over<T, R, E>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
     use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     use std::time::Duration;
-
-    #[test]
-    fn results_come_in_the_order_of_the_items() {
-        for jobs in [1, 2, 5] {
-            let mut items = 0..1000_u64;
-            let mut results = Vec::new();
-            let slow = |item: u64| {
-                // The items in between are done first.
-                if item.is_multiple_of(7) {
-                    thread::yield_now();
-                }
-                item * item
-            };
-            let done = in_order(
-                jobs,
-                move || items.next(),
-                || slow,
-                |result| {
-                    results.push(result);
-                    Ok::<_, ()>(())
-                },
-            );
-            assert_eq!(done, Ok(()));
-            assert!(results.into_iter().eq((0..1000).map(|item| item * item)));
-        }
-    }
-
-    #[test]
-    fn a_bounded_number_is_under_way() {
-        let given = Arc::new(AtomicUsize::new(0));
-        let counter = Arc::clone(&given);
-        let mut taken = 0;
-        let done = in_order(
-            2,
-            move || {
-                let number = counter.fetch_add(1, Ordering::SeqCst);
-                (number < 10_000).then_some(number)
-            },
-            || |item| item,
-            |_| {
-                let ahead = given.load(Ordering::SeqCst) - taken;
-                taken += 1;
-                assert!(ahead <= 2 * UNDER_WAY, "{ahead} items are under way");
-                Ok::<_, ()>(())
-            },
-        );
-        assert_eq!((done, taken), (Ok(()), 10_000));
-    }
 
     /// Each worker finishes its current item, but does not start a queued one.
     #[test]

@@ -454,38 +454,4 @@ mod tests {
             [(1, Some(MAX_LINE)), (2, None), (3, Some(1)), (4, None)]
         );
     }
-
-    #[test]
-    fn blocks_of_a_long_input_are_longer() {
-        let mut blocks = BlockReader::new(io::repeat(b'\n'), Arc::default());
-        let mut total = 0;
-        for _ in 0..1000 {
-            let block = blocks.next_block().expect("endless").expect("read");
-            let length = block.text.len();
-            let part = usize::try_from(total / PART).expect("small");
-            assert!((CHUNK..=LARGE_CHUNK.min(part.max(CHUNK))).contains(&length));
-            total += length as u64;
-        }
-        assert!(total > 500 * LARGE_CHUNK as u64, "{total} bytes");
-    }
-
-    #[test]
-    fn a_buffer_is_used_again_and_empty() {
-        let buffers = Buffers::default();
-        let mut buffer = buffers.take();
-        buffer.extend_from_slice(b"an answer");
-        let (place, capacity) = (buffer.as_ptr(), buffer.capacity());
-        buffers.give_back(buffer);
-        let again = buffers.take();
-        assert_eq!((again.as_ptr(), again.capacity()), (place, capacity));
-        assert!(again.is_empty());
-        assert_eq!(buffers.take().capacity(), 0, "nothing else is kept");
-    }
-
-    #[test]
-    fn a_very_large_buffer_is_not_kept() {
-        let buffers = Buffers::default();
-        buffers.give_back(Vec::with_capacity(2 * LARGEST));
-        assert_eq!(buffers.take().capacity(), 0);
-    }
 }
