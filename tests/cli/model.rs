@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
+use super::Run;
 use super::finish;
 use super::misused;
 use super::program;
@@ -14,7 +15,6 @@ use super::python_has;
 use super::refused;
 use super::sweep::{folder, names};
 use super::taxel;
-use super::{Run, run_in};
 
 /// Two shapes that no touch confuses.
 pub(crate) const PARTS: &str = "{\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}\n\
