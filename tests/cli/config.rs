@@ -3,9 +3,8 @@
 use taxel::cli::settings::file::Config;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::{App, Options};
-use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
-use taxel::tui::keys::keymap::actions;
+use taxel::tui::keys::keymap::{Context, actions};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 

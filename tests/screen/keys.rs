@@ -1,9 +1,8 @@
 //! The effects of keys: each test presses keys, then checks the texts on the screen.
 
 use taxel::tui::app::message::Message;
-use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
-use taxel::tui::keys::keymap::{Keymap, help};
+use taxel::tui::keys::keymap::{Context, Keymap, help};
 
 use crate::session::{hides, session, shows, then};
 

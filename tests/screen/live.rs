@@ -8,8 +8,7 @@ use taxel::imprint::Imprint;
 use taxel::matrix::Matrix;
 use taxel::recognition::Noise;
 use taxel::sensor::MatrixSize;
-use taxel::tui::app::message::Message;
-use taxel::tui::app::worker_event::WorkerEvent;
+use taxel::tui::app::message::{Message, WorkerEvent};
 use taxel::tui::live::message::{
     FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, RecordedFrames, SourceState,
     WatchRequest,

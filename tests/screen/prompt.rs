@@ -1,8 +1,8 @@
 //! The command line at the foot of the screen, and help everywhere.
 
 use taxel::tui::keys::action::Action;
-use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
+use taxel::tui::keys::keymap::Context;
 use taxel::tui::prompt::commands::{commands, find};
 
 use crate::session::{hides, press, session, shows, then};

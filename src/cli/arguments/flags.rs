@@ -33,7 +33,7 @@ use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::Existing;
 use crate::sweep::{Shard, ShardError};
-use crate::tui::widget::columns::broken;
+use crate::tui::widget::write::broken;
 
 pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
     Arg::new(name)

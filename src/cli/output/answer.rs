@@ -18,7 +18,7 @@ use crate::formats::value::percent;
 use crate::imprint::Imprint;
 use crate::parameter::number::{differing, short};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest, Noise, SearchMethod};
-use crate::tui::widget::dots::DotCanvas;
+use crate::tui::widget::plot::DotCanvas;
 
 const SHOWN: usize = 8;
 

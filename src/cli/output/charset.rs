@@ -10,8 +10,8 @@ use std::io::{self, Write};
 use std::iter;
 
 use crate::quote::is_invisible;
-use crate::tui::widget::columns::width;
 use crate::tui::widget::theme::spelling;
+use crate::tui::widget::write::width;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Charset {

@@ -13,7 +13,7 @@ use crate::parameter::number::share;
 use crate::recognition::{
     ChosenDescriptor, Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation,
 };
-use crate::tui::widget::columns::width;
+use crate::tui::widget::write::width;
 
 pub(crate) struct EvaluationJson<'a> {
     pub(crate) evaluation: &'a Evaluation,

@@ -12,7 +12,7 @@ use taxel_files::formats::value::{self, characters, fitting};
 
 use crate::cli::output::charset::Charset;
 use crate::formats::value::decimal;
-use crate::tui::widget::dots::{DOTS, DotCanvas, glyph};
+use crate::tui::widget::plot::{DOTS, DotCanvas, glyph};
 use crate::tui::widget::theme::Theme;
 
 const SIZE: (u16, u16) = (60, 12);

@@ -24,9 +24,8 @@ use crate::parameter::{Parameter, ParameterError};
 use crate::quote::{did_you_mean, shortened_message};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::{Key, parse};
-use crate::tui::keys::keymap::{Change, Keymap, KeymapError, actions};
+use crate::tui::keys::keymap::{Change, Context, Keymap, KeymapError, actions};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 pub(crate) const AUTO: &str = "auto";

@@ -20,8 +20,7 @@ use crate::formats::file::{is_missing, system_reason};
 use crate::parameter::Parameter;
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::storage::location;
-use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
+use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 pub(crate) const VARIABLE: &str = "TAXEL_CONFIG";

@@ -16,7 +16,7 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::state::{App, MoveKind, Notice};
-use crate::tui::compare::page::{Comparison, heading};
+use crate::tui::compare::{Comparison, heading};
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::runtime::effect::{Effect, FileRequest};

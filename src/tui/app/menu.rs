@@ -12,19 +12,18 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
-use crate::tui::app::notice;
 use crate::tui::app::state::{App, NarrowPane};
+use crate::tui::app::status;
+use crate::tui::app::view::Panes;
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
 use crate::tui::keys::key::Key;
-use crate::tui::keys::keymap::Keymap;
-use crate::tui::matrix::usable::is_usable;
-use crate::tui::widget::number::narrow;
+use crate::tui::keys::keymap::{Binding, Context, Keymap};
+use crate::tui::matrix::update::is_usable;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
+use crate::tui::widget::write::narrow;
 
 #[derive(Clone, Debug)]
 pub struct Item<'a> {
@@ -131,7 +130,7 @@ fn useful(app: &App, row: &Binding) -> bool {
     let Some((page, panes)) = page.zip(app.panes()) else {
         return true;
     };
-    let area = notice::page_area(app, &panes, page);
+    let area = status::page_area(app, &panes, page);
     messages.any(|message| page.has_use_for(message, area))
 }
 

@@ -4,16 +4,19 @@
 //! answer with messages, too. A script sends the same ones.
 
 use std::sync::Arc;
+use std::time::Duration;
+
+use taxel_core::pose::{PoseGrid, PoseIndex};
+use taxel_files::storage::{Expected, LibraryEntry, LoadedShape};
 
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::tui::app::document::Document;
-use crate::tui::app::library::{LibraryEvent, LibraryRequest};
-use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::explore::message::ExploreMessage;
+use crate::tui::explore::angles::AngleCurve;
+use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
 use crate::tui::keys::key::{Arrow, Key};
-use crate::tui::live::message::{LiveMessage, WatchRequest};
-use crate::tui::recognise::state::RecogniseMessage;
+use crate::tui::live::message::{LiveEvent, LiveMessage, WatchRequest};
+use crate::tui::recognise::state::{RecogniseMessage, RecognitionEvent};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
@@ -166,4 +169,82 @@ pub enum Erase {
     Before,
     Under,
     All,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    Load,
+    Delete,
+    Picture,
+    Compare,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum LibraryRequest {
+    List,
+    Models,
+    Trash,
+    Read(Vec<String>),
+    Named(Purpose, String),
+    Store(Box<StoredShape>, Expected),
+    Deletable(String),
+    Remove(String),
+    Restore(Option<String>),
+}
+
+impl LibraryRequest {
+    pub fn is_change(&self) -> bool {
+        matches!(self, Self::Store(..) | Self::Remove(_) | Self::Restore(_))
+    }
+}
+
+/// Errors are sentences.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LibraryEvent {
+    List(Result<Vec<LibraryEntry>, String>),
+    Models(Vec<String>),
+    Trash(Result<Vec<String>, String>),
+    Read(Vec<(String, Result<LoadedShape, String>)>),
+    Named(Purpose, Result<Box<LoadedShape>, String>),
+    Stored(String, u64),
+    NotStored(String),
+    /// The shape that was not stored because its file holds something else, the stamp of that content, and the reason
+    /// in words.
+    Differs(Box<StoredShape>, u64, String),
+    /// The name of a shape that can be deleted, or the reason why it cannot.
+    Deletable(Result<String, String>),
+    Removed(String),
+    Restored(String),
+    Recovered(Box<StoredShape>),
+    Found(Leftover),
+    GivenUp(String, Option<Leftover>),
+    NotGivenUp(String),
+    Failed(String),
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Leftover {
+    pub what: String,
+    pub waiting: usize,
+}
+
+/// An event of a worker. It carries the number of its work; events of work that is no longer waited for are dropped.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WorkerEvent {
+    Progress(u64, SweepProgress),
+    Estimate(Box<PoseGrid>, Duration),
+    Answered,
+    Waiting(Option<String>),
+    /// The request to the disk that the user no longer waits for, in a few words.
+    GivenUp(String),
+    /// A sweep is over, at its end or because it was stopped.
+    Swept(u64, Arc<Findings>),
+    Angles(Arc<Findings>, PoseIndex, Result<Arc<AngleCurve>, String>),
+    Written(u64, String),
+    /// The file was not written, because a file of that name exists.
+    Exists(u64, String),
+    Failed(u64, String),
+    Recognition(RecognitionEvent),
+    Live(u64, LiveEvent),
+    Refused(String),
 }

@@ -10,8 +10,8 @@ use crate::tui::app::change::{change, settle};
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::app::state::{App, NarrowPane};
-use crate::tui::app::{menu, notice};
-use crate::tui::widget::number::taxels;
+use crate::tui::app::{menu, status};
+use crate::tui::widget::write::taxels;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Target {
@@ -108,7 +108,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         let hidden = page.slot() == Slot::Panel
             && panes.panel.is_none()
             && app.narrow_pane == NarrowPane::Matrix;
-        let area = notice::page_area(app, &panes, page);
+        let area = status::page_area(app, &panes, page);
         if inside(area) && !hidden {
             return page.click(area, place).map(Target::Page);
         }
@@ -133,7 +133,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::app::library::LibraryEvent;
+    use crate::tui::app::message::LibraryEvent;
     use crate::tui::app::state::Options;
     use crate::tui::app::update::update;
 

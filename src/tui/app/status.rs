@@ -10,19 +10,22 @@
 //! notices, and on the lowest the first line is missing. A notice that needs several lines grows upwards.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Position;
+use ratatui::layout::{Position, Rect};
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::Sensor;
 
 use crate::description::Descriptor;
 use crate::formats::value;
+use crate::tui::app::change::is_other;
+use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
-use crate::tui::app::layout::Panes;
 use crate::tui::app::menu;
-use crate::tui::app::notice;
 use crate::tui::app::page::{Page, Slot};
-use crate::tui::app::state::App;
-use crate::tui::app::title::name;
+use crate::tui::app::state::{App, Notice};
+use crate::tui::app::view::Panes;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Context;
+use crate::tui::live::update::recording;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
@@ -55,8 +58,8 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     }
     let cursor = prompt.and_then(|page| page.draw(theme, app.keymap(), buffer, panes.notice));
     let top = app.top_page();
-    if let Some((text, role)) = notice::notice(app, panes, top) {
-        let block = notice::block(app, panes, &text);
+    if let Some((text, role)) = notice(app, panes, top) {
+        let block = block(app, panes, &text);
         write::clear(buffer, block);
         write::wrapped(buffer, block, theme, &text, role);
     }
@@ -151,4 +154,127 @@ fn taxel(app: &App, seen: &Reading) -> String {
     let mut pieces = vec![place, covered, state, all, step];
     pieces.retain(|piece| !piece.is_empty());
     pieces.join("  ")
+}
+
+/// A question stands after the notice.
+pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
+    if let Some(Dialog::Question(question)) = app.dialogs.last() {
+        return Some((asked(app, panes, question), Role::Error));
+    }
+    let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
+    let notice = app.notice.as_ref().map(|notice| match notice {
+        Notice::Info(text) => (text.clone(), Role::Key),
+        Notice::Refusal(text) | Notice::Failure(text) => (format!("! {text}"), Role::Error),
+    });
+    let waiting = || Some((app.waiting()?.to_owned(), Role::Key));
+    let notice = notice.or_else(waiting);
+    match (notice, top.and_then(Page::alarm)) {
+        (Some((text, Role::Error)), Some(alarm)) => Some((format!("{text}; {alarm}"), Role::Error)),
+        // The mark of an error stands before the error alone.
+        (Some((text, _)), Some(alarm)) => Some((format!("{text}; ! {alarm}"), Role::Error)),
+        (notice, _) => notice.or(remark),
+    }
+}
+
+/// Returns a question with its answers, after the notice. Where there is too little room, the notice is left out,
+/// then the sentences before the question: the answers are always there.
+fn asked(app: &App, panes: &Panes, question: &Question) -> String {
+    let answers = question.answers(app.keymap());
+    // A question without sentences before it may be too long itself: it has a name in it.
+    let (start, end) = match question.about.as_str() {
+        "" => (&*question.text, answers),
+        about => (about, format!("{} {answers}", question.text)),
+    };
+    let room = panes.notice.bottom().saturating_sub(panes.body.y);
+    let fits = |text: &String| lines(app, panes, text) <= usize::from(room);
+    let said = match &app.notice {
+        Some(Notice::Info(said) | Notice::Refusal(said) | Notice::Failure(said)) => {
+            format!("{said}. ")
+        }
+        None => String::new(),
+    };
+    let texts = [format!("{said}{start} {end}"), format!("{start} {end}")];
+    texts.into_iter().find(fits).unwrap_or(end)
+}
+
+fn lines(app: &App, panes: &Panes, text: &str) -> usize {
+    write::broken(&app.theme().text(text), usize::from(panes.notice.width)).len()
+}
+
+/// A prompt keeps its line, and the notice stands above it.
+pub fn block(app: &App, panes: &Panes, text: &str) -> Rect {
+    let is_typed = |page: &dyn Page| page.slot() == Slot::Prompt;
+    let is_typed = app.top_page().is_some_and(is_typed);
+    let last = Rect {
+        y: panes.notice.y - u16::from(is_typed),
+        ..panes.notice
+    };
+    let lines = lines(app, panes, text);
+    let room = last.bottom().saturating_sub(panes.body.y);
+    let height = u16::try_from(lines).unwrap_or(room).clamp(1, room.max(1));
+    Rect {
+        y: last.bottom() - height,
+        height,
+        ..last
+    }
+}
+
+pub fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
+    let area = panes.area(page.slot());
+    if !page.makes_room() {
+        return area;
+    }
+    let top = app.top_page();
+    let over = top.filter(|top| matches!(top.slot(), Slot::Prompt | Slot::Question));
+    let text = notice(app, panes, over.or(Some(page))).map(|(text, _)| text);
+    let end = text.map_or(area.bottom(), |text| block(app, panes, &text).y);
+    Rect {
+        height: end.min(area.bottom()).saturating_sub(area.y),
+        ..area
+    }
+}
+
+pub fn title(app: &App) -> String {
+    let sensor = &app.shown().sensor;
+    let pitch = sensor.pitch_mm();
+    let is_set = pitch != sensor.default_value(Parameter::Pitch);
+    // The page of the recording is closed or covered.
+    let is_recording = recording(app).is_some();
+    let parts = [
+        Some(sensor.size().to_string()),
+        Some(format!("threshold {}", threshold(sensor))),
+        is_set.then(|| format!("pitch {pitch} mm")),
+        name(app),
+        is_recording.then(|| "recording".to_owned()),
+    ];
+    // In ASCII a dot would be an asterisk, and that is the mark of changes.
+    let between = if app.theme().ascii { ", " } else { " · " };
+    parts
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(between)
+}
+
+/// Returns the name of the document on the matrix, with `*` if it was changed since it was saved. None if it has no
+/// name, and if a form shows something else in place of it.
+pub(in crate::tui) fn name(app: &App) -> Option<String> {
+    let stored = app.stored_name()?;
+    if !app.dialogs.is_empty() && is_other(app, app.shown()) {
+        return None;
+    }
+    let changed = if app.is_changed() { "*" } else { "" };
+    Some(format!("{stored}{changed}"))
+}
+
+fn threshold(sensor: &Sensor) -> String {
+    let (exact, short) = (
+        sensor.threshold().to_string(),
+        format!("{:.2}", sensor.threshold()),
+    );
+    if exact.len() > short.len() {
+        exact
+    } else {
+        short
+    }
 }

@@ -5,16 +5,14 @@
 
 use crate::tui::app::change::{from_prompt, give_prompt, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
-use crate::tui::app::message::{FileEvent, Message};
+use crate::tui::app::message::{FileEvent, Message, WorkerEvent};
 use crate::tui::app::mouse;
 use crate::tui::app::state::{App, Notice, RunState};
-use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::help::page::Help;
+use crate::tui::help::Help;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Key;
+use crate::tui::keys::keymap::Context;
 use crate::tui::live::message::LiveMessage;
-use crate::tui::matrix::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::{
     compare, explore, form, help, history, live, matrix, prompt, recognise, search, shapes,
@@ -81,7 +79,7 @@ fn on_event(app: &mut App, event: Message) -> Option<Effect> {
             let watch = LiveMessage::Watch(request);
             answered(app, |app| live::update::act(app, &watch))
         }
-        Message::File(answer) => answered(app, |app| files::on_file(app, answer)),
+        Message::File(answer) => answered(app, |app| matrix::update::on_file(app, answer)),
         Message::Worker(event @ WorkerEvent::Recognition(_)) => {
             answered(app, |app| on_worker(app, event))
         }
@@ -179,15 +177,15 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         _ => {}
     }
     match dialog {
-        Dialog::Form(form) => form::update::update(app, form, message),
+        Dialog::Form(form) => form::view::update(app, form, message),
         Dialog::List(list) => shapes::update::update(app, list, message),
         Dialog::Name(name) => prompt::update::in_name(app, name, message),
         Dialog::Command(command) => prompt::update::in_command(app, command, message),
         Dialog::Question(question) => at_question(app, question, &message),
-        Dialog::Help(help) => help::update::in_help(app, help, &message),
-        Dialog::Search(dialog) => search::update::in_search(app, dialog, &message),
-        Dialog::Compare(page) => compare::update::in_comparison(app, page, &message),
-        Dialog::History(list) => history::update::in_history(app, list, &message),
+        Dialog::Help(help) => help::in_help(app, help, &message),
+        Dialog::Search(dialog) => search::in_search(app, dialog, &message),
+        Dialog::Compare(page) => compare::in_comparison(app, page, &message),
+        Dialog::History(list) => history::in_history(app, list, &message),
         Dialog::Ranges(form) => explore::work::in_ranges(app, form, message),
         Dialog::Running(running) => explore::work::in_running(app, running, &message),
         Dialog::Results(results) => explore::update::in_results(app, results, message),

@@ -24,16 +24,17 @@
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::imprint::Imprint;
 
-use crate::tui::app::layout::{Panes, SMALLEST};
+use crate::tui::app::menu;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, NarrowPane};
-use crate::tui::app::title::title;
-use crate::tui::app::{menu, notice, status};
+use crate::tui::app::status::{self, title};
+use crate::tui::matrix::layout::{RULER, TaxelSize};
 use crate::tui::matrix::panel;
 use crate::tui::matrix::view::MatrixView;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
+use crate::tui::widget::write::{self, below, right_of};
 
 pub fn view(app: &App, frame: &mut Frame<'_>) {
     if let Some(position) = draw(app, frame.buffer_mut()) {
@@ -76,7 +77,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
                     panel(buffer, area);
                 }
             }
-            let area = notice::page_area(app, &panes, page);
+            let area = status::page_area(app, &panes, page);
             write::clear(buffer, area);
             cursor = page.draw(theme, app.keymap(), buffer, area);
         }
@@ -98,4 +99,142 @@ fn too_small(theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let text = theme.text("×");
     let text = format!("the screen is too small: {width} {text} {height} at least");
     write::wrapped(buffer, area, theme, &text, Role::Error);
+}
+
+const PANEL: u16 = 30;
+
+const BOTH: u16 = RULER + 2 * 16 + 1 + PANEL;
+
+const WIDE_PANEL: u16 = 44;
+
+const FORM: u16 = 22;
+
+const WIDE_FORM: u16 = 40;
+const NARROW_FORM: u16 = 32;
+
+const LOW_FORM: u16 = 8;
+
+const LONGEST_FORM: u16 = 18;
+const LOW_PANEL: u16 = 10;
+
+/// On a lower screen matrix and descriptors each have the screen to themselves.
+const FULL: u16 = 24;
+
+pub const SMALLEST: (u16, u16) = (40, 12);
+
+/// A line without room is empty.
+#[derive(Clone, Copy, Debug)]
+pub struct Panes {
+    pub menu: Rect,
+    pub body: Rect,
+    /// Pages over the whole body cover it.
+    pub title: Rect,
+    pub content: Rect,
+    pub matrix: Rect,
+    pub panel: Option<Rect>,
+    pub form: Rect,
+    pub form_panel: Option<Rect>,
+    pub source: Rect,
+    pub taxel: Rect,
+    pub notice: Rect,
+    pub hints: Rect,
+}
+
+impl Panes {
+    /// With `halves`, two taxels may share a character.
+    pub fn of(area: Rect, imprint: &Imprint, halves: bool) -> Option<Self> {
+        if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
+            return None;
+        }
+        let is_full = area.height >= FULL;
+        let foot = if is_full { 4 } else { 2 };
+        let line = |from_bottom: u16| Rect {
+            y: area.bottom() - from_bottom,
+            height: 1,
+            ..area
+        };
+        let absent = Rect { height: 0, ..area };
+        let body = Rect {
+            y: area.y + 1,
+            height: area.height - 1 - foot,
+            ..area
+        };
+        let title = Rect {
+            height: u16::from(is_full),
+            ..body
+        };
+        let content = below(body, title.height);
+        let width = matrix_width(content, imprint, halves);
+        let matrix = Rect { width, ..content };
+        let left = (matrix.right() + 1).min(content.right());
+        let beside = right_of(content, left);
+        let (form, form_panel) = form(content, beside);
+        Some(Self {
+            menu: Rect { height: 1, ..area },
+            body,
+            title,
+            content,
+            matrix,
+            panel: (is_full && beside.width >= PANEL).then_some(beside),
+            form,
+            form_panel,
+            source: if is_full { line(foot) } else { absent },
+            taxel: line(if is_full { 3 } else { 2 }),
+            notice: line(2),
+            hints: line(1),
+        })
+    }
+
+    pub fn area(&self, slot: Slot) -> Rect {
+        match slot {
+            Slot::Screen => Rect {
+                height: self.notice.y.saturating_sub(self.body.y),
+                ..self.body
+            },
+            Slot::Body => self.body,
+            Slot::Form => self.form,
+            Slot::Panel => self.panel.unwrap_or(self.content),
+            Slot::Prompt | Slot::Question => self.notice,
+        }
+    }
+}
+
+/// Square taxels come first, as large as there is room for, then smaller ones that show more of the matrix.
+fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
+    let beside = |panel: u16| Rect {
+        width: content.width.saturating_sub(1 + panel),
+        ..content
+    };
+    let room = if content.width >= BOTH {
+        beside(PANEL)
+    } else {
+        content
+    };
+    let fitting = |room: Rect| TaxelSize::fitting(imprint, room, halves);
+    let size = match (fitting(room), fitting(beside(WIDE_PANEL))) {
+        (TaxelSize::Square(_), large @ TaxelSize::Square(_)) => large,
+        (TaxelSize::Square(_), _) => TaxelSize::Square(1),
+        (small, _) => small,
+    };
+    size.matrix_width(imprint).min(room.width)
+}
+
+fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {
+    if beside.width < FORM {
+        let height = LOW_FORM.min(body.height);
+        let y = body.bottom() - height;
+        return (Rect { y, height, ..body }, None);
+    }
+    if beside.width > NARROW_FORM + PANEL {
+        let panel = (beside.width - 1).saturating_sub(WIDE_FORM);
+        let width = beside.width - 1 - panel.clamp(PANEL, WIDE_PANEL);
+        let panel = right_of(beside, beside.x + width + 1);
+        return (Rect { width, ..beside }, Some(panel));
+    }
+    if beside.height > LONGEST_FORM + LOW_PANEL && beside.width >= PANEL {
+        let height = LONGEST_FORM;
+        let panel = below(beside, height + 1);
+        return (Rect { height, ..beside }, Some(panel));
+    }
+    (beside, None)
 }

@@ -17,8 +17,8 @@ use crate::description::Dimension;
 use crate::formats::value::{counted, grouped, percentage};
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::results::Results;
-use crate::tui::explore::tab::{ResultsTab, choose_descriptor};
-use crate::tui::keys::binding::Context;
+use crate::tui::explore::view::{ResultsTab, choose_descriptor};
+use crate::tui::keys::keymap::Context;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 

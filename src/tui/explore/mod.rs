@@ -5,10 +5,7 @@
 //! message    requests by keys and commands, and findings of a sweep
 //! ranges     the form                                     running: work in progress
 //! results    the findings, and what is shown of them
-//! imprint_list               the list of imprints         column: the columns to sort it by
-//! export  filter  mark       the prompts for a file name, a condition and a letter
 //! prompts    handles messages in filter and mark
-//! tab        the type of a tab of the results             tabs: the table of tabs
 //! imprints  statistics  histogram  map  scatter  angles   the tabs
 //! work       from the form to the results                 update: what keys do over the results
 //! view       tabs, summary, and the tab
@@ -18,19 +15,7 @@ pub mod message;
 
 pub mod ranges;
 
-pub mod running;
-
-pub mod column;
-
-pub mod imprint_list;
-
 pub mod results;
-
-pub mod export;
-
-pub mod filter;
-
-pub mod tab;
 
 pub mod imprints;
 
@@ -43,8 +28,6 @@ pub mod map;
 pub mod scatter;
 
 pub mod angles;
-
-pub mod tabs;
 
 pub mod view;
 

@@ -11,12 +11,11 @@ use crate::imprint::Imprint;
 use crate::pose::{Axis, Pose, PoseIndex};
 use crate::sweep::SweepResult;
 use crate::touch::Plane;
-use crate::tui::explore::angles::curve::{AngleCurve, AngleSearch, zooms_of};
-use crate::tui::explore::column::ListColumn;
-use crate::tui::explore::imprint_list::ImprintList;
-use crate::tui::explore::map::visible::VisibleImprints;
-use crate::tui::explore::message::{ExploreTab, Findings, name_of};
-use crate::tui::widget::number::around;
+use crate::tui::explore::angles::{AngleCurve, AngleSearch, zooms_of};
+use crate::tui::explore::imprints::ImprintList;
+use crate::tui::explore::map::layout::VisibleImprints;
+use crate::tui::explore::message::{ExploreTab, Findings, ListColumn, name_of};
+use crate::tui::widget::write::around;
 
 const X_FEATURE: usize = 7;
 

@@ -2,7 +2,7 @@
 //! [`crate::tui::explore::prompts`].
 //!
 //! Messages that mean the same on all tabs are handled here: the tab, the descriptor, the order, the map's angle and
-//! zoom. Scrolling and selecting are left to the tab's own row in [`crate::tui::explore::tabs`].
+//! zoom. Scrolling and selecting are left to the tab's own row in [`crate::tui::explore::view`].
 
 use crate::formats::value::{counted, grouped};
 use crate::pose::Axis;
@@ -15,11 +15,10 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
-use crate::tui::explore::export::{ExportDialog, ExportKind};
-use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::message::{ExploreMessage, ExploreTab, name_of};
+use crate::tui::explore::prompts::{ExportDialog, ExportKind, FilterDialog};
 use crate::tui::explore::results::Results;
-use crate::tui::explore::tabs;
+use crate::tui::explore::view;
 use crate::tui::explore::work::{act, tab_area};
 use crate::tui::keys::action;
 use crate::tui::runtime::effect::Effect;
@@ -63,7 +62,7 @@ pub(in crate::tui) fn in_results(
             }
             let area = tab_area(app, &results);
             let before = results.map_zoom();
-            (tabs::row(results.tab()).update)(&mut results, &message, area);
+            (view::row(results.tab()).update)(&mut results, &message, area);
             if let (Message::Zoom(by), ExploreTab::Map) = (&message, results.tab())
                 && results.map_zoom() == before
             {
@@ -91,7 +90,7 @@ fn compare(app: &mut App, results: Box<Results>) {
 fn export_of(results: &Results) -> ExportDialog {
     // A slash would separate folders.
     let name = name_of(results.sweep().grid.source()).replace('/', "-");
-    let row = tabs::row(results.tab());
+    let row = view::row(results.tab());
     let name = match (row.drawing, row.table) {
         (Some(_), _) => format!("{name}-{}.svg", row.title),
         (_, Some(_)) => format!("{name}-{}.csv", row.title),
@@ -133,7 +132,7 @@ fn only_one(app: &App, results: &Results, axis: Axis) -> Option<String> {
     if !grid.axes().any(|own| own == axis) {
         return Some(format!("a figure has no {name}"));
     }
-    let here = tabs::row(results.tab()).context;
+    let here = view::row(results.tab()).context;
     let ranges = app.keymap().label(here, &action::RANGES);
     let is_only = grid.counts()[axis] == 1;
     is_only.then(|| format!("only one {name} was swept; {ranges} explores other ranges"))
@@ -245,7 +244,7 @@ pub(in crate::tui) fn in_export(
 /// The export of a sweep shows its progress, and opens the prompt again itself.
 fn export(app: &mut App, dialog: ExportDialog, name: String) -> Option<Effect> {
     let results = app.results_below()?;
-    if let Some(file) = tabs::file(results, &name, tab_area(app, results)) {
+    if let Some(file) = view::file(results, &name, tab_area(app, results)) {
         return from_prompt(app, Dialog::Export(dialog), |app| {
             write_file(app, name, file)
         });

@@ -9,6 +9,7 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_files::formats::file::has_ending;
 
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
@@ -16,17 +17,17 @@ use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::message::{ExploreMessage, ExploreTab};
 use crate::tui::explore::results::Results;
-use crate::tui::explore::statistics::StatisticsTable;
-use crate::tui::explore::tabs;
-use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::number::narrow;
+use crate::tui::explore::statistics::{self, StatisticsTable};
+use crate::tui::explore::{angles, histogram, imprints, map, scatter};
+use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
+use crate::tui::widget::write::narrow;
 
 impl Page for Results {
     fn context(&self) -> Context {
-        tabs::row(self.tab()).context
+        row(self.tab()).context
     }
 
     fn slot(&self) -> Slot {
@@ -49,9 +50,9 @@ impl Page for Results {
             };
             write::text(buffer, area, theme, &title, role);
         }
-        let summary = self.summary(tabs::row(self.tab()).filtered);
+        let summary = self.summary(row(self.tab()).filtered);
         write::text(buffer, parts.summary, theme, &summary, Role::Text);
-        (tabs::row(self.tab()).draw)(self, theme, buffer, parts.tab)
+        (row(self.tab()).draw)(self, theme, buffer, parts.tab)
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
@@ -61,11 +62,11 @@ impl Page for Results {
         if let Some((tab, ..)) = tab {
             return Some(Message::Explore(ExploreMessage::Tab(tab)));
         }
-        (tabs::row(self.tab()).click)(self, parts.tab, at)
+        (row(self.tab()).click)(self, parts.tab, at)
     }
 
     fn wheel(&self) -> Wheel {
-        tabs::row(self.tab()).wheel
+        row(self.tab()).wheel
     }
 
     /// Scrolling, turning and zooming have no use if all columns of the statistics are visible, if there is a single
@@ -122,7 +123,7 @@ impl ResultPanes {
             .into_iter()
             .zip(1_u16..)
             .map(move |(tab, number)| {
-                let text = format!(" {number} {} ", tabs::row(tab).title);
+                let text = format!(" {number} {} ", row(tab).title);
                 let left = x.min(area.right());
                 let width = narrow(text.len()).min(area.right() - left);
                 x = left + width + 1;
@@ -136,5 +137,62 @@ impl ResultPanes {
                     },
                 )
             })
+    }
+}
+
+pub fn row(tab: ExploreTab) -> &'static ResultsTab {
+    match tab {
+        ExploreTab::Imprints => &imprints::TAB,
+        ExploreTab::Statistics => &statistics::TAB,
+        ExploreTab::Histogram => &histogram::TAB,
+        ExploreTab::Map => &map::TAB,
+        ExploreTab::Scatter => &scatter::TAB,
+        ExploreTab::Angles => &angles::TAB,
+    }
+}
+
+/// None for a file that holds the results of the whole sweep.
+pub(super) fn file(results: &Results, name: &str, area: Rect) -> Option<Result<Vec<u8>, String>> {
+    let tab = row(results.tab());
+    if has_ending(name, "svg") {
+        return Some(match tab.drawing {
+            Some(drawing) => drawing(results).map(String::into_bytes),
+            None => Err(no_drawing()),
+        });
+    }
+    let table = tab.table.filter(|_| has_ending(name, "csv"))?;
+    Some(Ok(table(results, area).into_bytes()))
+}
+
+fn no_drawing() -> String {
+    let rows = ExploreTab::ALL.into_iter().map(row);
+    let drawn = rows.filter(|row| row.drawing.is_some());
+    let titles: Vec<&str> = drawn.map(|row| row.title).collect();
+    let titles = titles.join(", ");
+    format!("this page has no drawing for .svg; {titles} have one")
+}
+
+type TabDrawing = fn(&Results) -> Result<String, String>;
+
+pub(super) const NOTHING_TO_DRAW: &str = "there is nothing to draw";
+
+/// The functions get the area of the tab.
+#[derive(Debug)]
+pub struct ResultsTab {
+    pub title: &'static str,
+    pub context: Context,
+    pub filtered: bool,
+    pub drawing: Option<TabDrawing>,
+    /// The field is None for tabs with a drawing, and for the list of imprints, whose file has all imprints.
+    pub table: Option<fn(&Results, Rect) -> String>,
+    pub wheel: Wheel,
+    pub draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
+    pub click: fn(&Results, Rect, Position) -> Option<Message>,
+    pub update: fn(&mut Results, &Message, Rect),
+}
+
+pub(in crate::tui) fn choose_descriptor(results: &mut Results, message: &Message, _area: Rect) {
+    if let Some(row) = moved(results.feature_number(), message) {
+        results.choose_feature(row);
     }
 }

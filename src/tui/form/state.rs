@@ -5,6 +5,10 @@
 //! matrix shows while that field is invalid. The third one is needed because a text that becomes invalid may have
 //! been valid on the way, such as the 1 on the way to 17.
 
+use taxel_core::parameter::ParameterError;
+use taxel_core::pose::{Anchor, Axis, DecimalRange};
+use taxel_core::sensor::MatrixSize;
+
 use crate::figure::{Figure, FigureKind};
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
@@ -14,9 +18,8 @@ use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::form::fields::{ParameterField, ParameterFields};
-use crate::tui::form::memory::FormMemory;
-use crate::tui::widget::field_list::FormField;
+use crate::tui::widget::field_list::{FieldList, FormError, FormField};
+use crate::tui::widget::text_field::TextField;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum FormSubject {
@@ -302,4 +305,154 @@ fn begins_number(character: char) -> bool {
 fn new_figure(kind: FigureKind, sensor: &Sensor, memory: &FormMemory) -> Figure {
     let known = memory.figure(kind, sensor);
     known.unwrap_or_else(|| Figure::default_of(kind, sensor))
+}
+
+const LONGEST: usize = 24;
+
+#[derive(Clone, Debug)]
+pub struct ParameterField {
+    parameter: Parameter,
+    optional: bool,
+    input: TextField,
+    /// The initial value, which is always accepted: a shape that was moved or loaded may have more decimals than the
+    /// form shows.
+    initial: Option<f64>,
+    initial_text: String,
+}
+
+impl ParameterField {
+    pub fn new(parameter: Parameter, value: Option<f64>, optional: bool) -> Self {
+        let text = value.map_or(String::new(), |value| parameter.format(value));
+        let mut input = TextField::new(text.clone(), LONGEST);
+        input.enter();
+        Self {
+            parameter,
+            optional,
+            input,
+            initial: value,
+            initial_text: text,
+        }
+    }
+
+    pub fn optional(&self) -> bool {
+        self.optional
+    }
+
+    pub fn changed(&self) -> bool {
+        self.text() != self.initial_text
+    }
+
+    pub fn fresh(&self) -> bool {
+        self.input.fresh()
+    }
+
+    pub fn value(&self, sensor: &Sensor) -> Result<Option<f64>, ParameterError> {
+        if self.text() == self.initial_text && (self.initial.is_some() || self.optional) {
+            return Ok(self.initial);
+        }
+        match (self.text().trim(), self.optional) {
+            ("", true) => Ok(None),
+            ("", false) => {
+                let range = sensor.range(self.parameter);
+                Err(ParameterError::Missing {
+                    parameter: self.parameter,
+                    range,
+                })
+            }
+            (text, _) => sensor.read(self.parameter, text).map(Some),
+        }
+    }
+
+    /// An empty field gets the default; a text that is not a number is kept.
+    fn step(&mut self, direction: i8, sensor: &Sensor) {
+        let value = match self.value(sensor) {
+            Ok(Some(value)) => sensor.step(self.parameter, value, i32::from(direction)),
+            Ok(None) => sensor.default_value(self.parameter),
+            Err(ParameterError::Range { value, .. } | ParameterError::Fraction { value, .. }) => {
+                sensor.step(self.parameter, value, i32::from(direction))
+            }
+            Err(_) => return,
+        };
+        self.input.set(self.parameter.format(value));
+        self.input.enter();
+    }
+}
+
+impl FormField for ParameterField {
+    fn parameter(&self) -> Parameter {
+        self.parameter
+    }
+
+    fn input(&self) -> &TextField {
+        &self.input
+    }
+
+    fn input_mut(&mut self) -> &mut TextField {
+        &mut self.input
+    }
+
+    fn error(&self, sensor: &Sensor) -> Option<FormError> {
+        self.value(sensor).err().map(FormError::from)
+    }
+}
+
+pub type ParameterFields = FieldList<ParameterField>;
+
+impl ParameterFields {
+    pub fn value(&self, parameter: Parameter) -> Option<f64> {
+        let mut fields = self.fields().iter();
+        let field = fields.find(|field| field.parameter == parameter)?;
+        field.value(self.sensor()).ok().flatten()
+    }
+
+    pub fn step(&mut self, direction: i8) {
+        let sensor = *self.sensor();
+        if let Some(field) = self.focused() {
+            field.step(direction, &sensor);
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct FormMemory {
+    figures: Vec<(Figure, MatrixSize)>,
+    pub ranges: Option<RememberedRanges>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct RememberedRanges {
+    pub of: String,
+    pub size: MatrixSize,
+    pub anchor: Anchor,
+    pub ranges: Vec<(Axis, DecimalRange)>,
+}
+
+impl RememberedRanges {
+    pub fn get(&self, of: &str, sensor: &Sensor, axis: Axis) -> Option<DecimalRange> {
+        let place = matches!(axis, Axis::X0 | Axis::Y0);
+        let suits = of == self.of && self.size == sensor.size();
+        let mut known = self.ranges.iter().filter(|(own, _)| *own == axis);
+        known
+            .next()
+            .filter(|_| !place || suits)
+            .map(|(_, range)| *range)
+    }
+}
+
+impl FormMemory {
+    pub fn note_figure(&mut self, figure: &Figure, sensor: &Sensor) {
+        self.figures
+            .retain(|(other, _)| other.kind() != figure.kind());
+        self.figures.push((*figure, sensor.size()));
+    }
+
+    pub fn last_kind(&self) -> Option<FigureKind> {
+        self.figures.last().map(|(figure, _)| figure.kind())
+    }
+
+    pub fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Option<Figure> {
+        let mut own = self.figures.iter().filter(|(own, _)| own.kind() == kind);
+        own.find(|(_, size)| *size == sensor.size())
+            .map(|(figure, _)| *figure)
+    }
 }

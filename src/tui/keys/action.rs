@@ -13,10 +13,8 @@
 //! the `:` commands from them.
 
 use crate::pose::Axis;
-use crate::tui::app::library::Purpose;
-use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
-use crate::tui::explore::column::ListColumn;
-use crate::tui::explore::message::{ExploreMessage, ExploreTab};
+use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message, Purpose};
+use crate::tui::explore::message::{ExploreMessage, ExploreTab, ListColumn};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::state::RecogniseMessage;

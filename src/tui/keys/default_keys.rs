@@ -9,8 +9,8 @@
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
 use crate::tui::keys::action;
-use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::key::{Arrow, Key};
+use crate::tui::keys::keymap::{Binding, Context};
 
 use Arrow::{Down, Left, Right, Up};
 use Key::{

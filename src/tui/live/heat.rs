@@ -20,8 +20,8 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
 use crate::tui::matrix::layout::{AxisWindow, RULER};
-use crate::tui::widget::heat;
 use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::thumbnail;
 use crate::tui::widget::write::{self, below, right_of};
 
 pub(super) struct HeatMap<'a> {
@@ -59,7 +59,7 @@ impl<'a> HeatMap<'a> {
         };
         let imprint = self.reading.imprint.as_ref()?;
         let any = !imprint.is_empty();
-        any.then(|| format!("{} {marked}", heat::edge(self.theme)))
+        any.then(|| format!("{} {marked}", thumbnail::edge(self.theme)))
     }
 
     /// Returns the visible columns and rows, counted from 0, as a long and a short text; None if all are visible.
@@ -141,8 +141,8 @@ impl<'a> HeatMap<'a> {
                 (sign, self.theme.style(role))
             }
             _ => (
-                heat::shade(self.theme, share),
-                heat::style(self.theme, share),
+                thumbnail::shade(self.theme, share),
+                thumbnail::style(self.theme, share),
             ),
         }
     }
@@ -195,7 +195,7 @@ impl<'a> HeatMap<'a> {
         }
         put(buffer, area, (middle.0 - 1, middle.1), sign, style);
         if self.is_marked(column, row) {
-            put(buffer, area, middle, heat::edge(self.theme), style);
+            put(buffer, area, middle, thumbnail::edge(self.theme), style);
         }
     }
 
@@ -237,10 +237,10 @@ impl<'a> HeatMap<'a> {
             return put(buffer, area, at, sign, style);
         }
         if marked {
-            return put(buffer, area, at, heat::edge(self.theme), style);
+            return put(buffer, area, at, thumbnail::edge(self.theme), style);
         }
-        if heat::has_halves(self.theme) {
-            let colors = [upper, lower].map(|share| heat::color(self.theme, share));
+        if thumbnail::has_halves(self.theme) {
+            let colors = [upper, lower].map(|share| thumbnail::color(self.theme, share));
             let (sign, style) = match colors {
                 [Some(upper), Some(lower)] => ('▀', Style::new().fg(upper).bg(lower)),
                 [Some(upper), None] => ('▀', Style::new().fg(upper)),
@@ -271,10 +271,10 @@ impl<'a> HeatMap<'a> {
             text
         };
         let mark = match &self.reading.imprint {
-            Some(imprint) if imprint.get(column, row) => heat::edge(self.theme),
+            Some(imprint) if imprint.get(column, row) => thumbnail::edge(self.theme),
             _ => ' ',
         };
-        let style = heat::style(self.theme, self.share(column, row));
+        let style = thumbnail::style(self.theme, self.share(column, row));
         for (x, sign) in (at.0..).zip(format!("{text:>width$}{mark}").chars()) {
             put(buffer, area, (x, at.1), sign, style);
         }
@@ -316,7 +316,7 @@ fn put(buffer: &mut Buffer, area: Rect, (x, y): (u16, u16), sign: char, style: S
 
 /// Returns the scale of the shades: the lower end of the range, the shades, the upper end and the unit.
 pub(super) fn scale(theme: &Theme, (low, high): (f64, f64), unit: &str) -> String {
-    let shades: String = heat::shades(theme).iter().skip(1).collect();
+    let shades: String = thumbnail::shades(theme).iter().skip(1).collect();
     format!("{} {shades} {}{unit}", measured(low, 7), measured(high, 7))
 }
 

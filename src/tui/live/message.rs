@@ -22,7 +22,7 @@ use crate::formats::value::decimal;
 use crate::frame::{Frame, Rule};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::history::HISTORY_BYTES;
-use crate::tui::prompt::flags;
+use crate::tui::prompt::read;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum LiveMessage {
@@ -412,7 +412,7 @@ impl NamedSource {
         let mut source = Self::new(name.trim());
         let words: Vec<&str> = rest.split_whitespace().collect();
         let known = |flag: &str| Self::FLAGS.iter().position(|(name, _)| *name == flag);
-        for (flag, index, text) in flags::read(&words, &Self::flags(), known)? {
+        for (flag, index, text) in read::read_flags(&words, &Self::flags(), known)? {
             if let Some((_, take)) = Self::FLAGS.get(index) {
                 take(&mut source, &FlagValue { flag, text })?;
             }

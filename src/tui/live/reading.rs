@@ -16,7 +16,7 @@ use crate::tui::app::document::Document;
 use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Context;
 use crate::tui::live::state::Live;
 use crate::tui::live::update::LiveRefusal;
 

@@ -18,7 +18,7 @@ use crate::tui::live::reading::{HeatLayer, LiveDisplay, LiveReading, ShadeRange}
 use crate::tui::live::tare;
 use crate::tui::live::tare::LiveTare;
 use crate::tui::live::update::LiveRefusal;
-use crate::tui::widget::number::other;
+use crate::tui::widget::write::other;
 
 const TARED: usize = 30;
 

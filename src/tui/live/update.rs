@@ -15,13 +15,12 @@ use crate::frame::Rule;
 use crate::storage::ModelChoice;
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, topmost};
-use crate::tui::app::library::LibraryRequest;
-use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::notice;
+use crate::tui::app::message::{Endpoint, LibraryRequest, Message};
 use crate::tui::app::state::App;
+use crate::tui::app::status;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
+use crate::tui::keys::keymap::Context;
 use crate::tui::live::message::{
     LiveEvent, LiveMessage, NamedSource, RecordedFrames, WatchRequest,
 };
@@ -210,7 +209,7 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
         return refuse(app, format!("the taxels are hidden; {key} shows them"));
     }
     let area = app.panes();
-    let area = area.map(|panes| notice::page_area(app, &panes, page));
+    let area = area.map(|panes| status::page_area(app, &panes, page));
     let next = area.and_then(|area| view::beyond(page, app.theme(), area, towards));
     if next.is_none() {
         let hides = area.is_some_and(|area| view::hides_taxels(page, area));

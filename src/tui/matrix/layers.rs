@@ -13,7 +13,7 @@ use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::recognition::PlacedSource;
 use crate::source::Source;
 use crate::tui::matrix::layout::TaxelGrid;
-use crate::tui::widget::dots::{DOTS, DotCanvas, DotPosition, glyph};
+use crate::tui::widget::plot::{DOTS, DotCanvas, DotPosition, glyph};
 use crate::tui::widget::theme::{Role, Theme};
 
 /// The number of straight pieces that an ellipse is drawn in: even on the largest matrix, none is off by a dot.

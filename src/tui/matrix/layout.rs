@@ -15,7 +15,7 @@ use std::ops::Range;
 use ratatui::layout::Rect;
 
 use crate::imprint::{Bounds, Imprint};
-use crate::tui::widget::number::{narrow, taxels};
+use crate::tui::widget::write::{narrow, taxels};
 
 pub const RULER: u16 = 3;
 

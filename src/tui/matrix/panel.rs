@@ -15,9 +15,9 @@ use ratatui::layout::Rect;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
 use crate::formats::value;
 use crate::tui::matrix::view::MatrixView;
-use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
+use crate::tui::widget::write::narrow;
 
 const SYMBOL: usize = 7;
 const VALUE: usize = 17;

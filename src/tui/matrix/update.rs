@@ -3,6 +3,14 @@
 //! Requests to the library, a worker or the terminal are returned as effects; everything else changes the state at
 //! once.
 
+use std::path::Path;
+
+use taxel_core::imprint::Imprint;
+use taxel_core::quote::shortened;
+use taxel_files::formats::file::has_ending;
+use taxel_files::formats::{Drawing, ImprintFormat, Name};
+use taxel_files::storage::{Existing, UNNAMED};
+
 use crate::description::{DESCRIPTORS, Descriptor};
 use crate::figure::Figure;
 use crate::formats::{StoredShape, value};
@@ -13,26 +21,28 @@ use crate::source::Source;
 use crate::storage::ShapeOrigin;
 use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
-    shift, travel, turn, zoom,
+    shift, travel, turn, write_file, zoom,
 };
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
-use crate::tui::app::library::LibraryRequest;
-use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
-use crate::tui::app::quit::quit;
+use crate::tui::app::message::{
+    Copied, Endpoint, FileEvent, Layer, LibraryRequest, Message, OpenedFile,
+};
 use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState, UnfinishedSave};
+use crate::tui::app::unsaved::quit;
+use crate::tui::explore::message::ExploreMessage;
+use crate::tui::explore::work::explored;
 use crate::tui::form::state::FormDialog;
-use crate::tui::help::page::Help;
-use crate::tui::history::page::HistoryDialog;
+use crate::tui::help::Help;
+use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
-use crate::tui::matrix::files;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect};
 use crate::tui::shapes::state::{ListDialog, ListPurpose};
-use crate::tui::widget::number::around;
+use crate::tui::widget::write::around;
 use crate::tui::{explore, live, recognise};
 
 /// Copied descriptors, the rectangle and the choice of a region all need a region, and show this notice if there is
@@ -50,8 +60,8 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::New => empty(app),
         Message::Become(document) => replace(app, *document),
         Message::OpenFile(name) => return Some(Effect::File(FileRequest::Open(name))),
-        Message::WriteFile(name) => return files::write(app, name),
-        Message::Overwrite(name, content) => return Some(files::overwrite(name, content)),
+        Message::WriteFile(name) => return write(app, name),
+        Message::Overwrite(name, content) => return Some(overwrite(name, content)),
         Message::Quit => quit(app),
         Message::QuitNow => app.run_state = RunState::Quit,
         Message::Copy(what) => return copy(app, what),
@@ -438,4 +448,121 @@ fn choose_region(app: &mut App, by: i8) {
         return inform(app, "there is no other region");
     }
     app.history.choose(Some(around(now, by, count)));
+}
+
+/// Returns true unless the matrix would refuse a message. Only messages of keys with a hint are looked at. One without
+/// an arm here keeps its hint, as on a page ([`crate::tui::app::page::Page::has_use_for`]): if it is refused, its key
+/// says why.
+pub(in crate::tui) fn is_usable(app: &App, message: &Message) -> bool {
+    match message {
+        Message::Undo => !app.removed.is_empty() || app.history.can_undo(),
+        // With a single region, the key brings it into sight.
+        Message::Region(_) => !app.reading().regions.is_empty(),
+        Message::Explore(ExploreMessage::Open) => explored(app).is_some(),
+        // A drawing has neither coverage nor a position.
+        Message::Display | Message::Hold | Message::Turn(_) | Message::NudgeStep(_) => {
+            app.history.present().source.is_some()
+        }
+        _ => true,
+    }
+}
+
+const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg";
+
+/// Shows a notice and returns None if there is nothing to write, or if no format has that extension.
+pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
+    if app.reading().imprint.is_empty() {
+        refuse(app, "nothing to write: the matrix is empty");
+        return None;
+    }
+    let content = content(app, &name);
+    write_file(app, name, content)
+}
+
+pub(in crate::tui) fn overwrite(name: String, content: Vec<u8>) -> Effect {
+    Effect::File(FileRequest::Write(name, content, Existing::Replaced))
+}
+
+fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
+    let reading = app.reading();
+    if let Some(format) = ImprintFormat::of_path(name) {
+        return Ok(format.write(&reading.imprint));
+    }
+    if has_ending(name, "svg") {
+        return Ok(drawing(app).svg().into_bytes());
+    }
+    if !has_ending(name, "json") {
+        return Err(format!(
+            "{:?}: expected a name that ends in one of {ENDINGS}",
+            shortened(name)
+        ));
+    }
+    let own = Path::new(name).file_stem().and_then(|stem| stem.to_str());
+    let own = app.stored_name().or(own).map(Name::new);
+    let name = own
+        .and_then(Result::ok)
+        .map_or_else(|| Name::new(UNNAMED), Ok);
+    let name = name.map_err(|error| error.to_string())?;
+    Ok(app.shown().to_shape(name, reading).write().into_bytes())
+}
+
+fn drawing(app: &App) -> Drawing {
+    let document = app.shown();
+    let mut drawing = Drawing::new(&app.reading().imprint);
+    if let Some(source) = &document.source {
+        drawing = drawing.with_outline(source);
+    }
+    if document.sensor.pitch_mm() != 1.0 {
+        drawing = drawing.with_pitch(document.sensor.pitch_mm());
+    }
+    match app.chosen() {
+        Some(index) => drawing.with_region(index),
+        None => drawing,
+    }
+}
+
+pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect> {
+    match answer {
+        FileEvent::Opened(name, file) => match opened(app, file) {
+            Ok(document) => {
+                let opened = format!("{name} opened");
+                let origin = DocumentOrigin::of(&document).called(&opened);
+                begin(app, origin, document);
+                app.history.choose(None);
+                inform(app, opened);
+            }
+            Err(reason) => refuse(app, format!("{name}: {reason}")),
+        },
+        FileEvent::Written(path) => inform(app, format!("written: {path}")),
+        FileEvent::Exists(name, content) => {
+            let question = Question::replaces(&name, Message::Overwrite(name.clone(), content));
+            app.dialogs.push(Dialog::Question(question));
+        }
+        FileEvent::Failed(reason) => refuse(app, reason),
+        // Handled by the live page.
+        FileEvent::Source(_) => {}
+        FileEvent::Paths(paths) => {
+            if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+                command.complete_asked(&paths);
+            }
+        }
+    }
+    None
+}
+
+fn opened(app: &App, file: OpenedFile) -> Result<Document, String> {
+    match file {
+        OpenedFile::Shape(shape) => Ok(Document::of_shape(&shape)),
+        OpenedFile::Imprint(imprint) => of_imprint(app, &imprint),
+    }
+}
+
+/// What an imprint file does not say, such as pitch and threshold, is taken from the sensor in use.
+fn of_imprint(app: &App, imprint: &Imprint) -> Result<Document, String> {
+    let sensor = app.history.present().sensor;
+    let sensor = sensor
+        .with(Parameter::Columns, imprint.columns().into())
+        .and_then(|sensor| sensor.with(Parameter::Rows, imprint.rows().into()))
+        .map_err(|error| error.labelled())?;
+    Ok(Document::drawn(sensor, *imprint))
 }

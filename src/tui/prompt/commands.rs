@@ -21,10 +21,10 @@ use crate::pose::Axis;
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::tui::app::message::Message;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
-use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
+use crate::tui::keys::keymap::Context;
 use crate::tui::live::message::{NamedSource, flags_start};
-use crate::tui::prompt::flags::{is_given, lacks_value};
+use crate::tui::prompt::read::{is_given, lacks_value};
 
 pub(super) const ANCHOR: &str = "--anchor";
 
@@ -285,7 +285,7 @@ fn common_start(words: &[String]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::app::library::Purpose;
+    use crate::tui::app::message::Purpose;
 
     fn completed(line: &str) -> (String, Vec<String>) {
         let names = ["washer", "Wasp", "my shape"].map(str::to_owned);

@@ -2,18 +2,13 @@
 //!
 //! ```text
 //! commands   the table of commands, and completion     view     impl Page for both prompts
-//! flags      `--side 3` and `--side=3`                 update   keys
 //! read       a line becomes a message                  state    the fields, and earlier commands
 //! ```
-
-pub mod flags;
 
 pub mod commands;
 
 pub mod state;
 
 pub mod read;
-
-pub mod view;
 
 pub mod update;

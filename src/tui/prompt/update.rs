@@ -7,8 +7,7 @@
 use crate::formats::value::counted;
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::library::LibraryRequest;
-use crate::tui::app::message::Message;
+use crate::tui::app::message::{LibraryRequest, Message};
 use crate::tui::app::state::App;
 use crate::tui::keys::action::Arguments;
 use crate::tui::keys::key::Arrow;

@@ -14,13 +14,12 @@ use crate::parameter::number::share;
 use crate::sensor::Sensor;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot, Wheel};
-use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::Keymap;
+use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::recognise::state::RecogniseMessage;
 use crate::tui::recognise::trained::{TrainedModel, onto};
-use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write::narrow;
 use crate::tui::widget::{thumbnail, write};
 
 #[derive(Clone, Debug)]

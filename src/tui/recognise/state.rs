@@ -14,7 +14,7 @@ use crate::source::Source;
 use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::widget::number::other;
+use crate::tui::widget::write::other;
 
 #[derive(Clone, Debug)]
 pub enum ModelState {

@@ -27,17 +27,16 @@ use crate::pose::Axis;
 use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, PoseLayer, Slot};
-use crate::tui::explore::running::gauge;
+use crate::tui::explore::work::gauge;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
+use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::recognise::state::{
     ModelState, PoseSearchResult, Preparation, RecogniseMessage, Recognition,
 };
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
+use crate::tui::widget::write::narrow;
 
 const PERCENT: usize = 9;
 

@@ -8,7 +8,7 @@ use crate::imprint::Imprint;
 use crate::pose::{PoseGrid, PoseIndex};
 use crate::storage::Existing;
 use crate::storage::ModelChoice;
-use crate::tui::app::library::LibraryRequest;
+use crate::tui::app::message::LibraryRequest;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::message::{NamingRequest, WatchRequest};
 use crate::tui::recognise::state::PoseSearch;

@@ -21,18 +21,17 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier};
 use taxel_files::formats::value::escaped;
 
-use crate::tui::app::message::Message;
+use crate::tui::app::message::{Message, WorkerEvent};
 use crate::tui::app::state::{App, Notice, Options};
 use crate::tui::app::view::draw;
-use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveEvent, LiveMessage, NamedSource, SourceState};
 use crate::tui::live::state::Live;
 use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
-use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Palette, Theme, letter};
 use crate::tui::widget::write;
+use crate::tui::widget::write::narrow;
 
 #[derive(Debug)]
 pub struct Session {

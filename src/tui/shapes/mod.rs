@@ -7,8 +7,6 @@
 
 pub mod state;
 
-pub mod layout;
-
 pub mod view;
 
 pub mod update;

@@ -15,10 +15,9 @@ use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse, 
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, StoredName};
-use crate::tui::app::library::{Leftover, LibraryEvent, LibraryRequest, Purpose};
-use crate::tui::app::message::Message;
-use crate::tui::app::quit::quit;
+use crate::tui::app::message::{Leftover, LibraryEvent, LibraryRequest, Message, Purpose};
 use crate::tui::app::state::{App, UnfinishedSave};
+use crate::tui::app::unsaved::quit;
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::live;

@@ -18,12 +18,11 @@ use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
-use crate::tui::shapes::layout::{LIST_HEAD, list, list_rows};
+use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::shapes::state::{ListDialog, ListPurpose};
-use crate::tui::widget::number::narrow;
+use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write::narrow;
 use crate::tui::widget::{thumbnail, write};
 
 const BESIDE: usize = 18;
@@ -215,4 +214,28 @@ fn draw_preview(
             say(reason, Role::Text);
         }
     }
+}
+
+pub const LIST_HEAD: u16 = 2;
+
+pub fn list(body: Rect) -> (Rect, Option<Rect>) {
+    let width = body.width.saturating_sub(36);
+    if body.width < 66 {
+        return (body, None);
+    }
+    let left = Rect {
+        width: width.min(60),
+        ..body
+    };
+    let right = Rect {
+        x: left.right() + 1,
+        width: body.right() - left.right() - 1,
+        ..body
+    };
+    (left, Some(right))
+}
+
+pub fn list_rows(pane: Rect, dialog: &ListDialog) -> ListRows {
+    let area = write::below(pane, LIST_HEAD);
+    ListRows::around(area, dialog.rows().len(), dialog.selected())
 }

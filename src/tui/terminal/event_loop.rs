@@ -24,10 +24,9 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 use signal_hook::consts::SIGHUP;
 
-use crate::tui::app::message::Message;
+use crate::tui::app::message::{Message, WorkerEvent};
 use crate::tui::app::state::App;
 use crate::tui::app::view::view;
-use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::action;
 use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;

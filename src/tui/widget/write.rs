@@ -15,10 +15,8 @@ use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use ratatui::text::Span;
 
-use crate::tui::widget::columns::head;
-pub use crate::tui::widget::columns::{broken, width, window};
-use crate::tui::widget::number::narrow;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 
@@ -205,6 +203,111 @@ pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role:
     lines.len()
 }
 
+pub fn width(text: &str) -> usize {
+    if is_plain(text) {
+        return text.len();
+    }
+    Span::raw(text).width()
+}
+
+fn is_plain(text: &str) -> bool {
+    text.bytes().all(|byte| matches!(byte, b' '..=b'~'))
+}
+
+pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
+    if is_plain(text) {
+        return &text[..room.min(text.len())];
+    }
+    let mut ends = text
+        .char_indices()
+        .map(|(at, character)| at + character.len_utf8());
+    let mut kept = "";
+    while let Some(end) = ends.next().filter(|&end| width(&text[..end]) <= room) {
+        kept = &text[..end];
+    }
+    kept
+}
+
+/// Returns the part of a text that a field of `room` columns shows so that the cursor is visible, from its first
+/// character to the end of the text, and the column of the cursor in that part.
+pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
+    let (mut shown, mut column) = (text, cursor);
+    while column >= room.max(1)
+        && let Some(first) = shown.chars().next()
+    {
+        let (hidden, rest) = shown.split_at(first.len_utf8());
+        column = column.saturating_sub(width(hidden));
+        shown = rest;
+    }
+    (shown, column)
+}
+
+pub fn broken(text: &str, room: usize) -> Vec<&str> {
+    let mut lines = Vec::new();
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        let fits = head(rest, room.max(1));
+        let end = if fits.len() == rest.len() {
+            rest.len()
+        } else {
+            // A character that is wider than the room still takes a line.
+            let first = rest.chars().next().map_or(1, char::len_utf8);
+            let space =
+                rest[..fits.len() + usize::from(rest[fits.len()..].starts_with(' '))].rfind(' ');
+            space.filter(|&at| at > 0).unwrap_or(fits.len()).max(first)
+        };
+        let (piece, after) = rest.split_at(end);
+        lines.push(piece.trim_end());
+        rest = after.trim_start();
+    }
+    lines
+}
+
+pub(in crate::tui) fn narrow(length: impl TryInto<u16>) -> u16 {
+    length.try_into().unwrap_or(u16::MAX)
+}
+
+pub(in crate::tui) fn taxels(length: impl TryInto<u8>) -> u8 {
+    length.try_into().unwrap_or(u8::MAX)
+}
+
+/// Returns the index `by` steps after `now` (before it if negative) among `count` indices; `count` must not be 0.
+/// After the last index comes the first.
+///
+/// ```
+/// use taxel::tui::widget::write::around;
+/// assert_eq!([around(3, 1, 4), around(0, -1, 4), around(1, 6, 4)], [0, 3, 3]);
+/// ```
+pub fn around(now: usize, by: i8, count: usize) -> usize {
+    let forward = usize::from(by.unsigned_abs()) % count;
+    let step = if by < 0 { count - forward } else { forward };
+    (now + step) % count
+}
+
+/// Returns the item `by` places after the chosen one, or after one that `failed` when it was chosen since; after the
+/// last item comes the first. An item that is no longer in the list counts as its last.
+///
+/// ```
+/// use taxel::tui::widget::write::other;
+/// let all = || vec!["one", "broken", "two"];
+/// assert_eq!(other(all(), &"one", None, 1), "broken");
+/// assert_eq!(other(all(), &"one", Some(&"broken"), 1), "two");
+/// assert_eq!(other(all(), &"one", Some(&"broken"), -1), "two");
+/// ```
+pub fn other<T: PartialEq + Clone>(mut all: Vec<T>, chosen: &T, failed: Option<&T>, by: i8) -> T {
+    let from = failed.unwrap_or(chosen);
+    if !all.contains(from) {
+        all.push(from.clone());
+    }
+    let before = all.iter().take_while(|item| *item != from);
+    let mut next = around(before.count(), by, all.len());
+    // The chosen one is there already: a step from one that failed goes past it.
+    if all[next] == *chosen && from != chosen {
+        next = around(next, by, all.len());
+    }
+    all.swap_remove(next)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -248,5 +351,33 @@ mod tests {
         }
         assert_eq!(field_text("1234567", 7, 5, &ascii).0, "...7");
         assert_eq!(field_text("1234567", 7, 2, &ascii).0, "7");
+    }
+
+    #[test]
+    fn the_cursor_in_a_field_is_always_visible() {
+        for (text, cursor, expected) in [
+            ("1234", 4, ("1234", 4)),
+            ("12345", 5, ("2345", 4)),
+            ("12345", 0, ("12345", 0)),
+            ("字字字", 6, ("字字", 4)),
+            ("字字字", 2, ("字字字", 2)),
+            ("", 0, ("", 0)),
+        ] {
+            assert_eq!(window(text, cursor, 5), expected, "{text} at {cursor}");
+        }
+        assert_eq!(window("ab", 2, 0), ("", 0));
+    }
+
+    #[test]
+    fn lines_break_at_spaces_and_inside_long_words() {
+        assert_eq!(
+            broken("one two  three", 7),
+            ["one two", "three"],
+            "at the space that just fits no more"
+        );
+        assert_eq!(broken("one two", 6), ["one", "two"]);
+        assert_eq!(broken("/a/long/path x", 5), ["/a/lo", "ng/pa", "th x"]);
+        assert_eq!(broken("字字", 1), ["字", "字"]);
+        assert!(broken("  ", 4).is_empty());
     }
 }

@@ -4,8 +4,8 @@ use taxel::description::{DESCRIPTORS, Dimension};
 use taxel::parameter::{PARAMETERS, Parameter};
 use taxel::sensor::Sensor;
 use taxel::tui::keys::action::Arguments;
-use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
+use taxel::tui::keys::keymap::Context;
 use taxel::tui::prompt::commands::commands;
 
 pub(crate) fn descriptors() -> String {

@@ -8,8 +8,7 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use taxel::storage::Library;
-use taxel::tui::app::message::{Message, Mouse, MouseKind};
-use taxel::tui::app::worker_event::WorkerEvent;
+use taxel::tui::app::message::{Message, Mouse, MouseKind, WorkerEvent};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 

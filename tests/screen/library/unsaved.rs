@@ -6,8 +6,7 @@ use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 use taxel::storage::{Library, LibraryEntry, ShapeOrigin};
-use taxel::tui::app::message::Message;
-use taxel::tui::app::worker_event::WorkerEvent;
+use taxel::tui::app::message::{Message, WorkerEvent};
 use taxel::tui::runtime::World;
 
 use super::session_on;

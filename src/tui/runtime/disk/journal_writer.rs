@@ -17,9 +17,9 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::storage::{Journal, Library, LibraryError, Orphan};
+use crate::tui::app::message::WorkerEvent;
 use crate::tui::app::state::App;
 use crate::tui::app::unsaved::UnsavedWork;
-use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::runtime::work::execution::{PATIENCE, WorkerEventSink, start};
 
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.

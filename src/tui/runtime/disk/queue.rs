@@ -14,8 +14,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 use crate::storage::Library;
-use crate::tui::app::library::{LibraryEvent, LibraryRequest};
-use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::app::message::{LibraryEvent, LibraryRequest, WorkerEvent};
 use crate::tui::runtime::disk::files::WriteAccess;
 use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest};
 use crate::tui::runtime::work::execution::{WorkerEventSink, caught, start};

@@ -18,7 +18,7 @@ use std::time::Duration;
 use taxel_files::acquire::{FrameSource, Playback};
 
 use crate::storage::Existing;
-use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::app::message::WorkerEvent;
 use crate::tui::live::message::{FrameBatch, LiveEvent, WatchRequest};
 use crate::tui::runtime::disk::files::WriteAccess;
 use crate::tui::runtime::frames::feed::FrameFeed;

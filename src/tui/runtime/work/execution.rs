@@ -11,7 +11,7 @@ use crate::formats::file::system_reason;
 use crate::lock::try_locked;
 use crate::memory::MemoryGuard;
 use crate::progress::{Progress, stop_if};
-use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::app::message::WorkerEvent;
 use crate::tui::explore::message::SweepProgress;
 
 pub(in crate::tui::runtime) const PATIENCE: Duration = Duration::from_millis(1500);

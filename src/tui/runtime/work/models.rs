@@ -25,7 +25,7 @@ use crate::storage::{
     FileVersion, Library, ModelCache, ModelChoice, ModelFolder, cached_or_trained,
     load_whole_model, location, unknown_set,
 };
-use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::app::message::WorkerEvent;
 use crate::tui::live::message::{LiveEvent, NamedImprint, NamingRequest};
 use crate::tui::recognise::state::{Prepared, RecognitionEvent};
 use crate::tui::recognise::trained::TrainedModel;

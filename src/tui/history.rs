@@ -1,14 +1,27 @@
-//! The page with the list of steps.
+//! The steps of the history as a list: what each step did, with the present state marked. Enter goes to the state
+//! after a step. `/` searches: [`crate::tui::search`].
+//!
+//! ```text
+//! History   4 steps
+//!   0  the start
+//!   1  ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°
+//! * 2  x0 4.00 → 4.31                                 the present state
+//! > 3  taxel 8, 8 off                                 the selected row is reversed
+//! ```
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_files::formats::value::counted;
 
-use crate::formats::value::counted;
+use crate::tui::app::change::{compare_with, go_to};
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
-use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::rows::ListRows;
+use crate::tui::app::state::App;
+use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::runtime::effect::Effect;
+use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -92,4 +105,38 @@ impl Page for HistoryDialog {
     fn wheel(&self) -> Wheel {
         Wheel::Rows
     }
+}
+
+/// Comparing leaves the list open below.
+pub(in crate::tui) fn in_history(
+    app: &mut App,
+    mut list: HistoryDialog,
+    message: &Message,
+) -> Option<Effect> {
+    match *message {
+        Message::Compare => {
+            let step = list.selected();
+            let state = app
+                .history
+                .after(step)
+                .map(|state| Reading::of(state).imprint);
+            app.dialogs.push(Dialog::History(list));
+            if let Some(imprint) = state {
+                compare_with(app, &format!("the state after step {step}"), &imprint);
+            }
+            return None;
+        }
+        Message::Quit => return None,
+        Message::Accept => {
+            go_to(app, list.selected());
+            return None;
+        }
+        _ => {
+            if let Some(row) = moved(list.selected(), message) {
+                list.select(row);
+            }
+        }
+    }
+    app.dialogs.push(Dialog::History(list));
+    None
 }

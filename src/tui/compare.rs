@@ -1,23 +1,37 @@
-//! The two imprints, the chosen view, and how they are drawn.
+//! Two imprints side by side: where they differ, their descriptors, and the differences between these.
+//!
+//! ```text
+//! 5 taxels differ   A: washer   B: the matrix        how many taxels differ | what is compared, the earlier one first
+//!    0   2   4   6       A   B   B-A
+//!  0 · · a █ b ·    NA   40  52  +12                 █ in both, a b in one only | descriptors of the main regions
+//! ```
+//! On a wide screen A and B stand beside the view of their differences; elsewhere Tab shows one after the other. If
+//! there is no room for the descriptors beside a view, they are a view of their own. Parts that do not fit scroll;
+//! arrows show where there is more.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-
-use crate::description::{
+use taxel_core::description::{
     DESCRIPTORS, Description, Descriptor, Dimension, Value, main_region, regions,
 };
-use crate::formats::value;
-use crate::imprint::Imprint;
-use crate::parameter::number::differing;
-use crate::tui::app::message::Message;
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::differing;
+use taxel_files::formats::value;
+
+use crate::tui::app::change::refuse;
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot, Wheel};
-use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
+use crate::tui::app::state::App;
+use crate::tui::keys::key::Arrow;
+use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::matrix::layout::{AxisWindow, RULER, TaxelGrid, TaxelSize};
-use crate::tui::matrix::rulers;
-use crate::tui::widget::number::{around, narrow};
+use crate::tui::matrix::view;
+use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::theme::{Role, Theme, spelling};
 use crate::tui::widget::write;
+use crate::tui::widget::write::{around, narrow};
+use ComparedView::{Descriptors, Difference, First, Second};
 
 const GAP: u16 = 2;
 
@@ -28,8 +42,6 @@ enum ComparedView {
     Second,
     Descriptors,
 }
-
-use ComparedView::{Descriptors, Difference, First, Second};
 
 const VIEWS: [ComparedView; 4] = [Difference, First, Second, Descriptors];
 
@@ -198,9 +210,9 @@ impl Comparison {
         // A number that does not fit would touch the descriptors.
         let line = write::left_of(write::row(area, 1), grid.x + grid.characters().0);
         if grid.y > line.y {
-            rulers::draw_columns(theme, &grid, buffer, line);
+            view::draw_columns(theme, &grid, buffer, line);
         }
-        rulers::draw_rows(theme, &grid, buffer, area);
+        view::draw_rows(theme, &grid, buffer, area);
         for (y, row) in grid.rows.visible() {
             for (x, column) in grid.columns.visible() {
                 let active = (first.get(column, row), second.get(column, row));
@@ -412,3 +424,30 @@ pub fn heading(what: &str) -> String {
 }
 
 const LONGEST: usize = 24;
+
+pub(in crate::tui) fn in_comparison(
+    app: &mut App,
+    mut page: Comparison,
+    message: &Message,
+) -> Option<Effect> {
+    let by = match *message {
+        Message::Scroll(lines) => Some((0, lines)),
+        Message::ScrollTo(Endpoint::First) => Some((0, i16::MIN)),
+        Message::ScrollTo(Endpoint::Last) => Some((0, i16::MAX)),
+        Message::Choose(Arrow::Left) => Some((-1, 0)),
+        Message::Choose(Arrow::Right) => Some((1, 0)),
+        _ => None,
+    };
+    if let Some(panes) = app.panes() {
+        let area = panes.area(page.slot());
+        if let Message::Field(by) = *message {
+            page.next_view(by, area.width);
+        } else if let Some(by) = by
+            && !page.scroll(by, area)
+        {
+            refuse(app, "all of it is visible");
+        }
+    }
+    app.dialogs.push(Dialog::Compare(page));
+    None
+}

@@ -1,12 +1,22 @@
-//! The prompt of the search.
+//! The search in help and in the history: a prompt at the bottom of the list, which follows with every character
+//! typed.
+//!
+//! ```text
+//! Search: undo   1 of 3          which match is in sight, of how many
+//! Search: unod   no match        the list stays where it was
+//! ```
 
 use std::borrow::Cow;
 
-use crate::tui::app::line_prompt::LinePrompt;
+use crate::tui::app::change::refuse;
+use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
-use crate::tui::help::page::Help;
-use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
+use crate::tui::app::page::LinePrompt;
+use crate::tui::app::state::App;
+use crate::tui::help::Help;
+use crate::tui::keys::action;
+use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::text_field::TextField;
 
 const LONGEST: usize = 60;
@@ -68,4 +78,36 @@ impl LinePrompt for SearchDialog {
             Some((number, all)) => format!("   {number} of {all}").into(),
         }
     }
+}
+
+pub(in crate::tui) fn in_search(
+    app: &mut App,
+    mut dialog: SearchDialog,
+    message: &Message,
+) -> Option<Effect> {
+    let list = match message {
+        Message::Cancel | Message::Quit => dialog.before().clone(),
+        _ => {
+            dialog.edit(message);
+            dialog.searched(app.keymap(), app.body_size())
+        }
+    };
+    if let Some(below) = app.dialogs.last_mut() {
+        *below = Dialog::Help(list);
+    }
+    match message {
+        Message::Cancel | Message::Quit => {}
+        Message::Accept => {
+            if let Some(text) = dialog.unfound() {
+                refuse(app, format!("no match for {text:?}"));
+            }
+        }
+        _ => app.dialogs.push(Dialog::Search(dialog)),
+    }
+    None
+}
+
+pub(in crate::tui) fn no_search(keymap: &Keymap, context: Context) -> String {
+    let key = keymap.label(context, &action::SEARCH);
+    format!("nothing to go to: {key} searches")
 }
