@@ -209,7 +209,7 @@ impl Pools {
         for (pool, least) in self.0.iter().zip(&mut times.sweeps) {
             wake(pool);
             let result = least.measure(1, || pool.install(|| Sweep::new(grid).run()));
-            times.distinct = result.atlas().len();
+            times.distinct = result.atlas.len();
         }
     }
 }

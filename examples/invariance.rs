@@ -72,7 +72,7 @@ fn row(
 ) -> String {
     let percent = |result: &SweepResult| {
         let statistic = result
-            .statistics()
+            .statistics
             .iter()
             .find(|found| found.feature.key == key)?;
         Some(100.0 * deviation(statistic)? / statistic.mean?)

@@ -33,12 +33,12 @@ pub(crate) fn report() -> String {
     );
     for (name, x0, y0, claimed) in EXPERIMENTS {
         let result = sweep(x0, y0);
-        let classes = result.atlas().distinct_classes();
+        let classes = result.atlas.distinct_classes();
         let _ = writeln!(
             table,
             "| {name} | {} | {claimed} | {} | {} | {} |",
-            result.poses(),
-            result.atlas().len(),
+            result.poses,
+            result.atlas.len(),
             classes.up_to_shifts,
             classes.up_to_symmetry,
         );

@@ -223,7 +223,7 @@ impl Limits {
 /// Estimates the memory that the sweep of a grid needs, from the imprints of a small part of the grid.
 fn expected(grid: &PoseGrid) -> MemorySize {
     let sample = TimingSample::of(grid);
-    let found = Sweep::new(&sample.grid).run().atlas().len();
+    let found = Sweep::new(&sample.grid).run().atlas.len();
     let sensor = grid.sensor();
     let taxels = u64::from(sensor.columns()) * u64::from(sensor.rows());
     #[expect(

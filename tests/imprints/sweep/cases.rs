@@ -281,9 +281,9 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
         ControlFlow::Continue(())
     };
     let result = Sweep::new(grid).run_with_rows(&mut take);
-    let imprints: Vec<_> = result.atlas().entries().collect();
+    let imprints: Vec<_> = result.atlas.entries().collect();
     let free = Sweep::new(grid).run();
-    let told = |result: &SweepResult| format!("{:?}", result.statistics());
+    let told = |result: &SweepResult| format!("{:?}", result.statistics);
     if free != result || told(&free) != told(&result) {
         return Err("without rows the result is another one".to_owned());
     }
@@ -313,11 +313,7 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
             return Err(format!("{id} occurs before {known}"));
         }
     }
-    let claimed = (
-        result.poses(),
-        result.partly_off(),
-        result.atlas().empty_poses(),
-    );
+    let claimed = (result.poses, result.partly_off, result.atlas.empty_poses());
     if claimed != (grid.poses(), partly_off, empty) {
         return Err(format!(
             "{claimed:?} instead of {partly_off} partly off, {empty} empty"

@@ -94,13 +94,13 @@ fn sweeps_equal_touches_with_very_fine_steps() {
 
 /// Formats all values of a result as one text.
 fn told(result: &SweepResult) -> String {
-    let entries: Vec<_> = result.atlas().entries().collect();
+    let entries: Vec<_> = result.atlas.entries().collect();
     format!(
         "{} {} {:?} {entries:?} {:?}",
-        result.poses(),
-        result.partly_off(),
-        result.atlas().distinct_classes(),
-        result.statistics()
+        result.poses,
+        result.partly_off,
+        result.atlas.distinct_classes(),
+        result.statistics
     )
 }
 
@@ -196,7 +196,7 @@ fn rows_taken_from_symmetry_equal_computed_rows() {
         let merged = merge_all(one_by_one).expect("all shards");
         assert_eq!(told(&whole), told(&merged), "{:?}", grid.source());
         assert_eq!(differences(&grid), Ok(0), "{:?}", grid.source());
-        assert!(whole.atlas().len() > 50, "{:?}", grid.source());
+        assert!(whole.atlas.len() > 50, "{:?}", grid.source());
     }
 }
 
@@ -221,7 +221,7 @@ fn shards_are_merged_only_if_all_are_there() {
             .with_shard(Shard::new(number, of).expect("a shard"))
             .run()
     };
-    let merge = |results: Vec<SweepResult>| merge_all(results).map(|result| result.poses());
+    let merge = |results: Vec<SweepResult>| merge_all(results).map(|result| result.poses);
     assert_eq!(merge(vec![]), Err(ShardOrderError::Nothing.into()));
     assert_eq!(
         merge(vec![shard(&grid, 1, 3), shard(&grid, 2, 3)]),
@@ -298,25 +298,19 @@ fn a_stopped_sweep_keeps_what_is_complete() {
     assert!(!result.complete());
     assert_eq!(done.load(Ordering::Relaxed), 500_000);
     // Only whole orientations are kept, and at most the last sixteen of them are lost.
-    assert!((340_000..500_000).contains(&result.poses()) && result.poses() % 10_000 == 0);
+    assert!((340_000..500_000).contains(&result.poses) && result.poses % 10_000 == 0);
     assert_eq!(
-        result
-            .atlas()
-            .entries()
-            .map(|entry| entry.count)
-            .sum::<u64>(),
-        result.poses()
+        result.atlas.entries().map(|entry| entry.count).sum::<u64>(),
+        result.poses
     );
-    assert!(
-        result.statistics()[0].poses == result.poses() && result.statistics()[0].sd_angle.is_some()
-    );
+    assert!(result.statistics[0].poses == result.poses && result.statistics[0].sd_angle.is_some());
     let incomplete = MergeError::Incomplete {
         shard: Shard::WHOLE,
     };
     assert_eq!(merge_all([result]).err(), Some(incomplete));
     // The sweep does not even wait for the end of an orientation.
     let result = stopped_after(1);
-    assert_eq!((result.poses(), result.atlas().len()), (0, 0));
+    assert_eq!((result.poses, result.atlas.len()), (0, 0));
     assert!(done.load(Ordering::Relaxed) <= 5_000);
 }
 
@@ -327,6 +321,6 @@ fn the_papers_ring_leaves_the_same_imprints_at_all_angles_as_at_one() {
         "1:1.99:0.01",
         "0:359:1",
     ));
-    let counts = (result.poses(), result.atlas().len());
+    let counts = (result.poses, result.atlas.len());
     assert_eq!(counts, (3_600_000, RING_IMPRINTS));
 }

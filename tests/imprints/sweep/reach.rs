@@ -93,7 +93,7 @@ proptest! {
         let Ok(grid) = PoseGrid::new(source, sensor, anchor, ranges) else { return Ok(()) };
         let counted = grid.poses_beyond_sensor();
         prop_assert_eq!(counted, cut_off_one_by_one(&grid));
-        prop_assert_eq!(counted, Sweep::new(&grid).run().partly_off());
+        prop_assert_eq!(counted, Sweep::new(&grid).run().partly_off);
     }
 
     /// The default ranges cut off no pose of a shape, unless no cell would do.

@@ -63,7 +63,7 @@ fn statistics_equal_those_of_a_plain_loop() {
             let lists = orientations.last_mut().expect("an orientation");
             feature_values(&description, |index, value| lists[index].push(value));
         }
-        for (index, statistic) in result.statistics().iter().enumerate() {
+        for (index, statistic) in result.statistics.iter().enumerate() {
             let key = &statistic.feature.key;
             let by_orientation: Vec<&[f64]> =
                 orientations.iter().map(|lists| &lists[index][..]).collect();
@@ -138,7 +138,7 @@ fn ideal_values_are_those_of_the_continuous_figure() {
     let ideal = |source, key: &str| {
         let result = sweep(&small(source, "4", "0"));
         let found = result
-            .statistics()
+            .statistics
             .iter()
             .find(|statistic| statistic.feature.key == key);
         found.expect("a feature").ideal
@@ -214,15 +214,15 @@ fn classes_equal_those_from_comparing_all_images() {
         let result = sweep(&small(source, place, "0:359:7"));
         let mut shifted = HashMap::new();
         let mut symmetric = HashMap::new();
-        for entry in result.atlas().entries() {
+        for entry in result.atlas.entries() {
             let images = images(&entry.imprint);
             *shifted.entry(images[0].clone()).or_insert(0) += 1;
             *symmetric.entry(images.into_iter().min()).or_insert(0) += 1;
-            assert_eq!(result.atlas().find(&entry.imprint), Some(entry.id));
+            assert_eq!(result.atlas.find(&entry.imprint), Some(entry.id));
         }
-        let classes = result.atlas().distinct_classes();
+        let classes = result.atlas.distinct_classes();
         assert_eq!(classes.up_to_shifts, shifted.len());
         assert_eq!(classes.up_to_symmetry, symmetric.len());
-        assert!(symmetric.len() < shifted.len() && shifted.len() < result.atlas().len());
+        assert!(symmetric.len() < shifted.len() && shifted.len() < result.atlas.len());
     }
 }

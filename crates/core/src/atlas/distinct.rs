@@ -413,7 +413,7 @@ mod tests {
         );
         let grid = PoseGrid::new(bar, sensor, Anchor::Corner, ranges)?;
         let result = Sweep::new(&grid).run();
-        let atlas = result.atlas();
+        let atlas = &result.atlas;
         let moved = Figure::rectangle(3.0, 1.0).at(7.0, 1.0).on(&sensor)?;
         let imprint = Plane::new(sensor).touch(&moved);
         assert_eq!(atlas.find(&imprint), None);

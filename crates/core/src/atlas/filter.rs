@@ -31,7 +31,7 @@ use crate::quote::{did_you_mean, shortened};
 /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
 /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
 /// let result = Sweep::new(&grid).run();
-/// let atlas = result.atlas();
+/// let atlas = &result.atlas;
 /// // At angle 0 a rectangle 6 × 3 leaves 18 taxels, or 21 and more where it lies between them.
 /// let filter: AtlasFilter = "na>18 holes=0".parse()?;
 /// let kept = filter.keeps(&atlas).into_iter().filter(|&kept| kept).count();

@@ -28,7 +28,7 @@ use crate::sweep::runs;
 /// let ranges = upright.with(Axis::X0, cell).with(Axis::Y0, cell);
 /// let grid = PoseGrid::new(ring.into(), sensor, Anchor::Corner, ranges).unwrap();
 /// let result = Sweep::new(&grid).run();
-/// assert_eq!((result.poses(), result.atlas().len()), (10_000, 393));
+/// assert_eq!((result.poses, result.atlas.len()), (10_000, 393));
 /// # Ok::<(), taxel_core::pose::RangeError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -59,36 +59,6 @@ impl PartialEq for SweepResult {
 }
 
 impl SweepResult {
-    /// Returns the grid.
-    pub fn grid(&self) -> &PoseGrid {
-        &self.grid
-    }
-
-    /// Returns the part of the grid that was to be swept; [`Shard::WHOLE`] after a merge.
-    pub fn shard(&self) -> Shard {
-        self.shard
-    }
-
-    /// Returns the number of poses swept. If the sweep was stopped, it is less than the number of poses of the shard.
-    pub fn poses(&self) -> u64 {
-        self.poses
-    }
-
-    /// Returns the number of poses that reach beyond the sensor.
-    pub fn partly_off(&self) -> u64 {
-        self.partly_off
-    }
-
-    /// Returns the distinct imprints.
-    pub fn atlas(&self) -> &Atlas {
-        &self.atlas
-    }
-
-    /// Returns the statistics of each feature, in the order of [`crate::atlas::features`].
-    pub fn statistics(&self) -> &[Statistic] {
-        &self.statistics
-    }
-
     /// Returns true if every pose of the shard was swept.
     pub fn complete(&self) -> bool {
         self.poses == self.shard.poses(&self.grid)

@@ -329,7 +329,7 @@ mod tests {
             })
         });
         assert_eq!(rows, 150);
-        assert!(!result.complete() && result.poses() >= 150 * grid.row_length());
+        assert!(!result.complete() && result.poses >= 150 * grid.row_length());
     }
 
     fn sample(kind: FigureKind, ranges: Ranges) -> (u64, f64) {

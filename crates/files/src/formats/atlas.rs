@@ -33,7 +33,7 @@ use crate::sweep::{Parts, Shard, SweepResult};
 
 /// Returns the share of all poses that leave this imprint: above 0, up to 1.
 pub fn pose_share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
-    share(entry.count.into(), result.poses().into())
+    share(entry.count.into(), result.poses.into())
 }
 
 /// Writes the table as CSV.
@@ -45,7 +45,7 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
     let mut line = vec!["id".to_owned(), "count".to_owned(), "share".to_owned()];
     line.extend(
         result
-            .grid()
+            .grid
             .axes()
             .map(|axis| format!("first_{}", axis.name())),
     );
@@ -53,12 +53,12 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
     line.extend(features().iter().map(|feature| feature.key.clone()));
     line.push("imprint".to_owned());
     table.write_record(&line)?;
-    for entry in result.atlas().entries() {
-        let pose = result.grid().pose(entry.first_pose);
+    for entry in result.atlas.entries() {
+        let pose = result.grid.pose(entry.first_pose);
         line.clear();
         line.extend([entry.id.to_string(), entry.count.to_string()]);
         line.push(pose_share(result, &entry).to_string());
-        line.extend(result.grid().axes().map(|axis| pose[axis].to_string()));
+        line.extend(result.grid.axes().map(|axis| pose[axis].to_string()));
         line.extend([entry.summary.pieces, entry.summary.holes].map(|count| count.to_string()));
         let first = line.len();
         line.resize(first + features().len(), String::new());
@@ -80,7 +80,7 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
 /// # Errors
 /// Returns the errors of the writer.
 pub fn write_jsonl(result: &SweepResult, mut output: impl Write) -> io::Result<()> {
-    for entry in result.atlas().entries() {
+    for entry in result.atlas.entries() {
         serde_json::to_writer(&mut output, &AtlasLine(result, &entry))?;
         output.write_all(b"\n")?;
     }
@@ -96,7 +96,7 @@ impl Serialize for AtlasLine<'_> {
         map.serialize_entry("id", &entry.id)?;
         map.serialize_entry("count", &entry.count)?;
         map.serialize_entry("share", &pose_share(result, entry))?;
-        map.serialize_entry("first", &First(result.grid(), entry.first_pose))?;
+        map.serialize_entry("first", &First(&result.grid, entry.first_pose))?;
         map.serialize_entry("pieces", &entry.summary.pieces)?;
         map.serialize_entry("holes", &entry.summary.holes)?;
         map.serialize_entry("main", &entry.summary.description.map(RegionRecord))?;
@@ -150,7 +150,7 @@ struct ArchiveHeader<Shape, Size> {
 /// Returns the errors of the writer.
 pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
     let mut archive = ArrayWriter::new(&mut output);
-    let (grid, parts) = (result.grid(), result.parts());
+    let (grid, parts) = (&result.grid, result.parts());
     let header = header(result, &parts);
     archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
     let count = parts.counts.len() as u64;
@@ -172,11 +172,11 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), 
         first.extend(values.flat_map(f64::to_le_bytes));
     }
     archive.add("first", Dtype::F64, &[count, axes.len() as u64], &first)?;
-    let pieces = regions_of_each(result.atlas(), |summary| summary.pieces);
+    let pieces = regions_of_each(&result.atlas, |summary| summary.pieces);
     archive.add("pieces", Dtype::U16, &[count], &pieces)?;
-    let holes = regions_of_each(result.atlas(), |summary| summary.holes);
+    let holes = regions_of_each(&result.atlas, |summary| summary.holes);
     archive.add("holes", Dtype::U16, &[count], &holes)?;
-    for (feature, column) in features().iter().zip(feature_columns(result.atlas())) {
+    for (feature, column) in features().iter().zip(feature_columns(&result.atlas)) {
         archive.add(&feature.key, Dtype::F64, &[count], &column)?;
     }
     let length = parts.variance_words.len() as u64;
@@ -190,7 +190,7 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), 
 }
 
 fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
-    let (grid, ranges) = (result.grid(), result.grid().ranges());
+    let (grid, ranges) = (&result.grid, result.grid.ranges());
     json::written(serde_json::to_vec(&ArchiveHeader {
         format: FORMAT.to_owned(),
         source: grid.source(),
@@ -201,7 +201,7 @@ fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
         angle: ranges[Axis::Angle].to_string(),
         zoom_x: ranges[Axis::ZoomX].to_string(),
         zoom_y: ranges[Axis::ZoomY].to_string(),
-        shard: result.shard().to_string(),
+        shard: result.shard.to_string(),
         poses: parts.poses,
         partly_off: parts.partly_off,
     }))

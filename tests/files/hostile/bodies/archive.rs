@@ -32,10 +32,10 @@ pub(crate) fn archive(bytes: &[u8]) -> bool {
 fn is_sound(result: SweepResult) {
     let written = bytes_of(&result);
     let again = read(Cursor::new(&written)).expect("what was read can be read again");
-    assert_eq!(again.grid(), result.grid());
-    assert_eq!(again.shard(), result.shard());
+    assert_eq!(again.grid, result.grid);
+    assert_eq!(again.shard, result.shard);
     assert_eq!(bytes_of(&again), written);
-    for statistic in result.statistics() {
+    for statistic in &result.statistics {
         let all = [
             statistic.min,
             statistic.mean,
@@ -51,9 +51,9 @@ fn is_sound(result: SweepResult) {
             statistic.feature.key
         );
     }
-    let classes = result.atlas().distinct_classes();
+    let classes = result.atlas.distinct_classes();
     assert!(classes.up_to_symmetry <= classes.up_to_shifts);
-    assert!(classes.up_to_shifts <= result.atlas().len());
+    assert!(classes.up_to_shifts <= result.atlas.len());
     let mut lines = Vec::new();
     write_jsonl(&result, &mut lines).expect("it goes into memory");
     for line in lines.split(|&byte| byte == b'\n') {
@@ -63,7 +63,7 @@ fn is_sound(result: SweepResult) {
     let mut table = Vec::new();
     write_csv(&result, &mut table).expect("it goes into memory");
     let table = String::from_utf8(table).expect("it is a text");
-    assert_eq!(table.lines().count(), result.atlas().len() + 1);
+    assert_eq!(table.lines().count(), result.atlas.len() + 1);
     assert!(!table.contains("NaN") && !table.contains("inf"));
     let mut merge = SweepMerge::default();
     if let Err(error) = merge.add(result).and_then(|()| merge.finish()) {
