@@ -95,7 +95,6 @@ struct Limits {
     advice: &'static str,
     allowed: MemorySize,
     due: Mutex<Instant>,
-    /// Whether too much memory was in use at a check.
     exceeded: AtomicBool,
 }
 
@@ -168,7 +167,7 @@ impl MemoryGuard {
 }
 
 impl Limits {
-    /// Returns true if the work may go on. It is cheap enough to be called often.
+    /// Whether the work may go on. It is cheap enough to be called often.
     fn allows(&self) -> bool {
         if self.exceeded() {
             return false;

@@ -61,9 +61,6 @@ pub(super) enum ByteInput {
 impl ByteInput {
     /// Opens a source. With [`Playback::Once`], a file is read only to its end; if a format is given, reading always
     /// waits for more. While opening takes long, `waiting` is called ten times a second; returns None if it breaks.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn open(
         source: &FrameSource,
         options: &AcquireOptions,
@@ -90,7 +87,7 @@ impl ByteInput {
         }))
     }
 
-    /// Returns the descriptor to wait for; None if bytes are read at once.
+    /// The descriptor to wait for; None if bytes are read at once.
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         match self {
             Self::Standard(input) => Some(input.as_fd()),
@@ -101,9 +98,6 @@ impl ByteInput {
     }
 
     /// Reads the bytes that are there; waits a moment if there are none.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<ReadOutcome> {
         if let Some(fd) = self.fd() {
             let mut fds = [PollFd::from_borrowed_fd(fd, PollFlags::IN)];
@@ -146,9 +140,6 @@ impl ByteInput {
 }
 
 /// Opens a named pipe. A watch that has just ended may still have it open.
-///
-/// # Errors
-/// Returns the errors of [`open_fifo`].
 fn open_fifo_unless(
     path: &Path,
     waiting: &mut dyn FnMut() -> ControlFlow<()>,
@@ -168,10 +159,6 @@ fn open_fifo_unless(
 
 /// Opens a named pipe. Opening it in the usual way would wait for a writer, and no signal could end the wait. Of two
 /// readers, each would get some of the bytes, so the pipe is locked for this one.
-///
-/// # Errors
-/// Returns an error of the kind [`io::ErrorKind::ResourceBusy`] if another taxel reads it; otherwise the system's
-/// error.
 fn open_fifo(path: &Path) -> io::Result<File> {
     let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let pipe = open(path, flags, Mode::empty())?;
@@ -181,9 +168,6 @@ fn open_fifo(path: &Path) -> io::Result<File> {
 
 /// Connects on a separate thread. The thread is abandoned if the connection is no longer wanted, because looking up the
 /// addresses of a name and waiting for an answer cannot be interrupted.
-///
-/// # Errors
-/// Returns the errors of [`connect`].
 fn connect_unless(
     address: &str,
     waiting: &mut dyn FnMut() -> ControlFlow<()>,
@@ -205,10 +189,6 @@ fn connect_unless(
     }
 }
 
-/// Connects to the first address of a name that answers.
-///
-/// # Errors
-/// Returns the system's error.
 fn connect(address: &str) -> io::Result<TcpStream> {
     use std::net::ToSocketAddrs;
     check_address(address)?;
@@ -226,9 +206,6 @@ fn connect(address: &str) -> io::Result<TcpStream> {
 /// Lets the system probe the other end when nothing comes. Nothing is ever sent to a sensor, so without probes nobody
 /// would notice that it has lost power. Without an answer, reading fails after half a minute, and the connection is
 /// made again.
-///
-/// # Errors
-/// Returns the system's error.
 fn kept_alive(stream: &TcpStream) -> io::Result<()> {
     sockopt::set_socket_keepalive(stream, true)?;
     sockopt::set_tcp_keepidle(stream, SILENT)?;
@@ -237,15 +214,11 @@ fn kept_alive(stream: &TcpStream) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns the error for a source that must not have two readers.
 fn busy() -> io::Error {
     io::Error::new(ErrorKind::ResourceBusy, "another program has it open")
 }
 
 /// Locks a line or a pipe until it is closed. Not every system locks devices: then two programs may read them.
-///
-/// # Errors
-/// Returns an error of the kind [`io::ErrorKind::ResourceBusy`] if another program has locked it.
 pub(super) fn lock(file: &OwnedFd) -> io::Result<()> {
     match flock(file, FlockOperation::NonBlockingLockExclusive) {
         Err(Errno::WOULDBLOCK) => Err(busy()),
@@ -255,11 +228,6 @@ pub(super) fn lock(file: &OwnedFd) -> io::Result<()> {
 
 /// Opens a line at a speed in bits per second. Many boards restart when a line is opened; bytes that they sent before
 /// are discarded.
-///
-/// # Errors
-/// Returns an error of the kind [`io::ErrorKind::ResourceBusy`] if another program has it open, or of the kind
-/// [`io::ErrorKind::InvalidInput`] if it is another kind of device, which trying again does not change; otherwise the
-/// system's error.
 pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let line: OwnedFd = match open(path, flags, Mode::empty()) {
@@ -291,17 +259,6 @@ mod tests {
     use std::process::Command;
 
     use super::*;
-
-    #[test]
-    fn a_connection_whose_other_end_vanishes_is_noticed() {
-        let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("bound");
-        let address = listener.local_addr().expect("an address").to_string();
-        let stream = connect(&address).expect("connected");
-        assert_eq!(sockopt::socket_keepalive(&stream), Ok(true));
-        assert_eq!(sockopt::tcp_keepidle(&stream), Ok(SILENT));
-        assert_eq!(sockopt::tcp_keepintvl(&stream), Ok(BETWEEN_PROBES));
-        assert_eq!(sockopt::tcp_keepcnt(&stream), Ok(PROBES));
-    }
 
     #[test]
     fn a_connection_that_is_not_made_is_waited_for_a_moment_at_a_time() {

@@ -15,14 +15,13 @@ pub(super) struct Ticker {
 }
 
 impl Ticker {
-    /// Creates a clock whose first tick is due after [`TICK`].
     pub(super) fn new() -> Self {
         Self {
             last: Instant::now(),
         }
     }
 
-    /// Returns true if a tick is due; the next one is due [`TICK`] later.
+    /// Whether a tick is due; the next one is due [`TICK`] later.
     pub(super) fn is_due(&mut self) -> bool {
         let now = Instant::now();
         let is_due = now - self.last >= TICK;
@@ -36,31 +35,24 @@ impl Ticker {
 /// The time without a frame after which a source is reported as silent, unless its frames come more rarely.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// The number of intervals without a frame after which a source is silent.
 const MISSED: u32 = 3;
 
-/// The longest time between two frames that counts as usual.
 const LONGEST_INTERVAL: Duration = Duration::from_secs(20);
 
-/// The wait for the next frame of a live source.
 #[derive(Debug)]
 pub(super) struct SilenceWatch {
-    /// When the last frame came, or the source was opened.
     last_frame: Instant,
     /// The time between the last two frames that did not arrive together; None before the first frame.
     interval: Option<Duration>,
-    /// Whether a frame has come since the last look.
     frame_came: bool,
     /// The number of bytes up to the last frame or the last look at the silence.
     bytes: u64,
-    /// The time of the last look at the silence.
     looked: Option<Instant>,
     /// Whether the silence was reported: without bytes, and with bytes that are no frame.
     reported: [bool; 2],
 }
 
 impl SilenceWatch {
-    /// Starts to wait for the first frame.
     pub(super) fn new(now: Instant) -> Self {
         Self {
             last_frame: now,
@@ -72,7 +64,6 @@ impl SilenceWatch {
         }
     }
 
-    /// Notes that a frame has just arrived.
     pub(super) fn note_frame(&mut self, now: Instant) {
         if !std::mem::replace(&mut self.frame_came, true) {
             let since_last = now - self.last_frame;
@@ -88,12 +79,11 @@ impl SilenceWatch {
         self.begin(now);
     }
 
-    /// Notes that the wait for the next frame begins now.
     fn begin(&mut self, now: Instant) {
         (self.last_frame, self.looked, self.reported) = (now, None, [false; 2]);
     }
 
-    /// Returns the bytes per second that arrived in a silence, if it must be reported: once without bytes, and once
+    /// The bytes per second that arrived in a silence, if it must be reported: once without bytes, and once
     /// with bytes. `bytes` is the number of bytes so far.
     pub(super) fn look(&mut self, bytes: u64, now: Instant) -> Option<f64> {
         if std::mem::take(&mut self.frame_came) {
@@ -126,7 +116,6 @@ const LATE: f64 = 1.0;
 pub(super) struct ArrivalClock {
     /// The time of the last frame that carried one, else of the first frame, and when it arrived.
     base: Option<(f64, Instant)>,
-    /// The time of the last frame.
     last: f64,
     /// Whether the next time that a frame carries may come from another clock.
     rejoined: bool,
@@ -140,7 +129,7 @@ impl ArrivalClock {
         self.rejoined = true;
     }
 
-    /// Returns the time of a frame that has just arrived, given the time that it carries, if any; None for a frame
+    /// The time of a frame that has just arrived, given the time that it carries, if any; None for a frame
     /// without one that arrived at some other time.
     pub(super) fn time(&mut self, own: Option<f64>, arrives: bool) -> Option<f64> {
         self.time_at(own, arrives, Instant::now())
@@ -156,7 +145,6 @@ impl ArrivalClock {
         Some(time)
     }
 
-    /// Returns the time of arrival of a frame without a time of its own.
     fn arrival(&mut self, now: Instant) -> f64 {
         // The first time of a frame's own counts from those of the arrivals before it.
         self.rejoined |= self.base.is_none();
@@ -164,7 +152,7 @@ impl ArrivalClock {
         to_nanoseconds(base + (now - when).as_secs_f64())
     }
 
-    /// Returns the time of a frame, given its own. After a gap the source's clock may have restarted or been set;
+    /// The time of a frame, given its own. After a gap the source's clock may have restarted or been set;
     /// then the length of the gap is taken from this machine's clock, so that times keep growing.
     fn continued(&mut self, own: f64, now: Instant) -> f64 {
         let mut time = self.shifted(own);
@@ -186,7 +174,6 @@ impl ArrivalClock {
     }
 }
 
-/// The number of seconds within which frames count as one burst.
 const TOGETHER: f64 = 0.1;
 
 /// A burst that lasts longer than this many seconds is followed by a gap, such as a lost connection, unless most
@@ -210,7 +197,6 @@ const UNEVEN: f64 = 0.1;
 pub struct FrameRate {
     /// The last bursts, each followed by another one.
     bursts: VecDeque<Burst>,
-    /// The largest number of bursts that are kept.
     most: usize,
     /// The burst that has not ended: the time of its first frame, and its number of frames.
     open: Option<(f64, u32)>,
@@ -218,11 +204,9 @@ pub struct FrameRate {
     falls: usize,
 }
 
-/// A burst: frames that came at about the same time.
 #[derive(Clone, Copy, Debug)]
 struct Burst {
     frames: u32,
-    /// The time until the next burst began.
     seconds: f64,
 }
 
@@ -258,7 +242,7 @@ impl FrameRate {
         self.open = Some((time, 1));
     }
 
-    /// Returns the mean time from a frame to the next, in seconds, without gaps. None if all frames have come in one
+    /// The mean time from a frame to the next, in seconds, without gaps. None if all frames have come in one
     /// burst: their times do not show the rate.
     pub fn seconds_per_frame(&self) -> Option<f64> {
         let (frames, seconds) = self.usual().fold((0.0, 0.0), |(frames, seconds), burst| {
@@ -267,7 +251,7 @@ impl FrameRate {
         Some(to_nanoseconds(seconds / frames)).filter(|&step| step > 0.0)
     }
 
-    /// Returns the mean time from a frame to the next, like [`Self::seconds_per_frame`], if frames came evenly; None if
+    /// The mean time from a frame to the next, like [`Self::seconds_per_frame`], if frames came evenly; None if
     /// more than a tenth of the times between gaps differ, or if most times are gaps or go back.
     pub(crate) fn even_seconds_per_frame(&self) -> Option<f64> {
         let step = self.seconds_per_frame()?;
@@ -281,7 +265,6 @@ impl FrameRate {
         (10 * even >= 9 * usual && breaks < usual).then_some(step)
     }
 
-    /// Returns the bursts without gaps.
     fn usual(&self) -> impl Iterator<Item = &Burst> {
         let mut lengths: Vec<f64> = self.bursts.iter().map(|burst| burst.seconds).collect();
         lengths.sort_by(f64::total_cmp);
@@ -307,7 +290,7 @@ mod tests {
         assert_eq!(rates, [None, Some(100.0)]);
     }
 
-    /// Returns the seconds at which a silence is reported while the source is looked at each second, with the bytes
+    /// The seconds at which a silence is reported while the source is looked at each second, with the bytes
     /// per second. Frames come at the given seconds, and 10 bytes each second from `junk` on.
     fn silences(frames: &[u64], junk: u64) -> Vec<(u64, f64)> {
         let begun = Instant::now();
@@ -383,14 +366,13 @@ mod tests {
         assert_eq!(times, [51.0, 52.0, 52.5].map(Some));
     }
 
-    /// Returns the time from a frame to the next, given the times of frames.
     fn step(times: impl IntoIterator<Item = f64>) -> Option<f64> {
         let mut rate = FrameRate::over(4096);
         times.into_iter().for_each(|time| rate.add(time));
         rate.seconds_per_frame()
     }
 
-    /// Returns the times of `count` bursts, one every `period` seconds: `frames` frames at once, in two reads.
+    /// The times of `count` bursts, one every `period` seconds: `frames` frames at once, in two reads.
     fn bursts(frames: u32, period: f64, count: u32) -> impl Iterator<Item = f64> {
         (0..count).flat_map(move |burst| {
             let start = f64::from(burst) * period;

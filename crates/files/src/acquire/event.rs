@@ -59,63 +59,7 @@ impl AcquireOptions {
     /// The allowed bits per second of a serial line.
     pub const BAUDS: RangeInclusive<u32> = 50..=20_000_000;
 
-    /// Sets the format of a stream. A file is then a stream, too, not a recording.
-    #[must_use]
-    pub fn with_format(mut self, format: StreamFormat) -> Self {
-        self.format = Some(format);
-        self
-    }
-
-    /// Sets the rows and columns of a frame.
-    #[must_use]
-    pub fn with_size(mut self, size: FrameSize) -> Self {
-        self.size = Some(size);
-        self
-    }
-
-    /// Sets the format of streams only. A file that is a recording is still played as one.
-    #[must_use]
-    pub fn with_stream_format(mut self, format: StreamFormat) -> Self {
-        self.stream_format = Some(format);
-        self
-    }
-
-    /// Sets the rows and columns of frames of streams only. Recordings state their own.
-    #[must_use]
-    pub fn with_stream_size(mut self, size: FrameSize) -> Self {
-        self.stream_size = Some(size);
-        self
-    }
-
-    /// Sets whether to wait for a connection or a serial line that cannot be opened at first.
-    #[must_use]
-    pub fn with_waits(mut self, waits: bool) -> Self {
-        self.waits = waits;
-        self
-    }
-
-    /// Sets the channel of a recording whose frames are played at its rate.
-    #[must_use]
-    pub fn with_channel(mut self, channel: impl Into<String>) -> Self {
-        self.channel = Some(channel.into());
-        self
-    }
-
-    /// Sets the bits per second of a serial line.
-    #[must_use]
-    pub fn with_baud(mut self, baud: u32) -> Self {
-        self.baud = baud;
-        self
-    }
-
-    /// Sets the speed at which the source is read, and what happens at its end.
-    #[must_use]
-    pub fn with_playback(mut self, playback: Playback) -> Self {
-        self.playback = playback;
-        self
-    }
-
-    /// Returns the options for decoding a stream; `from_start` says whether its first byte begins a frame.
+    /// The options for decoding a stream; `from_start` says whether its first byte begins a frame.
     pub(super) fn for_stream(&self, from_start: bool) -> StreamOptions {
         StreamOptions {
             format: self.format.or(self.stream_format),
@@ -129,7 +73,7 @@ impl Playback {
     /// The allowed speeds, in words for messages.
     pub const SPEEDS: &'static str = "a number above 0, up to 1000000";
 
-    /// Returns true if a recording may be played at this speed; see [`Self::SPEEDS`].
+    /// Whether a recording may be played at this speed; see [`Self::SPEEDS`].
     pub fn allows(speed: f64) -> bool {
         speed > 0.0 && speed <= 1e6
     }
@@ -145,7 +89,7 @@ impl Playback {
         }
     }
 
-    /// Returns true if a recording begins again at its end.
+    /// Whether a recording begins again at its end.
     pub fn repeats(self) -> bool {
         matches!(self, Self::Paced { repeat: true, .. })
     }
@@ -216,12 +160,12 @@ pub enum AcquireEvent<'a> {
 }
 
 impl AcquireEvent<'_> {
-    /// Returns the words for [`Self::Lost`].
+    /// The words for [`Self::Lost`].
     pub fn lost(error: &io::Error) -> String {
         format!("lost: {}; trying again each second", system_reason(error))
     }
 
-    /// Returns the words for [`Self::Back`].
+    /// The words for [`Self::Back`].
     pub fn back_after(gap: Duration) -> String {
         format!("back after {} s", decimal(gap.as_secs_f64(), 1))
     }
@@ -250,32 +194,13 @@ pub enum AcquireError {
 }
 
 impl AcquireError {
-    /// Creates the error for a source that cannot be opened.
     pub(super) fn opening(error: io::Error) -> Self {
         let doing = "open";
         Self::Io { doing, error }
     }
 
-    /// Creates the error for a source that cannot be read any further.
     pub(super) fn reading(error: io::Error) -> Self {
         let doing = "read";
         Self::Io { doing, error }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_gap_has_at_most_one_decimal() {
-        let texts = [1000, 1260, 60_000].map(|gap| {
-            let gap = Duration::from_millis(gap);
-            AcquireEvent::back_after(gap)
-        });
-        assert_eq!(
-            texts,
-            ["back after 1 s", "back after 1.3 s", "back after 60 s"]
-        );
     }
 }

@@ -16,7 +16,6 @@ use crate::storage::FileId;
 /// The time without a change after which a file is complete, if it has not grown since it was opened.
 const UNCHANGED: Duration = Duration::from_secs(2);
 
-/// The growth of a file.
 #[derive(Debug)]
 pub(super) struct Growth {
     file: File,
@@ -32,17 +31,16 @@ pub(super) struct Growth {
 }
 
 impl Growth {
-    /// Returns the number of bytes that were read so far.
     pub(super) fn bytes(&self) -> u64 {
         self.bytes.get()
     }
 
-    /// Returns true if everything that was in the file has been read, so that frames now arrive as they are written.
+    /// Whether everything that was in the file has been read, so that frames now arrive as they are written.
     pub(super) fn has_caught_up(&self) -> bool {
         self.has_caught_up.get() || self.is_new.get()
     }
 
-    /// Returns true if the file has become longer since it was opened, or is another file by now.
+    /// Whether the file has become longer since it was opened, or is another file by now.
     pub(super) fn has_grown(&self) -> bool {
         if !self.has_grown.get() {
             let found = self.file.metadata();
@@ -52,12 +50,12 @@ impl Growth {
         self.has_grown.get()
     }
 
-    /// Returns true if more may come: the file has grown, or was changed just now.
+    /// Whether more may come: the file has grown, or was changed just now.
     pub(super) fn may_go_on(&self) -> bool {
         self.has_grown() || self.was_just_changed()
     }
 
-    /// Returns true if the file was changed just now, so that it may be about to grow.
+    /// Whether the file was changed just now, so that it may be about to grow.
     fn was_just_changed(&self) -> bool {
         let changed = self.file.metadata().and_then(|found| found.modified());
         let age = changed.map(|changed| SystemTime::now().duration_since(changed));
@@ -88,9 +86,6 @@ pub(super) struct FollowedFile<'a> {
 }
 
 /// Follows an open file of that path, at its start. Also returns its growth.
-///
-/// # Errors
-/// Returns the system's error.
 pub(super) fn of(path: &Path, file: File) -> io::Result<(GrowingFile, Growth)> {
     let growth = Growth {
         length: file.metadata()?.len(),
@@ -104,10 +99,6 @@ pub(super) fn of(path: &Path, file: File) -> io::Result<(GrowingFile, Growth)> {
 }
 
 impl<'a> FollowedFile<'a> {
-    /// Follows a file from its start.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn new(
         mut file: GrowingFile,
         growth: &'a Growth,
@@ -124,18 +115,12 @@ impl<'a> FollowedFile<'a> {
         })
     }
 
-    /// Returns the file, and why reading it ended before its end, if it did.
     pub(super) fn into_parts(self) -> (GrowingFile, Option<FollowEnd>) {
         (self.file, self.end)
     }
 }
 
 impl Read for FollowedFile<'_> {
-    /// Reads the bytes that have come; waits if there are none.
-    ///
-    /// # Errors
-    /// Returns an error of the kind [`ErrorKind::UnexpectedEof`] if reading ended within a line, before the end of the
-    /// file; otherwise the system's error.
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         while self.end.is_none() {
             if let Some(how) = self.file.anew()? {
@@ -207,22 +192,15 @@ impl fmt::Display for ReadAnew {
 pub(super) struct GrowingFile {
     path: PathBuf,
     file: File,
-    /// The number of bytes that were read.
     offset: u64,
-    /// Whether everything that was there has been read.
     at_end: bool,
 }
 
 impl GrowingFile {
-    /// Opens a file.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
         Ok(Self::new(path, File::open(path)?))
     }
 
-    /// Takes an open file, before its first byte.
     pub(super) fn new(path: &Path, file: File) -> Self {
         Self {
             path: path.to_owned(),
@@ -232,10 +210,6 @@ impl GrowingFile {
         }
     }
 
-    /// Goes back to the first byte.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn rewind(&mut self) -> io::Result<()> {
         self.file.rewind()?;
         (self.offset, self.at_end) = (0, false);
@@ -243,9 +217,6 @@ impl GrowingFile {
     }
 
     /// Reads the bytes that have arrived; waits a moment if there are none.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let count = read_some(&mut self.file, bytes)?;
         self.at_end = count == 0;
@@ -258,9 +229,6 @@ impl GrowingFile {
 
     /// Goes back to the start of the file if it was truncated or replaced, and returns which. Must be called before
     /// each read.
-    ///
-    /// # Errors
-    /// Returns the system's error.
     pub(super) fn anew(&mut self) -> io::Result<Option<ReadAnew>> {
         if !self.at_end {
             return Ok(None);
@@ -297,9 +265,6 @@ impl GrowingFile {
 
 /// Reads the bytes that are there. A read that a signal interrupted is repeated: without bytes, it would count as the
 /// end of the file.
-///
-/// # Errors
-/// Returns the system's error.
 fn read_some(file: &mut impl Read, bytes: &mut [u8]) -> io::Result<usize> {
     loop {
         match file.read(bytes) {
@@ -313,7 +278,6 @@ fn read_some(file: &mut impl Read, bytes: &mut [u8]) -> io::Result<usize> {
 mod tests {
     use super::*;
 
-    /// A file whose first read is interrupted.
     struct Interrupted(bool);
 
     impl Read for Interrupted {

@@ -48,7 +48,10 @@ pub use source::{FrameSource, SourceName};
 /// // Or "/dev/ttyUSB0", "tcp://192.168.1.4:5000", a FIFO, or a file that grows.
 /// let source = FrameSource::new(path.as_os_str());
 /// // As fast as possible, then stop; without this a recording is played at its own rate.
-/// let options = AcquireOptions::default().with_playback(Playback::Once);
+/// let options = AcquireOptions {
+///     playback: Playback::Once,
+///     ..AcquireOptions::default()
+/// };
 /// let mut processing = Processing::default();
 /// processing.rule = Some(Rule::at_least(5.0)?);
 /// let mut imprints = Vec::new();
@@ -67,7 +70,7 @@ pub use source::{FrameSource, SourceName};
 /// ```
 ///
 /// # Errors
-/// Returns an error if the source cannot be opened at first, cannot be read on and does not come back, is a damaged
+/// If the source cannot be opened at first, cannot be read on and does not come back, is a damaged
 /// recording, or turns out to be a recording that cannot be a stream, such as NPY: on standard input or a FIFO, or in a
 /// file that was no recording yet when it was opened.
 pub fn acquire(

@@ -59,24 +59,18 @@ pub(super) fn run(
     }
 }
 
-/// A player of a recording.
 struct Player<'a, 'b> {
     options: &'a AcquireOptions,
     stop: &'a AtomicBool,
-    /// The metadata beside the recording.
     metadata: Option<RecordingMetadata>,
     /// The consumer of what is read, and of a tick now and then while waiting for more.
     consumer: RefCell<&'a mut AcquireSink<'b>>,
-    /// Whether the consumer wants no more.
     ended: Cell<bool>,
     ticker: RefCell<Ticker>,
-    /// Whether [`AcquireEvent::Follows`] was reported.
     follows: Cell<bool>,
     /// The counts of a followed file: bytes, frames and wrong frames.
     counts: RefCell<StreamCounts>,
-    /// The wait for the next frame of a followed file.
     silence: RefCell<SilenceWatch>,
-    /// The error of the first wrong frame of a followed file.
     damage: RefCell<Option<RecordingError>>,
 }
 
@@ -85,7 +79,6 @@ struct KnownChannel {
     name: Option<String>,
     /// The number of its first frame in this round.
     first: u64,
-    /// The number of its next frame.
     next: u64,
 }
 
@@ -97,11 +90,9 @@ struct Round<'a> {
     /// For each channel of this round, its index in `channels`: a file that replaces another one may begin with another
     /// channel.
     order: Vec<usize>,
-    /// The times of the frames.
     times: ArrivalClock,
     /// The arrangement of the table in the file, in this round or before.
     table: EarlierLayout,
-    /// The growth of the file, if it is followed.
     growth: Option<&'a Growth>,
 }
 
@@ -142,7 +133,6 @@ impl Round<'_> {
         renumbered
     }
 
-    /// Returns true if any round had a frame.
     fn has_frames(&self) -> bool {
         self.channels.iter().any(|channel| channel.next > 0)
     }
@@ -157,7 +147,6 @@ impl Round<'_> {
 }
 
 impl Player<'_, '_> {
-    /// Plays a file, once or again and again.
     fn play(&self, mut file: File, format: RecordingFormat) -> Result<(), AcquireError> {
         let mut round = Round::default();
         let repeats = self.options.playback.repeats();
@@ -175,7 +164,6 @@ impl Player<'_, '_> {
         }
     }
 
-    /// Plays a file, and follows what is written at its end.
     fn follow(
         &self,
         path: &Path,
@@ -397,13 +385,11 @@ pub(super) struct Pace<'a> {
     /// Seconds from one frame to the next, if frames have no time.
     step: f64,
     speed: f64,
-    /// The number of frames of the channel so far.
     frames: u32,
     /// The time when the last of them was due, in seconds of the recording.
     last: Option<f64>,
     /// The seconds from the first to the last of them, with long pauses shortened.
     played: f64,
-    /// Whether a shortened pause was said.
     is_said: bool,
     /// The channel that sets the pace. Playback does not wait for frames of other channels, whether before, between or
     /// after those of this channel.
@@ -435,7 +421,6 @@ impl<'a> Pace<'a> {
         }
     }
 
-    /// Adds the next channel of the recording.
     pub(super) fn add(&mut self, info: &ChannelInfo) {
         if self.channel.add(info) {
             self.step = info.seconds_per_frame.unwrap_or(STEP);
@@ -443,17 +428,15 @@ impl<'a> Pace<'a> {
         }
     }
 
-    /// Returns true if the channel has had a frame.
     pub(super) fn has_begun(&self) -> bool {
         self.frames > 0
     }
 
-    /// Returns the number of values in a frame of the channel, if its rows and columns are unknown.
     pub(super) fn unshaped(&self) -> Option<u64> {
         self.unshaped
     }
 
-    /// Returns true if a frame belongs to the watched channel and has no rows and columns.
+    /// Whether a frame belongs to the watched channel and has no rows and columns.
     pub(super) fn has_no_shape(&self, frame: &Frame) -> bool {
         self.unshaped.is_some() && self.channel.takes(frame.channel)
     }
@@ -480,7 +463,7 @@ impl<'a> Pace<'a> {
         })
     }
 
-    /// Returns true if the recording is a file that has grown, so that playback does not wait.
+    /// Whether the recording is a file that has grown, so that playback does not wait.
     fn has_grown(&self) -> bool {
         self.growth.is_some_and(Growth::has_grown)
     }
@@ -504,7 +487,6 @@ impl<'a> Pace<'a> {
         self.until(self.played + step, tick)
     }
 
-    /// Waits until this many seconds have been played.
     fn until(&self, seconds: f64, tick: &mut Tick<'_>) -> ControlFlow<()> {
         let longest = self.begun.elapsed().as_secs_f64() + LONGEST;
         // Of infinite times at an infinite speed, the quotient is NaN; `max` drops it.
@@ -571,7 +553,7 @@ mod tests {
         }
     }
 
-    /// Returns the notes about frames at these times, and the seconds that are played.
+    /// The notes about frames at these times, and the seconds that are played.
     fn notes(times: &[f64]) -> (Vec<String>, f64) {
         let mut pace = Pace::new(&AcquireOptions::default(), None);
         // All frames are due.

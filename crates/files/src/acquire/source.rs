@@ -13,7 +13,6 @@ use crate::formats::file::{system_reason, unshared};
 use crate::formats::recording::{ReadOptions, RecordingError, RecordingFormat, format_of};
 use crate::storage::FileId;
 
-/// A file that is played as a recording.
 #[derive(Debug)]
 pub(super) struct OpenRecording<'a> {
     pub(super) path: &'a Path,
@@ -41,13 +40,13 @@ pub enum FrameSource {
 }
 
 impl FrameSource {
-    /// Returns the source of that name. A path that does not exist counts as a file, except in `/dev` and
+    /// The source of that name. A path that does not exist counts as a file, except in `/dev` and
     /// `/dev/serial`: there it counts as a serial line, which may be plugged in later.
     pub fn new(name: &OsStr) -> Self {
         Self::named(SourceName::new(name))
     }
 
-    /// Returns the source of that name; see [`Self::new`].
+    /// The source of that name; see [`Self::new`].
     pub fn named(name: SourceName) -> Self {
         let path = match name {
             SourceName::Standard => return Self::Standard,
@@ -62,20 +61,16 @@ impl FrameSource {
         }
     }
 
-    /// Returns the file if it is played as a recording: if it has a known format, and `options` names no format of a
+    /// The file if it is played as a recording: if it has a known format, and `options` names no format of a
     /// stream. A file of another kind, such as an image, is returned, too, and refused when it is played.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be read.
+    /// If the file cannot be read.
     pub fn recording(&self, options: &AcquireOptions) -> io::Result<Option<&Path>> {
         let recording = self.open_recording(options)?;
         Ok(recording.map(|recording| recording.path))
     }
 
-    /// Opens the file that [`Self::recording`] returns.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be read.
     pub(super) fn open_recording(
         &self,
         options: &AcquireOptions,
@@ -93,7 +88,7 @@ impl FrameSource {
         }
     }
 
-    /// Returns the name for messages.
+    /// The name for messages.
     pub fn name(&self) -> String {
         let name = match self {
             Self::Standard => SourceName::Standard,
@@ -172,12 +167,12 @@ impl FrameSource {
         Ok(())
     }
 
-    /// Returns true if the source is a file that was moved or removed: no file has its name.
+    /// Whether the source is a file that was moved or removed: no file has its name.
     pub(super) fn has_vanished(&self) -> bool {
         matches!(self, Self::File(path) if has_no_file(path))
     }
 
-    /// Returns true if its bytes are in a file, where they can be read again.
+    /// Whether its bytes are in a file, where they can be read again.
     pub fn is_in_file(&self) -> bool {
         match self {
             Self::Standard => {
@@ -191,7 +186,7 @@ impl FrameSource {
         }
     }
 
-    /// Returns true if all its frames arrive while they are read. Those in a file came before, and standard input or a
+    /// Whether all its frames arrive while they are read. Those in a file came before, and standard input or a
     /// FIFO that is read as fast as possible may hold a file.
     pub fn arrives(&self, playback: Playback) -> bool {
         match self {
@@ -201,31 +196,27 @@ impl FrameSource {
         }
     }
 
-    /// Returns true if the source may come back after it was lost, so that taxel tries again.
+    /// Whether the source may come back after it was lost, so that taxel tries again.
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
     }
 
-    /// Returns true if its first byte is the first one that was sent or written; false if it is joined anywhere.
+    /// Whether its first byte is the first one that was sent or written; false if it is joined anywhere.
     pub(super) fn begins(&self) -> bool {
         !self.comes_back()
     }
 }
 
-/// Returns true if no file has that name.
 pub(super) fn has_no_file(path: &Path) -> bool {
     !path.is_file()
 }
 
-/// Returns true if a device may appear at a path when it is plugged in.
+/// Whether a device may appear at a path when it is plugged in.
 fn is_for_devices(path: &Path) -> bool {
     path.parent() == Some(Path::new("/dev")) || path.starts_with("/dev/serial")
 }
 
 /// Refuses an address that is not a host with a port.
-///
-/// # Errors
-/// Returns an error of the kind [`io::ErrorKind::InvalidInput`].
 pub(super) fn check_address(address: &str) -> io::Result<()> {
     let parts = address.rsplit_once(':');
     match parts.filter(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok()) {
@@ -271,7 +262,7 @@ impl SourceName {
         }
     }
 
-    /// Returns the name for messages, without folders.
+    /// The name for messages, without folders.
     pub fn short(&self) -> String {
         match self {
             Self::Path(path) => {

@@ -13,13 +13,10 @@ use crate::acquire::source::FrameSource;
 use crate::formats::recording::{StartKind, StartSearch};
 use crate::formats::stream::{Silence, StreamCounts, StreamDecoder, StreamEvent, StreamSink};
 
-/// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The time after which a lost source is tried again.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// Reads a source of bytes.
 pub(super) fn run(
     source: &FrameSource,
     options: &AcquireOptions,
@@ -35,7 +32,6 @@ pub(super) fn run(
     reader.read()
 }
 
-/// A reader of a source of bytes.
 struct StreamReader<'a, 'b> {
     source: &'a FrameSource,
     options: &'a AcquireOptions,
@@ -44,7 +40,6 @@ struct StreamReader<'a, 'b> {
 }
 
 impl StreamReader<'_, '_> {
-    /// Reads the source to its end, or until no more is wanted.
     fn read(mut self) -> Result<(), AcquireError> {
         let Some(mut input) = self.first_input()? else {
             return Ok(());
@@ -131,9 +126,6 @@ impl StreamReader<'_, '_> {
 
     /// Reports why it waits for the source, and tries to open it each second until it exists. None if no more is
     /// wanted.
-    ///
-    /// # Errors
-    /// Returns an error if what exists by then is invalid.
     fn again(&mut self, event: AcquireEvent<'_>) -> Result<Option<ByteInput>, AcquireError> {
         let since = Instant::now();
         if self.reporter.report(event).is_break() {
@@ -161,12 +153,11 @@ impl StreamReader<'_, '_> {
     }
 }
 
-/// Returns true if the source is not one that can be opened. Waiting does not make it valid.
+/// Whether the source is not one that can be opened. Waiting does not make it valid.
 fn is_invalid(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::InvalidInput
 }
 
-/// The times that are measured while a stream is read.
 struct StreamClock {
     /// Whether the source is read as it comes; false if it is read as fast as possible.
     is_live: bool,
@@ -174,7 +165,6 @@ struct StreamClock {
     timed: bool,
     silence: SilenceWatch,
     ticker: Ticker,
-    /// The times of frames.
     times: ArrivalClock,
 }
 
@@ -222,7 +212,6 @@ pub(super) struct StreamReporter<'a, 'b> {
 }
 
 impl<'a, 'b> StreamReporter<'a, 'b> {
-    /// Prepares for the first byte of a source.
     pub(super) fn new(
         source: &'a FrameSource,
         options: &'a AcquireOptions,
@@ -244,12 +233,10 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
         self.clock.silence = SilenceWatch::new(Instant::now());
     }
 
-    /// Reports an event that is not one of the decoder.
     pub(super) fn report(&mut self, event: AcquireEvent<'_>) -> ControlFlow<()> {
         (self.consumer)(event)
     }
 
-    /// Reports a tick while the source is not open.
     pub(super) fn wait(&mut self) -> ControlFlow<()> {
         (self.consumer)(AcquireEvent::Tick(self.decoder.counts()))
     }
@@ -269,22 +256,16 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
         self.step(StreamDecoder::restart)
     }
 
-    /// Notes that a lost source is open again.
     pub(super) fn resume(&mut self) {
         self.clock.times.rejoin();
         let bytes = self.decoder.counts().bytes;
         self.clock.silence.reopen(bytes, Instant::now());
     }
 
-    /// Checks that a source that has ended is a stream.
-    ///
-    /// # Errors
-    /// Returns [`AcquireError::NotStream`].
     pub(super) fn check_start(&self) -> Result<(), AcquireError> {
         self.start.finish(self.decoder.counts())
     }
 
-    /// Reports what is left of a source that has ended.
     pub(super) fn finish(&mut self) -> ControlFlow<()> {
         self.step(StreamDecoder::finish)
     }
@@ -294,16 +275,12 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
         self.step(StreamDecoder::cut_off)
     }
 
-    /// Reports that the source has ended.
     pub(super) fn report_end(&mut self) -> ControlFlow<()> {
         (self.consumer)(AcquireEvent::Ended(self.decoder.counts()))
     }
 
     /// Decodes bytes, perhaps none, and reports their frames and a tick. No frame waits until it is certain that the
     /// source is a stream: in a recording that is not one, that is certain before the first frame.
-    ///
-    /// # Errors
-    /// Returns [`AcquireError::NotStream`].
     pub(super) fn decode(&mut self, bytes: &[u8]) -> Result<ControlFlow<()>, AcquireError> {
         // If no bytes came, the content that was in a file has been read.
         self.clock.timed |= self.clock.is_live && bytes.is_empty();
@@ -322,12 +299,10 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
         Ok(self.tick())
     }
 
-    /// Decodes bytes, and reports their frames.
     fn push(&mut self, bytes: &[u8]) -> ControlFlow<()> {
         self.step(|decoder, sink| decoder.push(bytes, sink))
     }
 
-    /// Calls one step of the decoder, and reports its events until no more are wanted.
     fn step(
         &mut self,
         how: impl FnOnce(&mut StreamDecoder, &mut StreamSink<'_>),
@@ -341,7 +316,6 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
         flow
     }
 
-    /// Reports a tick if one is due, and whether the stream is silent.
     fn tick(&mut self) -> ControlFlow<()> {
         if !self.clock.ticker.is_due() {
             return ControlFlow::Continue(());
@@ -397,9 +371,6 @@ impl StreamStart {
     }
 
     /// Checks that a source with these counts is a stream, if it is of this kind according to its start.
-    ///
-    /// # Errors
-    /// Returns [`AcquireError::NotStream`].
     pub(super) fn check(&self, kind: StartKind, counts: &StreamCounts) -> Result<(), AcquireError> {
         match kind {
             StartKind::Recording(format) if counts.frames == self.frames => {
@@ -409,10 +380,6 @@ impl StreamStart {
         }
     }
 
-    /// Checks that a source that has ended with these counts is a stream.
-    ///
-    /// # Errors
-    /// Returns [`AcquireError::NotStream`].
     pub(super) fn finish(&self, counts: &StreamCounts) -> Result<(), AcquireError> {
         let search = self.search.as_ref();
         search.map_or(Ok(()), |search| self.check(search.finish(), counts))
@@ -474,7 +441,7 @@ mod tests {
         assert_eq!(dropped, 1);
     }
 
-    /// Returns the times of the first five frames of two connections, of which each loses its first line.
+    /// The times of the first five frames of two connections, of which each loses its first line.
     fn times_over_a_gap(connections: [String; 2]) -> Vec<Option<f64>> {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let address = listener.local_addr().expect("its address").to_string();
@@ -509,7 +476,10 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("line");
         let source = FrameSource::Serial(path.clone());
-        let options = AcquireOptions::default().with_waits(true);
+        let options = AcquireOptions {
+            waits: true,
+            ..AcquireOptions::default()
+        };
         let mut events = 0;
         let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
             match event {
@@ -524,50 +494,6 @@ mod tests {
         });
         let error = result.expect_err("a file").to_string();
         assert!(error.contains("it is not a serial line"), "{error}");
-    }
-
-    /// Reads a FIFO into which these pieces are written, each once the one before was read. Returns the result.
-    fn read_in_pieces(pieces: &[&[u8]]) -> Result<(), AcquireError> {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("pipe");
-        let made = std::process::Command::new("mkfifo").arg(&path).status();
-        assert!(made.expect("mkfifo starts").success());
-        let source = FrameSource::new(path.as_os_str());
-        let (mut writer, mut written, mut left) = (None, 0, pieces.iter());
-        let options = AcquireOptions::default();
-        run(&source, &options, &AtomicBool::new(false), &mut |event| {
-            if let AcquireEvent::Tick(counts) = event
-                && counts.bytes == written
-            {
-                let Some(piece) = left.next() else {
-                    writer = None;
-                    return ControlFlow::Continue(());
-                };
-                // The pipe is open for reading.
-                let open = || File::options().write(true).open(&path).expect("opened");
-                let writer = writer.get_or_insert_with(open);
-                writer.write_all(piece).expect("written");
-                written += piece.len() as u64;
-            }
-            ControlFlow::Continue(())
-        })
-    }
-
-    #[test]
-    fn a_recording_that_arrives_in_pieces_is_not_taken_for_a_stream() {
-        for (recording, format) in [
-            (&b"\x93NUMPY\x01\x00v\x00{'descr': '|u1', "[..], "npy"),
-            (b"DATA_TYPE MOVIE\nROWS 2\nCOLS 2\n", "tekscan"),
-            (b"FRAME,1\n,\nSENSOR,left\n,\nSENSELS,\n", "xsensor"),
-        ] {
-            let (start, rest) = recording.split_at(4);
-            let refused = read_in_pieces(&[start, rest]).expect_err("a recording");
-            let expected = format!("a recording ({format}), not a stream");
-            assert_eq!(refused.to_string(), expected);
-        }
-        // After its first frame, a stream may contain anything.
-        let stream = [&b"1 2\n\n3 4\n\n"[..], b"DATA_TYPE MOVIE\n"];
-        assert!(read_in_pieces(&stream).is_ok());
     }
 
     #[test]
@@ -667,7 +593,7 @@ mod tests {
         });
     }
 
-    /// Returns the frames of a pipe that brings these pieces, the number of dropped ones, and the error.
+    /// The frames of a pipe that brings these pieces, the number of dropped ones, and the error.
     fn watched(pieces: &[&[u8]]) -> (Vec<String>, u64, Option<String>) {
         let source = FrameSource::Fifo("pipe".into());
         let options = AcquireOptions {

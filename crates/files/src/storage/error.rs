@@ -31,12 +31,12 @@ impl FileError {
         }
     }
 
-    /// Returns true if there is a file already, which was to be kept.
+    /// Whether there is a file already, which was to be kept.
     pub fn exists(&self) -> bool {
         self.error.kind() == io::ErrorKind::AlreadyExists
     }
 
-    /// Returns true if there is no such file, or if a file is where a folder is expected.
+    /// Whether there is no such file, or if a file is where a folder is expected.
     pub fn is_missing(&self) -> bool {
         is_missing(&self.error)
     }
@@ -53,7 +53,6 @@ pub struct ArchiveFileError {
 }
 
 impl From<FileError> for ArchiveFileError {
-    /// Converts the error of a file or folder that is written.
     fn from(error: FileError) -> Self {
         let path = error.path.clone();
         Self::doing("write", &path, &error.error)
@@ -79,12 +78,12 @@ impl ArchiveFileError {
         Self::new(path, io::Error::new(error.kind(), text))
     }
 
-    /// Returns true if there is no such file, or if a file is where a folder is expected.
+    /// Whether there is no such file, or if a file is where a folder is expected.
     pub fn is_missing(&self) -> bool {
         matches!(&self.error, ArchiveError::Io(error) if is_missing(error))
     }
 
-    /// Returns true if a file of that name is there already, and was to be kept.
+    /// Whether a file of that name is there already, and was to be kept.
     pub fn exists(&self) -> bool {
         matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
     }

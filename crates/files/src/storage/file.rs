@@ -154,7 +154,6 @@ pub fn check_writable(path: &Path, existing: Existing) -> Result<(), FileError> 
     UnfinishedFile::new(path, existing).map(drop)
 }
 
-/// Writes a file that replaces `path`.
 pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), FileError> {
     FinishedFile::new(path, content, Existing::Replaced)?.persist()
 }
@@ -204,7 +203,6 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
     Ok(Some(found))
 }
 
-/// The kind of a file in words, with its article.
 pub(super) fn kind_in_words(kind: FileType) -> &'static str {
     #[cfg(unix)]
     if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {

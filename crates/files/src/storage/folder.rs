@@ -12,13 +12,11 @@ use crate::formats::shape::MAX_BYTES;
 use crate::storage::error::{FileError, LibraryError};
 use crate::storage::file::{folder_of, kind_in_words, sync_folder};
 
-/// The file that is locked while a shape is written.
 const LOCK: &str = ".lock";
 
 /// The time that a writer waits for another program. Writing takes milliseconds, unless that program is stopped.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// The pause between two attempts.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// A hash of a file's content. Two contents with the same stamp count as equal.

@@ -15,7 +15,6 @@ use crate::storage::file;
 use crate::storage::folder;
 use crate::storage::library::Library;
 
-/// The folder inside a library with unsaved work.
 pub(super) const FOLDER: &str = ".journal";
 
 /// The largest number of journals that are offered at once. Each keeps a file open, and a program may have about a
@@ -30,7 +29,6 @@ pub const UNNAMED: &str = "unsaved";
 #[derive(Debug)]
 pub struct Journal {
     folder: PathBuf,
-    /// The file, and its lock.
     open: Option<(PathBuf, File)>,
 }
 

@@ -18,7 +18,6 @@ use crate::storage::file::{self, PREFIX, sync_folder};
 use crate::storage::folder::{self, stamp};
 use crate::storage::{journal, shipped};
 
-/// The folder inside a library with its deleted shapes.
 const TRASH: &str = ".trash";
 
 /// The number of deleted shapes that are kept; older ones are removed for good.
@@ -94,7 +93,6 @@ pub enum Expected {
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
-    /// Whether a thread waits for the lock.
     waits: Arc<AtomicBool>,
 }
 
@@ -498,22 +496,20 @@ const MOST_BYTES: u64 = 1 << 17;
 #[derive(Clone, Debug)]
 pub struct RememberedFile {
     path: PathBuf,
-    /// The largest number of lines that the file keeps.
     most: usize,
 }
 
 impl RememberedFile {
-    /// Returns the file with the commands that were typed.
+    /// The file with the commands that were typed.
     pub fn commands(library: &Library) -> Self {
         Self::of(library, ".commands", 100)
     }
 
-    /// Returns the file with the name of the set of shapes that was recognised last.
+    /// The file with the name of the set of shapes that was recognised last.
     pub fn recognised_set(library: &Library) -> Self {
         Self::of(library, ".recognise", 1)
     }
 
-    /// Returns the file of that name in the folder of a library.
     fn of(library: &Library, name: &str, most: usize) -> Self {
         Self {
             path: library.folder().join(name),
@@ -521,7 +517,7 @@ impl RememberedFile {
         }
     }
 
-    /// Returns the lines, the newest last, without empty lines and lines with control characters; empty if there is
+    /// The lines, the newest last, without empty lines and lines with control characters; empty if there is
     /// no such file.
     pub fn read(&self) -> Vec<String> {
         let small = fs::symlink_metadata(&self.path)

@@ -8,7 +8,7 @@ use crate::storage::LibraryError;
 /// The environment variable that names the folder.
 pub const VARIABLE: &str = "TAXEL_LIBRARY";
 
-/// Returns the folder: the one asked for, else that of the variable, else `taxel/library` in the user's data folder.
+/// The folder: the one asked for, else that of the variable, else `taxel/library` in the user's data folder.
 ///
 /// # Errors
 /// Returns [`LibraryError::NoPlace`] if there is none of these.

@@ -32,7 +32,6 @@ use crate::storage::shipped;
 use crate::storage::sweep_file::{FirstErrorWriter, open_archive};
 use crate::sweep::Shard;
 
-/// The ending of a model's file.
 const ENDING: &str = "npz";
 
 /// The largest size of a cached model, in bytes.
@@ -57,7 +56,7 @@ pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
     })
 }
 
-/// Returns true if a file begins like a JSON object, as a set of shapes does.
+/// Whether a file begins like a JSON object, as a set of shapes does.
 fn is_json(file: &mut (impl Read + Seek)) -> bool {
     let mut start = Vec::new();
     let read = file
@@ -70,7 +69,7 @@ fn is_json(file: &mut (impl Read + Seek)) -> bool {
 /// Reads a whole model from a file, so that it can answer touches.
 ///
 /// # Errors
-/// Returns the errors of [`load_model`], or [`ArchiveError::PartOfModel`] for a shard, which knows some of the poses
+/// The errors of [`load_model`], or [`ArchiveError::PartOfModel`] for a shard, which knows some of the poses
 /// only.
 pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
     let model = load_model(path)?;
@@ -94,7 +93,7 @@ pub struct FileVersion {
 }
 
 impl FileVersion {
-    /// Returns the version of the file at a path; None if there is no file, or if the system keeps no time.
+    /// The version of the file at a path; None if there is no file, or if the system keeps no time.
     pub fn of(path: &Path) -> Option<Self> {
         let found = path.metadata().ok()?;
         Some(Self {
@@ -107,7 +106,7 @@ impl FileVersion {
 /// Writes a model to a file: all of it or nothing. Nothing is written if `stopped` becomes true on the way.
 ///
 /// # Errors
-/// Returns the system's error, with the file's name; also if a file exists and must be kept.
+/// The system's error, with the file's name; also if a file exists and must be kept.
 pub fn save_model(
     model: &Model,
     path: &Path,
@@ -127,7 +126,7 @@ pub fn save_model(
 pub struct ModelFolder(PathBuf);
 
 impl ModelFolder {
-    /// Returns the folder `models` beside the folder of a library.
+    /// The folder `models` beside the folder of a library.
     pub fn beside(library: &Path) -> Self {
         // `.` has no name that could be replaced by another one.
         let whole = match library.file_name() {
@@ -139,12 +138,12 @@ impl ModelFolder {
         Self(whole.with_file_name("models"))
     }
 
-    /// Returns the path of the folder; it may not exist yet.
+    /// The path of the folder; it may not exist yet.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// Returns the file of a model. Upper and lower case count as the same, as for shapes, so a folder can move to a
+    /// The file of a model. Upper and lower case count as the same, as for shapes, so a folder can move to a
     /// file system that ignores case.
     pub fn file(&self, name: &Name) -> PathBuf {
         self.path_of(&self.stored_name(name))
@@ -164,10 +163,10 @@ impl ModelFolder {
         alike.unwrap_or_else(|| name.clone())
     }
 
-    /// Returns the names of all models, sorted regardless of case; files that do not look like models are left out.
+    /// The names of all models, sorted regardless of case; files that do not look like models are left out.
     ///
     /// # Errors
-    /// Returns the system's error, except if the folder does not exist.
+    /// The system's error, except if the folder does not exist.
     pub fn names(&self) -> Result<Vec<Name>, ArchiveFileError> {
         let files = folder::names(&self.0)
             .map_err(|error| ArchiveFileError::doing(error.doing, &error.path, &error.error))?;
@@ -204,7 +203,7 @@ impl ModelFolder {
     /// Writes a model under a name, and makes the folder for it.
     ///
     /// # Errors
-    /// Returns the errors of [`save_model`].
+    /// The errors of [`save_model`].
     pub fn save(
         &self,
         model: &Model,
@@ -221,7 +220,7 @@ impl ModelFolder {
     /// Removes a model for good: it can be trained again. Returns its name as it was stored.
     ///
     /// # Errors
-    /// Returns the system's error, with the file's name.
+    /// The system's error, with the file's name.
     pub fn delete(&self, name: &Name) -> Result<Name, ArchiveFileError> {
         let stored = self.stored_name(name);
         let path = self.path_of(&stored);
@@ -240,7 +239,7 @@ impl ModelFolder {
 pub struct ModelCache(PathBuf);
 
 impl ModelCache {
-    /// Returns the user's cache; None if the user has no home folder.
+    /// The user's cache; None if the user has no home folder.
     pub fn of_user() -> Option<Self> {
         let own = directories::ProjectDirs::from("", "", "taxel")?;
         Some(Self(own.cache_dir().join("models")))
@@ -251,7 +250,6 @@ impl ModelCache {
         Self(folder.into())
     }
 
-    /// Returns the file that holds the model of a training.
     fn file(&self, training: &Training<'_>) -> PathBuf {
         let mut content = format!("{} {COUNTING} ", env!("CARGO_PKG_VERSION")).into_bytes();
         content.extend(model_header(&training.head()));
@@ -268,11 +266,11 @@ impl ModelCache {
     }
 }
 
-/// Returns the model of a training from the cache. If the cache does not have it, `train` makes it, and it is kept
+/// The model of a training from the cache. If the cache does not have it, `train` makes it, and it is kept
 /// there. Without a cache it is trained each time.
 ///
 /// # Errors
-/// Returns the errors of `train`.
+/// The errors of `train`.
 pub fn cached_or_trained<'a, E>(
     cache: Option<&ModelCache>,
     training: Training<'a>,
@@ -296,7 +294,6 @@ pub fn model_hash(model: &Model) -> String {
     format!("{:032x}", xxh3_128(&file_content(model)))
 }
 
-/// Returns the bytes of a model's file.
 fn file_content(model: &Model) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     write_model(model, &mut bytes)
@@ -327,7 +324,7 @@ impl ModelChoice {
     /// The choices that need no file.
     pub const BUILT_IN: &'static [Self] = &[Self::Figures, Self::EqualFigures, Self::Shipped];
 
-    /// Returns the choice of that name: a built-in one, otherwise a stored model.
+    /// The choice of that name: a built-in one, otherwise a stored model.
     pub fn from_name(name: Name) -> Self {
         let own = Self::BUILT_IN.iter().find(|own| name.same(own.name()));
         own.cloned().unwrap_or(Self::Stored(name))
@@ -338,7 +335,7 @@ impl ModelChoice {
         Name::new(text).map_or_else(|_| Self::File(text.into()), Self::from_name)
     }
 
-    /// Returns the name that is used after `:recognise`.
+    /// The name that is used after `:recognise`.
     pub fn name(&self) -> &str {
         match self {
             Self::Figures => "figures",
@@ -349,11 +346,11 @@ impl ModelChoice {
         }
     }
 
-    /// Returns the training of a built-in set; None for a stored model or a file. How far its shapes reach is
+    /// The training of a built-in set; None for a stored model or a file. How far its shapes reach is
     /// computed once.
     ///
     /// # Errors
-    /// Returns an error if the set cannot be trained.
+    /// If the set cannot be trained.
     pub fn training(&self) -> Option<Result<Training<'static>, TrainingError>> {
         static FITTED: [OnceLock<Result<Training<'static>, TrainingError>>; 3] =
             [const { OnceLock::new() }; 3];
@@ -367,13 +364,13 @@ impl ModelChoice {
         Some(fitted.clone())
     }
 
-    /// Returns true if the model is read from a file of the user's rather than trained.
+    /// Whether the model is read from a file of the user's rather than trained.
     pub fn is_read(&self) -> bool {
         matches!(self, Self::Stored(_) | Self::File(_))
     }
 }
 
-/// Returns the message for an unknown set; it lists the built-in sets and the stored models.
+/// The message for an unknown set; it lists the built-in sets and the stored models.
 pub fn unknown_set(name: &str, stored: &[Name]) -> String {
     let own = ModelChoice::BUILT_IN.iter().map(ModelChoice::name);
     let is_own = |stored: &&Name| {
@@ -391,13 +388,11 @@ pub fn unknown_set(name: &str, stored: &[Name]) -> String {
 }
 
 impl fmt::Display for ModelChoice {
-    /// Writes "model" and the name that is used after `:recognise`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "model {}", self.name())
     }
 }
 
-/// Returns the shapes that come with the program, as pictures.
 fn shipped_shapes() -> Vec<NamedShape> {
     let picture = |shape: StoredShape| {
         NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))

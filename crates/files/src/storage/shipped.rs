@@ -10,7 +10,6 @@ macro_rules! shapes {
     };
 }
 
-/// The name and the file of each shape, by name.
 const SHIPPED: [(&str, &str); 28] = shapes![
     "arrow",
     "bar",
@@ -47,12 +46,12 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     SHIPPED.iter().map(|&(name, _)| name)
 }
 
-/// Returns true if a shape of that name comes with the program, regardless of case.
+/// Whether a shape of that name comes with the program, regardless of case.
 pub fn has(name: &Name) -> bool {
     SHIPPED.iter().any(|(shipped, _)| name.same(shipped))
 }
 
-/// Returns the shape of that name with its stamp; None if no shape of that name comes with the program.
+/// The shape of that name with its stamp; None if no shape of that name comes with the program.
 pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryError>> {
     let &(name, text) = SHIPPED.iter().find(|(shipped, _)| name.same(shipped))?;
     let broken = |error| LibraryError::Broken {
@@ -67,7 +66,7 @@ pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryErro
     )
 }
 
-/// Returns the shape of that name, regardless of case; None if no shape of that name comes with the program.
+/// The shape of that name, regardless of case; None if no shape of that name comes with the program.
 ///
 /// ```
 /// use taxel_files::storage::shipped;

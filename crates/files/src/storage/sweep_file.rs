@@ -43,7 +43,7 @@ impl AtlasFile {
     /// Takes a path, whose extension gives the format. Creates nothing yet.
     ///
     /// # Errors
-    /// Returns an error if no format has this extension.
+    /// If no format has this extension.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, AtlasEndingError> {
         let path = path.into();
         let formats = [
@@ -57,12 +57,12 @@ impl AtlasFile {
         Ok(Self { path, format })
     }
 
-    /// Returns true if it is an archive, which can be read again.
+    /// Whether it is an archive, which can be read again.
     pub fn is_archive(&self) -> bool {
         self.format == AtlasFormat::Archive
     }
 
-    /// Returns the path of the file.
+    /// The path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -70,7 +70,7 @@ impl AtlasFile {
     /// Checks whether a file can be begun there, so that an error comes before the work rather than after it.
     ///
     /// # Errors
-    /// Returns the system's error, with the file's name; also if a file exists and must be kept.
+    /// The system's error, with the file's name; also if a file exists and must be kept.
     pub fn check(&self, existing: Existing) -> Result<(), ArchiveFileError> {
         Ok(check_writable(&self.path, existing)?)
     }
@@ -78,7 +78,7 @@ impl AtlasFile {
     /// Writes the atlas of a result. Leaves nothing behind if `stopped` becomes true on the way.
     ///
     /// # Errors
-    /// Returns the system's error, with the file's name.
+    /// The system's error, with the file's name.
     pub fn write(
         &self,
         result: &SweepResult,
@@ -91,7 +91,7 @@ impl AtlasFile {
     /// Writes the atlas without giving the file its name yet, so that several files can appear together.
     ///
     /// # Errors
-    /// Returns the system's error, with the file's name.
+    /// The system's error, with the file's name.
     pub fn prepare(
         &self,
         result: &SweepResult,
@@ -124,7 +124,7 @@ pub fn load_atlas(path: &Path) -> Result<SweepResult, ArchiveFileError> {
 /// a writer that may never come.
 ///
 /// # Errors
-/// Returns the system's error, with the file's name.
+/// The system's error, with the file's name.
 pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
     let opened = path.metadata().and_then(|metadata| {
         if metadata.is_file() {
@@ -136,7 +136,7 @@ pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
     opened.map_err(|error| ArchiveFileError::doing("read", path, &error))
 }
 
-/// Returns true if a file of that name can hold the atlas number of every pose: it ends in `.npy`, in upper or lower
+/// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in upper or lower
 /// case.
 pub fn is_poses(name: impl AsRef<Path>) -> bool {
     has_ending(name, "npy")
@@ -171,9 +171,7 @@ pub struct PoseFile {
     /// The number of rows of the grid, and of poses in each.
     rows: u64,
     row_length: u64,
-    /// The number of rows that were not taken yet.
     missing: u64,
-    /// The first error.
     error: Option<io::Error>,
     bytes: Vec<u8>,
 }
@@ -182,7 +180,7 @@ impl PoseFile {
     /// Begins a file for the poses of a grid.
     ///
     /// # Errors
-    /// Returns the system's error, with the file's name.
+    /// The system's error, with the file's name.
     pub fn new(
         path: impl Into<PathBuf>,
         grid: &PoseGrid,
@@ -242,7 +240,7 @@ impl PoseFile {
     /// stopped or was one of a shard; then nothing is left of the file, and neither is if it is dropped instead.
     ///
     /// # Errors
-    /// Returns the first error, with the file's name.
+    /// The first error, with the file's name.
     pub fn finish(self) -> Result<Option<FinishedFile>, ArchiveFileError> {
         match self.error {
             Some(error) => Err(ArchiveFileError::new(self.file.path(), error)),
@@ -257,7 +255,6 @@ impl PoseFile {
 pub(crate) struct FirstErrorWriter<'a, W> {
     output: W,
     stopped: &'a AtomicBool,
-    /// The first error.
     error: Option<io::Error>,
     place: u64,
     end: u64,
@@ -274,7 +271,7 @@ impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
         }
     }
 
-    /// Returns the first error of the system or of stopping, otherwise `written`, the result of the function that
+    /// The first error of the system or of stopping, otherwise `written`, the result of the function that
     /// wrote: it may not have noticed that error.
     pub(crate) fn finish<E: From<io::Error>>(self, written: Result<(), E>) -> Result<(), E> {
         match self.error {
@@ -340,7 +337,6 @@ mod tests {
         Sweep::new(&grid.expect("in range")).run()
     }
 
-    /// Writes the file of all poses, up to its name.
     fn whole(path: &Path, grid: &PoseGrid, existing: Existing) -> FinishedFile {
         let mut file = PoseFile::new(path, grid, existing).expect("begun");
         let ids = vec![7; index(grid.row_length())];

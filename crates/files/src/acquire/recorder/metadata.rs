@@ -14,7 +14,6 @@ use crate::formats::recording::{MetadataError, RecordedView, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::{Existing, FileId, FinishedFile};
 
-/// The size limit of metadata in bytes, 4 MiB.
 const LARGEST_METADATA: u64 = 1 << 22;
 
 /// The largest number of bursts over which the rate is measured: several minutes.
@@ -55,7 +54,6 @@ impl MetadataDraft {
     }
 }
 
-/// Returns true if a path ends like the file of an array.
 pub(super) fn is_array(path: &Path) -> bool {
     has_ending(path, "npy")
 }
@@ -64,7 +62,7 @@ pub(super) fn is_array(path: &Path) -> bool {
 /// metadata beside it.
 ///
 /// # Errors
-/// Returns an error if the metadata is damaged, of another version or cannot be read; or if there is none although
+/// If the metadata is damaged, of another version or cannot be read; or if there is none although
 /// taxel has recorded the array.
 pub fn metadata_beside(path: &Path) -> Option<Result<RecordingMetadata, MetadataFileError>> {
     if !is_array(path) {
@@ -83,7 +81,6 @@ pub fn metadata_beside(path: &Path) -> Option<Result<RecordingMetadata, Metadata
     })
 }
 
-/// Returns true if taxel has recorded an array.
 fn is_recorded(path: &Path) -> bool {
     let start = || {
         let mut start = Vec::new();
@@ -97,9 +94,6 @@ fn is_recorded(path: &Path) -> bool {
 }
 
 /// Reads the metadata beside an array. Returns None if there is no such file, or if it is not metadata.
-///
-/// # Errors
-/// Returns an error if the metadata is too large, damaged, of another version or cannot be read.
 pub(super) fn read_beside(path: &Path) -> Option<Result<RecordingMetadata, MetadataFileError>> {
     let path = path.with_extension("json");
     let content = || {
@@ -173,9 +167,7 @@ pub(super) struct MetadataNotes {
     /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have started again,
     /// as when a recording is played in a loop.
     numbers: Option<(u64, u64)>,
-    /// The message of the first error.
     reason: Option<String>,
-    /// The measurement of the rate of frames.
     rate: FrameRate,
     /// Whether frames carry times, so that they are not only those of arrival.
     carries_times: bool,
@@ -195,7 +187,6 @@ impl MetadataNotes {
         }
     }
 
-    /// Returns the metadata as it is to be written now.
     pub(super) fn metadata(&self) -> &RecordingMetadata {
         &self.metadata
     }
@@ -206,7 +197,6 @@ impl MetadataNotes {
         self.metadata.ended = Some(false);
     }
 
-    /// Replaces threshold, tare and marks.
     pub(super) fn set_view(&mut self, view: RecordedView) {
         let RecordedView { rule, tare, marks } = view;
         (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);
@@ -234,7 +224,6 @@ impl MetadataNotes {
         }
     }
 
-    /// Keeps the message of a failure, if it is the first.
     pub(super) fn note_failure(&mut self, error: &RecorderError) {
         match error {
             RecorderError::Io { error, .. } => self.note_reason(&system_reason(error)),

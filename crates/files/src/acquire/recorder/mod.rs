@@ -48,12 +48,9 @@ use record_array::{RecordArray, header};
 #[derive(Debug)]
 pub struct FrameRecorder {
     path: PathBuf,
-    /// The handling of existing files when the first frame comes.
     existing: Existing,
     notes: MetadataNotes,
-    /// None before the first frame.
     array: Option<RecordArray>,
-    /// The number of frames of another size than the first one.
     left_out: u64,
 }
 
@@ -179,7 +176,6 @@ impl FrameRecorder {
         }
     }
 
-    /// Gives the array and its metadata their names.
     fn begin(&self, size: FrameSize) -> Result<RecordArray, RecorderError> {
         let mut array = UnfinishedFile::new(&self.path, self.existing)?;
         array.write(&header(size, 0))?;
@@ -297,7 +293,6 @@ pub enum RecorderError {
 }
 
 impl RecorderError {
-    /// Creates the error for a file that the system cannot write.
     fn io(path: &Path, error: io::Error) -> Self {
         let (path, error) = (path.to_owned(), Arc::new(error));
         Self::Io { path, error }

@@ -38,7 +38,6 @@ pub(super) struct RecordArray {
     buffer: Vec<u8>,
     /// The number of records in the file and in the buffer.
     records: u64,
-    /// The number of records in the file.
     in_file: u64,
     written: Instant,
 }
@@ -91,7 +90,6 @@ impl RecordArray {
         self.tick()
     }
 
-    /// Writes out the records if they have waited too long.
     pub(super) fn tick(&mut self) -> io::Result<()> {
         if self.written.elapsed() < WRITTEN_OUT {
             return Ok(());
@@ -121,7 +119,6 @@ impl RecordArray {
         self.file.write_all(&header(self.size, self.in_file))
     }
 
-    /// Writes out all records, and waits until they are on the disk.
     pub(super) fn flush(&mut self) -> io::Result<()> {
         self.write_out()?;
         self.file.sync_all()
@@ -134,7 +131,6 @@ pub(super) fn is_own(start: &[u8]) -> bool {
     start.starts_with(&own[..BEFORE_TEXT + DESCRIPTION.len()])
 }
 
-/// The header of an array of records.
 pub(super) fn header(size: FrameSize, records: u64) -> Vec<u8> {
     let (rows, columns) = (size.rows(), size.columns());
     let text = format!(
