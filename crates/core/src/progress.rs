@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 /// let done = AtomicU64::new(0);
 /// let progress = |poses| stop_if(done.fetch_add(poses, Ordering::Relaxed) >= 1_000_000);
 /// let result = Sweep::new(&grid).with_progress(&progress).run();
-/// assert!(result.poses() <= grid.poses());
+/// assert!(result.poses <= grid.poses());
 /// # Ok::<(), taxel_core::pose::GridError>(())
 /// ```
 pub trait Progress<Done = u64>: Sync {

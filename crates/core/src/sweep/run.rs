@@ -37,7 +37,7 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) -> ControlFlow<()> + Send + 'a;
 /// let hexagon = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
 /// let grid = PoseGrid::new(hexagon, Sensor::default(), Anchor::Centre, Ranges::default())?;
 /// let result = Sweep::new(&grid).run();
-/// assert_eq!(result.poses(), grid.poses());
+/// assert_eq!(result.poses, grid.poses());
 /// # Ok::<(), taxel_core::pose::GridError>(())
 /// ```
 #[must_use = "nothing is swept before `run`, `run_with_rows`, `count` or `poses_where`"]
