@@ -28,7 +28,6 @@ fn notices_between_messages_are_skipped() {
 #[test]
 fn values_before_the_offset_of_a_layout_are_not_cells() {
     for text in [
-        "rows,2,4,columns,2,2,1,99,1,2,3,4\n",
         "layout:\n  dim:\n  - label: rows\n    size: 2\n    stride: 4\n  - label: columns\n    size: 2\n    \
          stride: 2\n  data_offset: 1\ndata:\n- 99\n- 1\n- 2\n- 3\n- 4\n---\n",
     ] {
@@ -68,7 +67,7 @@ fn a_second_array_in_a_message_is_a_missing_end() {
 
 #[test]
 fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
-    let text = b"rows,1,4,columns,4,4,0,1,2,3,4\n";
+    let text = b"layout:\n  dim:\n  - size: 1\n  - size: 4\ndata: [1, 2, 3, 4]\n---\n";
     for (named, found) in [
         (None, (1, 4)),
         (Some((2, 2)), (2, 2)),
@@ -86,9 +85,10 @@ fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
 
 #[test]
 fn messages_that_change_their_size_are_reported_as_damage() {
-    let text = b"rows,2,4,columns,2,2,0,1,2,3,4\nrows,1,2,columns,2,2,0,5,6\n";
+    let text = b"layout:\n  dim:\n  - size: 2\n  - size: 2\ndata: [1, 2, 3, 4]\n---\n\
+                 layout:\n  dim:\n  - size: 1\n  - size: 2\ndata: [5, 6]\n---\n";
     let found = recorded(text, None);
     let error = found.error.map(|error| error.to_string());
-    let expected = "line 2: found 1 row of 2, expected 2 of 2 as before";
+    let expected = "line 12: found 1 row of 2, expected 2 of 2 as before";
     assert_eq!((found.frames.len(), error.as_deref()), (1, Some(expected)));
 }

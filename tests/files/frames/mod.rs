@@ -1,8 +1,6 @@
 //! Recordings of sensors: those of `../shared/reference`, if they are available, and small ones made up here.
 
 mod checksums;
-mod cut;
-
 mod echoes;
 
 mod playback;

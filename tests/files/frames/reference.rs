@@ -262,7 +262,6 @@ fn the_same_frames_in_other_formats_give_the_same_imprints() {
         ("wide.csv", None, true),
         ("matsense.csv", shape, true),
         ("frames.jsonl", None, true),
-        ("ros2_echo.csv", None, false),
         ("ros2_echo_field.txt", shape, false),
     ] {
         let found = whole(&format!("data/made/{name}"), named).expect("it is there");

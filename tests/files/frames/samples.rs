@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use taxel::frame::{Frame, Processing, Rule};
+use taxel::frame::{Processing, Rule};
 
 use crate::array::array;
 
@@ -33,7 +33,7 @@ fn imprints(found: &Recorded, channel: usize, threshold: f64) -> Vec<String> {
 }
 
 /// The name, the format, whether rows and columns must be given, and the time of the second frame.
-const SAMPLES: [(&str, &str, bool, Option<f64>); 15] = [
+const SAMPLES: [(&str, &str, bool, Option<f64>); 14] = [
     ("tekscan.asf", "tekscan", false, Some(0.05)),
     ("tekscan_spreadsheet.csv", "tekscan", false, Some(0.05)),
     ("frames.jsonl", "jsonl", false, Some(0.25)),
@@ -41,7 +41,6 @@ const SAMPLES: [(&str, &str, bool, Option<f64>); 15] = [
     ("semicolons.csv", "csv", false, Some(0.25)),
     ("plain.csv", "csv", true, Some(0.25)),
     ("rows.txt", "csv", false, None),
-    ("echo.csv", "ros2", false, None),
     ("echo.txt", "ros2", true, None),
     ("echo.yaml", "ros2", false, None),
     ("u2.npy", "npy", false, None),
@@ -95,64 +94,6 @@ fn the_first_rows_are_used_and_comments_are_not_frames() {
     assert_eq!(found.channels[0].pitch_mm, Some([2.5, 2.5]));
     assert_eq!(found.frames.len(), 3);
     assert_eq!(found.frames[0].cells(), 18);
-}
-
-#[test]
-fn numbers_and_times_beside_the_cells_are_recognised_by_their_growth() {
-    let read = |text: &str| recorded(text.as_bytes(), Some((1, 2)));
-    let first = |text: &str| -> Vec<f64> {
-        let found = read(text);
-        assert!(found.error.is_none(), "{text}: {:?}", found.error);
-        found.frames.iter().map(|frame| frame.values()[0]).collect()
-    };
-    assert_eq!(first("5,6,0,0\n7,8,1,40\n"), [5.0, 7.0]);
-    assert_eq!(first("0,0.0,5,6\n1,0.1,7,8\n"), [5.0, 7.0]);
-    // In only two lines, cells may grow like a number and a time, too.
-    assert_eq!(first("0,0.0,5,6\n1,0.1,6,6\n2,0.2,9,6\n"), [5.0, 6.0, 9.0]);
-    assert_eq!(first("5,6,0,0\n6,6,1,40\n9,6,2,80\n"), [5.0, 6.0, 9.0]);
-    // Here only times have decimals.
-    assert_eq!(first("0,0.0,5,6\n1,0.1,6,8\n"), [5.0, 6.0]);
-    let error = read("0,0,5,6\n1,4,6,8\n")
-        .error
-        .map(|error| error.to_string());
-    let unclear = "line 1: found 2 numbers besides the 2 cells, and cannot tell which";
-    assert!(error.is_some_and(|error| error.starts_with(unclear)));
-    for (text, expected) in [
-        (
-            "# a\n\n# b\n0,0,5,6\n1,4,6,8\n",
-            "line 4: found 2 numbers besides",
-        ),
-        ("# a\n1,2,3,4,5\n", "line 2: found 5 values, expected 2"),
-    ] {
-        let error = read(text).error.map(|error| error.to_string());
-        assert!(
-            error
-                .as_ref()
-                .is_some_and(|error| error.starts_with(expected)),
-            "{error:?}"
-        );
-    }
-}
-
-#[test]
-fn a_line_of_commas_between_frames_is_a_frame_without_values() {
-    for (text, cells) in [
-        ("1,2\n,\n,\n3,4\n", &[2, 0, 0, 2][..]),
-        ("r0c0,r0c1\n,\n1,2\n,\n3,\n", &[2, 0, 1]),
-        // Lines of commas at the end are padding.
-        ("1,2\n3,4\n,\n,\n", &[2, 2]),
-        ("frame,r0c0,r0c1\n0,1,2\n,,\n1,3,4\n", &[2, 2]),
-        ("1,2\n,,,\n3,4\n", &[2, 2]),
-        // An additional comma ends each line.
-        ("1,2,\n,,\n3,4,\n", &[2, 0, 2]),
-    ] {
-        let found = recorded(text.as_bytes(), Some((1, 2)));
-        assert!(found.error.is_none(), "{text}: {:?}", found.error);
-        let counted: Vec<usize> = found.frames.iter().map(Frame::cells).collect();
-        assert_eq!(counted, cells, "{text}");
-        let numbers: Vec<u64> = found.frames.iter().map(|frame| frame.number).collect();
-        assert!(numbers.into_iter().eq(0..cells.len() as u64), "{text}");
-    }
 }
 
 /// Checks that the frames before the damage are read, and that the damage is reported with its place.
@@ -229,13 +170,6 @@ fn damage_is_reported_with_its_place_after_the_frames_before_it() {
         "",
         1,
         "line 9: the frame ends after 3 rows, expected 4",
-    );
-    damaged(
-        "echo.csv",
-        "0,5,14,2",
-        "0,5,'...'",
-        1,
-        "line 2: the echo leaves out values ('...'): record it with --full-length",
     );
 }
 

@@ -36,15 +36,8 @@ fn a_first_line_with_a_text_is_a_frame_if_the_next_one_has_a_text_there() {
             "01/02/21 10:11:12:445;5;6;7;8",
         ],
         ["10:11:12.3 1 2 3 4", "10:11:12.4 5 6 7 8"],
-        [
-            "\"2021-01-02, 10:11\",1,2,3,4",
-            "\"2021-01-02, 10:12\",5,6,7,8",
-        ],
         ["1,2,3,4,cup", "5,6,7,8,cup"],
         ["cup,1,2,3,4,s1", "ring,5,6,7,8,s2"],
-        // A number beside the text is recognised by its growth.
-        ["cup,7,1,2,3,4", "cup,8,5,6,7,8"],
-        ["0,cup,1,2,3,4", "1,cup,5,6,7,8"],
     ] {
         let text = format!("{first}\n{second}\n");
         assert_eq!(values(&text, Some((2, 2))), both, "{text}");
@@ -106,210 +99,81 @@ fn an_index_of_pandas_is_not_a_cell() {
         (found[1].0, found[1].1, &found[1].2),
         (Some(8), Some(0.25), &expected[1].2)
     );
-    // After an offset of ROS, the values of the first line only look like consecutive numbers.
-    let text = "0,1,2,3,4\n0,5,6,7,2\n";
-    assert_eq!(values(text, Some((2, 2))).len(), 2);
 }
 
 #[test]
-fn two_more_numbers_than_cells_in_a_single_line_are_ambiguous() {
-    let unclear = "line 1: found 2 numbers besides the 4 cells, and cannot tell which";
-    for text in ["17,0.25,1,2,3,4\n", "1,2,3,4,17,40\n"] {
-        let found = recorded(text.as_bytes(), Some((2, 2)));
-        assert!(error(&found).starts_with(unclear), "{text}");
-    }
-    // A number that counts frames has no fraction.
-    let text = "1.5,2.5,3,4,17,40\n";
-    assert_eq!(values(text, Some((2, 2))), [[1.5, 2.5, 3.0, 4.0]]);
-}
-
-#[test]
-fn numbers_and_times_beside_the_cells_are_recognised_by_their_growth() {
-    let with = |label, time: f64| (label, Some(time));
-    let (counted, timed) = (|label| (Some(label), None), |time| (None, Some(time)));
+fn two_numbers_beside_the_cells_have_two_layouts_and_anything_else_is_refused() {
+    let with = |label, time: f64| (Some(label), Some(time));
     for (text, expected, first_cells) in [
-        // The time follows the cells, while the first cell also rises: between two lines, or between all.
         (
-            "5,1,2,9,0.00\n7,1,2,9,0.05\n6,1,2,9,0.10\n",
-            vec![timed(0.0), timed(0.05), timed(0.1)],
-            vec![5.0, 7.0, 6.0],
-        ),
-        (
-            "5,1,2,9,0.00\n7,1,2,9,0.05\n",
-            vec![timed(0.0), timed(0.05)],
-            vec![5.0, 7.0],
-        ),
-        (
-            "5,1,2,9,0\n9,1,2,9,50\n60,1,2,9,101\n",
-            vec![timed(0.0), timed(50.0), timed(101.0)],
-            vec![5.0, 9.0, 60.0],
-        ),
-        // The first cell stays 0, like the offset of a ROS message.
-        (
-            "0,1,2,9,0.00\n0,1,2,9,0.05\n0,1,2,9,0.11\n",
-            vec![timed(0.0), timed(0.05), timed(0.11)],
-            vec![0.0, 0.0, 0.0],
-        ),
-        // A clock that counts from 1970 is not a cell, however evenly the last cell rises.
-        (
-            "1714564800000,10,20,30,0\n1714564800050,11,19,30,1\n1714564800092,10,21,29,2\n",
-            vec![timed(0.0), timed(0.05), timed(0.092)],
-            vec![10.0, 11.0, 10.0],
+            "7,0.00,1,2,9,4\n8,0.05,1,2,8,6\n9,0.10,1,2,9,7\n",
+            [with(7, 0.0), with(8, 0.05), with(9, 0.1)],
+            [1.0, 1.0, 1.0],
         ),
         (
             "0,1714564800000,0,0,0,0\n1,1714564800050,3,9,8,2\n2,1714564800092,4,18,16,4\n",
-            vec![
-                with(Some(0), 0.0),
-                with(Some(1), 0.05),
-                with(Some(2), 0.092),
-            ],
-            vec![0.0, 3.0, 4.0],
+            [with(0, 0.0), with(1, 0.05), with(2, 0.092)],
+            [0.0, 3.0, 4.0],
         ),
-        // A number before a timestamp is not a cell.
+        // Milliseconds behind the cells; the last line is torn.
+        (
+            "5,6,2,1,0,0\n6,6,2,1,1,40\n9,6,2,2,2,8\n",
+            [with(0, 0.0), with(1, 0.04), with(2, 0.008)],
+            [5.0, 6.0, 9.0],
+        ),
+        // A number before a timestamp.
         (
             "0,12:00:00.00,1,2,3,4\n1,12:00:00.05,2,3,4,5\n2,12:00:00.10,3,4,5,6\n",
-            vec![with(Some(0), 0.0), with(Some(1), 0.05), with(Some(2), 0.1)],
-            vec![1.0, 2.0, 3.0],
-        ),
-        // The number or the time precedes the cells, while the last cell rises.
-        (
-            "0,1,2,3,4\n1,5,6,7,8\n2,5,6,7,9\n",
-            vec![counted(0), counted(1), counted(2)],
-            vec![1.0, 5.0, 5.0],
-        ),
-        (
-            "0.00,1,2,3,4\n0.05,5,6,7,8\n",
-            vec![timed(0.0), timed(0.05)],
-            vec![1.0, 5.0],
-        ),
-        (
-            "0.0011,1,2,3,4\n0.0515,1,2,3,9\n0.1003,1,2,3,10\n",
-            vec![timed(0.0), timed(0.0504), timed(0.0992)],
-            vec![1.0, 1.0, 1.0],
-        ),
-        // The number precedes the cells, and the time follows them; a cell that does not change is not a time.
-        (
-            "0,1,2,9,4,0.00\n1,1,2,8,4,0.05\n2,1,2,9,4,0.10\n",
-            vec![with(Some(0), 0.0), with(Some(1), 0.05), with(Some(2), 0.1)],
-            vec![1.0, 1.0, 1.0],
-        ),
-        (
-            "7,0.00,1,2,9,4\n8,0.05,1,2,8,6\n9,0.10,1,2,9,7\n",
-            vec![with(Some(7), 0.0), with(Some(8), 0.05), with(Some(9), 0.1)],
-            vec![1.0, 1.0, 1.0],
+            [with(0, 0.0), with(1, 0.05), with(2, 0.1)],
+            [1.0, 2.0, 3.0],
         ),
     ] {
         let found = frames(text, Some((2, 2)));
         let beside: Vec<_> = found.iter().map(|own| (own.0, own.1)).collect();
         let cells: Vec<f64> = found.iter().map(|own| own.2[0]).collect();
-        assert_eq!((beside, cells), (expected, first_cells), "{text}");
-    }
-    // Nothing shows which of the two it is.
-    for text in [
-        "0,1,2,9,0\n0,1,2,9,3\n0,1,2,9,3\n",
-        "0,10,20,30,0\n50,11,19,30,1\n100,10,21,29,2\n150,12,21,29,3\n",
-        "0,1,2,3,4\n",
-        "10,1,2,3,4\n12,5,6,7,8\n",
-        "10,1,2,3,4\n12,5,6,7,8\n14,5,6,7,12\n",
-    ] {
-        let found = recorded(text.as_bytes(), Some((2, 2)));
-        let unclear = "line 1: found 1 number besides the 4 cells, and cannot tell which";
-        assert!(
-            error(&found).starts_with(unclear),
-            "{text}: {:?}",
-            found.error
+        assert_eq!(
+            (&beside[..], &cells[..]),
+            (&expected[..], &first_cells[..]),
+            "{text}"
         );
     }
-    // Neither of the two grows.
-    let found = recorded(b"5,1,2,3,4\n4,5,6,7,3\n", Some((2, 2)));
-    assert_eq!(error(&found), "line 1: found 5 values, expected 4");
-}
-
-#[test]
-fn a_decimal_comma_between_commas_is_found_by_the_number_of_fields() {
-    // As Python's logging writes them, over the end of a second.
-    let moment = |index: u32| {
-        let milliseconds = 960 + 10 * index;
-        format!(
-            "2024-05-01 12:00:0{},{:03}",
-            milliseconds / 1000,
-            milliseconds % 1000
-        )
-    };
-    let cell = |index: u32| index % 3;
-    let lines = |line: &dyn Fn(u32) -> String| (0..12).map(line).collect::<String>();
-    let frame = |index| format!("{},{},2,3,4\n", moment(index), cell(index));
-    let numbered = |index| format!("{index},{},{},2,3,4\n", moment(index), cell(index));
-    let behind = |index| format!("{},2,3,4,{}\n", cell(index), moment(index));
-    let block = |index| {
-        let moment = moment(index);
-        format!("{moment},{},2\n{moment},3,4\n\n", cell(index))
-    };
-    let named = format!("time,r0c0,r0c1,r1c0,r1c1\n{}", lines(&frame));
-    for (text, shape) in [
-        (lines(&frame), Some((2, 2))),
-        (lines(&numbered), Some((2, 2))),
-        (lines(&behind), Some((2, 2))),
-        (lines(&block), Some((2, 2))),
-        (named, None),
+    let one = "found 1 number besides the 4 cells, and cannot tell which";
+    let two = "found 2 numbers besides the 4 cells, and cannot tell which";
+    for (text, line, expected) in [
+        ("0,1,2,3,4\n1,5,6,7,8\n2,5,6,7,9\n", 1, one),
+        ("5,1,2,9,0.00\n7,1,2,9,0.05\n", 1, one),
+        ("# a\n\n0,0.0,1,2,3,4\n1,0.1,1,2,4,8\n", 3, two),
+        ("17,0.25,1,2,3,4\n", 1, two),
+        ("0.5,1,1,2,3,4\n0.6,2,1,2,3,4\n", 1, two),
+        ("0,1,2,9,4,0.00\n1,1,2,8,4,0.05\n", 1, two),
+        ("# a\n1,2,3,4,5,6,7\n", 2, "found 7 values, expected 4"),
+        ("1,2,3\n", 1, "found 3 values, expected 4"),
     ] {
-        let found = frames(&text, shape);
-        assert_eq!(found.len(), 12, "{text}");
-        for (index, (_, time, values)) in (0..).zip(found) {
-            let expected = 0.01 * f64::from(index);
-            assert!(
-                time.is_some_and(|time| (time - expected).abs() < 1e-9),
-                "{time:?}: {text}"
-            );
-            assert_eq!(values, [cell(index).into(), 2.0, 3.0, 4.0], "{text}");
-        }
-    }
-    for (text, shape, message) in [
-        (
-            lines(&block),
-            None,
-            "3 numbers a line, but the rows and columns of a frame are not stated",
-        ),
-        // The number may be that of the frame.
-        (
-            "12:00:00,100,1,2,3,4\n12:00:00,101,1,2,3,4\n12:00:01,102,1,2,3,4\n".to_owned(),
-            Some((2, 2)),
-            "line 1: found 1 number besides the 4 cells, and cannot tell which",
-        ),
-    ] {
-        let found = recorded(text.as_bytes(), shape);
+        let found = recorded(text.as_bytes(), Some((2, 2)));
+        let expected = format!("line {line}: {expected}");
         assert!(
-            error(&found).starts_with(message),
+            error(&found).starts_with(&expected),
             "{text}: {}",
             error(&found)
         );
     }
-    // These are cells: their number is right, or times would go back.
-    let text = "12:00:00,100,2,3,4\n12:00:01,110,2,3,4\n";
-    assert_eq!(values(text, Some((2, 2)))[1], [110.0, 2.0, 3.0, 4.0]);
-    let text = "12:00:00,110,2\n12:00:00,100,4\n\n";
-    assert_eq!(values(text, None), [[110.0, 2.0, 100.0, 4.0]]);
 }
 
 #[test]
-fn a_first_line_of_consecutive_numbers_may_be_values() {
-    let block = "0 1 2 3\n4 5 6 7\n8 9 10 11\n12 13 14 15\n\n";
-    let other = "0,1,2,3\n5,5,5,5\n\n0,1,2,3\n6,6,6,6\n\n";
-    for (text, rows, count) in [
-        (block.repeat(3), 4, 3),
-        (block.to_owned(), 4, 1),
-        (other.to_owned(), 2, 2),
-    ] {
-        let found = recorded(text.as_bytes(), None);
-        assert!(found.error.is_none(), "{text}: {:?}", found.error);
-        assert_eq!(channel_shape(&found.channels[0]), Some((rows, 4)), "{text}");
-        assert_eq!(found.frames.len(), count, "{text}");
-        assert_eq!(found.frames[0].values()[..4], [0.0, 1.0, 2.0, 3.0]);
-    }
-    // The same values again, in more frames.
-    let text = "# ramp\n0,1,2,3\n0,1,2,3\n0,1,2,9\n";
-    assert_eq!(values(text, Some((2, 2))).len(), 3);
-    // These are names, also above groups of frames.
+fn a_comma_after_the_seconds_separates_fields() {
+    let text = "12:00:00,100,2,3,4\n12:00:01,110,2,3,4\n";
+    assert_eq!(values(text, Some((2, 2)))[1], [110.0, 2.0, 3.0, 4.0]);
+    // As a decimal sign, it makes one field too many.
+    let found = recorded(
+        b"12:00:00,100,1,2,3,4\n12:00:00,110,1,2,3,4\n",
+        Some((2, 2)),
+    );
+    let expected = "line 1: found 1 number besides the 4 cells, and cannot tell which";
+    assert!(error(&found).starts_with(expected), "{}", error(&found));
+}
+
+#[test]
+fn a_first_line_that_counts_from_0_is_a_header() {
     for text in [
         "0,1,2,3\n5,6,7,8\n1,2,3,4\n\n",
         "0,1,2,3\n5,6,7,8\n\n1,2,3,4\n",
@@ -319,6 +183,9 @@ fn a_first_line_of_consecutive_numbers_may_be_values() {
             [[5.0, 6.0, 7.0, 8.0], [1.0, 2.0, 3.0, 4.0]]
         );
     }
+    // With other rows and columns than it has fields, it is a row.
+    let block = "0 1 2 3\n4 5 6 7\n\n";
+    assert_eq!(values(&block.repeat(3), Some((2, 4))).len(), 3);
 }
 
 /// Returns the times of the frames of a table, and its notes.
@@ -444,26 +311,10 @@ fn comments_and_units_are_not_frames() {
         assert_eq!(found.channels[0].unit, None);
     }
     // An index of pandas may contain the times.
-    for text in [
-        ",r0c0,r0c1\n2024-05-01 12:00:00.000,1,2\n2024-05-01 12:00:00.050,5,6\n",
-        ",r0c0,r0c1\n0 days 00:00:00,1,2\n0 days 00:00:00.050000,5,6\n",
-    ] {
-        assert_eq!(frames(text, None)[1], (None, Some(0.05), vec![5.0, 6.0]));
-    }
+    let text = ",r0c0,r0c1\n2024-05-01 12:00:00.000,1,2\n2024-05-01 12:00:00.050,5,6\n";
+    assert_eq!(frames(text, None)[1], (None, Some(0.05), vec![5.0, 6.0]));
     // Two lines of words are not the header of a table.
     assert!(recorded(b"a,b\nc,d\n1,2\n", None).error.is_some());
-}
-
-#[test]
-fn a_duration_is_a_time_but_not_the_start_of_the_recording() {
-    let text = "time,r0c0,r0c1\n0 days 00:00:01,1,2\n0 days 00:00:01.050000,3,4\n";
-    let found = recorded(text.as_bytes(), None);
-    assert_eq!(
-        (found.frames[1].time, &found.channels[0].start),
-        (Some(0.05), &None)
-    );
-    let text = "time,r0c0,r0c1\n11:59:59 AM,1,2\n12:00:00 PM,3,4\n";
-    assert_eq!(frames(text, None)[1].1, Some(1.0));
 }
 
 #[test]
@@ -544,9 +395,9 @@ fn a_date_and_time_beside_the_cells_is_the_time() {
         ),
         // A date alone is ignored, and so is a unit, which a moment does not need.
         (
-            "date;time (ms);r0c0;r0c1\n2024-05-01;12:00:00,1;1;2\n2024-05-01;12:00:00,3;3;4\n",
+            "date;time (ms);r0c0;r0c1\n2024-05-01;12:00:00.1;1;2\n2024-05-01;12:00:00.3;3;4\n",
             None,
-            "12:00:00,1",
+            "12:00:00.1",
             0.2,
         ),
         // Without names, beside a number that counts.
@@ -603,14 +454,6 @@ fn a_list_of_objects_is_refused_with_a_hint() {
         "[\n  {\"t\":0,\"frame\":[[1,2]]}\n]\n",
     ] {
         assert_eq!(error(&recorded(text.as_bytes(), None)), expected);
-    }
-}
-
-#[test]
-fn a_line_of_json_with_a_frame_may_have_any_other_keys() {
-    for key in ["snapshots", "pad_columns"] {
-        let text = format!("{{\"frame\":[[1,2],[3,4]],\"{key}\":1}}\n");
-        assert_eq!(values(&text, None), [[1.0, 2.0, 3.0, 4.0]], "{key}");
     }
 }
 

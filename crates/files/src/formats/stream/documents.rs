@@ -104,20 +104,11 @@ impl RosDecoder {
     pub(super) fn line(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         // A boundary, or a line with a whole array, begins a message.
         let trimmed = line.trim_ascii();
-        let begins = trimmed.starts_with(b"array(")
-            || echo::is_csv(trimmed)
-            || echo::is_csv_without_dimensions(trimmed) && !self.message.is_open();
-        self.begun |= begins;
+        self.begun |= trimmed.starts_with(b"array(");
         let state = self.message.line(line);
         match state {
             RosLine::More => {}
-            RosLine::Cut => {
-                self.cut = true;
-                // A message of a single line has no other end.
-                if echo::is_csv(trimmed) {
-                    self.end(line, output);
-                }
-            }
+            RosLine::Cut => self.cut = true,
             RosLine::Wrong(column) => self.note(state.mistake(), Some(column)),
             RosLine::Unended => self.note(state.mistake(), None),
             RosLine::Whole => self.end(line, output),

@@ -8,7 +8,6 @@
 //! 7 3
 //!
 //! 2024-05-01 12:00:00.25,0,12,7,3     a moment at the beginning of a frame's first line is its time
-//! 2024-05-01 12:00:00,250,0,12,7,3    with a decimal comma only if rows and columns are given
 //! # frame 7       a comment, or sep=;, wherever it stands
 //! ```
 //! If a stream is read from its beginning, such as a file, the first block may be a frame, or the end of one: its
@@ -19,10 +18,10 @@
 //! never joined. If frames are known to be single lines, each line that is not a frame counts as a lost one.
 
 use crate::formats::recording::stream_size::StreamSize;
-use crate::formats::recording::text::separator::{Separator, is_comment};
+use crate::formats::recording::text::separator::is_comment;
 use crate::formats::recording::time::exact::Time;
 use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::recording::time::moment::{self, Moment};
+use crate::formats::recording::time::moment;
 use crate::formats::stream::event::StreamEvent;
 use crate::formats::stream::numbers;
 use crate::formats::stream::output::StreamOutput;
@@ -88,32 +87,11 @@ impl LinesDecoder {
         if is_comment(trimmed) {
             return;
         }
-        if self.size.named().is_none() {
-            self.current.commas.compare(line);
-        }
-        let (moment, line) = match self.leading(line) {
+        let (moment, line) = match moment::leading(line) {
             Some((moment, numbers)) => (Some(self.clock.moment(moment)), numbers),
             None => (None, line),
         };
         self.numbers(moment, line, output);
-    }
-
-    /// Splits a line into the timestamp at its beginning and the numbers after it. If rows and columns were given, the
-    /// number of numbers shows whether a comma in the timestamp is its decimal sign.
-    fn leading<'l>(&self, line: &'l [u8]) -> Option<(Moment, &'l [u8])> {
-        let plain = moment::leading(line);
-        let Some(size) = self.size.named() else {
-            return plain;
-        };
-        let counts = [size.cells(), size.columns().into()];
-        let fits = |(_, row): &(Moment, &[u8])| {
-            let fields = Separator::Byte(b',').fields(row);
-            counts.contains(&fields.count())
-        };
-        let other = moment::leading_with_fraction(line).filter(fits);
-        other
-            .filter(|_| !plain.as_ref().is_some_and(fits))
-            .or(plain)
     }
 
     /// Decodes the numbers of a line that is not empty, after its timestamp.
@@ -216,11 +194,6 @@ impl LinesDecoder {
             return;
         }
         match self.current.size() {
-            Some(own) if self.size.present() != Some(own) && self.current.commas.are_possible() => {
-                self.size.pass_torn();
-                output.counts.unshaped = Some(own.columns().into());
-                self.lose(1, &self.current.sample, output);
-            }
             Some(own) if self.held.is_some() => self.hold(own, output),
             Some(own) => self.block(own, output),
             None => {
@@ -470,15 +443,6 @@ mod tests {
             ),
             (Vec::new(), 1)
         );
-        // The number of numbers tells, if it is known.
-        let frame = "12:00:00,000,1,2,3,4\n12:00:00,125,512,2,3,4\n";
-        let rows = "12:00:00,000,1,2\n12:00:00,000,3,4\n\n12:00:00,125,512,2\n12:00:00,125,3,4\n\n";
-        for text in [frame, rows] {
-            let found = times(text, Some(FrameSize::new(2, 2).expect("an allowed size")));
-            let expected = vec![(Some(0.0), 1.0), (Some(0.125), 512.0)];
-            assert_eq!(found, (expected, 0), "{text}");
-        }
-        assert_eq!(times(rows, None), (Vec::new(), 2));
         let cells = "12:00:00,512,2\n12:00:00,498,4\n\n";
         assert_eq!(times(cells, None), (vec![(Some(0.0), 512.0)], 0));
         assert_eq!(

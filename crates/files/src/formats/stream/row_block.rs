@@ -2,7 +2,7 @@
 
 use crate::formats::recording::side::frame_size;
 use crate::formats::recording::time::exact::Time;
-use crate::formats::recording::time::moment::{self, DecimalCommas};
+use crate::formats::recording::time::moment;
 use crate::frame::{FrameSize, MAX_FRAME_SIDE};
 use crate::parameter::number::counted;
 
@@ -25,8 +25,6 @@ pub(super) struct RowBlock {
     first: FirstLine,
     /// Whether the stream ended within the last row.
     is_torn: bool,
-    /// The decimal commas that its timestamps may have.
-    pub(super) commas: DecimalCommas,
 }
 
 /// The form of the first line of a block.
@@ -153,7 +151,6 @@ impl RowBlock {
         self.values.clear();
         (self.rows, self.broken, self.is_torn) = (0, false, false);
         self.first = FirstLine::Row;
-        self.commas = DecimalCommas::default();
     }
 }
 

@@ -8,13 +8,11 @@
 //!
 //! The checksum of an array only says that some of its bytes are wrong, and only at its end. Its frames are reported
 //! as they are read, then the error: to check it first would take twice the time and lose all frames that are right.
-//! The frames of an archive that is cut short, and so has no directory, are reported up to the cut.
+//! An archive that is cut short has no directory, so nothing of it is read.
 
-use std::borrow::Cow;
-use std::io::{ErrorKind, Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek};
 
 use zip::ZipArchive;
-use zip::read::{ZipFile, read_zipfile_from_stream};
 use zip::result::ZipError;
 
 use crate::formats::npy::{Header, NumberType};
@@ -49,8 +47,8 @@ fn damaged(error: ZipError) -> RecordingError {
 }
 
 /// Returns the error for the array of that name: bytes that cannot be decompressed or that have a wrong checksum are
-/// damage to the array, not to the disk; in a cut archive, they are where it was cut.
-fn in_array(name: &str, is_cut: bool, error: RecordingError) -> RecordingError {
+/// damage to the array, not to the disk.
+fn in_array(name: &str, error: RecordingError) -> RecordingError {
     let message = match error {
         RecordingError::Damaged { message, .. } => message,
         RecordingError::Io(error)
@@ -59,89 +57,11 @@ fn in_array(name: &str, is_cut: bool, error: RecordingError) -> RecordingError {
                 ErrorKind::InvalidData | ErrorKind::InvalidInput | ErrorKind::UnexpectedEof
             ) =>
         {
-            if is_cut {
-                return RecordingError::damaged(CUT);
-            }
             "the array is damaged, so some of its values may be wrong".to_owned()
         }
         error => return error,
     };
     RecordingError::damaged(format!("{name}: {message}"))
-}
-
-/// An archive that is open for reading.
-enum Archive<'a, R> {
-    /// An archive with its directory.
-    Whole(ZipArchive<&'a mut R>),
-    /// An archive without a directory, which is at the end and so is lost first. Each file also has a header of its
-    /// own, with its name and length: these lead from file to file up to the damage.
-    Cut {
-        input: &'a mut R,
-        /// The offset and the name of each file.
-        files: Vec<(u64, String)>,
-    },
-}
-
-impl<'a, R: Read + Seek> Archive<'a, R> {
-    /// Finds the files of an archive without a directory. The last one may be incomplete.
-    ///
-    /// # Errors
-    /// Returns an error if the input cannot be read.
-    fn cut(mut input: &'a mut R) -> Result<Self, RecordingError> {
-        input.rewind()?;
-        let mut files = Vec::new();
-        // One file too many is enough to refuse the archive.
-        while files.len() <= MOST_ARRAYS {
-            let start = input.stream_position()?;
-            let name = match read_zipfile_from_stream(&mut input) {
-                Ok(Some(file)) => file.name().map(Cow::into_owned),
-                _ => break,
-            };
-            let Ok(name) = name else { break };
-            files.push((start, name));
-        }
-        Ok(Self::Cut { input, files })
-    }
-
-    /// Returns true if the archive has no directory.
-    fn is_cut(&self) -> bool {
-        matches!(self, Self::Cut { .. })
-    }
-
-    /// Returns the number of files.
-    fn len(&self) -> usize {
-        match self {
-            Self::Whole(archive) => archive.len(),
-            Self::Cut { files, .. } => files.len(),
-        }
-    }
-
-    /// Opens a file from its beginning.
-    ///
-    /// # Errors
-    /// Returns an error if the file or its header is damaged.
-    fn by_index(&mut self, index: usize) -> Result<ZipFile<'_, &'a mut R>, RecordingError> {
-        match self {
-            Self::Whole(archive) => archive.by_index(index).map_err(damaged),
-            Self::Cut { input, files } => {
-                input.seek(SeekFrom::Start(files[index].0))?;
-                let file = read_zipfile_from_stream(input).map_err(damaged)?;
-                file.ok_or_else(|| RecordingError::damaged(CUT))
-            }
-        }
-    }
-
-    /// Returns true if the archive is an office document: a spreadsheet is a zip archive, too.
-    fn is_office_document(&self) -> bool {
-        let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
-        match self {
-            Self::Whole(archive) => {
-                let mut names = archive.file_names();
-                names.any(|name| name.is_ok_and(|name| is_office(&name)))
-            }
-            Self::Cut { files, .. } => files.iter().any(|(_, name)| is_office(name)),
-        }
-    }
 }
 
 /// An array of the archive.
@@ -155,40 +75,23 @@ struct ArchiveArray {
 }
 
 /// Reads a recording.
-///
-/// # Errors
-/// Returns an error if no array can be frames, and the errors of each array, with its name. An archive that was cut
-/// short is an error, too, after the frames before the cut.
 pub(in crate::formats::recording) fn read(
-    mut input: impl Read + Seek,
+    input: impl Read + Seek,
     options: ReadOptions,
     sink: &mut Sink<'_>,
 ) -> Result<(), EarlyEnd> {
-    let opened = ZipArchive::new(&mut input);
-    let error = match opened {
-        Ok(archive) => return frames(&mut Archive::Whole(archive), options, sink),
-        Err(ZipError::InvalidArchive(_)) => RecordingError::damaged(CUT),
-        Err(error) => return Err(damaged(error).into()),
-    };
-    let mut archive = Archive::cut(&mut input)?;
-    if archive.len() > 0 {
-        frames(&mut archive, options, sink)?;
-    }
-    Err(error.into())
-}
-
-/// Reads the frames of all channels. What is read despite damage comes before the error.
-fn frames<R: Read + Seek>(
-    archive: &mut Archive<'_, R>,
-    options: ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
-    if archive.is_office_document() {
+    let archive = &mut ZipArchive::new(input).map_err(damaged)?;
+    // A spreadsheet is a zip archive, too.
+    let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
+    if archive
+        .file_names()
+        .any(|name| name.is_ok_and(|name| is_office(&name)))
+    {
         let kind = "a spreadsheet or another office document (save the sheet as CSV)";
         return Err(RecordingError::Foreign { kind }.into());
     }
-    let (arrays, mut damage) = arrays(archive)?;
-    let channels = channels(&arrays, &mut damage, options)?;
+    let arrays = arrays(archive)?;
+    let channels = channels(&arrays, options)?;
     for (array, layout) in &channels {
         let info = ChannelInfo {
             name: Some(array.name.clone()),
@@ -200,24 +103,20 @@ fn frames<R: Read + Seek>(
             sink(RecordingEvent::Note(note))?;
         }
     }
-    let is_cut = archive.is_cut();
     let (mut noted, mut counted, mut times) = (None, None, Vec::new());
     for (channel, (array, layout)) in channels.iter().enumerate() {
         let frames = layout.frames();
         // Channels with as many frames have the same times.
         if counted != Some(frames) {
-            let (found, note) = self::times(archive, &arrays, frames).unwrap_or_else(|error| {
-                damage.get_or_insert(error);
-                (Vec::new(), None)
-            });
+            let (found, note) = self::times(archive, &arrays, frames)?;
             if let Some(note) = note.as_ref().filter(|_| note != noted) {
                 sink(RecordingEvent::Note(note))?;
             }
             noted = note.or(noted);
             (counted, times) = (Some(frames), found);
         }
-        let mut file = archive.by_index(array.index)?;
-        let named = |error| in_array(&array.name, is_cut, error);
+        let mut file = archive.by_index(array.index).map_err(damaged)?;
+        let named = |error| in_array(&array.name, error);
         array::header(&mut file).map_err(named)?;
         array::frames(&mut file, layout, channel, &times, sink).map_err(|end| match end {
             EarlyEnd::Failed(error) => named(error).into(),
@@ -225,18 +124,17 @@ fn frames<R: Read + Seek>(
         })?;
         array::end(&mut file, layout).map_err(named)?;
     }
-    damage.map_or(Ok(()), |error| Err(error.into()))
+    Ok(())
 }
 
 /// Returns the arrays that are channels, with their layouts.
 ///
 /// # Errors
-/// Returns an error if there are none: the damage, if there may be some behind it.
-fn channels<'a>(
-    arrays: &'a [ArchiveArray],
-    damage: &mut Option<RecordingError>,
+/// Returns an error if there are none.
+fn channels(
+    arrays: &[ArchiveArray],
     options: ReadOptions,
-) -> Result<Vec<(&'a ArchiveArray, ArrayLayout)>, RecordingError> {
+) -> Result<Vec<(&ArchiveArray, ArrayLayout)>, RecordingError> {
     let channels: Vec<&ArchiveArray> = arrays
         .iter()
         .filter(|array| {
@@ -247,8 +145,7 @@ fn channels<'a>(
         .collect();
     if channels.is_empty() {
         let message = "no array of two or three axes, expected frames, rows and columns";
-        let none = || RecordingError::damaged(message);
-        return Err(damage.take().unwrap_or_else(none));
+        return Err(RecordingError::damaged(message));
     }
     with_layouts(channels, options)
 }
@@ -265,49 +162,36 @@ fn is_atlas_or_model(arrays: &[ArchiveArray]) -> bool {
         && matches!(&*second.name, "rows" | "height")
 }
 
-/// Returns all arrays with their headers, up to the first damaged one and with its error, or that of a cut archive. An
-/// atlas or a model is refused.
+/// Returns all arrays with their headers. An atlas or a model is refused.
 fn arrays<R: Read + Seek>(
-    archive: &mut Archive<'_, R>,
-) -> Result<(Vec<ArchiveArray>, Option<RecordingError>), RecordingError> {
+    archive: &mut ZipArchive<R>,
+) -> Result<Vec<ArchiveArray>, RecordingError> {
     if archive.len() > MOST_ARRAYS {
         let message = format!("more than {MOST_ARRAYS} files in the archive");
         return Err(RecordingError::damaged(message));
     }
     let mut arrays = Vec::new();
-    // Behind the cut there may be more.
-    let mut damage = archive.is_cut().then(|| RecordingError::damaged(CUT));
     for index in 0..archive.len() {
-        match array(archive, index) {
-            Ok(array) => arrays.extend(array),
-            Err(error) => {
-                damage = Some(error);
-                break;
-            }
-        }
+        arrays.extend(array(archive, index)?);
     }
     if is_atlas_or_model(&arrays) {
         let kind = "an atlas or a model of taxel";
         return Err(RecordingError::Foreign { kind });
     }
-    Ok((arrays, damage))
+    Ok(arrays)
 }
 
 /// Returns an array with its header; None if the file is not an array.
 fn array<R: Read + Seek>(
-    archive: &mut Archive<'_, R>,
+    archive: &mut ZipArchive<R>,
     index: usize,
 ) -> Result<Option<ArchiveArray>, RecordingError> {
-    let is_cut = archive.is_cut();
-    let mut file = archive.by_index(index)?;
+    let mut file = archive.by_index(index).map_err(damaged)?;
     let name = file.name().map_err(damaged)?.into_owned();
     let Some(name) = name.strip_suffix(".npy").map(str::to_owned) else {
         return Ok(None);
     };
-    let header = array::header(&mut file).map_err(|error| match error {
-        RecordingError::Damaged { .. } if is_cut => RecordingError::damaged(CUT),
-        error => in_array(&name, is_cut, error),
-    })?;
+    let header = array::header(&mut file).map_err(|error| in_array(&name, error))?;
     Ok(Some(ArchiveArray {
         index,
         name,
@@ -448,7 +332,7 @@ impl<'a> TimeArray<'a> {
 /// # Errors
 /// Returns an error if the array of times is damaged.
 fn times<R: Read + Seek>(
-    archive: &mut Archive<'_, R>,
+    archive: &mut ZipArchive<R>,
     arrays: &[ArchiveArray],
     frames: u64,
 ) -> Result<(Vec<f64>, Option<RecordingNote>), RecordingError> {
@@ -456,9 +340,8 @@ fn times<R: Read + Seek>(
     let Some(found) = found.filter(|_| frames <= MOST_TIMES) else {
         return Ok((Vec::new(), None));
     };
-    let is_cut = archive.is_cut();
-    let mut file = archive.by_index(found.array.index)?;
-    let named = |error| in_array(&found.array.name, is_cut, error);
+    let mut file = archive.by_index(found.array.index).map_err(damaged)?;
+    let named = |error| in_array(&found.array.name, error);
     found.seconds(&mut file, frames).map_err(named)
 }
 

@@ -1,10 +1,8 @@
-//! The output of `ros2 topic echo` for a message with an array: with `--csv`, as `array('H', [0, 1])`, or as YAML.
+//! The output of `ros2 topic echo` for a message with an array: as `array('H', [0, 1])`, or as YAML.
 //!
 //! Messages are separated by `---`. Without `--full-length`, an echo leaves out all elements beyond the first 128,
 //! and is refused.
 //! ```text
-//! ,2,4,,2,2,0,0,12,7,3                --csv: label, size and stride of each dimension, the offset, the values
-//!
 //! layout:
 //!   dim:
 //!   - label: ''
@@ -182,7 +180,6 @@ impl RosMessage {
         match bracket {
             Some(start) => self.list(&line[start + 1..]),
             None if self.open && line != b"-" => self.list(line),
-            None if is_csv(line) || is_csv_without_dimensions(line) => self.csv(line),
             None => RosLine::More,
         }
     }
@@ -194,17 +191,13 @@ impl RosMessage {
         let list = &line[..end.unwrap_or(line.len())];
         let is_mark = |byte: &u8| *byte == b',' || byte.is_ascii_whitespace();
         let fields = list.split(is_mark).filter(|field| !field.is_empty());
-        self.fields(fields.enumerate(), RosLine::More)
+        self.fields(fields.enumerate())
     }
 
     /// Adds the values of a list. Dots in place of values mean that it was shortened, but only if all other fields
     /// are numbers: noise has dots, too.
-    fn fields<'a>(
-        &mut self,
-        fields: impl Iterator<Item = (usize, &'a [u8])>,
-        whole: RosLine,
-    ) -> RosLine {
-        let mut state = whole;
+    fn fields<'a>(&mut self, fields: impl Iterator<Item = (usize, &'a [u8])>) -> RosLine {
+        let mut state = RosLine::More;
         for (index, field) in fields {
             if is_cut(field) && !self.values.is_empty() {
                 state = RosLine::Cut;
@@ -213,24 +206,6 @@ impl RosMessage {
             }
         }
         state
-    }
-
-    /// Reads a line of `--csv`: label, size and stride of each dimension, the offset, the values. It is a whole
-    /// message.
-    fn csv(&mut self, line: &[u8]) -> RosLine {
-        let mut fields = line.split(|&byte| byte == b',').enumerate().peekable();
-        while fields.next_if(|(_, field)| is_label(field)).is_some() {
-            let size = fields.next().and_then(|(_, field)| whole(field));
-            let stride = fields.next().and_then(|(_, field)| whole(field));
-            let (Some(size), Some(_)) = (size, stride) else {
-                return RosLine::Wrong(1 + 3 * self.sizes.len());
-            };
-            self.sizes.push(size);
-        }
-        if let Some((_, offset)) = fields.next() {
-            self.offset_of(offset);
-        }
-        self.fields(fields, RosLine::Whole)
     }
 
     /// Returns the rows and columns of the layout, if it has these two dimensions.
@@ -270,67 +245,10 @@ fn is_cut(field: &[u8]) -> bool {
     bytes.by_ref().take(3).eq(b"...") && bytes.next().is_none()
 }
 
-/// Returns true if a field is the label of a dimension: anything that is not a number, even an empty field.
-fn is_label(field: &[u8]) -> bool {
-    matches!(row::value(field.trim_ascii()), Field::Wrong)
-}
-
-/// Returns true if a line begins with the layout of an array: for each dimension a label, a size and a stride.
-fn is_layout(line: &[u8]) -> bool {
-    let mut fields = line.split(|&byte| byte == b',');
-    let (mut strides, mut dimensions) = (Vec::new(), 0);
-    while dimensions < 8 {
-        let Some(label) = fields.next() else {
-            return false;
-        };
-        if !is_label(label) {
-            break;
-        }
-        let (Some(size), Some(stride)) =
-            (fields.next().and_then(whole), fields.next().and_then(whole))
-        else {
-            return false;
-        };
-        strides.push((size, stride));
-        dimensions += 1;
-    }
-    // A stride is the product of its own size and those after it.
-    let mut product = 1_u32;
-    let fits = strides.iter().rev().all(|&(size, stride)| {
-        product = product.saturating_mul(size);
-        size > 0 && stride == product
-    });
-    !strides.is_empty() && fits
-}
-
 /// Returns true if only `ros2 topic echo` prints such a first line of a message.
 pub(in crate::formats) fn begins_message(line: &[u8]) -> bool {
     let starts = [&b"array("[..], b"layout:", b"data:"];
-    starts.iter().any(|start| line.starts_with(start)) || is_csv(line)
-}
-
-/// Returns true if only `--csv` prints such a line: it begins with a layout, or was shortened. A complete line
-/// without dimensions is a line of numbers like any other.
-pub(in crate::formats) fn is_csv(line: &[u8]) -> bool {
-    is_layout(line) || is_cut_csv(line)
-}
-
-/// Returns true if a line is an offset and values. Its layout has no dimensions, as with most publishers. Such a line
-/// is distinguished from other numbers only if the text is known to be an echo.
-pub(in crate::formats) fn is_csv_without_dimensions(line: &[u8]) -> bool {
-    line.contains(&b',') && line.split(|&byte| byte == b',').all(is_number)
-}
-
-/// Returns true if a line is an offset and values, of which the last ones are left out.
-fn is_cut_csv(line: &[u8]) -> bool {
-    let mut fields = line.rsplit(|&byte| byte == b',');
-    fields.next().is_some_and(is_cut) && fields.clone().count() > 1 && fields.all(is_number)
-}
-
-/// Returns true if a field is a value.
-fn is_number(field: &[u8]) -> bool {
-    let field = field.trim_ascii();
-    matches!(row::value(field), Field::Value(_)) || field.eq_ignore_ascii_case(b"nan")
+    starts.iter().any(|start| line.starts_with(start))
 }
 
 /// Returns the rows and columns of a message that ends in this line.
@@ -398,8 +316,7 @@ pub(in crate::formats::recording) fn read(
             }
         };
         wrong = wrong.or(error);
-        // A message of a single line has no other end.
-        if !matches!(state, RosLine::Whole) && !is_csv(lines.line().trim_ascii()) {
+        if !matches!(state, RosLine::Whole) {
             continue;
         }
         let read = match wrong.take() {

@@ -75,8 +75,7 @@ impl LineLayout {
             return None;
         };
         let field = *fields.get((*time)?.field)?;
-        let is_start = moment::read(field).is_some() && !moment::is_duration(field);
-        is_start.then(|| text(field))
+        moment::read(field).map(|_| text(field))
     }
 }
 

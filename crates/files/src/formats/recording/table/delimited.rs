@@ -8,8 +8,7 @@
 //!                                         2  9  1
 //! ```
 //! Fields are separated by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line
-//! decides. Between commas, a timestamp may have a decimal comma, `12:00:00,125`, if that makes the number of fields
-//! right. Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A`
+//! decides. Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A`
 //! and `<NA>` mean that there is no cell. Lines that begin with `#`, with `//`, or with `%` and a blank are skipped.
 //!
 //! A line below the names of cells may hold the unit of each field.
@@ -17,8 +16,7 @@
 //! The first lines decide how the fields are arranged, see [`layout`](super::layout); then the file is
 //! read from its beginning.
 //!
-//! A line of commas between two frames is a frame without cells, unless frames have a number or a time; elsewhere it
-//! is an empty line as spreadsheet programs write it.
+//! A line of commas is an empty line, as spreadsheet programs write it.
 //!
 //! A followed file may go on without its header, with a torn line or with a message after it was truncated. If one of
 //! its first two frames is arranged as before, so is the rest; otherwise it counts as a new table.
@@ -187,22 +185,11 @@ fn frames(
     }
     let mut frame = Frame::new(layout.size);
     let mut clock = TableClock::new(layout.separator, fields.time);
-    // The number of lines of commas since the last frame.
-    let mut without_cells = 0_u64;
     while lines.advance()? {
         let (line, number) = (lines.line(), lines.number());
-        if is_blank(line) {
-            let is_frame = frame.number > 0 && fields.may_be_commas(line);
-            without_cells += u64::from(is_frame);
+        let is_header = fields.header.is_some_and(|last| number <= last);
+        if is_blank(line) || is_header || is_comment(line) {
             continue;
-        }
-        if fields.header.is_some_and(|last| number <= last) || is_comment(line) {
-            continue;
-        }
-        for _ in 0..std::mem::take(&mut without_cells) {
-            frame.values_mut().fill(f64::NAN);
-            sink(RecordingEvent::Frame(&frame))?;
-            frame.number += 1;
         }
         let time = match fields.fill(&slots, &mut frame, layout.separator, (line, number)) {
             Ok(time) => time,
@@ -222,15 +209,6 @@ fn frames(
 }
 
 impl FrameFields {
-    /// Returns true if a line of commas is a frame without cells, provided that another frame follows. Spreadsheet
-    /// programs write such lines instead of empty ones, but rarely between frames.
-    fn may_be_commas(&self, line: &[u8]) -> bool {
-        // As many commas as separate the fields, or one more at the end.
-        let fields = line.split(|&byte| byte == b',').count();
-        let is_frame = fields > 1 && (fields == self.count || fields == self.count + 1);
-        is_frame && self.label.is_none() && self.time.is_none()
-    }
-
     /// Fills the values and the label of a frame from a line. Returns the text of its time.
     ///
     /// Text in a field that is neither cell nor label nor time is ignored.
@@ -377,7 +355,7 @@ impl FrameInRows {
             return Err(RecordingError::in_line(number, message));
         }
         // Each row may have its timestamp; that of the first row counts.
-        let (moment, line) = match moment::leading_in(self.separator, line) {
+        let (moment, line) = match moment::leading(line) {
             Some((moment, row)) => (Some(moment), row),
             None => (None, line),
         };

@@ -14,10 +14,6 @@ use crate::formats::recording::time::field_role::{
 use crate::formats::recording::time::moment;
 use crate::frame::FrameSize;
 
-/// The number of lines that are compared with the first one, or with each other if no header names the numbers beside
-/// the cells.
-pub(super) const COMPARED: u16 = 8;
-
 /// The most fields beside the cells.
 pub(super) const MOST_BESIDE: usize = 16;
 
@@ -37,7 +33,7 @@ pub(super) fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>,
 /// Splits a line into the text of the timestamp at its beginning and the numbers after it; None if anything else is
 /// there.
 pub(super) fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8], &[u8])> {
-    let (_, row) = moment::leading_in(separator, line)?;
+    let (_, row) = moment::leading(line)?;
     let moment = line[..line.len() - row.len()].trim_ascii();
     let moment = moment.strip_suffix(b",").unwrap_or(moment);
     let moment = moment.strip_suffix(b";").unwrap_or(moment);
@@ -45,38 +41,6 @@ pub(super) fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8],
     fields
         .all(|field| separator.is_numeric(field))
         .then_some((moment.trim_ascii(), row))
-}
-
-/// Returns true if a first line 0, 1, 2, … holds values, as of a test pattern, and not the names of cells. It does if
-/// the next line continues the count, if one of the next lines equals it, or if it begins the first of two blocks of
-/// equally many lines.
-pub(super) fn is_ramp(
-    lines: &mut TextLines<impl BufRead>,
-    separator: Separator,
-    first: &[u8],
-) -> Result<bool, RecordingError> {
-    let width = separator.fields(first).count();
-    let first = separator.numbers(first, width);
-    let count = first.last().map_or(0.0, |last| last + 1.0);
-    let next: Vec<f64> = first.iter().map(|value| value + count).collect();
-    let (mut heights, mut height, mut compared) = (Vec::new(), 1_u16, 0_u16);
-    while heights.len() < 2 && height < COMPARED {
-        let is_end = !lines.advance()?;
-        if is_end || is_blank(lines.line()) {
-            heights.extend((height > 0).then(|| std::mem::take(&mut height)));
-            if is_end {
-                break;
-            }
-        } else if !is_comment(lines.line()) {
-            let own = separator.numbers(lines.line(), width + 1);
-            if own == first || own == next && compared == 0 {
-                return Ok(true);
-            }
-            height += 1;
-            compared += 1;
-        }
-    }
-    Ok(matches!(heights[..], [first, second] if first == second && first > 1))
 }
 
 /// The header of a table: the lines above its values. It is read from the first line, which may turn out to hold
@@ -244,28 +208,6 @@ pub(super) fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn is_ramp_above(text: &str) -> bool {
-        let mut lines = TextLines::new(text.as_bytes());
-        let first = first_line(&mut lines).expect("a line");
-        is_ramp(&mut lines, Separator::of(&first), &first).expect("short lines")
-    }
-
-    #[test]
-    fn a_first_line_that_counts_up_may_hold_values() {
-        for ramp in [
-            "0,1,2\n3,4,5\n",
-            "0,1,2\n7,7,7\n0,1,2\n",
-            "0 1\n5 7\n\n3 3\n2 1\n\n",
-        ] {
-            assert!(is_ramp_above(ramp), "{ramp}");
-        }
-        for names in ["0,1,2\n7,5,9\n", "# a comment\n0,1,2\n7,5,9\n8,5,9\n"] {
-            assert!(!is_ramp_above(names), "{names}");
-        }
-        let empty = first_line(&mut TextLines::new(&b"\n# no line\n"[..]));
-        assert!(matches!(empty, Err(RecordingError::Unknown)));
-    }
 
     #[test]
     fn words_above_equal_words_are_values() {

@@ -4,14 +4,14 @@
 //! given, unless the table consists of blocks with one row per line, see [`unnamed`](super::unnamed). A timestamp is the
 //! time of its frame, unless a column of numbers gives the time; other texts are ignored.
 
-use std::io::{BufRead, Seek};
+use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::table::arrangement::{FrameFields, LineLayout, TableLayout};
 use crate::formats::recording::table::cell_names::NamedCells;
 use crate::formats::recording::table::header::{
-    MOST_BESIDE, TableHeader, first_line, is_like_next, is_mostly_numeric, is_ramp, moment_of_row,
+    MOST_BESIDE, TableHeader, first_line, is_like_next, is_mostly_numeric, moment_of_row,
     wrong_value,
 };
 use crate::formats::recording::table::unnamed::of_numbers;
@@ -29,7 +29,7 @@ use crate::parameter::number::{counted, grouped};
 /// Returns [`RecordingError::Unknown`] if it is not a table, and [`RecordingError::Shape`] or
 /// [`RecordingError::Columns`] if rows and columns must be given.
 pub(super) fn layout(
-    input: &mut (impl BufRead + Seek),
+    input: &mut impl BufRead,
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
     layout_or(input, options, |lines, separator, read| {
@@ -42,7 +42,7 @@ pub(super) fn layout(
 /// # Errors
 /// Returns the errors of [`layout`], and [`RecordingError::Unknown`] if there is no header.
 pub(super) fn layout_with_header(
-    input: &mut (impl BufRead + Seek),
+    input: &mut impl BufRead,
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
     layout_or(input, options, |_, _, _| Err(RecordingError::Unknown))
@@ -50,7 +50,7 @@ pub(super) fn layout_with_header(
 
 /// Finds the arrangement of a table from its header, or with `unnamed` if it has none: it gets the lines behind those
 /// that were read, the separator, and the number of the first line with the lines that were read.
-fn layout_or<R: BufRead + Seek>(
+fn layout_or<R: BufRead>(
     input: &mut R,
     options: ReadOptions,
     unnamed: impl FnOnce(
@@ -59,7 +59,7 @@ fn layout_or<R: BufRead + Seek>(
         (u64, &[&[u8]]),
     ) -> Result<TableLayout, RecordingError>,
 ) -> Result<TableLayout, RecordingError> {
-    let mut lines = TextLines::new(&mut *input);
+    let mut lines = TextLines::new(input);
     let first = first_line(&mut lines)?;
     let separator = Separator::of(&first);
     let number = lines.number();
@@ -70,7 +70,7 @@ fn layout_or<R: BufRead + Seek>(
         .names
         .iter()
         .any(|name| !separator.is_numeric(name.as_bytes()));
-    // In ROS echo output, a line of small values can begin like this, too, after its offset.
+    // A row of a frame may count up, too.
     let cells = options.size.map(FrameSize::cells);
     let counted = header
         .count_from_0(0)
@@ -78,14 +78,8 @@ fn layout_or<R: BufRead + Seek>(
     let is_header = if has_words {
         moment_of_row(separator, &first).is_none()
     } else {
-        counted.is_some() && !is_ramp(&mut lines, separator, &first)?
+        counted.is_some()
     };
-    // The test for a ramp has read beyond the first line.
-    if counted.is_some() {
-        input.rewind()?;
-        lines = TextLines::new(input);
-        first_line(&mut lines)?;
-    }
     if !is_header {
         return unnamed(&mut lines, separator, (number, &[&first]));
     }
@@ -178,11 +172,6 @@ fn with_header(
     };
     let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
     let time = header.time(others());
-    let fits = |separator: Separator| separator.fields_of(first, count).count() == count;
-    // The names say whether a comma is the decimal sign of a timestamp.
-    let is_decimal = separator == Separator::Byte(b',') && !fits(separator);
-    let decimal = Some(Separator::FieldComma).filter(|&own| is_decimal && fits(own));
-    let separator = decimal.unwrap_or(separator);
     let fields: Vec<&[u8]> = separator.fields_of(first, count).take(count).collect();
     let below = header.units.as_ref().map(|(number, _)| *number);
     let found = FrameFields {

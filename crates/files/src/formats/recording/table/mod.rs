@@ -3,7 +3,6 @@
 //! ```text
 //! clock            the times of a table
 //! cell_names       a header's names of cells
-//! unnamed_fields   the fields beside the cells, without a header
 //! header           the header, and whether the first line is one
 //! arrangement      what each line and each field is
 //! unnamed          the arrangement of a table without a header
@@ -14,8 +13,6 @@
 mod clock;
 
 pub(super) mod cell_names;
-
-mod unnamed_fields;
 
 mod header;
 

@@ -1,5 +1,12 @@
-//! Finds the arrangement of a table without a header: from the number of fields in a line, from empty lines, and from
-//! how the numbers grow from line to line, see [`unnamed_fields`](super::unnamed_fields).
+//! Finds the arrangement of a table without a header: from the number of fields in a line, and from empty lines.
+//!
+//! All numbers are cells. With rows and columns given, two more may stand beside them, in one of two layouts:
+//! ```text
+//! 0,0.00,1,2,3,4      number and time before the cells
+//! 1,2,3,4,0,50        number and milliseconds behind the cells
+//! ```
+//! The number counts up by 1 from line to line and the time never falls. Everything else is refused: a wrong guess
+//! would shift all cells by one.
 
 use std::io::BufRead;
 
@@ -8,19 +15,21 @@ use crate::formats::recording::event::ReadOptions;
 use crate::formats::recording::side::side;
 use crate::formats::recording::table::arrangement::{FrameFields, LineLayout, TableLayout};
 use crate::formats::recording::table::clock::TimeFields;
-use crate::formats::recording::table::header::{COMPARED, moment_of_row};
-use crate::formats::recording::table::unnamed_fields::{unclear, unnamed_fields};
+use crate::formats::recording::table::header::moment_of_row;
 use crate::formats::recording::text::lines::{TextLines, is_blank, text};
+use crate::formats::recording::text::number::whole;
 use crate::formats::recording::text::row;
 use crate::formats::recording::text::separator::{Separator, is_comment};
-use crate::formats::recording::time::moment::{self, DecimalCommas};
+use crate::formats::recording::time::moment;
+use crate::formats::recording::time::unit::TimeUnit;
 use crate::frame::{FrameSize, MAX_FRAME_SIDE};
+use crate::parameter::number::counted;
+
+/// The number of lines that are compared to tell the two layouts apart.
+const COMPARED: u16 = 8;
 
 /// Finds the arrangement of a table without names. Its first lines are in `read`, which begins in line `number` of
 /// the file.
-///
-/// If commas separate the fields, the comma in a timestamp may be one of them or a decimal sign: the arrangement that
-/// has the right number of fields decides.
 pub(super) fn of_numbers(
     lines: &mut TextLines<impl BufRead>,
     separator: Separator,
@@ -28,77 +37,20 @@ pub(super) fn of_numbers(
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
     let size = options.size;
-    let other = Some(Separator::FieldComma).filter(|_| separator == Separator::Byte(b','));
-    let needed = |own| UnnamedFirst::new(own, read[0], size).lines_needed(size);
-    let enough = other.map_or(0, needed).max(needed(separator));
+    let first = UnnamedFirst::new(separator, read[0], size);
     let mut compared: Vec<Vec<u8>> = read.iter().map(|line| line.to_vec()).collect();
-    let (block, parted) = first_block(lines, (read.len(), enough), |line| {
+    let enough = first.lines_needed(size);
+    let block = first_block(lines, (read.len(), enough), |line| {
         compared.push(line.to_owned());
     })?;
-    let mut commas = DecimalCommas::default();
-    for line in &compared {
-        commas.compare(line);
-    }
-    let other = other.filter(|_| commas.are_possible());
-    let of = |separator| {
-        let first = UnnamedFirst::new(separator, read[0], size);
-        first.layout(number, &compared, (block, parted), size)
-    };
-    match (of(separator), other.map(of)) {
-        (Ok(plain), Some(Ok(other))) => either(plain, other, number, &compared, size),
-        // In a single line, another number may stand beside the cells.
-        (Err(_), Some(Ok(other))) if compared.len() > 1 => Ok(other),
-        (plain, _) => plain,
-    }
-}
-
-/// Returns one of two arrangements of the same lines; in the second, a comma is the decimal sign of a timestamp. The
-/// second is right if the first takes the number behind the comma for nothing but a time, or if the time that the first
-/// finds never changes.
-///
-/// # Errors
-/// Returns an error if both are possible.
-fn either(
-    plain: TableLayout,
-    other: TableLayout,
-    number: u64,
-    lines: &[Vec<u8>],
-    size: Option<FrameSize>,
-) -> Result<TableLayout, RecordingError> {
-    let (LineLayout::Frame(own), LineLayout::Frame(_)) = (&plain.lines, &other.lines) else {
-        let numbers = plain.size.columns().into();
-        return size
-            .map(|_| plain)
-            .ok_or(RecordingError::Columns { numbers });
-    };
-    let separator = plain.separator;
-    let is_still = own.time.is_some_and(|time| {
-        let mut times = lines
-            .iter()
-            .map(|line| separator.fields(line).nth(time.field));
-        let first = times.next().flatten();
-        first.is_some_and(|first| separator.is_numeric(first)) && times.all(|time| time == first)
-    });
-    let mut fields = other.separator.fields(&lines[0]);
-    let digits = fields.position(|field| field.contains(&b',') && moment::read(field).is_some());
-    let digits = digits.map(|moment| moment + 1);
-    let is_digits = |field: &usize| Some(*field) == digits;
-    if !is_still && own.cells.iter().chain(&own.label).any(is_digits) {
-        let fields = separator.fields(&lines[0]);
-        let numbers = fields.filter(|field| separator.is_numeric(field));
-        let (cells, numbers) = (own.cells.len(), numbers.count());
-        return Err(unclear(number, cells, numbers.saturating_sub(cells)));
-    }
-    Ok(other)
+    first.layout(number, &compared, block, size)
 }
 
 /// The first line of a table without names.
 struct UnnamedFirst<'a> {
-    /// The separator between its fields.
     separator: Separator,
-    /// Its fields.
     fields: Vec<&'a [u8]>,
-    /// The indices of the numbers among them.
+    /// The indices of the numbers among the fields.
     numeric: Vec<usize>,
     /// The timestamp at its beginning.
     moment: Option<&'a [u8]>,
@@ -107,7 +59,6 @@ struct UnnamedFirst<'a> {
 }
 
 impl<'a> UnnamedFirst<'a> {
-    /// Reads the line; frames have the given size.
     fn new(separator: Separator, line: &'a [u8], size: Option<FrameSize>) -> Self {
         let fields = first_fields(separator, line, size);
         let numeric = (0..fields.len()).filter(|&field| separator.is_numeric(fields[field]));
@@ -131,10 +82,8 @@ impl<'a> UnnamedFirst<'a> {
     fn lines_needed(&self, size: Option<FrameSize>) -> u16 {
         match size {
             Some(size) if self.is_row(size) => size.rows() + 1,
-            Some(size) => match self.numeric.len().checked_sub(size.cells()) {
-                Some(1 | 2) => COMPARED,
-                _ => 2,
-            },
+            Some(size) if self.numeric.len() == size.cells() + 2 => COMPARED,
+            Some(_) => 2,
             None => MAX_FRAME_SIDE + 1,
         }
     }
@@ -149,9 +98,6 @@ impl<'a> UnnamedFirst<'a> {
     ///
     /// A line is a row if it has as many fields as a frame has columns; or, if no size is given, if an empty line ends
     /// the first block. Otherwise, or if it contains texts, it is a frame.
-    ///
-    /// # Errors
-    /// Returns an error if the lines do not show which fields are cells, or if rows and columns must be given.
     fn layout(
         &self,
         number: u64,
@@ -164,15 +110,8 @@ impl<'a> UnnamedFirst<'a> {
         let (size, lines) = match (size, own) {
             (Some(size), _) if self.is_row(size) => (size, LineLayout::Row { parted }),
             (Some(size), _) => {
-                let lines: Vec<Vec<f64>> = lines.iter().map(|line| self.numbers_in(line)).collect();
-                let (fields, numeric) = (&self.fields, &self.numeric);
-                // Numbers before a timestamp are not cells.
-                let moment = (0..fields.len()).find(|&field| moment::read(fields[field]).is_some());
-                let before = |&&field: &&usize| moment.is_some_and(|moment| field < moment);
-                let before = numeric.iter().filter(before).count();
-                let found = FrameFields::unnamed(size, number, (&lines, before))?;
-                let found = found.among(numeric, fields, number)?;
-                let found = found.with_moment(self.separator, fields);
+                let found = self.frame_fields(size.cells(), number, lines)?;
+                let found = found.with_moment(self.separator, &self.fields);
                 (size, LineLayout::Frame(found))
             }
             (None, Some(own)) => (own, LineLayout::Row { parted }),
@@ -195,6 +134,56 @@ impl<'a> UnnamedFirst<'a> {
         })
     }
 
+    /// Finds which fields of a line are the cells of a frame, its number and its time.
+    fn frame_fields(
+        &self,
+        cells: usize,
+        number: u64,
+        lines: &[Vec<u8>],
+    ) -> Result<FrameFields, RecordingError> {
+        let found = self.numeric.len();
+        let beside = found.checked_sub(cells);
+        let beside = beside.ok_or_else(|| row::count(number, found, cells))?;
+        let is_moment = |&field: &usize| moment::read(self.fields[field]).is_some();
+        let moment = (0..self.fields.len()).find(is_moment);
+        let before = self.numeric.iter().filter(|&&own| Some(own) < moment);
+        let (start, label, time) = match (beside, before.count()) {
+            (0, _) => (0, None, None),
+            // The time is a text.
+            (1, 1) => (1, Some(0), None),
+            (2, 0) => {
+                let lines: Vec<Vec<f64>> = lines.iter().map(|line| self.numbers_in(line)).collect();
+                // The last line may be torn.
+                let rest = &lines[..lines.len() - usize::from(lines.len() > 2)];
+                let fits =
+                    |label, time| counts_up(&lines, label, time) || counts_up(rest, label, time);
+                match (fits(0, 1), fits(cells, cells + 1)) {
+                    (true, false) => (2, Some(0), Some((1, None))),
+                    (false, true) => {
+                        let unit = Some(TimeUnit::Milliseconds);
+                        (0, Some(cells), Some((cells + 1, unit)))
+                    }
+                    _ => return Err(unclear(number, cells, beside)),
+                }
+            }
+            (1 | 2, _) => return Err(unclear(number, cells, beside)),
+            _ => return Err(row::count(number, found, cells)),
+        };
+        let cells = &self.numeric[start..start + cells];
+        if let Some(pair) = cells.windows(2).find(|pair| pair[1] - pair[0] > 1) {
+            // A text between two cells belongs neither to them nor beside them.
+            let text = pair[0] + 1;
+            return Err(row::wrong(number, text + 1, self.fields[text]));
+        }
+        Ok(FrameFields {
+            count: self.fields.len(),
+            header: None,
+            cells: cells.to_vec(),
+            label: label.map(|label| self.numeric[label]),
+            time: time.map(|(time, unit)| TimeFields::new(self.numeric[time], unit)),
+        })
+    }
+
     /// Returns the numbers of a line in the fields that are numbers in this one; NaN for those that have none.
     fn numbers_in(&self, line: &[u8]) -> Vec<f64> {
         let count = self.fields.len();
@@ -206,6 +195,22 @@ impl<'a> UnnamedFirst<'a> {
         };
         self.numeric.iter().map(number).collect()
     }
+}
+
+/// Returns true if one field counts up by 1 from line to line, in whole numbers, and another never falls.
+fn counts_up(lines: &[Vec<f64>], label: usize, time: usize) -> bool {
+    let is_next = |pair: &[Vec<f64>]| {
+        pair[1][label] == pair[0][label] + 1.0 && pair[1][time] >= pair[0][time]
+    };
+    whole(lines[0][label]).is_some() && lines.windows(2).all(is_next)
+}
+
+fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
+    let beside = counted(beside as u64, "number");
+    let message = format!(
+        "found {beside} besides the {cells} cells, and cannot tell which: add a header line, such as frame,time,r0c0"
+    );
+    RecordingError::in_line(number, message)
 }
 
 /// Returns the fields of the first line of a table without names: with an empty one at the end if the line is a row or
@@ -241,55 +246,4 @@ fn first_block(
         block += 1;
     }
     Ok((block, false))
-}
-
-impl FrameFields {
-    /// Finds the fields of lines of numbers without names, the first of them in line `number`. The first `before`
-    /// numbers of a line are not cells if other numbers follow.
-    ///
-    /// # Errors
-    /// Returns an error if the lines do not show which fields are cells.
-    fn unnamed(
-        size: FrameSize,
-        number: u64,
-        (lines, before): (&[Vec<f64>], usize),
-    ) -> Result<Self, RecordingError> {
-        let cells = size.cells();
-        let found = unnamed_fields((cells, before), number, lines)?;
-        Ok(Self {
-            count: lines[0].len(),
-            header: None,
-            cells: (found.start..found.start + cells).collect(),
-            label: found.label,
-            time: found.time,
-        })
-    }
-
-    /// Converts fields that were found among numbers alone to those of lines that also contain texts: `fields` are
-    /// those of line `number`, and `numeric` are the indices of the numbers among them.
-    ///
-    /// # Errors
-    /// Returns an error if there is a text between two cells: it belongs neither to them nor beside them.
-    fn among(
-        self,
-        numeric: &[usize],
-        fields: &[&[u8]],
-        number: u64,
-    ) -> Result<Self, RecordingError> {
-        let cells: Vec<usize> = self.cells.iter().map(|&cell| numeric[cell]).collect();
-        if let Some(pair) = cells.windows(2).find(|pair| pair[1] - pair[0] > 1) {
-            let text = pair[0] + 1;
-            return Err(row::wrong(number, text + 1, fields[text]));
-        }
-        Ok(Self {
-            count: fields.len(),
-            header: self.header,
-            cells,
-            label: self.label.map(|label| numeric[label]),
-            time: self.time.map(|time| TimeFields {
-                field: numeric[time.field],
-                ..time
-            }),
-        })
-    }
 }

@@ -3,7 +3,6 @@
 //! ```text
 //! 0;1,5;;3      semicolons: a comma is the decimal sign, and an empty field is no cell
 //! 0,1.5,,3      commas, or tabs
-//! 12:00:00,125,1,2    commas, of which one may be the decimal sign of a time of day
 //! 0 1.5 nan 3   any number of blanks
 //! 0 1.5 N/A 3
 //! ```
@@ -65,8 +64,6 @@ pub(in crate::formats) const SEPARATORS: [u8; 3] = *b";,\t";
 pub(in crate::formats) enum Separator {
     /// A byte; two in succession have an empty field between them.
     Byte(u8),
-    /// A comma, unless it is the decimal sign of a time of day, as in `12:00:00,125`.
-    FieldComma,
     /// Any number of blanks; there are no empty fields.
     Spaces,
 }
@@ -85,13 +82,10 @@ impl Separator {
     pub(in crate::formats::recording) fn split(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         let quotes: usize = line.iter().map(|byte| usize::from(*byte == b'"')).sum();
         let (has_quotes, mut is_quoted) = (quotes > 0 && quotes.is_multiple_of(2), false);
-        let mut end = 0;
         let is_end = move |byte: &u8| {
-            end += 1;
             is_quoted ^= has_quotes && *byte == b'"';
             let is_mark = match self {
                 Self::Byte(mark) => *byte == mark,
-                Self::FieldComma => *byte == b',' && !may_be_decimal_comma(line, end - 1),
                 Self::Spaces => byte.is_ascii_whitespace(),
             };
             is_mark && !is_quoted
@@ -135,7 +129,6 @@ impl Separator {
         let line = line.trim_ascii();
         match self {
             Self::Byte(mark) => line.strip_suffix(&[mark]).unwrap_or(line),
-            Self::FieldComma => line.strip_suffix(b",").unwrap_or(line),
             Self::Spaces => line,
         }
     }
@@ -160,29 +153,6 @@ impl Separator {
     pub(in crate::formats::recording) fn number(self, field: &[u8]) -> f64 {
         self.value(field).cell().unwrap_or(f64::NAN)
     }
-
-    /// Returns the first `most` fields of a line as numbers; NaN for fields that are not numbers.
-    pub(in crate::formats::recording) fn numbers(self, line: &[u8], most: usize) -> Vec<f64> {
-        let fields = self.fields(line).take(most);
-        fields.map(|field| self.number(field)).collect()
-    }
-}
-
-/// Returns true if the comma at an index of a line may be the decimal sign of a time of day, as Python's `logging`
-/// writes it: it follows the whole seconds, and 3, 6 or 9 digits and another comma, or the end of the line, follow it.
-pub(in crate::formats::recording) fn may_be_decimal_comma(line: &[u8], comma: usize) -> bool {
-    let (before, after) = (&line[..comma], &line[comma + 1..]);
-    let digits = after
-        .iter()
-        .take_while(|byte| byte.is_ascii_digit())
-        .count();
-    let is_fraction = matches!(digits, 3 | 6 | 9)
-        && matches!(after[digits..].trim_ascii_start(), [] | [b',', ..]);
-    let [.., hour, b':', tens, minute, b':', ten, second] = before else {
-        return false;
-    };
-    let clock = [hour, tens, minute, ten, second];
-    is_fraction && clock.iter().all(|digit| digit.is_ascii_digit())
 }
 
 /// Reads a number whose decimal sign may be a comma; with a comma, it has at most 32 characters.

@@ -410,7 +410,7 @@ impl XsensorState {
 /// Returns the seconds of a clock such as `08:21:17.982` or `8:21:17.982 AM`, and true; of a number of seconds, which
 /// count from the start of the recording rather than from midnight, the number and false. None for anything else.
 fn seconds(clock: &str) -> Option<(f64, bool)> {
-    let (clock, half) = moment::half_day(clock);
+    let (clock, half) = half_day(clock);
     let parts = clock.split(':');
     let parts: Option<Vec<f64>> = parts
         .map(|part| number::read(part.trim().as_bytes()))
@@ -469,6 +469,41 @@ fn days(date: &str) -> [Option<i32>; 2] {
         }
         _ => [None; 2],
     }
+}
+
+/// A half of the day on a twelve-hour clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum HalfDay {
+    /// Before noon, AM.
+    First,
+    /// After noon, PM.
+    Second,
+}
+
+impl HalfDay {
+    /// Returns the hours since midnight for an hour on the clock, from 1 to 12.
+    fn hours(self, shown: i32) -> Option<i32> {
+        let begun = match self {
+            Self::First => 0,
+            Self::Second => 12,
+        };
+        (1..=12).contains(&shown).then_some(shown % 12 + begun)
+    }
+}
+
+/// Splits `AM` or `PM` off the end of a time; returns the time and the half of the day.
+fn half_day(clock: &str) -> (&str, Option<HalfDay>) {
+    let clock = clock.trim_end();
+    let split = clock.len().checked_sub(2);
+    let Some((before, mark)) = split.and_then(|split| clock.split_at_checked(split)) else {
+        return (clock, None);
+    };
+    let half = match mark {
+        _ if mark.eq_ignore_ascii_case("am") => HalfDay::First,
+        _ if mark.eq_ignore_ascii_case("pm") => HalfDay::Second,
+        _ => return (clock, None),
+    };
+    (before.trim_end(), Some(half))
 }
 
 #[cfg(test)]
