@@ -173,7 +173,9 @@ fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
 fn dimensions_of_size_1_after_rows_and_columns_do_not_count() {
     for sizes in [&[2, 2][..], &[2, 2, 1], &[2, 2, 1, 1]] {
         let mcap = recorded(&mcap_of(&[laid_out(sizes)], 0, 0), None);
-        let dimensions = sizes.iter().map(|size| format!("  - size: {size}\n"));
+        let dimensions = sizes
+            .iter()
+            .map(|size| format!("  - label: ''\n    size: {size}\n"));
         let dimensions: String = dimensions.collect();
         let echo = format!("layout:\n  dim:\n{dimensions}data: [1, 1, 1, 1]\n---\n");
         let echo = recorded(echo.as_bytes(), None);

@@ -67,7 +67,7 @@ fn a_second_array_in_a_message_is_a_missing_end() {
 
 #[test]
 fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
-    let text = b"layout:\n  dim:\n  - size: 1\n  - size: 4\ndata: [1, 2, 3, 4]\n---\n";
+    let text = b"layout:\n  dim:\n  - label: a\n    size: 1\n  - label: b\n    size: 4\ndata: [1, 2, 3, 4]\n---\n";
     for (named, found) in [
         (None, (1, 4)),
         (Some((2, 2)), (2, 2)),
@@ -85,10 +85,10 @@ fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
 
 #[test]
 fn messages_that_change_their_size_are_reported_as_damage() {
-    let text = b"layout:\n  dim:\n  - size: 2\n  - size: 2\ndata: [1, 2, 3, 4]\n---\n\
-                 layout:\n  dim:\n  - size: 1\n  - size: 2\ndata: [5, 6]\n---\n";
+    let text = b"layout:\n  dim:\n  - label: a\n    size: 2\n  - label: b\n    size: 2\ndata: [1, 2, 3, 4]\n---\n\
+                 layout:\n  dim:\n  - label: a\n    size: 1\n  - label: b\n    size: 2\ndata: [5, 6]\n---\n";
     let found = recorded(text, None);
     let error = found.error.map(|error| error.to_string());
-    let expected = "line 12: found 1 row of 2, expected 2 of 2 as before";
+    let expected = "line 16: found 1 row of 2, expected 2 of 2 as before";
     assert_eq!((found.frames.len(), error.as_deref()), (1, Some(expected)));
 }

@@ -232,16 +232,6 @@ fn a_provisional_frame_is_confirmed_or_withdrawn() {
 }
 
 #[test]
-fn the_start_of_a_flexitac_frame_alone_counts_as_a_torn_frame() {
-    let given = options(Some((1, 3))).with_format(StreamFormat::Flexitac);
-    let (found, counts) = decoded(given, &[0xaa, 0x55, 1, 2], &mut Random::new(4));
-    assert_eq!((found.len(), counts.dropped), (0, 1));
-    // Without a marker, it is no frame.
-    let (found, counts) = decoded(given, &[1, 2, 3, 4], &mut Random::new(5));
-    assert_eq!((found.len(), counts.dropped), (0, 0));
-}
-
-#[test]
 fn a_line_that_is_too_long_is_dropped_and_the_next_one_is_read() {
     let given = options(Some((1, 2))).with_format(StreamFormat::Lines);
     let mut decoder = StreamDecoder::new(given);

@@ -54,7 +54,7 @@ fn changes() -> impl Strategy<Value = Vec<(usize, usize, Vec<u8>)>> {
 }
 
 proptest! {
-    #![proptest_config(config(3000))]
+    #![proptest_config(config(600))]
 
     #[test]
     fn random_bytes_cause_no_panic(index in 0..BODIES.len(), bytes in vec(any::<u8>(), 0..200)) {

@@ -82,7 +82,7 @@ impl<'a> Table<'a> {
         };
         // The last line holds numbers; names may contain any character. Tabs come first: a comma
         // beside a tab or a semicolon is a decimal sign. Recordings, which are read line by line, have an order of
-        // their own: see `recording::text::separator`.
+        // their own: see `recording::text`.
         let in_last = |mark: &char| last.contains(*mark);
         let in_any = |mark: &char| lines.iter().any(|(_, line)| line.contains(*mark));
         let marks = ['\t', ';', ','].into_iter();

@@ -7,27 +7,21 @@
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use crate::formats::file::without_mark;
-use crate::formats::recording::error::RecordingError;
+use crate::formats::npy;
+use crate::formats::recording::error::{RecordingError, RecordingFormat};
 use crate::formats::recording::event::{ReadOptions, RecordingSink, until_enough};
-use crate::formats::recording::format::RecordingFormat;
-use crate::formats::recording::json::lines as json_lines;
 use crate::formats::recording::numpy::{archive, array};
-use crate::formats::recording::ros::echo;
-use crate::formats::recording::ros::mcap;
-use crate::formats::recording::signs::{self, VendorSigns};
-use crate::formats::recording::table::arrangement::EarlierLayout;
-use crate::formats::recording::table::cell_names::is_first_cell;
+use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
 use crate::formats::recording::table::delimited;
-use crate::formats::recording::text::lines::is_blank;
-use crate::formats::recording::text::row::is_parted_by_cr;
-use crate::formats::recording::text::separator::{Separator, is_comment};
-use crate::formats::recording::time::moment;
+use crate::formats::recording::table::header::is_first_cell;
+use crate::formats::recording::table::layout::EarlierLayout;
+use crate::formats::recording::text::{Separator, is_blank, is_comment, is_parted_by_cr};
 use crate::formats::recording::vendor::{flexitac, tekscan, xsensor};
+use crate::formats::recording::{json as json_lines, time};
+use crate::formats::stream::FLEXITAC_MARKER;
 
-/// The number of bytes at the start of a file that decide its format.
 pub(super) const LOOKED_AT: usize = 1 << 16;
 
-/// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
 /// Returns the format of a recording, from its first 64 KiB; None if it is not a recording. A text of numbers counts
@@ -47,7 +41,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
     // Comments may stand above a table.
     let is_row = |line: &&[u8]| !is_blank(line) && !is_comment(line);
     let row = lines.find(is_row).unwrap_or(first);
-    let known = signs::by_magic(start);
+    let known = by_magic(start);
     if known.is_some() {
         return known;
     }
@@ -73,7 +67,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
     }
     let is_table =
         is_table(row) || is_named_column(text) || options.size.is_some() && is_number(row);
-    (is_table && !moment::is_alone(row)).then_some(RecordingFormat::Csv)
+    (is_table && !time::is_alone(row)).then_some(RecordingFormat::Csv)
 }
 
 /// Returns the error for a file that is not a recording.
@@ -90,7 +84,7 @@ fn refused(start: &[u8]) -> RecordingError {
             kind: "an imprint as text (taxel describe reads it)",
         },
         _ if is_column(start) => RecordingError::Shape { values: 1 },
-        Some(_) if begins_with_time(start) => RecordingError::in_line(1, moment::ABOVE_ROWS),
+        Some(_) if begins_with_time(start) => RecordingError::in_line(1, time::ABOVE_ROWS),
         Some(line) => RecordingError::in_line(
             1,
             format!(
@@ -128,30 +122,25 @@ fn numbers_below_text(text: &[u8]) -> Option<u64> {
     })
 }
 
-/// Returns true if a file is a black-and-white or grey image of netpbm.
 pub(super) fn is_bitmap(start: &[u8]) -> bool {
     matches!(start, [b'P', b'1' | b'4', blank, ..] if blank.is_ascii_whitespace())
 }
 
-/// Returns true if a text consists of the taxels of an imprint.
 fn is_imprint(text: &[u8]) -> bool {
     let text = without_mark(text).trim_ascii();
     let is_taxel = |byte: &u8| b"#.\r\n".contains(byte);
     !text.is_empty() && text.iter().all(is_taxel)
 }
 
-/// Returns true if a text consists of numbers, one per line.
 fn is_column(text: &[u8]) -> bool {
     let mut rows = rows_of(text).peekable();
     rows.peek().is_some() && rows.all(is_number)
 }
 
-/// Returns true if a line is a single number, or a word for a cell without a value.
 fn is_number(line: &[u8]) -> bool {
     Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
 }
 
-/// Returns true if a text begins with the name of the only cell of a sensor, and a number below it.
 fn is_named_column(text: &[u8]) -> bool {
     let is_word = |&byte: &u8| byte.is_ascii_alphanumeric() || b"_[]".contains(&byte);
     let is_cell_name =
@@ -162,19 +151,16 @@ fn is_named_column(text: &[u8]) -> bool {
         && rows.next().is_some_and(is_number)
 }
 
-/// Iterates over the lines of a text that are neither empty nor comments.
 fn rows_of(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     let lines = without_mark(text).split(|&byte| byte == b'\n');
     lines.filter(|line| !is_blank(line) && !is_comment(line))
 }
 
-/// Returns true if the first line of a text is a timestamp or a single number, which may be one.
 fn begins_with_time(text: &[u8]) -> bool {
     let first = without_mark(text).split(|&byte| byte == b'\n').next();
-    first.is_some_and(|first| is_number(first) || moment::is_alone(first))
+    first.is_some_and(|first| is_number(first) || time::is_alone(first))
 }
 
-/// Returns true if a text is a JSON list whose first element begins with this byte.
 fn is_list_of(text: &[u8], first: u8) -> bool {
     let inside = text.strip_prefix(b"[").map(<[u8]>::trim_ascii_start);
     inside.is_some_and(|inside| inside.first() == Some(&first))
@@ -206,7 +192,7 @@ pub fn may_be_recording(bytes: &[u8]) -> bool {
         return false;
     }
     match recognised(bytes) {
-        Some(RecordingFormat::JsonLines) => signs::names_frame(bytes),
+        Some(RecordingFormat::JsonLines) => names_frame(bytes),
         found => found.is_some(),
     }
 }
@@ -315,77 +301,187 @@ pub fn read_as(
     })
 }
 
-#[cfg(test)]
-mod tests {
-    use std::io::{Cursor, Write};
-    use std::ops::ControlFlow;
+/// The first bytes of the formats that have such bytes. An archive without a file begins with its end.
+const MAGIC: [(&[u8], RecordingFormat); 5] = [
+    (npy::MAGIC, RecordingFormat::Npy),
+    (&MCAP_MAGIC, RecordingFormat::Mcap),
+    (&FLEXITAC_MARKER, RecordingFormat::Flexitac),
+    (b"PK\x03\x04", RecordingFormat::Npz),
+    (b"PK\x05\x06", RecordingFormat::Npz),
+];
 
-    use super::*;
+/// The most bytes that decide by themselves.
+#[cfg(unix)]
+pub(super) const LONGEST_MAGIC: usize = MCAP_MAGIC.len();
 
-    fn error_of(bytes: &[u8]) -> String {
-        let read = read(Cursor::new(bytes), ReadOptions::default(), &mut |_| {
-            ControlFlow::Continue(())
-        });
-        read.expect_err("no recording").to_string()
+pub(super) fn by_magic(start: &[u8]) -> Option<RecordingFormat> {
+    let mut formats = MAGIC.into_iter();
+    formats.find_map(|(magic, format)| start.starts_with(magic).then_some(format))
+}
+
+pub(super) fn names_frame(text: &[u8]) -> bool {
+    has(text, b"\"frame\"")
+}
+
+fn has(text: &[u8], word: &[u8]) -> bool {
+    text.windows(word.len()).any(|window| window == word)
+}
+
+/// The words of vendors in the lines so far. The format whose words are complete first counts.
+#[derive(Debug, Default)]
+pub(super) struct VendorSigns {
+    lines: usize,
+    has_frame: bool,
+}
+
+impl VendorSigns {
+    /// Returns the format whose words are in a text without a byte order mark.
+    pub(super) fn of(text: &[u8]) -> Option<RecordingFormat> {
+        let mut signs = Self::default();
+        text.split(|&byte| byte == b'\n')
+            .find_map(|line| signs.add(line))
     }
 
-    #[test]
-    fn a_file_of_another_kind_is_refused_by_name() {
-        let mut workbook = zip::ZipWriter::new(Cursor::new(Vec::new()));
-        let options = zip::write::SimpleFileOptions::default()
-            .compression_method(zip::CompressionMethod::Stored);
-        workbook
-            .start_file("[Content_Types].xml", options)
-            .expect("begun");
-        workbook.write_all(b"<Types/>").expect("written");
-        let workbook = workbook.finish().expect("finished").into_inner();
-        let rows = "1,2\r3,4\r\r5,6\r7,8\r";
-        for (bytes, kind) in [
-            (
-                rows.into(),
-                "text whose lines end in CR alone (save it with LF or CR LF)",
-            ),
-            (
-                workbook,
-                "a spreadsheet or another office document (save the sheet as CSV)",
-            ),
-        ] {
-            let told = error_of(&bytes);
-            assert!(
-                told.starts_with(&format!("{kind}, expected Tekscan")),
-                "{told}"
-            );
+    /// Adds the next line, without its end. Returns the format if its words are complete now. `DATA_TYPE` is an ordinary
+    /// word, so it counts only at the start of a text, where Tekscan writes it.
+    pub(super) fn add(&mut self, line: &[u8]) -> Option<RecordingFormat> {
+        let is_blank = line.trim_ascii().is_empty();
+        let is_first = self.lines == 0 && !is_blank;
+        self.lines += usize::from(!is_blank);
+        if line.starts_with(b"ASCII_DATA") || is_first && line.starts_with(b"DATA_TYPE ") {
+            return Some(RecordingFormat::Tekscan);
         }
-        assert!(error_of(b"words").starts_with("not a recording"));
-        assert!(error_of(b"P1\n2 2\n1 0\n0 1\n").starts_with("a PBM image"));
-        let empty = error_of(b"{\"frame\":[]}\n");
-        assert!(
-            empty.ends_with("\"frame\" is empty, expected rows of values"),
-            "{empty}"
-        );
-        assert!(error_of(b"words\n1 2\nwords\n").starts_with("not a recording"));
-        let log = b"ready\r\n\r\n1 2\r\n3 1\r\n\r\n1 2\r\n3 2\r\n\r\n";
-        let expected = "line 1: found text, expected a table; numbers begin in line 3: delete the lines above, or read the \
-                        file with taxel watch --once";
-        assert_eq!(error_of(log), expected);
-        for time in [
-            "0.1",
-            "1700000000.25",
-            "12:00:00.25",
-            "2024-05-01 12:00:00.25",
-        ] {
-            for row in ["1 2", "1,2", "1\t2"] {
-                let text = format!("{time}\r\n{row}\r\n{row}\r\n\r\n{time}\r\n{row}\r\n{row}\r\n");
-                let expected = "line 1: found one value above rows of numbers; if it is the time of a frame, begin such lines \
-                                with #";
-                assert_eq!(error_of(text.as_bytes()), expected, "{text}");
+        if self.has_frame && xsensor::begins_cells(line) {
+            return Some(RecordingFormat::Xsensor);
+        }
+        self.has_frame |= xsensor::begins_frame(line);
+        None
+    }
+}
+
+/// The search whether a stream begins like a recording that only a file can be. The stream is examined byte by byte, so
+/// the answer does not depend on the pieces in which the bytes arrive, and comes as soon as it is certain.
+///
+/// - Magic bytes decide once all of them have come.
+/// - The words of vendors decide at the end of the line that completes them.
+/// - Anything else is decided at the end of the bytes that are looked at, or of the stream, as for a file.
+#[cfg(unix)]
+#[derive(Debug, Default)]
+pub(crate) struct StartSearch {
+    /// The bytes so far, at most [`LOOKED_AT`].
+    bytes: Vec<u8>,
+    seen: usize,
+    line: usize,
+    /// The words of vendors so far; None as long as there are only blanks.
+    signs: Option<VendorSigns>,
+}
+
+#[cfg(unix)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StartKind {
+    /// A stream, as far as the start shows it.
+    Stream,
+    /// A recording that only a file can be.
+    Recording(RecordingFormat),
+}
+
+#[cfg(unix)]
+impl StartKind {
+    /// Returns the kind of a source whose start has this format, or none that is known.
+    fn of(format: Option<RecordingFormat>) -> Self {
+        match format.filter(|format| !format.can_be_streamed()) {
+            Some(format) => Self::Recording(format),
+            None => Self::Stream,
+        }
+    }
+}
+
+#[cfg(unix)]
+impl StartSearch {
+    /// Examines the next bytes. Returns the number of those after which the answer is certain, and the answer; None if
+    /// more bytes are needed.
+    pub(crate) fn push(&mut self, bytes: &[u8]) -> Option<(usize, StartKind)> {
+        let before = self.bytes.len();
+        let room = LOOKED_AT - before;
+        self.bytes.extend(bytes.iter().take(room));
+        while self.seen < self.bytes.len() {
+            let rest = &self.bytes[self.seen..];
+            self.seen += if self.seen < LONGEST_MAGIC {
+                1
+            } else {
+                let end = rest.iter().position(|&byte| byte == b'\n');
+                end.map_or(rest.len(), |end| end + 1)
+            };
+            if let Some(kind) = self.look() {
+                return Some((self.seen - before, kind));
             }
         }
+        (self.seen == LOOKED_AT).then(|| (room, self.finish()))
+    }
+
+    pub(crate) fn finish(&self) -> StartKind {
+        StartKind::of(recognised(&self.bytes))
+    }
+
+    /// Looks at the bytes that have been examined, after the last of them.
+    fn look(&mut self) -> Option<StartKind> {
+        let seen = &self.bytes[..self.seen];
+        if self.seen <= LONGEST_MAGIC
+            && let Some(format) = by_magic(seen)
+        {
+            return Some(StartKind::of(Some(format)));
+        }
+        let line = Some(&seen[self.line..]).filter(|line| line.ends_with(b"\n"))?;
+        let line = if self.line == 0 {
+            without_mark(line)
+        } else {
+            line
+        };
+        self.line = self.seen;
+        if line.contains(&0) {
+            return Some(StartKind::Stream);
+        }
+        let signs = match &mut self.signs {
+            Some(signs) => signs,
+            None => match line.trim_ascii().first()? {
+                b'{' | b'<' => return Some(StartKind::Stream),
+                _ if is_bitmap(line) => return Some(StartKind::Stream),
+                _ => self.signs.insert(VendorSigns::default()),
+            },
+        };
+        signs
+            .add(line.strip_suffix(b"\n").unwrap_or(line))
+            .map(|format| StartKind::of(Some(format)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_value_or_words_alone_are_no_table() {
+        let format = |text: &str| recognised(text.as_bytes());
+        assert_eq!(format("words\n1 2\nwords\n"), None);
+        assert_eq!(format("2024-05-01 12:00:00.25\n1 2\n3 4\n"), None);
         assert_eq!(
-            recognised(b"2024-05-01 12:00:00.25 7\n"),
+            format("2024-05-01 12:00:00.25 7\n"),
             Some(RecordingFormat::Csv)
         );
         // A growing file may have been read up to the CR of a line.
-        assert_eq!(recognised(b"1,2\r"), Some(RecordingFormat::Csv));
+        assert_eq!(format("1,2\r"), Some(RecordingFormat::Csv));
+    }
+
+    #[test]
+    fn an_ordinary_word_is_a_sign_only_where_the_vendor_writes_it() {
+        let tekscan = Some(RecordingFormat::Tekscan);
+        for (text, expected) in [
+            ("DATA_TYPE MOVIE\nROWS 2\n", tekscan),
+            ("\r\nDATA_TYPE MOVIE\r\n", tekscan),
+            ("boot v1\nDATA_TYPE ready\n1 2\n", None),
+            ("boot v1\nASCII_DATA @@\n", tekscan),
+        ] {
+            assert_eq!(VendorSigns::of(text.as_bytes()), expected, "{text:?}");
+        }
     }
 }

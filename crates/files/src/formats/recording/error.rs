@@ -4,9 +4,8 @@ use std::io;
 use std::sync::Arc;
 
 use crate::formats::file::system_reason;
-use crate::formats::recording::format::RecordingFormat;
-use crate::frame::FrameSize;
-use crate::frame::MAX_FRAME_SIDE;
+use crate::frame::{FrameSize, MAX_FRAME_SIDE};
+use crate::parameter::named;
 use crate::parameter::number::counted;
 
 /// The error for a recording that cannot be read, or not to its end.
@@ -65,7 +64,6 @@ fn most_of(numbers: u64) -> String {
     }
 }
 
-/// The formats that are read, for the message about any other file.
 fn readable_formats() -> String {
     let titles: Vec<&str> = RecordingFormat::ALL
         .iter()
@@ -120,7 +118,6 @@ impl RecordingError {
         }
     }
 
-    /// Returns the error for damage in a line.
     pub(super) fn in_line(line: u64, message: impl Into<String>) -> Self {
         let message = message.into();
         Self::Damaged {
@@ -130,7 +127,6 @@ impl RecordingError {
         }
     }
 
-    /// Returns the error for damage in a field of a line.
     pub(super) fn in_field(line: u64, column: usize, message: impl Into<String>) -> Self {
         Self::Damaged {
             line: Some(line),
@@ -139,3 +135,85 @@ impl RecordingError {
         }
     }
 }
+
+/// A format of recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RecordingFormat {
+    /// Tekscan's ASCII export.
+    Tekscan,
+    /// XSENSOR's CSV export.
+    Xsensor,
+    /// Numbers separated by commas, semicolons, tabs or spaces: one frame per line, or one row per line.
+    Csv,
+    /// A numpy array.
+    Npy,
+    /// An archive of numpy arrays.
+    Npz,
+    /// JSON lines: one object per line.
+    JsonLines,
+    /// The output of `ros2 topic echo`.
+    Ros2,
+    /// An MCAP file.
+    Mcap,
+    /// The bytes of a `FlexiTac` board.
+    Flexitac,
+}
+
+impl RecordingFormat {
+    /// All formats.
+    pub const ALL: &'static [Self] = &[
+        Self::Tekscan,
+        Self::Xsensor,
+        Self::Csv,
+        Self::Npy,
+        Self::Npz,
+        Self::JsonLines,
+        Self::Ros2,
+        Self::Mcap,
+        Self::Flexitac,
+    ];
+
+    /// Returns the name of the format, as it is in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tekscan => "tekscan",
+            Self::Xsensor => "xsensor",
+            Self::Csv => "csv",
+            Self::Npy => "npy",
+            Self::Npz => "npz",
+            Self::JsonLines => "jsonl",
+            Self::Ros2 => "ros2",
+            Self::Mcap => "mcap",
+            Self::Flexitac => "flexitac",
+        }
+    }
+
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::Tekscan => "Tekscan ASCII",
+            Self::Xsensor => "XSENSOR CSV",
+            Self::Csv => "CSV",
+            Self::Npy => "NPY",
+            Self::Npz => "NPZ",
+            Self::JsonLines => "JSON lines",
+            Self::Ros2 => "ros2 topic echo",
+            Self::Mcap => "MCAP",
+            Self::Flexitac => "FlexiTac",
+        }
+    }
+
+    /// Returns true if frames in this format can be a stream, too: they are written one after the other as they are
+    /// measured, and can be read as they arrive. A file that they are appended to can be followed.
+    pub(crate) fn can_be_streamed(self) -> bool {
+        match self {
+            Self::Csv | Self::JsonLines | Self::Ros2 | Self::Flexitac => true,
+            Self::Tekscan | Self::Xsensor | Self::Npy | Self::Npz | Self::Mcap => false,
+        }
+    }
+
+    pub(crate) fn is_text_stream(self) -> bool {
+        self.can_be_streamed() && self != Self::Flexitac
+    }
+}
+
+named!(RecordingFormat, "format", RecordingFormat::ALL);

@@ -33,10 +33,6 @@ impl ReadOptions {
         self
     }
 
-    /// Handles a wrong frame, given some of its bytes.
-    ///
-    /// # Errors
-    /// Returns the error, unless the frame is left out.
     pub(super) fn damage(
         self,
         error: RecordingError,
@@ -304,15 +300,12 @@ pub enum RecordingEvent<'a> {
 /// A function that takes the events of a recording; `Break` ends the reading without an error.
 pub type RecordingSink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
 
-/// A function to which the reader of a format reports events.
 pub(super) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> Result<(), EarlyEnd> + 'a;
 
 /// The reason why a reader ends before the end of its file.
 #[derive(Debug)]
 pub(super) enum EarlyEnd {
-    /// The consumer wants no more.
     Enough,
-    /// The rest cannot be read.
     Failed(RecordingError),
 }
 
@@ -323,9 +316,6 @@ impl<E: Into<RecordingError>> From<E> for EarlyEnd {
 }
 
 /// Runs the reader of a format until the consumer wants no more.
-///
-/// # Errors
-/// Returns the error of the reader.
 pub(super) fn until_enough(
     consumer: &mut RecordingSink<'_>,
     read: impl FnOnce(&mut Sink<'_>) -> Result<(), EarlyEnd>,

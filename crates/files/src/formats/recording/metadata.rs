@@ -6,16 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::formats::job::{FrameRows, LeastTaxels, RuleRecord, matrix};
 use crate::formats::json;
-use crate::formats::recording::length::{LengthUnit, pitches_in_mm};
-use crate::formats::recording::time::unit::TimeUnit;
+use crate::formats::recording::size::{LengthUnit, pitches_in_mm};
+use crate::formats::recording::time::TimeUnit;
 use crate::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
 use crate::matrix::Matrix;
 use crate::quote::shortened_message;
 
-/// The name of the format.
 const FORMAT: &str = "taxel-touch/1";
 
-/// The beginning of its name in every version.
 const FAMILY: &str = "taxel-touch/";
 
 /// A frame that was marked while it was recorded.
@@ -76,7 +74,6 @@ pub struct RecordingMetadata {
     pub ended_by: Option<String>,
 }
 
-/// The metadata as a JSON object.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default, expecting = "an object")]
 struct Described {
@@ -154,7 +151,6 @@ impl MetadataError {
         }
     }
 
-    /// Returns a function that makes the error for the value of a key.
     fn of_key<E: ToString>(key: &'static str) -> impl FnOnce(E) -> Self {
         move |error| Self::Value {
             key,

@@ -23,16 +23,12 @@
 //! ```
 //!
 //! ```text
-//! format           the formats, with their names
 //! error            why a recording cannot be read, and where
 //! event            what a reader reports: channels, frames, notes
 //! metadata         the file beside a recording of taxel's own
-//! channel_choice   one channel of several, by its name
-//! channel_table    the channels of a recording, as they appear
+//! channels         the channels of a recording, as they appear
 //! answer           a frame as a line of JSON
-//! side             numbers of rows and columns
-//! length           distances between cells, with their units
-//! stream_size      the rows and columns of a stream, which may change
+//! size             numbers of rows and columns
 //! text             lines, fields and numbers
 //! time             the times of frames
 //! table            numbers in rows and columns, with or without a header
@@ -40,13 +36,9 @@
 //! numpy            NPY and NPZ
 //! ros              MCAP, and ros2 topic echo
 //! vendor           Tekscan, XSENSOR and FlexiTac
-//! signs            magic bytes and words of vendors, by which formats are recognised
 //! detect           which of these a file is
-//! start_search     whether a stream begins like a recording
 //! ```
 //! Each format uses the modules above it; formats do not use each other.
-
-mod format;
 
 mod error;
 
@@ -54,17 +46,11 @@ mod event;
 
 mod metadata;
 
-mod channel_choice;
-
-mod channel_table;
+mod channels;
 
 mod answer;
 
-pub(super) mod side;
-
-mod length;
-
-pub(super) mod stream_size;
+pub(super) mod size;
 
 pub(super) mod text;
 
@@ -80,26 +66,19 @@ pub(super) mod ros;
 
 mod vendor;
 
-mod signs;
-
 mod detect;
 
-#[cfg(unix)]
-mod start_search;
-
 pub use answer::FrameAnswer;
-pub use channel_choice::ChannelChoice;
-pub use channel_choice::no_channel;
+pub use channels::{ChannelChoice, no_channel};
 pub use detect::may_be_recording;
 #[cfg(unix)]
 pub use detect::{RecordingInput, format_after, format_of, read_as};
+#[cfg(unix)]
+pub(crate) use detect::{StartKind, StartSearch};
 pub use detect::{read, recognised};
-pub use error::RecordingError;
+pub use error::{RecordingError, RecordingFormat};
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, RecordingSink};
-pub use format::RecordingFormat;
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
-#[cfg(unix)]
-pub(crate) use start_search::{StartKind, StartSearch};
-#[cfg(unix)]
-pub(crate) use table::arrangement::EarlierLayout;
 pub use table::delimited::read_rows;
+#[cfg(unix)]
+pub(crate) use table::layout::EarlierLayout;

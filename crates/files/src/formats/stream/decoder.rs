@@ -12,34 +12,27 @@ use serde::de::IgnoredAny;
 
 use crate::formats::file::without_mark;
 use crate::formats::json::WithoutNan;
-use crate::formats::recording::text::lines::LONGEST_LINE;
-use crate::formats::recording::text::row::is_parted_by_cr;
-use crate::formats::recording::time::frame_clock::FrameClock;
+use crate::formats::recording::text::{LONGEST_LINE, is_parted_by_cr};
+use crate::formats::recording::time::FrameClock;
+use crate::formats::stream::boards::{FlexitacDecoder, MatsenseDecoder};
 use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
-use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
-use crate::formats::stream::flexitac::FlexitacDecoder;
+use crate::formats::stream::event::{
+    StreamCounts, StreamFormat, StreamOptions, StreamOutput, StreamSink,
+};
 use crate::formats::stream::format_search::{FormatSearch, is_numbers};
 use crate::formats::stream::lines::LinesDecoder;
-use crate::formats::stream::matsense::MatsenseDecoder;
-use crate::formats::stream::output::StreamOutput;
 
 /// Decodes a stream, piece by piece.
 #[derive(Debug)]
 pub struct StreamDecoder {
-    /// The options of the stream.
     options: StreamOptions,
-    /// The counts so far.
     counts: StreamCounts,
-    /// The state of the decoding, with the decoder in use.
     state: State,
     /// The bytes that are not decoded yet: at first the beginning of the stream, and once the format is known, the
     /// unfinished line.
     bytes: Vec<u8>,
-    /// Whether the rest of a line that is too long is being skipped.
     skipping: bool,
-    /// Whether the next line is the first one.
     first: bool,
-    /// Whether the first line may lack its beginning.
     torn: bool,
     /// The clock of the source, kept from the last decoder.
     clock: FrameClock,
@@ -47,31 +40,24 @@ pub struct StreamDecoder {
     json: JsonDecoder,
 }
 
-/// The decoder of the next bytes.
 #[derive(Debug)]
 enum State {
     /// No decoder: the format is not certain yet.
     Looking(FormatSearch),
-    /// A decoder of numbers in lines.
     Lines(LinesDecoder),
-    /// The decoder of JSON lines.
     Json,
     /// A decoder of `ros2 topic echo` output.
     Ros(RosDecoder),
     /// A decoder of bytes after markers.
     Flexitac(FlexitacDecoder),
-    /// A decoder of bytes with an end.
     Matsense(MatsenseDecoder),
     /// No decoder: bytes cannot be decoded without rows and columns.
     Unshaped,
 }
 
-/// The end of an input.
 #[derive(Clone, Copy)]
 enum InputEnd {
-    /// The input ended by itself.
     Whole,
-    /// It was cut off, perhaps within a line.
     CutOff,
 }
 
@@ -228,7 +214,6 @@ impl StreamDecoder {
         }
     }
 
-    /// Decodes all finished lines.
     fn text(&mut self, bytes: &[u8], sink: &mut StreamSink<'_>) {
         let mut rest = bytes;
         while let Some(end) = rest.iter().position(|&byte| byte == b'\n') {
@@ -409,68 +394,6 @@ mod tests {
     }
 
     #[test]
-    fn a_json_line_that_is_dropped_has_a_reason() {
-        let other = "{\"frame\":[[1,2]]}\n{\"frame\":[[1],[2]]}\n";
-        let many = (0..257).map(|channel| format!("{{\"frame\":[[1]],\"channel\":{channel}}}\n"));
-        for (text, reason) in [
-            (other, "found 2 rows of 1, expected 1 of 2 as before"),
-            (&many.collect::<String>(), "more than 256 channels"),
-            (
-                "{\"frame\":[]}\n",
-                "\"frame\" is empty, expected rows of values",
-            ),
-        ] {
-            let mut decoder = StreamDecoder::new(StreamOptions::default().from_start());
-            decoder.push(text.as_bytes(), &mut |_| {});
-            let counts = decoder.counts();
-            assert_eq!(
-                (counts.dropped, counts.reason.as_deref()),
-                (1, Some(reason))
-            );
-        }
-    }
-
-    #[test]
-    fn a_ros_message_that_is_dropped_has_a_reason() {
-        let list = |values: &str| format!("data: [{values}]\n");
-        let echo = |values: &str| list(values) + "---\n";
-        let whole = echo("1, 2");
-        for (text, reason) in [
-            (
-                list("1, 2") + &whole,
-                "found another array, expected '---' before it",
-            ),
-            (
-                whole.clone() + &echo("1, 2, 3"),
-                "found 3 values, expected 2",
-            ),
-            (
-                echo("1, x"),
-                "column 2: found something other than a number",
-            ),
-            (
-                "data:\n- 1\n".to_owned(),
-                "ends inside a message, expected '---'",
-            ),
-            (
-                whole + &echo("1, ..."),
-                "the echo leaves out values ('...'): run ros2 topic echo with --full-length",
-            ),
-        ] {
-            let options = StreamOptions::default()
-                .with_format(StreamFormat::Ros2)
-                .with_size(FrameSize::new(2, 1).expect("an allowed size"))
-                .from_start();
-            let mut decoder = StreamDecoder::new(options);
-            decoder.push(text.as_bytes(), &mut |_| {});
-            decoder.finish(&mut |_| {});
-            let counts = decoder.counts();
-            let found = (counts.dropped, counts.reason.as_deref());
-            assert_eq!(found, (1, Some(reason)), "{text}");
-        }
-    }
-
-    #[test]
     fn a_byte_order_mark_costs_no_frame() {
         for (text, frames) in [
             ("{\"frame\":[[1,2],[3,4]]}\n{\"frame\":[[5,6],[7,8]]}\n", 2),
@@ -494,7 +417,6 @@ mod tests {
         }
     }
 
-    /// Returns the times of the frames of two files, of which the second took the place of the first.
     fn times([before, after]: [&str; 2]) -> Vec<Option<f64>> {
         let mut decoder = StreamDecoder::new(StreamOptions::default().from_start());
         let mut times = Vec::new();

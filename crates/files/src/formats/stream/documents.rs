@@ -4,12 +4,11 @@
 //! ones: it is dropped and counted.
 
 use crate::formats::recording::RecordingError;
-use crate::formats::recording::json::lines::{FrameLineError, JsonFrames};
+use crate::formats::recording::json::{FrameLineError, JsonFrames};
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
-use crate::formats::recording::stream_size::StreamSize;
-use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::stream::event::{StreamEvent, StreamRefusal};
-use crate::formats::stream::output::StreamOutput;
+use crate::formats::recording::size::StreamSize;
+use crate::formats::recording::time::FrameClock;
+use crate::formats::stream::event::{StreamEvent, StreamOutput, StreamRefusal};
 use crate::frame::{Frame, FrameSize};
 
 /// A decoder of JSON lines. Its channels and times continue after a gap.
@@ -38,7 +37,6 @@ impl JsonDecoder {
         self.0.clock.forget_key();
     }
 
-    /// Decodes a line.
     pub(super) fn line(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         if line.trim_ascii().is_empty() {
             return;
@@ -70,19 +68,13 @@ impl JsonDecoder {
 /// A decoder of `ros2 topic echo` output.
 #[derive(Debug)]
 pub(super) struct RosDecoder {
-    /// The given rows and columns, for messages that do not have them.
     named: Option<FrameSize>,
-    /// The rows and columns of all frames.
     size: StreamSize,
-    /// The message so far.
     message: RosMessage,
     /// Whether the start of the message was seen; a stream may be joined in the middle of one.
     begun: bool,
-    /// The first mistake in the message.
     mistake: Option<String>,
-    /// Whether values are left out of the message.
     cut: bool,
-    /// The frame made of the message.
     frame: Frame,
 }
 
@@ -100,7 +92,6 @@ impl RosDecoder {
         }
     }
 
-    /// Decodes a line.
     pub(super) fn line(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         // A boundary, or a line with a whole array, begins a message.
         let trimmed = line.trim_ascii();

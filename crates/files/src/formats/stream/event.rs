@@ -150,7 +150,6 @@ impl StreamCounts {
         })
     }
 
-    /// Counts dropped frames.
     pub(crate) fn drop_frames(&mut self, frames: u64, bytes: &[u8]) {
         self.dropped += frames;
         self.reason = None;
@@ -274,11 +273,47 @@ impl Silence<'_> {
 /// A function that takes the events of a decoder.
 pub type StreamSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;
 
+/// The output of a decoder: frames and other events go to the sink, lost frames are counted.
+pub(super) struct StreamOutput<'a, 's> {
+    pub(super) counts: &'a mut StreamCounts,
+    sink: &'a mut StreamSink<'s>,
+}
+
+impl<'a, 's> StreamOutput<'a, 's> {
+    pub(super) fn new(counts: &'a mut StreamCounts, sink: &'a mut StreamSink<'s>) -> Self {
+        Self { counts, sink }
+    }
+
+    pub(super) fn report(&mut self, event: StreamEvent<'_>) {
+        (self.sink)(event);
+    }
+
+    pub(super) fn frame(&mut self, frame: &mut Frame) {
+        frame.number = self.counts.frames;
+        self.numbered(frame);
+    }
+
+    pub(super) fn numbered(&mut self, frame: &Frame) {
+        self.counts.frames += 1;
+        self.report(StreamEvent::Frame(frame));
+    }
+
+    /// Reports a frame that is to be confirmed or withdrawn. It gets the number of the next frame.
+    pub(super) fn provisional(&mut self, frame: &mut Frame) {
+        frame.number = self.counts.frames;
+        self.report(StreamEvent::Provisional(frame));
+    }
+
+    pub(super) fn lose(&mut self, frames: u64, sample: &[u8], reason: Option<String>) {
+        self.counts.drop_frames(frames, sample);
+        self.counts.reason = reason;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// An echo that left out values may have been restarted with all of them.
     #[test]
     fn a_refusal_holds_only_until_the_first_frame() {
         let mut counts = StreamCounts {
@@ -304,22 +339,5 @@ mod tests {
         let said =
             "8 B/s, none of it a frame; the last one dropped: row 2 has 1 number, expected 2";
         assert_eq!(reason(&counts, 8.0, true), said);
-    }
-
-    #[test]
-    fn a_stream_without_a_frame_has_a_reason() {
-        let said =
-            |counts: &StreamCounts| counts.no_frame_reason().map(|reason| reason.to_string());
-        let mut counts = StreamCounts::default();
-        assert_eq!(said(&counts).as_deref(), Some("the source is empty"));
-        counts.bytes = 9;
-        assert_eq!(said(&counts).as_deref(), Some("9 bytes but no frame"));
-        counts.reason = Some("line 2: a row".to_owned());
-        let expected = "9 bytes but no frame; the last one dropped: line 2: a row";
-        assert_eq!(said(&counts).as_deref(), Some(expected));
-        counts.unknown = true;
-        assert_eq!(said(&counts), Some(StreamRefusal::Unknown.to_string()));
-        counts.frames = 1;
-        assert_eq!(said(&counts), None);
     }
 }

@@ -13,12 +13,10 @@
 
 use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::recording::ros::echo;
-use crate::formats::recording::time::moment;
-use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamFormat};
-use crate::formats::stream::flexitac::MARKER;
-use crate::formats::stream::matsense::MatsenseDecoder;
-use crate::formats::stream::numbers;
-use crate::formats::stream::output::StreamOutput;
+use crate::formats::recording::time;
+use crate::formats::stream::boards::{MARKER, MatsenseDecoder};
+use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamFormat, StreamOutput};
+use crate::formats::stream::row_block;
 use crate::frame::{FrameSize, MAX_FRAME_CELLS};
 
 /// The number of bytes of text within which a line must end; otherwise it is not a known stream.
@@ -27,23 +25,17 @@ const LOOKED_AT: usize = 1 << 16;
 /// The number of bytes after which anything but text is no longer taken for noise before a text.
 const NOISE: usize = 1 << 12;
 
-/// The number of bytes within which two markers of the largest frames are found.
 const MARKERS_IN: usize = 3 * (MAX_FRAME_CELLS + 2) + 3;
 
 /// The search for the format of a stream. When more bytes arrive, it continues where it was.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FormatSearch {
-    /// The number of bytes that have been examined.
     seen: usize,
-    /// The start of the unfinished line.
     line: usize,
-    /// Whether another line came before it.
     after_first: bool,
     /// The end of the last byte that is not text; 0 if all are text.
     text_from: usize,
-    /// The format of the last line, if not all bytes are text.
     shown: Option<StreamFormat>,
-    /// A decoder that is tried on bytes that are not all text, if rows and columns are known.
     trial: Option<MatsenseDecoder>,
 }
 
@@ -149,13 +141,11 @@ impl FormatSearch {
         (self.text_from >= NOISE.max(enough)).then_some(StreamFormat::Matsense)
     }
 
-    /// Returns the format of an unfinished line.
     fn of_open_line(&self, bytes: &[u8]) -> Option<StreamFormat> {
         let line = bytes[self.line..].trim_ascii();
         form_of_line(line, self.after_first).filter(|_| self.is_text(line))
     }
 
-    /// Returns the format of an input that has ended.
     fn at_end(&self, bytes: &[u8], size: Option<FrameSize>) -> StreamFormat {
         let text = self.of_open_line(bytes).or(self.shown);
         if self.text_from == 0 {
@@ -171,7 +161,6 @@ impl FormatSearch {
     }
 }
 
-/// Returns the number of bytes from one marker to the next.
 fn period(size: FrameSize) -> usize {
     MARKER.len() + size.cells()
 }
@@ -194,16 +183,15 @@ fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
 
 /// Returns true if a line holds at least one number and nothing else; a timestamp may precede the numbers.
 pub(super) fn is_numbers(line: &[u8]) -> bool {
-    let line = moment::leading(line).map_or(line, |(_, numbers)| numbers);
+    let line = time::leading(line).map_or(line, |(_, numbers)| numbers);
     let mut values = Vec::new();
-    numbers::read(line, &mut values, usize::MAX).is_some() && !values.is_empty()
+    row_block::read_row(line, &mut values, usize::MAX).is_some() && !values.is_empty()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Returns the format of a whole input.
     fn found(bytes: &[u8], size: Option<FrameSize>) -> Option<StreamFormat> {
         FormatSearch::default().format(bytes, size, true)
     }
@@ -281,40 +269,5 @@ mod tests {
         assert_eq!(search.format(&bytes[1..], size, false), None);
         let found = search.format(&bytes, size, false);
         assert_eq!(found, Some(StreamFormat::Matsense));
-    }
-
-    /// A search that continues piece by piece, and one that starts again, give the same result after each byte.
-    #[test]
-    fn the_format_does_not_depend_on_the_pieces() {
-        let markers = [&b"\x01\x02\xaa\x55"[..], &[9; 6], b"\xaa\x55", &[9; 9]].concat();
-        let streams: [&[u8]; 10] = [
-            b"",
-            b"\xef\xbb\xbf1 2\n3 4\n",
-            b"\xef\xbb",
-            b"version 1\n\n1 2\n",
-            b"1 2\n\n\n{\"t\":1}\n",
-            b"7]\ndata: 1\n",
-            b"1\n- 4\n- 5\n---\ndata:\n",
-            b"1 2\n3 \xff4\n5 6\n",
-            b"ab\xaa\x55c",
-            &markers,
-        ];
-        for stream in streams {
-            for size in [None, Some(FrameSize::new(3, 2).expect("an allowed size"))] {
-                let mut search = FormatSearch::default();
-                for end in 0..=stream.len() {
-                    let found = search.format(&stream[..end], size, false);
-                    let anew = |ended| FormatSearch::default().format(&stream[..end], size, ended);
-                    assert_eq!(found, anew(false), "{end} of {stream:?}");
-                    if found.is_some() {
-                        assert_eq!(found, anew(true), "{end} of {stream:?}");
-                        break;
-                    }
-                    // The input may end here.
-                    let found = search.clone().format(&stream[..end], size, true);
-                    assert_eq!(found, anew(true), "{end} of {stream:?}");
-                }
-            }
-        }
     }
 }

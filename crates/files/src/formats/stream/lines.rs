@@ -17,18 +17,14 @@
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are
 //! never joined. If frames are known to be single lines, each line that is not a frame counts as a lost one.
 
-use crate::formats::recording::stream_size::StreamSize;
-use crate::formats::recording::text::separator::is_comment;
-use crate::formats::recording::time::exact::Time;
-use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::recording::time::moment;
-use crate::formats::stream::event::StreamEvent;
-use crate::formats::stream::numbers;
-use crate::formats::stream::output::StreamOutput;
+use crate::formats::recording::size::StreamSize;
+use crate::formats::recording::text::is_comment;
+use crate::formats::recording::time::{self, FrameClock, Time};
+use crate::formats::stream::event::{StreamEvent, StreamOutput};
+use crate::formats::stream::row_block;
 use crate::formats::stream::row_block::{RowBlock, WrongRow, may_be_end};
 use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 
-/// The assumed content of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LineKind {
     /// A row of a frame, unless it has all cells.
@@ -37,25 +33,19 @@ enum LineKind {
     Frame,
 }
 
-/// A decoder of lines of numbers.
 #[derive(Debug)]
 pub(super) struct LinesDecoder {
-    /// The rows and columns of frames.
     size: StreamSize,
-    /// Whether a boundary was seen, so that a frame may begin.
     begun: bool,
-    /// The rows of the current frame so far.
     current: RowBlock,
     /// The clock that turns timestamps into seconds since the first frame.
     pub(super) clock: FrameClock,
-    /// Whether there was an empty line.
     parted: bool,
     /// The content of lines, as far as it is known.
     kind: LineKind,
     /// The first blocks of a stream that is read from its beginning, until it is known whether the first one is a
     /// frame.
     held: Option<Vec<RowBlock>>,
-    /// The frame that is reported.
     frame: Frame,
 }
 
@@ -77,7 +67,6 @@ impl LinesDecoder {
         }
     }
 
-    /// Decodes a line without its end.
     pub(super) fn line(&mut self, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         let trimmed = line.trim_ascii();
         if trimmed.is_empty() {
@@ -87,18 +76,17 @@ impl LinesDecoder {
         if is_comment(trimmed) {
             return;
         }
-        let (moment, line) = match moment::leading(line) {
+        let (moment, line) = match time::leading(line) {
             Some((moment, numbers)) => (Some(self.clock.moment(moment)), numbers),
             None => (None, line),
         };
         self.numbers(moment, line, output);
     }
 
-    /// Decodes the numbers of a line that is not empty, after its timestamp.
     fn numbers(&mut self, moment: Option<Time>, line: &[u8], output: &mut StreamOutput<'_, '_>) {
         let before = self.current.values.len();
         let room = MAX_FRAME_CELLS.saturating_sub(before);
-        let read = numbers::read(line, &mut self.current.values, room);
+        let read = row_block::read_row(line, &mut self.current.values, room);
         let count = self.current.values.len() - before;
         let found = read.and(Some(count));
         // A line with all cells is a boundary itself. Frames of one row must be given as such: otherwise a line
@@ -161,13 +149,11 @@ impl LinesDecoder {
         self.current.clear();
     }
 
-    /// Returns true if a line with that many numbers may begin a frame of several rows, which an empty line ends.
     fn may_be_row(&self, count: Option<usize>) -> bool {
         let columns = self.size.present().map(|size| size.columns().into());
         self.parted && count.is_some() && count == columns
     }
 
-    /// Counts lost frames, with a sample and the reason, if it is known.
     fn lose(&self, frames: u64, sample: &[u8], output: &mut StreamOutput<'_, '_>) {
         let reason = self.current.reason(self.size.named(), self.parted);
         // The carriage return of CR LF belongs to the end of the line.
@@ -186,7 +172,6 @@ impl LinesDecoder {
         }
     }
 
-    /// Ends a frame at an empty line.
     fn boundary(&mut self, output: &mut StreamOutput<'_, '_>) {
         self.parted = true;
         if !std::mem::replace(&mut self.begun, true) || self.current.rows == 0 {
@@ -204,7 +189,6 @@ impl LinesDecoder {
         self.current.clear();
     }
 
-    /// Takes a block of rows that is whole.
     fn block(&mut self, own: FrameSize, output: &mut StreamOutput<'_, '_>) {
         match self.size.admit(own) {
             Ok(()) => {
@@ -256,7 +240,6 @@ impl LinesDecoder {
         }
     }
 
-    /// Reports the values as a frame of the current size.
     fn give(&mut self, output: &mut StreamOutput<'_, '_>) {
         let Some(size) = self.size.present() else {
             return;
@@ -265,7 +248,6 @@ impl LinesDecoder {
         output.frame(&mut self.frame);
     }
 
-    /// Copies the values into the frame, which gets that size.
     fn fill(&mut self, size: FrameSize) {
         self.frame.reset(size);
         let time = self.current.time;
@@ -306,7 +288,6 @@ mod tests {
     use super::*;
     use crate::formats::stream::event::StreamCounts;
 
-    /// Returns the frames in lines, as rows, columns and first value, and the number of dropped frames.
     fn decoded(text: &str, named: Option<(u16, u16)>) -> (Vec<(u16, u16, f64)>, u64) {
         let named =
             named.map(|(rows, columns)| FrameSize::new(columns, rows).expect("an allowed size"));
@@ -464,92 +445,6 @@ mod tests {
         let table = "sep=;\n\"1\";\"2\"\n3;4\n";
         let found = (vec![(1, 2, 1.0), (1, 2, 3.0)], 0);
         assert_eq!(decoded(table, Some((1, 2))), found);
-    }
-
-    #[test]
-    fn the_reason_gives_a_wrong_line_length() {
-        let reason = |text: &str, shape| {
-            let mut decoder = LinesDecoder::new(shape, true, FrameClock::default());
-            let mut counts = StreamCounts::default();
-            for line in text.lines() {
-                decoder.line(
-                    line.as_bytes(),
-                    &mut StreamOutput::new(&mut counts, &mut |_| ()),
-                );
-            }
-            decoder.finish(b"", &mut StreamOutput::new(&mut counts, &mut |_| ()));
-            counts.reason
-        };
-        let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
-        let expected = "5 numbers, expected 4 for a frame of 2 rows of 2, or 2 for a row";
-        assert_eq!(
-            reason(timed, Some(FrameSize::new(2, 2).expect("an allowed size"))).as_deref(),
-            Some(expected)
-        );
-        let expected = "5 numbers, expected 4";
-        assert_eq!(
-            reason(timed, Some(FrameSize::new(4, 1).expect("an allowed size"))).as_deref(),
-            Some(expected)
-        );
-        let block = "1 2\n3 4\n5 6\n\n";
-        let expected = "found 3 rows of 2, expected 2 of 2 as before";
-        let changed = reason(&format!("1 2\n3 4\n\n{block}"), None);
-        assert_eq!(changed.as_deref(), Some(expected));
-        let expected = "found 3 rows of 2, expected 2 of 2";
-        assert_eq!(
-            reason(block, Some(FrameSize::new(2, 2).expect("an allowed size"))).as_deref(),
-            Some(expected)
-        );
-        let expected = "row 2 has 1 number, expected 2";
-        assert_eq!(reason("1 2\n1\n\n", None).as_deref(), Some(expected));
-        let wide = "1 ".repeat(600) + "\n\n";
-        let expected = "600 numbers a row, expected at most 512";
-        assert_eq!(reason(&wide, None).as_deref(), Some(expected));
-        for (time, shape) in [
-            ("0.1", None),
-            ("12:00:00.25", None),
-            (
-                "2024-05-01 12:00:00.25",
-                Some(FrameSize::new(2, 2).expect("an allowed size")),
-            ),
-            (
-                "1700000000.25",
-                Some(FrameSize::new(2, 2).expect("an allowed size")),
-            ),
-        ] {
-            let frame = format!("{time}\n1 2\n3 4\n");
-            let above = moment::ABOVE_ROWS;
-            let parted = reason(&format!("{frame}\n").repeat(3), shape);
-            assert_eq!(parted.as_deref(), Some(above), "{frame}");
-            let unparted = reason(&frame.repeat(3), shape);
-            let advice = shape.map(|_| format!("{above}, and end each frame with an empty line"));
-            assert_eq!(unparted, advice, "{frame}");
-            let advised = format!("# {frame}\n").repeat(3);
-            assert_eq!(decoded(&advised, None), (vec![(2, 2, 1.0); 3], 0));
-        }
-        let expected = "row 2 has 2 numbers, expected 1";
-        let timed = "12:00:00.25 1\n1 2\n3 4\n\n";
-        assert_eq!(reason(timed, None).as_deref(), Some(expected));
-        assert_eq!(
-            reason(
-                "1 x\n1 2\n\n",
-                Some(FrameSize::new(2, 2).expect("an allowed size"))
-            ),
-            None
-        );
-    }
-
-    #[test]
-    fn a_sample_ends_with_its_line() {
-        let mut decoder = LinesDecoder::new(None, true, FrameClock::default());
-        let mut counts = StreamCounts::default();
-        for line in ["1 2\r", "3\r", "\r"] {
-            decoder.line(
-                line.as_bytes(),
-                &mut StreamOutput::new(&mut counts, &mut |_| ()),
-            );
-        }
-        assert_eq!(counts.sample.as_deref(), Some("3"));
     }
 
     #[test]

@@ -23,27 +23,21 @@
 
 mod event;
 
-mod output;
-
-mod numbers;
-
 mod row_block;
 
 mod lines;
 
 mod documents;
 
-mod flexitac;
-
-mod matsense;
+mod boards;
 
 mod format_search;
 
 mod decoder;
 
+pub(in crate::formats) use boards::MARKER as FLEXITAC_MARKER;
 pub use decoder::StreamDecoder;
 pub use event::{
     NoFrameReason, Silence, StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal,
     StreamSink,
 };
-pub(in crate::formats) use flexitac::MARKER as FLEXITAC_MARKER;

@@ -21,10 +21,8 @@ use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::numpy::array::{self, ArrayLayout};
-use crate::formats::recording::time::exact::Time;
 use crate::formats::recording::time::field_role::{FieldRole, role};
-use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::recording::time::unit::TimeUnit;
+use crate::formats::recording::time::{FrameClock, Time, TimeUnit};
 
 /// The most frames of which times are read: 128 MiB of them.
 const MOST_TIMES: u64 = 1 << 24;
@@ -32,10 +30,8 @@ const MOST_TIMES: u64 = 1 << 24;
 /// The most arrays in an archive.
 const MOST_ARRAYS: usize = 256;
 
-/// The message for an archive that has no directory, or for damage where no more can be told.
 const CUT: &str = "an archive that is cut short or damaged";
 
-/// Returns the error for an archive, in words that require no knowledge of its layout.
 fn damaged(error: ZipError) -> RecordingError {
     match error {
         ZipError::Io(error) => error.into(),
@@ -64,17 +60,13 @@ fn in_array(name: &str, error: RecordingError) -> RecordingError {
     RecordingError::damaged(format!("{name}: {message}"))
 }
 
-/// An array of the archive.
 struct ArchiveArray {
-    /// The index in the archive.
     index: usize,
     /// The name without `.npy`.
     name: String,
-    /// The type and the shape.
     header: Header,
 }
 
-/// Reads a recording.
 pub(in crate::formats::recording) fn read(
     input: impl Read + Seek,
     options: ReadOptions,
@@ -127,10 +119,6 @@ pub(in crate::formats::recording) fn read(
     Ok(())
 }
 
-/// Returns the arrays that are channels, with their layouts.
-///
-/// # Errors
-/// Returns an error if there are none.
 fn channels(
     arrays: &[ArchiveArray],
     options: ReadOptions,
@@ -201,9 +189,6 @@ fn array<R: Read + Seek>(
 
 /// Returns the arrays whose numbers can be frames, with their layouts. Others, such as a list of poses, may lie
 /// beside them.
-///
-/// # Errors
-/// Returns the error of the first array, if no array can be frames.
 fn with_layouts(
     arrays: Vec<&ArchiveArray>,
     options: ReadOptions,
@@ -231,12 +216,9 @@ fn with_layouts(
     }
 }
 
-/// An array of times.
 struct TimeArray<'a> {
     array: &'a ArchiveArray,
-    /// The type of the times.
     number: NumberType,
-    /// The unit, if the name or the type has one.
     unit: Option<TimeUnit>,
     /// Whether the smallest number means a missing time, as in numpy's own types for times.
     has_none: bool,
@@ -290,9 +272,6 @@ impl<'a> TimeArray<'a> {
 
     /// Returns the times in seconds since the first one, NaN for missing ones, and a note if their unit was derived
     /// from their size and is not seconds.
-    ///
-    /// # Errors
-    /// Returns an error if the array is damaged.
     fn seconds(
         &self,
         file: &mut impl Read,
@@ -328,9 +307,6 @@ impl<'a> TimeArray<'a> {
 
 /// Returns the times of all `frames`, in seconds since the first one, NaN for missing ones; empty if there are none.
 /// Returns a note, too, if their unit was derived from their size and is not seconds.
-///
-/// # Errors
-/// Returns an error if the array of times is damaged.
 fn times<R: Read + Seek>(
     archive: &mut ZipArchive<R>,
     arrays: &[ArchiveArray],

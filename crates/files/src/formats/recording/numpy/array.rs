@@ -23,7 +23,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
-use crate::formats::recording::side::frame_size;
+use crate::formats::recording::size::frame_size;
 use crate::formats::seconds::since;
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::parameter::number::counted;
@@ -37,10 +37,6 @@ const LONGEST_HEADER: usize = 1 << 20;
 /// spread over the file.
 const LARGEST_FORTRAN: u64 = 1 << 28;
 
-/// Reads the header before the numbers.
-///
-/// # Errors
-/// Returns an error if the header is not of version 1 to 3, or is longer than 1 MiB.
 pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
     let wrong =
         || RecordingError::damaged("not a numpy array: expected a header of version 1 to 3");
@@ -69,30 +65,19 @@ pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
         .ok_or_else(wrong)
 }
 
-/// The arrangement of frames in an array.
 #[derive(Debug)]
 pub(super) struct ArrayLayout {
-    /// The type of a value.
     number: NumberType,
-    /// The number of frames according to the header.
     frames: u64,
-    /// The size of a frame.
     size: FrameSize,
     /// Whether the first axis varies fastest, as in Fortran.
     fortran: bool,
-    /// Whether the rows and columns of a frame form a single axis.
     is_flat: bool,
-    /// The offsets of the fields, in an array of records.
     record: Option<RecordLayout>,
-    /// The assumption that was made, if any.
     note: Option<RecordingNote>,
 }
 
 impl ArrayLayout {
-    /// Finds the layout of an array by its header.
-    ///
-    /// # Errors
-    /// Returns an error if the numbers are not real, or if the shape does not fit the given rows and columns.
     pub(super) fn of(header: &Header, options: ReadOptions) -> Result<Self, RecordingError> {
         if header.code.starts_with('[') {
             return Self::of_records(header);
@@ -118,10 +103,6 @@ impl ArrayLayout {
         })
     }
 
-    /// Finds the layout of an array of records.
-    ///
-    /// # Errors
-    /// Returns an error if the records are not as taxel writes them, with a field `values` of two axes.
     fn of_records(header: &Header) -> Result<Self, RecordingError> {
         let (Some(mut record), &[counted]) = (RecordLayout::of(&header.code), &header.shape[..])
         else {
@@ -146,22 +127,15 @@ impl ArrayLayout {
         self.note.as_ref()
     }
 
-    /// Returns the number of frames according to the header.
     pub(super) fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Returns the size of a frame.
     pub(super) fn size(&self) -> FrameSize {
         self.size
     }
 }
 
-/// Returns the number of frames, rows and columns in an array of that shape.
-///
-/// # Errors
-/// Returns [`RecordingError::Shape`] if rows and columns must be given, and a damage error if the shape contradicts
-/// the given ones.
 fn frames_of_axes(axes: &[u64], options: ReadOptions) -> Result<(u64, FrameSize), RecordingError> {
     let asked = options.size;
     let cells = asked.map(|size| size.cells() as u64);
@@ -194,22 +168,15 @@ fn frames_of_axes(axes: &[u64], options: ReadOptions) -> Result<(u64, FrameSize)
     })
 }
 
-/// The layout of a record in taxel's own recordings.
 #[derive(Debug)]
 struct RecordLayout {
     /// The number of records according to the header. The file of a killed program may have more.
     counted: u64,
-    /// The number of bytes in a record.
     size: usize,
-    /// The offset and the type of the time, which is in seconds.
     time: Option<(usize, NumberType)>,
-    /// The offset and the type of the frame's number.
     label: Option<(usize, NumberType)>,
-    /// The offset of the values.
     values: usize,
-    /// The type of the values.
     number: NumberType,
-    /// The size of a frame.
     frame: FrameSize,
 }
 
@@ -268,10 +235,6 @@ impl RecordLayout {
     }
 }
 
-/// Reads a recording.
-///
-/// # Errors
-/// Returns an error if there are fewer or more bytes than the header says, and the errors of the header.
 pub(in crate::formats::recording) fn read(
     input: &mut impl Read,
     options: ReadOptions,
@@ -294,9 +257,6 @@ pub(in crate::formats::recording) fn read(
 }
 
 /// Reads the end of an array after its frames. For an entry of an archive, only this verifies the checksum.
-///
-/// # Errors
-/// Returns an error if there are more bytes than the header says, or if the end cannot be read.
 pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), RecordingError> {
     if fill(input, &mut [0])? > 0 {
         let frames = counted(layout.frames, "frame");
@@ -378,7 +338,6 @@ fn moment(
     (time, label.and_then(|label| i64::try_from(label).ok()))
 }
 
-/// Returns the error for an array that is shorter than its header says.
 fn short(frame: u64, frames: u64) -> RecordingError {
     let frames = counted(frames, "frame");
     RecordingError::damaged(format!(
@@ -387,9 +346,6 @@ fn short(frame: u64, frames: u64) -> RecordingError {
 }
 
 /// Reports a frame if all its values are finite or NaN.
-///
-/// # Errors
-/// Returns an error with row and column if a value is infinite or too large.
 fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
     let wrong = frame
         .values()

@@ -21,33 +21,24 @@ use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, Sink};
-use crate::formats::recording::side::{arranged, matrix_size};
-use crate::formats::recording::stream_size::StreamSize;
-use crate::formats::recording::text::lines::TextLines;
-use crate::formats::recording::text::row::{self, Field};
+use crate::formats::recording::size::{StreamSize, arranged, matrix_size};
+use crate::formats::recording::text::{self, Field, TextLines};
 use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS};
 
-/// The values of a message, and the sizes of its layout, in memory that is reused.
 #[derive(Debug, Default)]
 pub(in crate::formats) struct RosMessage {
-    /// The size of each dimension of the layout.
     pub(super) sizes: Vec<u32>,
     /// The elements, at most [`MOST_VALUES`].
     values: Vec<f64>,
-    /// The number of elements before the cells.
     offset: usize,
-    /// Whether the last line was inside the list of a YAML text, or inside an array that continues in the next line.
     open: bool,
-    /// Whether a line of the message has been read.
     any: bool,
 }
 
 /// The state of a message after a line.
 #[derive(Debug, PartialEq)]
 pub(in crate::formats) enum RosLine {
-    /// The message continues.
     More,
-    /// The message is complete.
     Whole,
     /// The message was shortened by `ros2 topic echo`.
     Cut,
@@ -68,7 +59,6 @@ impl RosLine {
     }
 }
 
-/// The mistake in a message whose array is still open at the end of the input.
 pub(in crate::formats) const UNENDED: &str = "ends inside a message, expected '---'";
 
 /// The most values of a message that are kept, one more than any frame has.
@@ -79,7 +69,6 @@ const MOST_VALUES: usize = MAX_FRAME_CELLS + 1;
 const MOST_SIZES: usize = 64;
 
 impl RosMessage {
-    /// Prepares for the next message.
     pub(in crate::formats) fn clear(&mut self) {
         self.sizes.clear();
         self.values.clear();
@@ -87,12 +76,10 @@ impl RosMessage {
         (self.open, self.any) = (false, false);
     }
 
-    /// Returns true if a line of this message has been read.
     pub(in crate::formats) fn begun(&self) -> bool {
         self.any
     }
 
-    /// Returns the cells of the message.
     pub(in crate::formats) fn cells(&self) -> &[f64] {
         &self.values[self.offset.min(self.values.len())..]
     }
@@ -111,7 +98,6 @@ impl RosMessage {
         }
     }
 
-    /// Returns true if the message ends inside an array.
     pub(in crate::formats) fn is_open(&self) -> bool {
         self.open && !self.values.is_empty()
     }
@@ -119,7 +105,7 @@ impl RosMessage {
     /// Adds a value; returns false if the field is not a number. YAML writes `.nan`, arrays `nan`.
     fn push(&mut self, field: &[u8]) -> bool {
         let field = field.trim_ascii();
-        let value = match row::value(field) {
+        let value = match text::read_value(field) {
             Field::Value(value) => value,
             _ if field.eq_ignore_ascii_case(b"nan") || field.eq_ignore_ascii_case(b".nan") => {
                 f64::NAN
@@ -132,7 +118,6 @@ impl RosMessage {
         true
     }
 
-    /// Reads the next line of a text.
     pub(in crate::formats) fn line(&mut self, line: &[u8]) -> RosLine {
         let line = line.trim_ascii();
         if line.is_empty() || is_notice(line) {
@@ -184,7 +169,6 @@ impl RosMessage {
         }
     }
 
-    /// Reads numbers up to a bracket.
     fn list(&mut self, line: &[u8]) -> RosLine {
         let end = line.iter().position(|&byte| byte == b']');
         self.open = end.is_none();
@@ -233,12 +217,10 @@ pub(in crate::formats::recording) fn without_notices(mut text: &[u8]) -> &[u8] {
     }
 }
 
-/// Reads a whole number, 0 or more.
 fn whole(field: &[u8]) -> Option<u32> {
     str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
 }
 
-/// Returns true if a field is the dots for values that an echo leaves out, with or without quotes.
 fn is_cut(field: &[u8]) -> bool {
     let is_quote = |byte: &u8| matches!(byte, b'\'' | b'"');
     let mut bytes = field.trim_ascii().iter().filter(|byte| !is_quote(byte));
@@ -251,11 +233,6 @@ pub(in crate::formats) fn begins_message(line: &[u8]) -> bool {
     starts.iter().any(|start| line.starts_with(start))
 }
 
-/// Returns the rows and columns of a message that ends in this line.
-///
-/// # Errors
-/// Returns an error if rows and columns are neither in the message nor given, if it has another number of values, or
-/// if it has other rows and columns than those before it.
 pub(in crate::formats) fn size(
     message: &RosMessage,
     expected: &mut StreamSize,
@@ -270,7 +247,7 @@ pub(in crate::formats) fn size(
     };
     if values != size.cells() {
         expected.pass_torn();
-        return Err(row::count(line, values, size.cells()));
+        return Err(text::wrong_count(line, values, size.cells()));
     }
     let admitted = expected.admit(size);
     admitted.map_err(|message| RecordingError::in_line(line, message))?;
@@ -334,7 +311,6 @@ pub(in crate::formats::recording) fn read(
     }
 }
 
-/// Reports a message as the next frame, and its channel before the first.
 fn give(
     message: &RosMessage,
     size: FrameSize,

@@ -1,31 +1,39 @@
-//! MCAP files of ROS 2: arrays, images and tactile states in CDR. A topic is a channel; of a tactile state, each
-//! sensor is a channel.
+//! MCAP files of ROS 2: arrays, images and tactile states in CDR. A topic is a channel; a sensor of a tactile state is
+//! the channel `TOPIC#SENSOR`.
 //!
 //! The file is read from front to back in the same memory, and a file that was never closed still gives all its whole
-//! messages. Its records are read by [`records`](super::records).
+//! messages. Its records are read by [`records`](super::records). The time is that of the log, from the first message
+//! with a frame on; if it counts from 1970, it gives the start of the recording. Other messages than these are skipped:
 //!
-//! The messages that have frames are listed in [`message`](super::message); other messages are skipped. A
-//! sensor of a tactile state is the channel `TOPIC#SENSOR`. The time is that of the log, from the first message with
-//! a frame on; if it counts from 1970, it gives the start of the recording.
+//! | message | its frames |
+//! |---|---|
+//! | `std_msgs/*MultiArray` | a frame; rows and columns from the layout's first two sizes, if all others are 1 |
+//! | `sensor_msgs/Image` | a frame; `mono8`, `mono16`, and types of `OpenCV` with one channel, such as `16UC1` and `32FC1` |
+//! | `tactile_msgs/TactileState` | for each of its sensors a frame |
+//!
+//! CDR writes numbers at multiples of their size, counted from the end of a header of four bytes that gives their byte
+//! order.
+//! ```text
+//! 00 01 00 00   header: little endian
+//! 05 00 00 00   the length of a text, with its zero
+//! 61 62 63 64 00   "abcd", then three bytes of padding before the next word
+//! ```
+//! Sources: the definitions of these messages; the OMG's DDS-RTPS specification, encapsulation `CDR_BE` and `CDR_LE`.
 
 use std::collections::HashMap;
 use std::io::Read;
 use std::rc::Rc;
 
 use crate::formats::job::too_large;
-use crate::formats::npy::Dtype;
-use crate::formats::recording::channel_table::ChannelTable;
+use crate::formats::npy::{Dtype, NumberType};
+use crate::formats::recording::channels::ChannelTable;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
 };
-use crate::formats::recording::ros::cdr::CdrReader;
-use crate::formats::recording::ros::message::{
-    ImageFrame, MessageKind, header, image, multi_array,
-};
 use crate::formats::recording::ros::records::{McapRecord, each_record};
-use crate::formats::recording::side::{arranged, changed, matrix_size};
-use crate::formats::recording::time::moment;
+use crate::formats::recording::size::{arranged, changed, frame_size, matrix_size};
+use crate::formats::recording::time;
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::parameter::number::counted;
 
@@ -34,31 +42,19 @@ const MOST_TOPICS: usize = 4096;
 
 /// The state of the reader: the names in the records so far, and the frame that is being filled.
 struct McapState<'a, 'b> {
-    /// The given rows and columns, for messages that do not have them.
     options: ReadOptions,
     /// The schemas so far, by number; None for a schema whose messages have no frames.
     schemas: HashMap<u16, Option<MessageKind>>,
     /// The topics whose messages have frames, by number: the name, and the kind of message.
     topics: HashMap<u16, (Rc<str>, MessageKind)>,
-    /// The channels so far.
     channels: ChannelTable,
-    /// The time of the first message with a frame, in nanoseconds.
     start: Option<u64>,
-    /// The time of the current message, in nanoseconds.
     time: u64,
-    /// The cells of the current message.
     values: Vec<f64>,
-    /// The frame made of these cells.
     frame: Frame,
-    /// The receiver of channels and frames.
     sink: &'a mut Sink<'b>,
 }
 
-/// Reads a recording.
-///
-/// # Errors
-/// Returns an error if the file was not closed, after all whole messages; if a record or a message is broken; or if
-/// no message has frames.
 pub(in crate::formats::recording) fn read(
     input: &mut impl Read,
     options: ReadOptions,
@@ -100,9 +96,6 @@ fn check_name(name: &str) -> Result<(), RecordingError> {
 impl McapState<'_, '_> {
     /// Takes a record. A number that was named before keeps its meaning: the summary at the end repeats schemas and
     /// channels.
-    ///
-    /// # Errors
-    /// Returns an error if there are too many topics, and the errors of [`Self::message`].
     fn record(&mut self, record: &McapRecord<'_>) -> Result<(), EarlyEnd> {
         match *record {
             McapRecord::Schema { id, name } => {
@@ -148,10 +141,6 @@ impl McapState<'_, '_> {
         Ok(())
     }
 
-    /// Reads a message.
-    ///
-    /// # Errors
-    /// Returns an error if the message is broken, and the errors of [`Self::give`].
     fn message(&mut self, topic: &str, kind: MessageKind, data: &[u8]) -> Result<(), EarlyEnd> {
         let broken = || RecordingError::damaged(format!("{topic}: a message is broken"));
         let mut cdr = CdrReader::new(data).ok_or_else(broken)?;
@@ -180,11 +169,6 @@ impl McapState<'_, '_> {
         }
     }
 
-    /// Reports the values as a frame of a channel.
-    ///
-    /// # Errors
-    /// Returns an error if there are too many channels, if a message has another number of values than its layout or
-    /// another size than earlier ones of its channel, or if a value is infinite.
     fn give(&mut self, name: &str, size: Option<FrameSize>) -> Result<(), EarlyEnd> {
         let found = self.values.len();
         // Rows and columns that are given for one channel need not fit the others.
@@ -217,9 +201,6 @@ impl McapState<'_, '_> {
     }
 
     /// Fills the frame with the values; `before` is the size of the channel's first frame.
-    ///
-    /// # Errors
-    /// Returns an error if the number of values differs from the layout, or the size from `before`.
     fn fill(
         &mut self,
         name: &str,
@@ -263,15 +244,189 @@ fn date_time(nanoseconds: u64) -> Option<String> {
     let days = i32::try_from(days).ok()?;
     // A year has 365 or 366 days.
     let mut years = 1970 + days / 366..=1970 + days / 365;
-    let year = years.find(|year| moment::day(year + 1, 1, 1) > days)?;
-    let month = (1..=12).rfind(|&month| moment::day(year, month, 1) <= days)?;
-    let of_month = days - moment::day(year, month, 1) + 1;
+    let year = years.find(|year| time::day(year + 1, 1, 1) > days)?;
+    let month = (1..=12).rfind(|&month| time::day(year, month, 1) <= days)?;
+    let of_month = days - time::day(year, month, 1) + 1;
     let (hours, minutes, seconds) = (clock / 3600, clock / 60 % 60, clock % 60);
     let fraction = format!(".{fraction:09}");
     let fraction = fraction.trim_end_matches('0').trim_end_matches('.');
     Some(format!(
         "{year}-{month:02}-{of_month:02}T{hours:02}:{minutes:02}:{seconds:02}{fraction}Z"
     ))
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum MessageKind {
+    /// A `MultiArray` of numbers of this type.
+    Array(Dtype),
+    /// Grey pixels, row by row; rows may be padded.
+    Image,
+    TactileState,
+}
+
+impl MessageKind {
+    /// Returns the kind of a schema such as `std_msgs/msg/UInt16MultiArray`; None if its messages have no frames.
+    pub(super) fn of(schema: &str) -> Option<Self> {
+        let (package, name) = (schema.split('/').next()?, schema.rsplit('/').next()?);
+        match (package, name) {
+            ("sensor_msgs", "Image") => Some(Self::Image),
+            ("tactile_msgs", "TactileState") => Some(Self::TactileState),
+            ("std_msgs", name) => {
+                let dtype = match name.strip_suffix("MultiArray")? {
+                    "Int8" => Dtype::I8,
+                    "UInt8" | "Byte" | "Char" => Dtype::U8,
+                    "Int16" => Dtype::I16,
+                    "UInt16" => Dtype::U16,
+                    "Int32" => Dtype::I32,
+                    "UInt32" => Dtype::U32,
+                    "Int64" => Dtype::I64,
+                    "UInt64" => Dtype::U64,
+                    "Float32" => Dtype::F32,
+                    "Float64" => Dtype::F64,
+                    _ => return None,
+                };
+                Some(Self::Array(dtype))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Reads an array into `values`. Returns the sizes of its layout; None if it is broken.
+pub(super) fn multi_array(
+    cdr: &mut CdrReader<'_>,
+    dtype: Dtype,
+    values: &mut Vec<f64>,
+) -> Option<Vec<u32>> {
+    let mut sizes = Vec::new();
+    for _ in 0..cdr.count(12)? {
+        cdr.text()?;
+        sizes.push(cdr.word()?);
+        cdr.word()?;
+    }
+    let offset = usize::try_from(cdr.word()?).ok()?;
+    values.clear();
+    cdr.numbers(dtype, values)?;
+    values.drain(..offset.min(values.len()));
+    Some(sizes)
+}
+
+/// Skips a `std_msgs/Header`.
+pub(super) fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
+    cdr.word()?;
+    cdr.word()?;
+    cdr.text().map(drop)
+}
+
+pub(super) enum ImageFrame {
+    Values(FrameSize),
+    /// Not a frame: an encoding with other than one value per pixel, or an image that is too large.
+    OfCamera,
+}
+
+/// Reads an image into `values`; None if it is broken. `step` is the number of bytes from one row to the next.
+pub(super) fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<ImageFrame> {
+    header(cdr)?;
+    let (height, width) = (cdr.word()?, cdr.word()?);
+    let dtype = match cdr.text()? {
+        "mono8" | "8UC1" => Dtype::U8,
+        "8SC1" => Dtype::I8,
+        "mono16" | "16UC1" => Dtype::U16,
+        "16SC1" => Dtype::I16,
+        "32SC1" => Dtype::I32,
+        "32FC1" => Dtype::F32,
+        "64FC1" => Dtype::F64,
+        _ => return Some(ImageFrame::OfCamera),
+    };
+    let big_endian = cdr.byte()? != 0;
+    let number = NumberType { dtype, big_endian };
+    let step = usize::try_from(cdr.word()?).ok()?;
+    let data = cdr.bytes()?;
+    let Some(frame) = frame_size(width, height) else {
+        return Some(ImageFrame::OfCamera);
+    };
+    let line = usize::from(frame.columns()) * dtype.width();
+    values.clear();
+    for row in 0..usize::from(frame.rows()) {
+        let start = row.checked_mul(step)?;
+        let bytes = data.get(start..start.checked_add(line)?)?;
+        values.extend(number.values(bytes));
+    }
+    Some(ImageFrame::Values(frame))
+}
+
+/// A reader of a message, field by field; its methods return None if the message ends too early.
+#[derive(Debug)]
+pub(super) struct CdrReader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    big_endian: bool,
+}
+
+impl<'a> CdrReader<'a> {
+    /// Reads the header of a message; None if it is in another representation.
+    pub(super) fn new(message: &'a [u8]) -> Option<Self> {
+        let (head, bytes) = message.split_first_chunk::<4>()?;
+        let big_endian = match head {
+            [0, 0, ..] => true,
+            [0, 1, ..] => false,
+            _ => return None,
+        };
+        Some(Self {
+            bytes,
+            at: 0,
+            big_endian,
+        })
+    }
+
+    fn take(&mut self, length: usize, alignment: usize) -> Option<&'a [u8]> {
+        let start = self.at.next_multiple_of(alignment);
+        let end = start.checked_add(length)?;
+        let taken = self.bytes.get(start..end)?;
+        self.at = end;
+        Some(taken)
+    }
+
+    pub(super) fn byte(&mut self) -> Option<u8> {
+        self.take(1, 1)?.first().copied()
+    }
+
+    pub(super) fn word(&mut self) -> Option<u32> {
+        let bytes: [u8; 4] = self.take(4, 4)?.try_into().ok()?;
+        Some(if self.big_endian {
+            u32::from_be_bytes(bytes)
+        } else {
+            u32::from_le_bytes(bytes)
+        })
+    }
+
+    /// Reads the number of elements of a list, each of at least `least` bytes; None if they cannot fit.
+    pub(super) fn count(&mut self, least: usize) -> Option<usize> {
+        let count = usize::try_from(self.word()?).ok()?;
+        (count.checked_mul(least)? <= self.bytes.len()).then_some(count)
+    }
+
+    pub(super) fn text(&mut self) -> Option<&'a str> {
+        let length = self.count(1)?;
+        let text = self.take(length, 1)?;
+        str::from_utf8(text.strip_suffix(&[0]).unwrap_or(text)).ok()
+    }
+
+    pub(super) fn bytes(&mut self) -> Option<&'a [u8]> {
+        let length = self.count(1)?;
+        self.take(length, 1)
+    }
+
+    pub(super) fn numbers(&mut self, dtype: Dtype, values: &mut Vec<f64>) -> Option<()> {
+        let size = dtype.width();
+        let count = self.count(size)?;
+        // An empty list is not aligned.
+        let alignment = if count > 0 { size } else { 1 };
+        let bytes = self.take(count.checked_mul(size)?, alignment)?;
+        let big_endian = self.big_endian;
+        values.extend(NumberType { dtype, big_endian }.values(bytes));
+        Some(())
+    }
 }
 
 #[cfg(test)]
@@ -290,7 +445,9 @@ mod tests {
             let (whole, rest) = text.split_at(19);
             let fraction = rest.trim_matches(['.', 'Z']);
             let fraction: u64 = format!("{fraction:0<9}").parse().expect("a number");
-            let seconds = moment::read(whole.as_bytes()).expect("a moment").seconds;
+            let seconds = time::read_moment(whole.as_bytes())
+                .expect("a moment")
+                .seconds;
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
@@ -301,5 +458,83 @@ mod tests {
         }
         assert_eq!(date_time(999_999_999_999_999_999), None);
         assert!(date_time(u64::MAX).is_some_and(|text| text.starts_with("2554-07-21T")));
+    }
+
+    fn pixels(encoding: &str, data: &[u8]) -> Option<Vec<f64>> {
+        let mut message = vec![0, 1, 0, 0];
+        let word = |message: &mut Vec<u8>, number: usize| {
+            message.resize(message.len().next_multiple_of(4), 0);
+            message.extend(u32::try_from(number).expect("small").to_le_bytes());
+        };
+        let text = |message: &mut Vec<u8>, text: &str| {
+            word(message, text.len() + 1);
+            message.extend(text.bytes().chain([0]));
+        };
+        word(&mut message, 0);
+        word(&mut message, 0);
+        text(&mut message, "pad");
+        word(&mut message, 1);
+        word(&mut message, 2);
+        text(&mut message, encoding);
+        message.push(0);
+        word(&mut message, data.len());
+        word(&mut message, data.len());
+        message.extend(data);
+        let mut values = Vec::new();
+        let found = image(&mut CdrReader::new(&message)?, &mut values)?;
+        matches!(found, ImageFrame::Values(size) if size == FrameSize::new(2, 1).expect("an allowed size")).then_some(values)
+    }
+
+    #[test]
+    fn images_of_one_channel_are_frames() {
+        let signed = [0xfe, 0xff, 3, 0];
+        for (encoding, data, expected) in [
+            ("mono8", vec![254, 3], [254.0, 3.0]),
+            ("8SC1", vec![254, 3], [-2.0, 3.0]),
+            ("16UC1", signed.to_vec(), [65_534.0, 3.0]),
+            ("16SC1", signed.to_vec(), [-2.0, 3.0]),
+            (
+                "32SC1",
+                [(-2_i32).to_le_bytes(), 3_i32.to_le_bytes()].concat(),
+                [-2.0, 3.0],
+            ),
+            (
+                "32FC1",
+                [0.5_f32.to_le_bytes(), 3_f32.to_le_bytes()].concat(),
+                [0.5, 3.0],
+            ),
+            (
+                "64FC1",
+                [0.5_f64.to_le_bytes(), 3_f64.to_le_bytes()].concat(),
+                [0.5, 3.0],
+            ),
+        ] {
+            assert_eq!(
+                pixels(encoding, &data),
+                Some(expected.to_vec()),
+                "{encoding}"
+            );
+        }
+        assert_eq!(pixels("rgb8", &[0; 6]), None);
+    }
+
+    #[test]
+    fn words_are_aligned_after_a_text() {
+        let message = b"\0\x01\0\0\x05\0\0\0abcd\0\0\0\0\x07\0\0\0";
+        let mut cdr = CdrReader::new(message).expect("a header");
+        assert_eq!(
+            (cdr.text(), cdr.word(), cdr.word()),
+            (Some("abcd"), Some(7), None)
+        );
+        let big = b"\0\0\0\0\0\0\0\x07";
+        assert_eq!(CdrReader::new(big).and_then(|mut cdr| cdr.word()), Some(7));
+        assert!(CdrReader::new(b"\0\x09\0\0").is_none());
+    }
+
+    #[test]
+    fn a_count_beyond_the_message_is_refused() {
+        let message = |count: u8| [0, 1, 0, 0, count, 0, 0, 0, 9, 0, 8, 0];
+        let count = |count| CdrReader::new(&message(count)).and_then(|mut cdr| cdr.count(2));
+        assert_eq!([2, 5].map(count), [Some(2), None]);
     }
 }

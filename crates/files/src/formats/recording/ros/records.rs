@@ -18,13 +18,11 @@ use crate::formats::recording::ros::MCAP_MAGIC;
 use crate::index::wide;
 use crate::quote::shortened_message;
 
-/// The size limit of a message with a frame, in bytes.
 const LARGEST_RECORD: u64 = 1 << 24;
 
 /// The size limit of Zstandard's window in bytes; its usual levels need 8 MiB at most.
 const LARGEST_WINDOW: u64 = 16 << 20;
 
-/// The size limit of a decompressed chunk, in bytes.
 const LARGEST_CHUNK: u64 = 1 << 30;
 
 /// The end of the records. The magic number follows.
@@ -40,39 +38,24 @@ const CHUNK: u8 = 6;
 /// The end of the messages, with the checksum of everything before it.
 const DATA_END: u8 = 15;
 
-/// A record.
 #[derive(Debug)]
 pub(super) enum McapRecord<'a> {
-    /// The type of messages.
     Schema {
-        /// The number of the schema.
         id: u16,
-        /// The name of the type.
         name: &'a str,
     },
-    /// A topic.
     Channel {
-        /// The number of the channel.
         id: u16,
-        /// The number of its schema.
         schema: u16,
-        /// The name of the topic.
         topic: &'a str,
-        /// The encoding of its messages.
         encoding: &'a str,
     },
-    /// A message.
     Message {
-        /// The number of its channel.
         channel: u16,
-        /// The time of logging, in nanoseconds.
         time: u64,
-        /// The content, in the encoding of the channel.
         data: &'a [u8],
     },
-    /// A message of more than 16 MiB, which is skipped.
     LargeMessage {
-        /// The number of its channel.
         channel: u16,
     },
 }
@@ -112,10 +95,6 @@ impl<'a> McapRecord<'a> {
 }
 
 /// Reads a file, and reports its schemas, channels and messages to `each`.
-///
-/// # Errors
-/// Returns an error if the file was not closed, after all whole messages; if a record is broken; or if a checksum is
-/// wrong; and the errors of `each`.
 pub(super) fn each_record(
     input: &mut dyn Read,
     each: &mut dyn FnMut(McapRecord<'_>) -> Result<(), EarlyEnd>,
@@ -135,32 +114,23 @@ pub(super) fn each_record(
     })
 }
 
-/// A reader of records.
 struct RecordReader<'a> {
-    /// The current record, in memory that is reused.
     record: Vec<u8>,
-    /// The receiver of the records.
     each: &'a mut dyn FnMut(McapRecord<'_>) -> Result<(), EarlyEnd>,
 }
 
-/// An input of records that computes the checksum of the bytes read.
 type SummedInput<'a> = CrcReader<&'a mut dyn Read>;
 
-/// The container of records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Container {
-    /// The file, which ends with its footer.
     File,
-    /// A chunk.
     Chunk,
 }
 
-/// The reason why no more records can be read.
 #[derive(Debug)]
 enum RecordsError {
     /// The bytes end within a record, or the file ends before its footer.
     Torn,
-    /// Any other error, or the receiver wants no more records.
     Other(EarlyEnd),
 }
 
@@ -171,7 +141,6 @@ impl From<EarlyEnd> for RecordsError {
 }
 
 impl RecordsError {
-    /// Returns the error for damage other than a premature end.
     fn damaged(message: impl Into<String>) -> Self {
         Self::Other(RecordingError::damaged(message).into())
     }
@@ -186,14 +155,10 @@ impl RecordsError {
 }
 
 /// Fills all of `bytes`.
-///
-/// # Errors
-/// Returns [`RecordsError::Torn`] if there are fewer.
 fn whole(input: &mut dyn Read, bytes: &mut [u8]) -> Result<(), RecordsError> {
     input.read_exact(bytes).map_err(refused)
 }
 
-/// Converts the error of a reader, which is the file itself or the decoder of a chunk.
 fn refused(error: io::Error) -> RecordsError {
     match error.kind() {
         io::ErrorKind::UnexpectedEof => RecordsError::Torn,
@@ -206,13 +171,10 @@ fn refused(error: io::Error) -> RecordsError {
 
 /// The head of a chunk, before its records.
 struct ChunkHead {
-    /// The number of bytes of its decompressed records.
     size: u64,
-    /// The checksum of its decompressed records.
     checksum: u32,
     /// The name of the compression; empty if there is none.
     compression: String,
-    /// The number of bytes that the records take in the file.
     length: u64,
 }
 
@@ -249,10 +211,6 @@ fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
     Some((str::from_utf8(text).ok()?, rest))
 }
 
-/// Compares the stated checksum of some bytes with the one found.
-///
-/// # Errors
-/// Returns an error if they differ. A stated checksum of 0 was not computed, so it is not an error.
 fn check_sum(stated: u32, found: u32, of: &str) -> Result<(), RecordsError> {
     if stated == 0 || stated == found {
         return Ok(());
@@ -272,7 +230,6 @@ fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordsError> {
 }
 
 impl RecordReader<'_> {
-    /// Reads records, up to the footer or the end of a chunk.
     fn records(
         &mut self,
         input: &mut SummedInput<'_>,
@@ -315,7 +272,6 @@ impl RecordReader<'_> {
         }
     }
 
-    /// Reads a record of that length, and reports it.
     fn record(&mut self, input: &mut dyn Read, kind: u8, length: u64) -> Result<(), RecordsError> {
         if length > LARGEST_RECORD {
             return Err(RecordsError::damaged("a record of more than 16 MiB"));
@@ -330,7 +286,6 @@ impl RecordReader<'_> {
         Ok((self.each)(record)?)
     }
 
-    /// Reads the records of a chunk, decompressing them on the way.
     fn chunk(&mut self, input: &mut dyn Read) -> Result<(), RecordsError> {
         let head = ChunkHead::read(input)?;
         let mut packed = Read::take(&mut *input, head.length);
@@ -360,7 +315,6 @@ impl RecordReader<'_> {
         pass_over(&mut packed, left)
     }
 
-    /// Reads the records of a chunk from its decoder, which gives as many bytes as the chunk states.
     fn unpacked(
         &mut self,
         head: &ChunkHead,

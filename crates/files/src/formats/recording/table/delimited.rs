@@ -28,23 +28,21 @@
 use std::io::{BufRead, Seek};
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, Sink};
-use crate::formats::recording::event::{RecordingSink, until_enough};
-use crate::formats::recording::side::side;
-use crate::formats::recording::table::arrangement::{
-    EarlierLayout, FrameFields, LineLayout, TableLayout,
+use crate::formats::recording::event::{
+    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, RecordingSink, Sink,
+    until_enough,
 };
-use crate::formats::recording::table::clock::{TableClock, TimeText};
-use crate::formats::recording::table::layout::{layout, layout_with_header};
-use crate::formats::recording::text::lines::{TextLines, is_blank};
-use crate::formats::recording::text::number::whole;
-use crate::formats::recording::text::row::{self, Field};
-use crate::formats::recording::text::separator::{Separator, is_comment};
-use crate::formats::recording::time::exact::Time;
-use crate::formats::recording::time::frame_clock::FrameClock;
-use crate::formats::recording::time::moment;
+use crate::formats::recording::size::side;
+use crate::formats::recording::table::layout::{
+    EarlierLayout, FrameFields, LineLayout, TableLayout, layout, layout_with_header,
+};
+use crate::formats::recording::text::{
+    self, Field, Separator, TextLines, is_blank, is_comment, whole,
+};
+use crate::formats::recording::time::{self, FrameClock, Time, TimeUnit};
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
+use crate::quote::shortened;
 
 /// Reads a recording. Its arrangement is kept in `earlier`, for the next content of a followed file.
 pub(in crate::formats::recording) fn read(
@@ -72,7 +70,6 @@ pub(in crate::formats::recording) fn read(
     read_arranged(input, layout, options, sink)
 }
 
-/// Reads the frames of a table whose arrangement is known.
 fn read_arranged(
     input: impl BufRead,
     layout: &TableLayout,
@@ -91,9 +88,6 @@ fn read_arranged(
 
 /// Finds the arrangement of a table in a file that held another one, arranged like `earlier`, before. What cannot be
 /// arranged otherwise continues the earlier table.
-///
-/// # Errors
-/// Returns the system's error if the input cannot be read.
 fn layout_after(
     input: &mut (impl BufRead + Seek),
     options: ReadOptions,
@@ -114,9 +108,6 @@ fn layout_after(
 }
 
 /// Returns the index of the first frame that is arranged like this, if it is one of the first two.
-///
-/// # Errors
-/// Returns the system's error if the input cannot be read.
 fn first_fitting(
     input: &mut impl BufRead,
     layout: &TableLayout,
@@ -170,7 +161,6 @@ pub fn read_rows(text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<(), Re
     })
 }
 
-/// Reads frames of one line each.
 fn frames(
     lines: &mut TextLines<impl BufRead>,
     layout: &TableLayout,
@@ -212,9 +202,6 @@ impl FrameFields {
     /// Fills the values and the label of a frame from a line. Returns the text of its time.
     ///
     /// Text in a field that is neither cell nor label nor time is ignored.
-    ///
-    /// # Errors
-    /// Returns an error if the line has another number of fields, or if a cell is not a number.
     fn fill<'a>(
         &self,
         slots: &[Option<usize>],
@@ -234,7 +221,7 @@ impl FrameFields {
             };
             if let Some(slot) = slot {
                 let cell = separator.value(field).cell();
-                values[*slot] = cell.ok_or_else(|| row::wrong(number, found, field))?;
+                values[*slot] = cell.ok_or_else(|| text::wrong_field(number, found, field))?;
             } else if self.label == Some(index) {
                 if let Field::Value(value) = separator.value(field) {
                     label = whole(value);
@@ -246,7 +233,7 @@ impl FrameFields {
             }
         }
         if found != self.count {
-            return Err(row::count(number, found, self.count));
+            return Err(text::wrong_count(number, found, self.count));
         }
         frame.label = label;
         Ok(time)
@@ -255,24 +242,17 @@ impl FrameFields {
 
 /// A frame whose rows are lines, of which some may have been read.
 struct FrameInRows {
-    /// The separator between fields.
     separator: Separator,
-    /// The frame that is being read.
     frame: Frame,
-    /// The number of rows read so far.
     found: u16,
-    /// Whether an empty line ends a frame.
     parted: bool,
-    /// Whether the rest of a wrong frame is being left out.
     skipping: bool,
-    /// The timestamp at the beginning of the first row.
     time: Option<Time>,
     /// The clock that turns timestamps into seconds since the first frame.
     clock: FrameClock,
 }
 
 impl FrameInRows {
-    /// Creates an empty frame of this size.
     fn new(separator: Separator, size: FrameSize, parted: bool) -> Self {
         Self {
             separator,
@@ -285,10 +265,6 @@ impl FrameInRows {
         }
     }
 
-    /// Reads all frames.
-    ///
-    /// # Errors
-    /// Returns an error if a row has another number of values, or a frame another number of rows.
     fn read(
         mut self,
         lines: &mut TextLines<impl BufRead>,
@@ -336,7 +312,6 @@ impl FrameInRows {
         Err(RecordingError::in_line(number, message).into())
     }
 
-    /// Reports the frame if all its rows have been read.
     fn give(&mut self, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
         if self.found == self.frame.rows() {
             self.frame.time = self.time.map(|time| self.clock.since_first(time));
@@ -347,7 +322,6 @@ impl FrameInRows {
         Ok(())
     }
 
-    /// Reads the next row.
     fn row(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
         let (rows, columns) = (self.frame.rows(), usize::from(self.frame.columns()));
         if self.found == rows {
@@ -355,7 +329,7 @@ impl FrameInRows {
             return Err(RecordingError::in_line(number, message));
         }
         // Each row may have its timestamp; that of the first row counts.
-        let (moment, line) = match moment::leading(line) {
+        let (moment, line) = match time::leading(line) {
             Some((moment, row)) => (Some(moment), row),
             None => (None, line),
         };
@@ -371,12 +345,156 @@ impl FrameInRows {
                 continue;
             };
             let cell = self.separator.value(field).cell();
-            *slot = cell.ok_or_else(|| row::wrong(number, count, field))?;
+            *slot = cell.ok_or_else(|| text::wrong_field(number, count, field))?;
         }
         if count != columns {
-            return Err(row::count(number, count, columns));
+            return Err(text::wrong_count(number, count, columns));
         }
         self.found += 1;
         Ok(())
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TimeFields {
+    pub(super) field: usize,
+    /// The unit; None if nothing names it.
+    pub(super) unit: Option<TimeUnit>,
+    pub(super) rest: Option<(usize, TimeUnit)>,
+}
+
+impl TimeFields {
+    pub(super) fn new(field: usize, unit: Option<TimeUnit>) -> Self {
+        Self {
+            field,
+            unit,
+            rest: None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct TimeText<'a> {
+    pub(super) time: Option<&'a [u8]>,
+    pub(super) rest: Option<&'a [u8]>,
+}
+
+#[derive(Debug)]
+pub(super) struct TableClock {
+    separator: Separator,
+    rest: Option<TimeUnit>,
+    clock: FrameClock,
+    /// Whether a time could not be read.
+    lacks_time: bool,
+    unread: Option<String>,
+}
+
+impl TableClock {
+    pub(super) fn new(separator: Separator, fields: Option<TimeFields>) -> Self {
+        let mut clock = FrameClock::default();
+        clock.set_unit(fields.and_then(|fields| fields.unit));
+        Self {
+            separator,
+            rest: fields.and_then(|fields| fields.rest).map(|(_, unit)| unit),
+            clock,
+            lacks_time: false,
+            unread: None,
+        }
+    }
+
+    /// Returns once for a table a note about a time of frame `frame` that could not be read, and once about a unit that
+    /// was derived from the size of a time.
+    pub(super) fn take_note(&mut self, frame: u64) -> Option<RecordingNote> {
+        let unread = self.unread.take();
+        let unread = unread.map(|text| RecordingNote::Time { frame, text });
+        unread.or_else(|| self.clock.take_note())
+    }
+
+    /// Returns the seconds from the first time to this one; None if there is no time, or a text that cannot be read.
+    pub(super) fn seconds(&mut self, text: TimeText<'_>) -> Option<f64> {
+        match self.time(text.time?, text.rest) {
+            Ok(time) => Some(self.clock.since_first(time)),
+            Err(wrong) => {
+                let is_text = !matches!(self.separator.value(wrong), Field::NoCell);
+                if is_text && !std::mem::replace(&mut self.lacks_time, true) {
+                    self.unread = Some(shortened(&text::text(wrong)));
+                }
+                None
+            }
+        }
+    }
+
+    fn time<'a>(&mut self, field: &'a [u8], rest: Option<&'a [u8]>) -> Result<Time, &'a [u8]> {
+        let time = match self.separator.value(field) {
+            Field::Value(number) => {
+                let time = self.clock.number(field, number);
+                match (self.rest, rest) {
+                    (Some(unit), Some(rest)) => match self.separator.value(rest) {
+                        Field::Value(number) => time.plus(Time::read(rest, number, unit)),
+                        _ => return Err(rest),
+                    },
+                    _ => time,
+                }
+            }
+            Field::Wrong => self.clock.moment(time::read_moment(field).ok_or(field)?),
+            Field::NoCell => return Err(field),
+        };
+        Ok(time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_subtracted_as_they_are_written() {
+        let step = |unit, fields: [&[u8]; 2]| {
+            let fields_of_line = Some(TimeFields::new(0, unit));
+            let mut clock = TableClock::new(Separator::Byte(b';'), fields_of_line);
+            let seconds = fields.map(|time| {
+                let text = TimeText {
+                    time: Some(time),
+                    rest: None,
+                };
+                clock.seconds(text)
+            });
+            assert_eq!(seconds[0], Some(0.0));
+            seconds[1]
+        };
+        let nanoseconds = Some(TimeUnit::Nanoseconds);
+        for (unit, fields, expected) in [
+            (
+                nanoseconds,
+                [&b"1714564800123456789"[..], b"1714564800124456790"],
+                0.001_000_001,
+            ),
+            (
+                None,
+                [b"1714564800123456789", b"1714564800124456790"],
+                0.001_000_001,
+            ),
+            (None, [b"1714564800123456", b"1714564800124456"], 0.001),
+            (None, [b"1714564800123", b"1714564800124"], 0.001),
+            (
+                None,
+                [b"1714564800.123456789", b"1714564800,124456790"],
+                0.001_000_001,
+            ),
+            (None, [b"12345", b"12395"], 50.0),
+            (None, [b"2.2", b"2.3"], 0.1),
+            (None, [b"0.30000000000000004", b"0.1"], -0.2),
+            (Some(TimeUnit::Milliseconds), [b"-0.5", b"+.5"], 0.001),
+            (Some(TimeUnit::Minutes), [b"0.1", b"0.15"], 3.0),
+            (None, [b"1e3", b"1000.5"], 0.5),
+            (Some(TimeUnit::Seconds), [b"1e300", b"0"], -1e300),
+            (
+                None,
+                [b"0", b"123456789012345678901"],
+                123_456_789_012_345_680_000.0,
+            ),
+        ] {
+            assert_eq!(step(unit, fields), Some(expected), "{fields:?}");
+        }
     }
 }

@@ -7,12 +7,11 @@
 //! | `time`, `t_ns`, `Time (ms)`, `host_time`, `timestampMs`, … | the frame's time, with its unit if there is one |
 //! | `sec` beside `nanosec`, `header.stamp.secs` beside `header.stamp.nsecs` | the whole seconds of the frame's time, and the rest |
 
-use crate::formats::recording::time::unit::TimeUnit;
+use crate::formats::recording::time::TimeUnit;
 
 /// The role of a field that is not a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::formats::recording) enum FieldRole {
-    /// The frame's label.
     Label,
     /// The frame's time, and the unit if the name gives one.
     Time(Option<TimeUnit>),
@@ -79,7 +78,6 @@ const UNITS: [(TimeUnit, &[&str]); 5] = [
     (TimeUnit::Minutes, &["min", "mins", "minutes"]),
 ];
 
-/// The words for a time.
 const TIMES: [&str; 15] = [
     "t",
     "time",
@@ -98,13 +96,11 @@ const TIMES: [&str; 15] = [
     "walltime",
 ];
 
-/// The words for the clock of a time.
 const CLOCKS: [&str; 17] = [
     "header", "field", "msg", "ros", "unix", "host", "log", "system", "sys", "device", "sensor",
     "recv", "received", "utc", "cpu", "wall", "tv",
 ];
 
-/// The words for a frame's label.
 const LABELS: [&str; 13] = [
     "frame", "index", "idx", "number", "no", "nr", "n", "id", "label", "seq", "sequence", "sample",
     "count",
@@ -135,7 +131,6 @@ pub(in crate::formats::recording) fn time_unit(text: &str) -> Option<TimeUnit> {
     words(text).first().and_then(|word| unit(word))
 }
 
-/// Returns the unit of time that a word names.
 fn unit(word: &str) -> Option<TimeUnit> {
     let found = UNITS.iter().find(|(_, words)| words.contains(&word));
     found.map(|(unit, _)| *unit)

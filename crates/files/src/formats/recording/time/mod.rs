@@ -1,19 +1,509 @@
-//! Reads the times of frames, and finds the fields that hold them.
+//! Reads the times of frames. Names of fields with times are found by [`field_role`].
 //!
+//! Nanoseconds since 1970 have more digits than a float, so numbers are subtracted as they are written: in whole
+//! picoseconds. A number with an exponent, or with more than 20 digits, is taken as the nearest float.
+//!
+//! Timestamps are an ISO 8601 date and a time of day, or a time of day alone:
 //! ```text
-//! unit         s, ms, µs and others
-//! field_role   names such as `timestamp` or `t_ms`, in a header, an object or an archive
-//! moment       timestamps such as 2024-05-01T12:00:00.125Z
-//! exact        numbers, subtracted with all their digits
-//! frame_clock  seconds since the first frame, from numbers and timestamps
+//! 2024-05-01T12:00:00.125Z      2024/05/01 12:00:00+02:00     12:00:00.125
 //! ```
-
-pub(super) mod unit;
+//! Dates that begin with the day or the month are not read, because 01.02. and 02/01 may be the same day.
 
 pub(super) mod field_role;
 
-pub(in crate::formats) mod moment;
+use std::ops::Range;
 
-pub(in crate::formats) mod exact;
+use crate::formats::recording::event::RecordingNote;
+use crate::formats::recording::text::{self, Field};
+use crate::formats::seconds::{since, to_nanoseconds};
 
-pub(in crate::formats) mod frame_clock;
+/// The longest time from one frame to the next, in seconds: more than 30 years.
+const LONGEST_STEP: f64 = 1e9;
+
+/// A unit of time; smaller units come first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::formats::recording) enum TimeUnit {
+    Nanoseconds,
+    Microseconds,
+    Milliseconds,
+    Seconds,
+    Minutes,
+}
+
+impl TimeUnit {
+    pub(in crate::formats::recording) fn name(self) -> &'static str {
+        match self {
+            Self::Nanoseconds => "nanoseconds",
+            Self::Microseconds => "microseconds",
+            Self::Milliseconds => "milliseconds",
+            Self::Seconds => "seconds",
+            Self::Minutes => "minutes",
+        }
+    }
+
+    fn picoseconds(self) -> u64 {
+        match self {
+            Self::Nanoseconds => 1_000,
+            Self::Microseconds => 1_000_000,
+            Self::Milliseconds => 1_000_000_000,
+            Self::Seconds => 1_000_000_000_000,
+            Self::Minutes => 60_000_000_000_000,
+        }
+    }
+
+    /// Converts a number in this unit to seconds.
+    pub(in crate::formats::recording) fn seconds(self, number: f64) -> f64 {
+        // A quotient of whole numbers is rounded only once.
+        match self {
+            Self::Nanoseconds => number / 1e9,
+            Self::Microseconds => number / 1e6,
+            Self::Milliseconds => number / 1e3,
+            Self::Seconds => number,
+            Self::Minutes => number * 60.0,
+        }
+    }
+
+    /// Converts the time from one frame to the next from this unit to seconds, rounded to the nanosecond. None unless
+    /// that is above 0 and at most [`LONGEST_STEP`].
+    pub(in crate::formats::recording) fn step_in_seconds(self, number: f64) -> Option<f64> {
+        let seconds = to_nanoseconds(self.seconds(number));
+        (seconds > 0.0 && seconds <= LONGEST_STEP).then_some(seconds)
+    }
+
+    /// Guesses the unit of a time without one: milliseconds or smaller if that makes it a date between 2000 and 2100,
+    /// otherwise seconds. A machine's clock may count in any unit since its start; no number shows which.
+    pub(in crate::formats::recording) fn by_size(number: f64) -> Self {
+        const DATES: Range<f64> = 946_684_800.0..4_102_444_800.0;
+        let smaller = [Self::Milliseconds, Self::Microseconds, Self::Nanoseconds];
+        let mut dated = smaller.into_iter();
+        let dated = dated.find(|unit| DATES.contains(&unit.seconds(number)));
+        dated.unwrap_or(Self::Seconds)
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::formats) enum Time {
+    Picoseconds(i128),
+    Seconds(f64),
+}
+
+impl Time {
+    /// Reads the time in a field whose value is `number`.
+    pub(in crate::formats::recording) fn read(field: &[u8], number: f64, unit: TimeUnit) -> Self {
+        match picoseconds(field, unit) {
+            Some(exact) => Self::Picoseconds(exact),
+            None => Self::Seconds(unit.seconds(number)),
+        }
+    }
+
+    pub(in crate::formats::recording) fn of_whole(whole: i128, unit: TimeUnit) -> Self {
+        Self::Picoseconds(whole * i128::from(unit.picoseconds()))
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "the nearest float")]
+    fn seconds(self) -> f64 {
+        match self {
+            Self::Picoseconds(exact) => exact as f64 / 1e12,
+            Self::Seconds(seconds) => seconds,
+        }
+    }
+
+    pub(in crate::formats::recording) fn plus(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Picoseconds(one), Self::Picoseconds(other)) => Self::Picoseconds(one + other),
+            _ => Self::Seconds(self.seconds() + other.seconds()),
+        }
+    }
+
+    /// Returns the seconds from `start` to this time, to the nanosecond.
+    pub(in crate::formats::recording) fn since(self, start: Self) -> f64 {
+        let seconds = match (start, self) {
+            (Self::Picoseconds(start), Self::Picoseconds(own)) => {
+                Self::Picoseconds(own - start).seconds()
+            }
+            _ => since(start.seconds(), self.seconds()),
+        };
+        to_nanoseconds(seconds)
+    }
+}
+
+/// Returns the picoseconds of a decimal number of up to 20 digits without an exponent, rounded to whole ones.
+fn picoseconds(field: &[u8], unit: TimeUnit) -> Option<i128> {
+    const MOST_DIGITS: u32 = 20;
+    let (negative, digits) = match field {
+        [b'-', digits @ ..] => (true, digits),
+        [b'+', digits @ ..] => (false, digits),
+        _ => (false, field),
+    };
+    let (mut number, mut count, mut decimals, mut point) = (0_i128, 0_u32, 0_u32, false);
+    for &byte in digits {
+        match byte {
+            b'0'..=b'9' => {
+                number = number * 10 + i128::from(byte - b'0');
+                count += 1;
+                decimals += u32::from(point);
+            }
+            b'.' | b',' if !point => point = true,
+            _ => return None,
+        }
+        if count > MOST_DIGITS {
+            return None;
+        }
+    }
+    if count == 0 {
+        return None;
+    }
+    let parts = 10_i128.pow(decimals);
+    let number = (number * i128::from(unit.picoseconds()) + parts / 2) / parts;
+    Some(if negative { -number } else { number })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::formats) struct Moment {
+    /// The seconds since 1970, or since midnight if there is no date.
+    pub(in crate::formats::recording) seconds: f64,
+    /// Whether the timestamp has a date; otherwise it starts again at midnight.
+    pub(in crate::formats::recording) is_dated: bool,
+}
+
+/// Reads a timestamp; None for anything else. Second 60, a leap second, counts as the first second of the next
+/// minute.
+pub(in crate::formats::recording) fn read_moment(field: &[u8]) -> Option<Moment> {
+    let text = str::from_utf8(field).ok()?.trim();
+    let (day, clock) = match text.split_once(['T', 't', ' ']) {
+        Some((date, clock)) => (Some(iso_day(date)?), clock.trim_start()),
+        None => (None, text),
+    };
+    let (clock, offset) = match clock.rfind(['+', '-']) {
+        Some(sign) => (&clock[..sign], offset(&clock[sign..])?),
+        None => (clock.trim_end_matches(['Z', 'z']), 0),
+    };
+    let (hours, minutes, seconds) = clock_parts(clock.trim_end())?;
+    let minutes = f64::from(day.unwrap_or(0)) * 1440.0 + f64::from(60 * hours + minutes - offset);
+    Some(Moment {
+        seconds: 60.0 * minutes + seconds,
+        is_dated: day.is_some(),
+    })
+}
+
+/// Reads hours, minutes and seconds: `12:00:00.125`.
+fn clock_parts(clock: &str) -> Option<(i32, i32, f64)> {
+    let mut parts = clock.splitn(3, ':');
+    let hours = two_digits(parts.next()?, 23)?;
+    let minutes = two_digits(parts.next()?, 59)?;
+    let seconds = parts.next()?;
+    let is_number = seconds.starts_with(|first: char| first.is_ascii_digit());
+    let Field::Value(seconds) = text::read_value(seconds.as_bytes()) else {
+        return None;
+    };
+    (is_number && seconds < 61.0).then_some((hours, minutes, seconds))
+}
+
+pub(in crate::formats) const ABOVE_ROWS: &str =
+    "found one value above rows of numbers; if it is the time of a frame, begin such lines with #";
+
+pub(in crate::formats) fn is_alone(line: &[u8]) -> bool {
+    !line.iter().any(|byte| b",;".contains(byte)) && read_moment(line).is_some()
+}
+
+/// Splits a line into the timestamp at its beginning and the numbers after it; None if either is missing. A comma
+/// separates cells. If they are not separated by commas, as in `12:00:00,125 7 3`, there is no timestamp.
+pub(in crate::formats) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
+    let mark = if line.contains(&b';') { b';' } else { b',' };
+    let line = line.trim_ascii_start();
+    let end_of = |from: usize| {
+        let is_end = |&byte: &u8| byte == mark || byte.is_ascii_whitespace();
+        let end = line[from..].iter().position(is_end);
+        end.map(|end| from + end)
+    };
+    let first = end_of(0)?;
+    let is_clock = line[..first].contains(&b':');
+    if !is_clock && !line[..first].contains(&b'-') && !line[..first].contains(&b'/') {
+        return None;
+    }
+    // The timestamp may be a date, a blank and a time.
+    let end = if is_clock { first } else { end_of(first + 1)? };
+    let moment = read_moment(&line[..end])?;
+    let rest = line[end..].trim_ascii_start();
+    let Some(cells) = rest.strip_prefix(&[mark]) else {
+        return Some((moment, rest)).filter(|_| !rest.is_empty());
+    };
+    let digits = cells
+        .iter()
+        .take_while(|digit| digit.is_ascii_digit())
+        .count();
+    let may_be_fraction = mark == b',' && digits > 0 && !cells[digits..].contains(&b',');
+    (!may_be_fraction && !cells.trim_ascii().is_empty()).then_some((moment, cells))
+}
+
+/// Counts the midnights that clocks without a date pass: when the time falls by more than half a day.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::formats) struct Midnights {
+    days: u32,
+    last: Option<f64>,
+}
+
+impl Midnights {
+    /// Returns the seconds of the next timestamp.
+    pub(in crate::formats) fn seconds(&mut self, moment: Moment) -> f64 {
+        const DAY: f64 = 86_400.0;
+        if moment.is_dated {
+            return moment.seconds;
+        }
+        let last = self.last.replace(moment.seconds);
+        self.days += u32::from(last.is_some_and(|last| last - moment.seconds > DAY / 2.0));
+        f64::from(self.days) * DAY + moment.seconds
+    }
+}
+
+/// Returns the number of a day of the Gregorian calendar since 1970; earlier days are negative. The month counts from
+/// 1.
+pub(in crate::formats::recording) fn day(year: i32, month: i32, day: i32) -> i32 {
+    // If years begin in March, the leap day is their last day.
+    let (year, month) = if month < 3 {
+        (year - 1, month + 9)
+    } else {
+        (year, month - 3)
+    };
+    let days = year * 365 + year / 4 - year / 100 + year / 400 + (month * 153 + 2) / 5 + day;
+    days - 719_469
+}
+
+/// Returns the day of `2024-05-01` or `2024/05/01`.
+fn iso_day(date: &str) -> Option<i32> {
+    let mut parts = date.splitn(3, ['-', '/']);
+    let year = parts.next().filter(|year| year.len() == 4)?;
+    let year = year
+        .bytes()
+        .all(|digit| digit.is_ascii_digit())
+        .then_some(year)?;
+    let month = two_digits(parts.next()?, 12).filter(|&month| month > 0)?;
+    let of_month = two_digits(parts.next()?, 31).filter(|&day| day > 0)?;
+    let year = year.parse().ok()?;
+    // Day 0 of a month is the last day of the month before.
+    let last = match month {
+        12 => 31,
+        _ => day(year, month + 1, 0) - day(year, month, 0),
+    };
+    (of_month <= last).then(|| day(year, month, of_month))
+}
+
+/// Reads the offset from UTC in minutes: `+02:00`, `-0330`, `+02`.
+fn offset(text: &str) -> Option<i32> {
+    let (sign, digits) = text.split_at_checked(1)?;
+    let (hours, minutes) = match digits.split_at_checked(2)? {
+        (hours, "") => (hours, "00"),
+        (hours, minutes) => (hours, minutes.strip_prefix(':').unwrap_or(minutes)),
+    };
+    let minutes = 60 * two_digits(hours, 23)? + two_digits(minutes, 59)?;
+    Some(if sign == "-" { -minutes } else { minutes })
+}
+
+/// Reads a number of one or two digits that is not above `most`.
+fn two_digits(text: &str, most: i32) -> Option<i32> {
+    let is_number = matches!(text.len(), 1 | 2) && text.bytes().all(|digit| digit.is_ascii_digit());
+    let number = is_number.then(|| text.parse().ok()).flatten()?;
+    (number <= most).then_some(number)
+}
+
+/// The clock of a recording or a stream. After a gap in a stream it passes to the next decoder, so that times
+/// continue from the same frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::formats) struct FrameClock {
+    /// The unit of numbers; None if it is not named, until the size of the first number decides it.
+    unit: Option<TimeUnit>,
+    start: Option<Time>,
+    midnights: Midnights,
+    assumed: Option<TimeUnit>,
+}
+
+impl FrameClock {
+    /// Sets the unit of the numbers to come; None if nothing names it.
+    pub(in crate::formats::recording) fn set_unit(&mut self, unit: Option<TimeUnit>) {
+        self.unit = unit;
+    }
+
+    /// Returns the unit of a number. If nothing names it, the size of the first number decides it for all.
+    pub(in crate::formats::recording) fn unit(&mut self, number: f64) -> TimeUnit {
+        if let Some(unit) = self.unit {
+            return unit;
+        }
+        let unit = TimeUnit::by_size(number);
+        self.unit = Some(unit);
+        self.assumed = Some(unit).filter(|&unit| unit != TimeUnit::Seconds);
+        unit
+    }
+
+    /// Returns the time in a field whose value is `number`.
+    pub(in crate::formats::recording) fn number(&mut self, field: &[u8], number: f64) -> Time {
+        let unit = self.unit(number);
+        Time::read(field, number, unit)
+    }
+
+    /// Returns the time of a timestamp. Must be called once for each timestamp, in their order.
+    pub(in crate::formats) fn moment(&mut self, moment: Moment) -> Time {
+        Time::Seconds(self.midnights.seconds(moment))
+    }
+
+    /// Returns the seconds from the first frame to a frame with this time.
+    pub(in crate::formats) fn since_first(&mut self, time: Time) -> f64 {
+        time.since(*self.start.get_or_insert(time))
+    }
+
+    /// Returns once a note about a unit that was derived from the size of a time, unless it is seconds.
+    pub(in crate::formats) fn take_note(&mut self) -> Option<RecordingNote> {
+        let unit = self.assumed.take()?;
+        Some(RecordingNote::TimeUnit { unit: unit.name() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_rounded_before_it_is_checked() {
+        for (number, unit, expected) in [
+            (16.7, TimeUnit::Milliseconds, Some(0.0167)),
+            (1e9, TimeUnit::Seconds, Some(1e9)),
+            (1.0, TimeUnit::Nanoseconds, Some(1e-9)),
+            (1e-10, TimeUnit::Milliseconds, None),
+            (1e-10, TimeUnit::Seconds, None),
+            (1e308, TimeUnit::Minutes, None),
+            (0.0, TimeUnit::Seconds, None),
+            (-0.1, TimeUnit::Seconds, None),
+            (f64::NAN, TimeUnit::Seconds, None),
+        ] {
+            assert_eq!(unit.step_in_seconds(number), expected, "{number} {unit:?}");
+        }
+    }
+
+    #[test]
+    fn only_a_present_day_date_has_a_smaller_unit_than_seconds() {
+        for (number, expected) in [
+            (1_714_564_800.0, TimeUnit::Seconds),
+            (1_714_564_800_123.0, TimeUnit::Milliseconds),
+            (1_714_564_800_123_456.0, TimeUnit::Microseconds),
+            (1_714_564_800_123_456_789.0, TimeUnit::Nanoseconds),
+            // Running for five days: in nanoseconds and in microseconds.
+            (4.3e14, TimeUnit::Seconds),
+            (4.3e11, TimeUnit::Seconds),
+            (5e12, TimeUnit::Seconds),
+            (5e18, TimeUnit::Seconds),
+            (-1_714_564_800_123.0, TimeUnit::Seconds),
+            (f64::INFINITY, TimeUnit::Seconds),
+        ] {
+            assert_eq!(TimeUnit::by_size(number), expected, "{number}");
+        }
+    }
+
+    #[test]
+    fn fractions_of_a_picosecond_are_rounded() {
+        let seconds = |text: &str| picoseconds(text.as_bytes(), TimeUnit::Seconds);
+        assert_eq!(seconds("1.0000000000005"), Some(1_000_000_000_001));
+        assert_eq!(seconds("-1,0000000000005"), Some(-1_000_000_000_001));
+        assert_eq!(seconds("1.0000000000004999"), Some(1_000_000_000_000));
+        let nanoseconds = picoseconds(b"0.0005", TimeUnit::Nanoseconds);
+        assert_eq!(nanoseconds, Some(1));
+    }
+
+    #[test]
+    fn a_line_of_numbers_may_begin_with_a_moment() {
+        for (line, seconds, rest) in [
+            ("2024-05-01T12:00:00.5Z,1,2", 1_714_564_800.5, "1,2"),
+            ("2024-05-01 12:00:00,1,2,3", 1_714_564_800.0, "1,2,3"),
+            (" 2024/05/01 12:00:00 1 2", 1_714_564_800.0, "1 2"),
+            ("12:00:00, 1 2 3", 43_200.0, " 1 2 3"),
+            ("12:00:00.25\t-1", 43_200.25, "-1"),
+            ("12:00:00,,2", 43_200.0, ",2"),
+            ("12:00:00;1;2;3", 43_200.0, "1;2;3"),
+            ("12:00:00;1", 43_200.0, "1"),
+        ] {
+            let found = leading(line.as_bytes());
+            let found = found.map(|(moment, rest)| (moment.seconds, rest));
+            assert_eq!(found, Some((seconds, rest.as_bytes())), "{line}");
+        }
+        for line in [
+            "12:00:00,25;1,5;2",
+            "12:00:00,125 7 3",
+            "12:00:00,125",
+            "12:00:00",
+            "12:00:00,",
+            "2024-05-01,1,2",
+            "01/02/2024 12:00:00,1,2",
+            "-1 12:00:00 5",
+            "1 2 3",
+            "",
+        ] {
+            assert_eq!(leading(line.as_bytes()), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn moments_are_read() {
+        for (text, seconds) in [
+            ("1970-01-01T00:00:00Z", 0.0),
+            ("2024-05-01T12:00:00.125Z", 1_714_564_800.125),
+            ("2024/05/01 12:00:00", 1_714_564_800.0),
+            ("2024-05-01 14:00:00+02:00", 1_714_564_800.0),
+            ("2024-05-01t08:30:00-0330", 1_714_564_800.0),
+            ("2024-02-29T23:59:60Z", 1_709_251_200.0),
+            ("1969-12-31T23:59:59Z", -1.0),
+            ("12:00:00.5", 43_200.5),
+            ("9:05:07", 32_707.0),
+        ] {
+            let is_dated = text.len() > 12;
+            let expected = Moment { seconds, is_dated };
+            assert_eq!(read_moment(text.as_bytes()), Some(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn other_dates_times_and_numbers_are_not_read() {
+        for text in [
+            "",
+            "12",
+            "12:00",
+            "2024-05-01",
+            "01.05.2024 12:00:00",
+            "05/01/2024 12:00:00",
+            "2024-13-01T00:00:00",
+            "2024-05-00T00:00:00",
+            "2024-04-31T00:00:00",
+            "2023-02-29T00:00:00",
+            "24:00:00",
+            "12:60:00",
+            "12:00:61",
+            "12:00:-1",
+            "12:00:nan",
+            "12:00:",
+            "12:00:00:00",
+            "12:00:00+",
+            "12:00:00+1",
+            "T12:00:00",
+            "12:00:00 PM",
+            "12:00:00,125",
+            "1 days 00:00:00",
+            "+2024-05-01T00:00:00",
+            "a:b:c",
+        ] {
+            assert_eq!(read_moment(text.as_bytes()), None, "{text}");
+        }
+        assert_eq!(read_moment(b"12:00:\xff"), None);
+    }
+
+    #[test]
+    fn days_follow_each_other() {
+        for (before, after) in [
+            ((2022, 8, 31), (2022, 9, 1)),
+            ((2021, 12, 31), (2022, 1, 1)),
+            ((2024, 2, 28), (2024, 2, 29)),
+            ((2023, 2, 28), (2023, 3, 1)),
+            ((1900, 2, 28), (1900, 3, 1)),
+            ((2000, 2, 29), (2000, 3, 1)),
+        ] {
+            let number = |(year, month, of_month)| day(year, month, of_month);
+            assert_eq!(number(before) + 1, number(after), "{before:?}");
+        }
+    }
+}

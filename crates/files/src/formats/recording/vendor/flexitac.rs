@@ -17,10 +17,6 @@ use crate::formats::stream::{
 /// The most bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// Reads a recording.
-///
-/// # Errors
-/// Returns [`RecordingError::Shape`] if rows and columns are not given.
 pub(in crate::formats::recording) fn read(
     input: &mut impl Read,
     options: ReadOptions,

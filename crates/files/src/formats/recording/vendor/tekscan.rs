@@ -29,13 +29,11 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
 };
-use crate::formats::recording::length::LengthUnit;
-use crate::formats::recording::side::stated;
-use crate::formats::recording::text::lines::{TextLines, is_blank, text, unpadded};
-use crate::formats::recording::text::number;
-use crate::formats::recording::text::row::{self, Field};
-use crate::formats::recording::text::separator::{Separator, decimal};
-use crate::formats::recording::time::unit::TimeUnit;
+use crate::formats::recording::size::{LengthUnit, stated};
+use crate::formats::recording::text::{
+    self, Field, Separator, TextLines, decimal, is_blank, text, unpadded,
+};
+use crate::formats::recording::time::TimeUnit;
 use crate::formats::seconds::{of_label, since};
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
@@ -56,7 +54,6 @@ struct TekscanHeader {
     row_spacing: Option<f64>,
     /// `COL_SPACING` in mm: the distance along x.
     column_spacing: Option<f64>,
-    /// The unit, the start and the time step of the channel.
     info: ChannelInfo,
     /// Whether the unit is above `COMMENTS`; None before these.
     has_unit: Option<bool>,
@@ -64,9 +61,6 @@ struct TekscanHeader {
 
 impl TekscanHeader {
     /// Reads a line `KEY value`. The key ends at a blank, or at a comma that a spreadsheet program put there.
-    ///
-    /// # Errors
-    /// Returns an error if a frame cannot have these rows or columns.
     fn line(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
         let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
         let end = line.iter().position(is_end);
@@ -120,10 +114,6 @@ fn spacing(value: &[u8]) -> Option<f64> {
     LengthUnit::of_name(unit)?.pitch_in_mm(length)
 }
 
-/// Reads a recording.
-///
-/// # Errors
-/// Returns an error if the header does not end, or has no rows or columns, and the errors of the frames.
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
@@ -157,10 +147,6 @@ pub(in crate::formats::recording) fn read(
 }
 
 /// Reads the frames below the header, up to `@@`.
-///
-/// # Errors
-/// Returns an error if the file ends before `@@`, or a frame before its last row: Tekscan's programs always write the
-/// `@@`.
 fn frames(
     lines: &mut TextLines<impl BufRead>,
     size: FrameSize,
@@ -201,9 +187,6 @@ fn frames(
 }
 
 /// Reads the rows of a frame, which follow its title without an empty line. `B` and `b` mean that there is no cell.
-///
-/// # Errors
-/// Returns an error if there are fewer rows, or if a row has another number of fields than `COLS`.
 fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), RecordingError> {
     let (rows, columns) = (frame.rows(), frame.columns());
     for row in frame.values_mut().chunks_mut(columns.into()) {
@@ -215,9 +198,9 @@ fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), 
         }
         let (line, number) = (lines.line(), lines.number());
         let fields = Separator::Byte(b',').split(line);
-        row::fill(row, fields, number, |field| match field {
+        text::fill_row(row, fields, number, |field| match field {
             b"B" | b"b" => Field::NoCell,
-            field => row::value(field),
+            field => text::read_value(field),
         })?;
     }
     Ok(())
@@ -237,7 +220,6 @@ fn odd_sum(frame: &Frame, stated: f64) -> Option<RecordingNote> {
     })
 }
 
-/// The title of a frame, its first line.
 struct FrameTitle {
     /// The number after `Frame`, from 1.
     label: i64,
@@ -248,9 +230,6 @@ struct FrameTitle {
 }
 
 /// Reads `Frame 2` or `Frame 2, 0.1,, date time,,,Raw Sum=,,307`.
-///
-/// # Errors
-/// Returns an error if the line is not a title; the message names `@@`, which may be what is missing.
 fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
     let line = unpadded(line);
     let mut fields = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);
@@ -264,7 +243,7 @@ fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
             format!("found {found:?}, expected 'Frame' and its number, or '@@'"),
         )
     })?;
-    let time = fields.next().and_then(number::read);
+    let time = fields.next().and_then(text::read_number);
     let sum = fields
         .skip_while(|field| !field.starts_with(b"Raw Sum"))
         .skip(1)
@@ -272,7 +251,7 @@ fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
     Ok(FrameTitle {
         label,
         time,
-        sum: sum.and_then(number::read),
+        sum: sum.and_then(text::read_number),
     })
 }
 

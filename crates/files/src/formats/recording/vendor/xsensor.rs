@@ -27,17 +27,12 @@
 
 use std::io::BufRead;
 
-use crate::formats::recording::channel_table::ChannelTable;
+use crate::formats::recording::channels::ChannelTable;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, EarlyEnd, RecordingEvent, Sink};
-use crate::formats::recording::length::LengthUnit;
-use crate::formats::recording::side::stated;
-use crate::formats::recording::text::lines::{TextLines, text};
-use crate::formats::recording::text::number;
-use crate::formats::recording::text::number::whole;
-use crate::formats::recording::text::row::{self, Field};
-use crate::formats::recording::text::separator::{Separator, decimal};
-use crate::formats::recording::time::moment::{self, Midnights, Moment};
+use crate::formats::recording::size::{LengthUnit, stated};
+use crate::formats::recording::text::{self, Field, Separator, TextLines, decimal, text, whole};
+use crate::formats::recording::time::{self, Midnights, Moment};
 use crate::formats::seconds::since;
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
@@ -48,15 +43,11 @@ const MOST_SENSORS: usize = 64;
 /// The most bytes of a line with a key.
 const LONGEST_KEY: usize = 1 << 12;
 
-/// The block of lines that is being read.
 #[derive(Default)]
 enum XsensorBlock {
-    /// The file or a frame.
     #[default]
     Other,
-    /// A sensor, with its name.
     Sensor(Option<String>),
-    /// A part of a sensor.
     Group(XsensorGroup),
 }
 
@@ -70,7 +61,6 @@ struct XsensorGroup {
 }
 
 impl XsensorGroup {
-    /// Returns true if the block lists all of its cells.
     fn is_whole(self) -> bool {
         matches!((self.cells, self.found), (Some(cells), Some(found)) if found >= cells)
     }
@@ -85,23 +75,16 @@ struct XsensorState {
     threshold: Option<f64>,
     /// `FRAME`: the frame's label in the recording.
     label: Option<i64>,
-    /// The number of sensors read in the current frame.
     sensors: usize,
-    /// The number of groups begun in the current frame.
     groups: usize,
-    /// The numbers of sensors and groups in the previous frame.
     expected: (usize, usize),
-    /// True if a group of the file listed all of its cells, so that each group should.
     groups_list_cells: bool,
     /// `Date` of the frame, such as `2022 Aug 16`.
     date: Option<String>,
     /// `Time` of the frame, such as `08:21:17.982`, or `1.25` in seconds.
     clock: Option<String>,
-    /// The date of the first frame, if it has one, and its seconds.
     start: Option<(Option<String>, f64)>,
-    /// The midnights passed so far, for dates that cannot be read.
     midnights: Midnights,
-    /// The block that is being read.
     block: XsensorBlock,
     /// `Rows` of the current sensor.
     rows: Option<u16>,
@@ -113,12 +96,6 @@ struct XsensorState {
     height_mm: Option<f64>,
 }
 
-/// Reads a recording.
-///
-/// # Errors
-/// Returns an error if a sensor has fewer or more rows than `Rows` says, or if the file was cut: inside a sensor,
-/// inside a group that states its number of cells, or before all sensors and groups of a frame. A cut between two
-/// frames cannot be told from the end.
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
@@ -158,7 +135,6 @@ pub(in crate::formats::recording) fn read(
     }
 }
 
-/// Returns true if the first field of a line is the value of a cell rather than a key.
 fn is_value(field: &str) -> bool {
     matches!(decimal(field.as_bytes()), Field::Value(_))
 }
@@ -177,12 +153,10 @@ pub(in crate::formats::recording) fn begins_frame(line: &[u8]) -> bool {
     has_key(line, "FRAME")
 }
 
-/// Returns true if the cells of a sensor follow a line.
 pub(in crate::formats::recording) fn begins_cells(line: &[u8]) -> bool {
     has_key(line, "SENSELS")
 }
 
-/// Returns true if a line has this key.
 fn has_key(line: &[u8], key: &str) -> bool {
     line.len() < LONGEST_KEY && pair(line).0 == key
 }
@@ -194,9 +168,6 @@ fn length_unit(key: &str) -> Option<LengthUnit> {
 
 impl XsensorState {
     /// Reads a line `key,value`.
-    ///
-    /// # Errors
-    /// Returns an error if a frame cannot have these rows or columns.
     fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), RecordingError> {
         let number_of = || match decimal(value.as_bytes()) {
             Field::Value(value) => Some(value),
@@ -259,7 +230,6 @@ impl XsensorState {
         matches!(self.block, XsensorBlock::Sensor(_))
     }
 
-    /// Ends the block of a sensor below its cells, and returns its name.
     fn end_sensor(&mut self) -> Option<String> {
         match std::mem::take(&mut self.block) {
             XsensorBlock::Sensor(name) => name,
@@ -267,7 +237,6 @@ impl XsensorState {
         }
     }
 
-    /// Counts the values of a line if it is part of the list of a group.
     fn count_in_group(&mut self, line: &[u8]) {
         if let XsensorBlock::Group(XsensorGroup {
             found: Some(found), ..
@@ -317,10 +286,6 @@ impl XsensorState {
     }
 
     /// Reads the rows below `SENSELS`, and returns their number.
-    ///
-    /// # Errors
-    /// Returns an error if rows or columns were not given before, or if the rows end too early or have another
-    /// length.
     fn matrix(
         &self,
         lines: &mut TextLines<impl BufRead>,
@@ -338,16 +303,11 @@ impl XsensorState {
                 return Err(RecordingError::in_line(lines.number() + 1, message));
             }
             let fields = Separator::Byte(b',').split(lines.line());
-            row::fill(row, fields, lines.number(), decimal)?;
+            text::fill_row(row, fields, lines.number(), decimal)?;
         }
         Ok(size.rows())
     }
 
-    /// Reports the frame, and before its first one the channel.
-    ///
-    /// # Errors
-    /// Returns an error if there are more sensors than any file has: names that change with every frame would fill
-    /// the memory.
     fn give(
         &mut self,
         name: Option<&str>,
@@ -413,7 +373,7 @@ fn seconds(clock: &str) -> Option<(f64, bool)> {
     let (clock, half) = half_day(clock);
     let parts = clock.split(':');
     let parts: Option<Vec<f64>> = parts
-        .map(|part| number::read(part.trim().as_bytes()))
+        .map(|part| text::read_number(part.trim().as_bytes()))
         .collect();
     let (seconds, is_clock) = match parts?[..] {
         [hours, minutes, seconds] => {
@@ -458,7 +418,7 @@ fn days(date: &str) -> [Option<i32>; 2] {
     };
     let of = |year: &str, named: &str, of_month: &str| {
         let year = number(year, 9999).filter(|_| year.len() == 4)?;
-        Some(moment::day(year, month(named)?, number(of_month, 31)?))
+        Some(time::day(year, month(named)?, number(of_month, 31)?))
     };
     match words[..] {
         [year, month, day, ..] if year.len() == 4 => [of(year, month, day); 2],
@@ -471,7 +431,6 @@ fn days(date: &str) -> [Option<i32>; 2] {
     }
 }
 
-/// A half of the day on a twelve-hour clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum HalfDay {
     /// Before noon, AM.

@@ -6,9 +6,10 @@
 //! {"t": 0.05, "frame": [[5, 6], [7, 8]], "channel": "left"}
 //! ```
 //! A frame is a list of rows, or a list of cells if rows and columns are given by the caller. `t` or `time` is in
-//! seconds and counts from the first one; without either, another key may give the time, see
-//! [`clock`](super::clock). `label` is a whole number; text, as for the name of a class, is ignored. `channel` is the
-//! name or the number of one of several sensors; other keys are ignored. All frames of a channel have the same size.
+//! seconds and counts from the first one. Without either, another key may be the time, such as `timestamp` or `t_ms`,
+//! or two keys of which one has the rest of the second, such as `sec` and `nanosec`; the first line with a time decides
+//! the key and its unit. `label` is a whole number; text, as for the name of a class, is ignored. `channel` is the name
+//! or the number of one of several sensors; other keys are ignored. All frames of a channel have the same size.
 //! These are errors, with line and column: rows of different lengths, lists within cells, infinite values, and two
 //! frames, times or labels in one line. If wrong lines may be left out, so is a frame of another size, unless three
 //! in succession have it.
@@ -17,26 +18,25 @@ use std::borrow::Cow;
 use std::fmt;
 use std::io::BufRead;
 
+use serde::de::{
+    DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor,
+};
 use serde_json::Value;
 
-use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Unexpected, Visitor};
-
+use crate::formats::job::too_large;
 use crate::formats::json;
-use crate::formats::recording::channel_table::ChannelTable;
+use crate::formats::recording::channels::ChannelTable;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
 };
-use crate::formats::recording::json::cells::CellsSeed;
-use crate::formats::recording::json::clock::{JsonClock, TimeCandidates};
-use crate::formats::recording::side::frame_size;
-use crate::formats::recording::stream_size::StreamSize;
-use crate::formats::recording::text::lines::TextLines;
-use crate::formats::recording::time::exact::Time;
-use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
+use crate::formats::recording::size::{StreamSize, frame_size};
+use crate::formats::recording::text::TextLines;
+use crate::formats::recording::time::field_role::{FieldRole, is_named_time, rest_of_second, role};
+use crate::formats::recording::time::{self, FrameClock, Time, TimeUnit};
+use crate::frame::{Frame, FrameSize, LARGEST_VALUE, MAX_FRAME_CELLS};
 use crate::parameter::number::counted;
 
-/// Reads a recording.
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     options: ReadOptions,
@@ -60,18 +60,12 @@ pub(in crate::formats::recording) fn read(
     Ok(())
 }
 
-/// The frames of JSON lines, in a recording or in a stream.
 #[derive(Debug)]
 pub(in crate::formats) struct JsonFrames {
-    /// The line that was read last.
     line: FrameLine,
-    /// The channels so far.
     pub(in crate::formats) channels: ChannelTable,
-    /// The rows and columns of the frames of each channel.
     sizes: Vec<StreamSize>,
-    /// The clock that reads the times of lines.
     pub(in crate::formats) clock: JsonClock,
-    /// The frame made of the line.
     frame: Frame,
 }
 
@@ -88,10 +82,6 @@ impl JsonFrames {
     }
 
     /// Reads a line, after which [`Self::frame`] is its frame.
-    ///
-    /// # Errors
-    /// Returns an error if the line is not a frame, has other rows and columns than those of its channel before it,
-    /// or is of one channel too many.
     pub(in crate::formats) fn read(&mut self, line: &[u8]) -> Result<(), FrameLineError> {
         if let Err(error) = self.line.read(line, &mut self.clock) {
             self.sizes.iter_mut().for_each(StreamSize::pass_torn);
@@ -118,7 +108,6 @@ impl JsonFrames {
         Ok(())
     }
 
-    /// Returns the frame of the last line.
     pub(in crate::formats) fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -129,31 +118,24 @@ impl JsonFrames {
     }
 }
 
-/// The content of a line, in memory that is reused.
 #[derive(Debug)]
 struct FrameLine {
-    /// The size of a frame, for lists of cells without rows, if it was given.
     named: Option<FrameSize>,
     /// The size of the frame; one cell before the first frame.
     size: FrameSize,
     /// The cells, row by row; NaN for null.
     values: Vec<f64>,
-    /// The time.
     time: Option<Time>,
-    /// The frame's label in the recording.
     label: Option<i64>,
-    /// The name of the sensor, if there are several.
     channel: Option<String>,
 }
 
 /// The error for a line that is not a frame, or not one of its recording or stream.
 #[derive(Debug)]
 pub(in crate::formats) enum FrameLineError {
-    /// A wrong line.
     Wrong {
         /// The column of the error, from 1; None if it is the line as a whole.
         column: Option<usize>,
-        /// The message, which says what was found and what was expected.
         message: String,
     },
     /// A list of cells without rows; the number of cells.
@@ -161,13 +143,11 @@ pub(in crate::formats) enum FrameLineError {
 }
 
 impl FrameLineError {
-    /// Returns the error for a line as a whole.
     fn of_line(message: String) -> Self {
         let column = None;
         Self::Wrong { column, message }
     }
 
-    /// Returns the error for that line of a recording.
     fn in_line(self, number: u64) -> RecordingError {
         match self {
             Self::Wrong { column, message } => match column {
@@ -253,7 +233,6 @@ impl FrameLine {
     }
 }
 
-/// Returns what is wrong with a line from that column on.
 fn complaint(line: &[u8], column: usize, error: &serde_json::Error) -> String {
     let rest = line.get(column - 1..).unwrap_or(&[]);
     let begins_list = line.trim_ascii_start().strip_prefix(b"[");
@@ -270,7 +249,6 @@ fn complaint(line: &[u8], column: usize, error: &serde_json::Error) -> String {
     }
 }
 
-/// The object of a line.
 struct ObjectSeed<'a> {
     line: &'a mut FrameLine,
     /// The number of rows, which is set; it stays 0 for cells without rows.
@@ -390,10 +368,6 @@ fn channel_name<E: Error>(value: &Value) -> Result<Option<String>, E> {
     Ok(Some(name))
 }
 
-/// Notes that a key gave a value.
-///
-/// # Errors
-/// Returns an error if a key gave the value before.
 fn once<E: Error>(given: &mut Option<&'static str>, key: &'static str) -> Result<(), E> {
     match given.replace(key) {
         None => Ok(()),
@@ -401,5 +375,291 @@ fn once<E: Error>(given: &mut Option<&'static str>, key: &'static str) -> Result
         Some(before) => Err(E::custom(format!(
             "{before:?} and {key:?} are given, expected one of them"
         ))),
+    }
+}
+
+/// Reads a list of rows or of cells. Lists inside it are rows only if there is a counter of rows.
+struct CellsSeed<'a>(&'a mut Vec<f64>, Option<&'a mut usize>);
+
+impl<'de> DeserializeSeed<'de> for CellsSeed<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for CellsSeed<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of numbers, or of rows of them")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let Self(values, mut rows) = self;
+        let (mut width, mut cells) = (None, false);
+        loop {
+            let before = values.len();
+            let Some(is_row) = list.next_element_seed(CellSeed(values, rows.is_some()))? else {
+                return Ok(());
+            };
+            // Before it takes memory.
+            if values.len() > MAX_FRAME_CELLS {
+                return Err(A::Error::custom("more than 512 × 512 cells"));
+            }
+            cells |= !is_row;
+            let Some(rows) = rows.as_mut().filter(|_| is_row) else {
+                if width.is_some() {
+                    return Err(A::Error::custom("rows and numbers in one list"));
+                }
+                continue;
+            };
+            **rows += 1;
+            let found = values.len() - before;
+            let expected = *width.get_or_insert(found);
+            if found != expected || cells {
+                let row = **rows;
+                let found = counted(found as u64, "value");
+                let message = format!("row {row} has {found}, expected {expected}");
+                return Err(A::Error::custom(message));
+            }
+        }
+    }
+}
+
+/// Reads a number, null, or a row of these; returns true for a row.
+struct CellSeed<'a>(&'a mut Vec<f64>, bool);
+
+impl<'de> DeserializeSeed<'de> for CellSeed<'_> {
+    type Value = bool;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<bool, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for CellSeed<'_> {
+    type Value = bool;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or null")
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<bool, E> {
+        if value.abs() > LARGEST_VALUE {
+            return Err(E::custom(too_large(value)));
+        }
+        self.0.push(value);
+        Ok(false)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "the nearest float")]
+    fn visit_u64<E: Error>(self, value: u64) -> Result<bool, E> {
+        self.0.push(value as f64);
+        Ok(false)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "the nearest float")]
+    fn visit_i64<E: Error>(self, value: i64) -> Result<bool, E> {
+        self.0.push(value as f64);
+        Ok(false)
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<bool, E> {
+        self.0.push(f64::NAN);
+        Ok(false)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<bool, A::Error> {
+        if !self.1 {
+            return Err(A::Error::custom(
+                "a list inside a row, expected a number or null",
+            ));
+        }
+        CellsSeed(self.0, None).visit_seq(list)?;
+        Ok(true)
+    }
+}
+
+/// The most keys of a line that are considered as its time.
+const MOST_KEYS: usize = 16;
+
+#[derive(Debug)]
+struct TimeKey {
+    name: String,
+    rest: Option<(String, TimeUnit)>,
+}
+
+#[derive(Debug, Default)]
+pub(in crate::formats) struct JsonClock {
+    /// The key of the time; None until a line has a time.
+    key: Option<TimeKey>,
+    pub(in crate::formats) clock: FrameClock,
+}
+
+/// The keys of a line that may be its time, with their values.
+#[derive(Debug, Default)]
+struct TimeCandidates(Vec<(String, Value)>);
+
+impl TimeCandidates {
+    fn add(&mut self, name: String, value: Value) {
+        self.0.push((name, value));
+    }
+
+    fn value(&self, name: &str) -> Option<&Value> {
+        let mut all = self.0.iter();
+        all.find(|(own, _)| own == name).map(|(_, value)| value)
+    }
+}
+
+impl JsonClock {
+    fn takes(&self, name: &str, others: &TimeCandidates) -> bool {
+        match &self.key {
+            Some(key) => {
+                key.name == name || key.rest.as_ref().is_some_and(|(rest, _)| rest == name)
+            }
+            None => others.0.len() < MOST_KEYS && matches!(role(name), Some(FieldRole::Time(_))),
+        }
+    }
+
+    /// Returns the time of a line; None if it has none.
+    fn time(&mut self, line: &TimeCandidates) -> Option<Time> {
+        if self.key.is_none() {
+            self.key = TimeKey::of(line);
+            let name = self.key.as_ref().map(|key| &*key.name);
+            self.clock.set_unit(name.and_then(role_unit));
+        }
+        let key = self.key.as_ref()?;
+        let time = match line.value(&key.name)? {
+            Value::String(text) => self.clock.moment(time::read_moment(text.as_bytes())?),
+            value => {
+                let (text, number) = number(value)?;
+                self.clock.number(text.as_bytes(), number)
+            }
+        };
+        let Some((rest, unit)) = &key.rest else {
+            return Some(time);
+        };
+        let (text, number) = number(line.value(rest)?)?;
+        Some(time.plus(Time::read(text.as_bytes(), number, *unit)))
+    }
+
+    /// Forgets the key of the time: another file may have another one.
+    pub(in crate::formats) fn forget_key(&mut self) {
+        self.key = None;
+    }
+}
+
+impl TimeKey {
+    /// Chooses the key of a first line: seconds with their rest in another key, otherwise the first key that is
+    /// called a time.
+    fn of(line: &TimeCandidates) -> Option<Self> {
+        let are_times = line.0.iter().filter(|(_, value)| is_time(value));
+        let names: Vec<&str> = are_times.map(|(name, _)| name.as_str()).collect();
+        let pair = |index| rest_of_second(&names, index).map(|rest| (index, Some(rest)));
+        let alone = || names.iter().position(|name| is_named_time(name));
+        let pairs = (0..names.len()).find_map(pair);
+        let (index, rest) = pairs.or_else(|| Some((alone()?, None)))?;
+        Some(Self {
+            name: names[index].to_owned(),
+            rest: rest.map(|(rest, unit)| (names[rest].to_owned(), unit)),
+        })
+    }
+}
+
+fn role_unit(name: &str) -> Option<TimeUnit> {
+    match role(name) {
+        Some(FieldRole::Time(unit)) => unit,
+        _ => None,
+    }
+}
+
+/// Returns true if a value can be a time: a number, or a timestamp.
+fn is_time(value: &Value) -> bool {
+    match value {
+        Value::String(text) => time::read_moment(text.as_bytes()).is_some(),
+        value => number(value).is_some(),
+    }
+}
+
+fn number(value: &Value) -> Option<(String, f64)> {
+    let Value::Number(written) = value else {
+        return None;
+    };
+    let number = written
+        .as_f64()
+        .filter(|time| time.abs() <= LARGEST_VALUE)?;
+    Some((written.to_string(), number))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::recording::event::RecordingNote;
+
+    fn cells(text: &str) -> Result<(Vec<f64>, usize), String> {
+        let (mut values, mut rows) = (Vec::new(), 0);
+        let mut list = serde_json::Deserializer::from_str(text);
+        CellsSeed(&mut values, Some(&mut rows))
+            .deserialize(&mut list)
+            .map_err(|error| json::message(&error))?;
+        Ok((values, rows))
+    }
+
+    #[test]
+    fn a_list_has_rows_or_cells() {
+        assert_eq!(cells("[1,2.5,-3]"), Ok((vec![1.0, 2.5, -3.0], 0)));
+        assert_eq!(cells("[[1,2],[3,4]]"), Ok((vec![1.0, 2.0, 3.0, 4.0], 2)));
+        assert!(cells("[null]").expect("a cell").0[0].is_nan());
+        for (text, error) in [
+            ("[[1,2],[3]]", "row 2 has 1 value, expected 2"),
+            ("[[1],2]", "rows and numbers in one list"),
+            ("[1,[2]]", "row 1 has 1 value, expected 1"),
+            ("[[[1]]]", "a list inside a row, expected a number or null"),
+            (
+                "[\"1\"]",
+                "invalid type: string \"1\", expected a number or null",
+            ),
+        ] {
+            assert_eq!(cells(text), Err(error.to_owned()), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_frame_has_at_most_512_rows_of_512_cells() {
+        let list = |count: usize| format!("[{}0]", "0,".repeat(count - 1));
+        assert!(cells(&list(MAX_FRAME_CELLS)).is_ok());
+        let error = cells(&list(MAX_FRAME_CELLS + 1));
+        assert_eq!(error, Err("more than 512 × 512 cells".to_owned()));
+    }
+
+    fn seconds(lines: &[&str]) -> (Vec<Option<f64>>, Option<RecordingNote>) {
+        let mut clock = JsonClock::default();
+        let of_line = |line: &&str| {
+            let object: Value = serde_json::from_str(line).expect("JSON");
+            let mut candidates = TimeCandidates::default();
+            for (name, value) in object.as_object().expect("an object") {
+                if clock.takes(name, &candidates) {
+                    candidates.add(name.clone(), value.clone());
+                }
+            }
+            let time = clock.time(&candidates)?;
+            Some(clock.clock.since_first(time))
+        };
+        let seconds = lines.iter().map(of_line).collect();
+        (seconds, clock.clock.take_note())
+    }
+
+    #[test]
+    fn the_first_time_decides_the_key_and_its_unit() {
+        let lines = [
+            r#"{"timestamp":null,"t_ms":null}"#,
+            r#"{"timestamp":0}"#,
+            r#"{"t_ms":5,"timestamp":1714564800123}"#,
+            r#"{"t_ms":6}"#,
+        ];
+        let times = vec![None, Some(0.0), Some(1_714_564_800_123.0), None];
+        assert_eq!(seconds(&lines), (times, None));
     }
 }

@@ -1,32 +1,199 @@
-//! Decodes frames with an end: a byte per cell, then `FF`; or `5B`, the cells with escapes, `5D`.
-//!
-//! The first two frames of the right length decide which of the two it is. Frames of another length are dropped. In a
-//! bracketed stream, the bytes between two cells of `FF` may have the right length, too: if there are signs of that,
-//! more frames are needed to decide.
-//! ```text
-//! 00 0C 07 03 FF          cells are 0 to 254; FF ends the frame
-//! 5B 00 0C 07 03 5D       cells are 0 to 255; 5B, 5C and 5D among them are 5C 01, 5C 00 and 5C 02
-//! ```
+//! Decodes the bytes of boards: FlexiTac and MatSense.
 
-use crate::formats::stream::output::StreamOutput;
+use crate::formats::stream::event::{StreamEvent, StreamOutput};
 use crate::frame::{Frame, FrameSize};
 
-/// The byte that ends a frame of the first kind, in which no cell has this value.
+/// The bytes before each frame.
+pub(in crate::formats) const MARKER: [u8; 2] = [0xaa, 0x55];
+
+/// A decoder of `AA 55` and then a byte per cell, without a checksum: these two bytes also occur inside frames.
+///
+/// So a frame counts only once the marker after it has arrived, or if the input ends exactly with its last byte. If a
+/// marker is not in its expected place, the nearest marker that the next one confirms is used. Using the first such
+/// marker instead would read frames from their middle. If a stream is joined late, two neighbouring cells may be `AA
+/// 55` in every frame: at worst they are taken for the marker until one of them changes.
+/// ```text
+/// AA 55  00 0C 07 03  AA 55  00 0D …        2 rows of 2 columns, 0 to 255
+/// ```
+/// Frames have no number and no time; rows and columns must be known. A frame is shown as provisional as soon as its
+/// last byte has arrived, so that the live page does not lag a frame behind; it is confirmed or withdrawn by the
+/// bytes after it.
+#[derive(Debug)]
+pub(super) struct FlexitacDecoder {
+    size: FrameSize,
+    /// The bytes that are not decoded yet: at most a few frames.
+    bytes: Vec<u8>,
+    start: Start,
+    frame: Frame,
+}
+
+/// The place where the bytes that are not decoded yet begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Start {
+    Anywhere,
+    /// The first byte of the stream. A marker there cannot be the content of cells.
+    Stream,
+    Marker {
+        shown: bool,
+    },
+}
+
+impl FlexitacDecoder {
+    /// Creates a decoder for frames of this size. If `from_start` is true, the first byte begins a frame.
+    pub(super) fn new(size: FrameSize, from_start: bool) -> Self {
+        Self {
+            size,
+            bytes: Vec::new(),
+            start: if from_start {
+                Start::Stream
+            } else {
+                Start::Anywhere
+            },
+            frame: Frame::new(size),
+        }
+    }
+
+    fn period(&self) -> usize {
+        MARKER.len() + self.size.cells()
+    }
+
+    fn has_marker(&self, at: usize) -> bool {
+        self.bytes.get(at..at + MARKER.len()) == Some(&MARKER[..])
+    }
+
+    pub(super) fn push(&mut self, bytes: &[u8], output: &mut StreamOutput<'_, '_>) {
+        // Take one piece at a time, so that the buffer stays small however many bytes arrive at once.
+        for piece in bytes.chunks(self.period()) {
+            self.bytes.extend_from_slice(piece);
+            while self.step(false, output) {}
+        }
+    }
+
+    pub(super) fn finish(&mut self, output: &mut StreamOutput<'_, '_>) {
+        while self.step(true, output) {}
+        if !self.bytes.is_empty() {
+            self.withdraw(output);
+            if matches!(self.start, Start::Marker { .. }) || output.counts.frames > 0 {
+                output.lose(1, &self.bytes, None);
+            }
+            self.bytes.clear();
+        }
+    }
+
+    /// Takes one frame, or drops invalid bytes; returns false if more bytes are needed.
+    fn step(&mut self, ended: bool, output: &mut StreamOutput<'_, '_>) -> bool {
+        let period = self.period();
+        if self.start == Start::Stream && self.bytes.len() >= MARKER.len() {
+            self.start = if self.has_marker(0) {
+                Start::Marker { shown: false }
+            } else {
+                Start::Anywhere
+            };
+        }
+        if let Start::Marker { shown } = self.start {
+            let whole = self.bytes.len() == period;
+            if self.has_marker(period) || whole && ended {
+                self.fill();
+                self.bytes.drain(..period);
+                self.start = if ended && self.bytes.is_empty() {
+                    Start::Anywhere
+                } else {
+                    Start::Marker { shown: false }
+                };
+                output.frame(&mut self.frame);
+                return true;
+            }
+            let waits = whole || self.bytes.len() == period + 1 && self.bytes[period] == MARKER[0];
+            if !ended && (waits || self.bytes.len() < period) {
+                if whole && !shown {
+                    self.fill();
+                    self.start = Start::Marker { shown: true };
+                    output.provisional(&mut self.frame);
+                }
+                return false;
+            }
+            self.withdraw(output);
+        }
+        self.search(ended, output)
+    }
+
+    fn withdraw(&mut self, output: &mut StreamOutput<'_, '_>) {
+        if let Start::Marker { shown } = &mut self.start
+            && std::mem::take(shown)
+        {
+            output.report(StreamEvent::Withdrawn);
+        }
+    }
+
+    /// Searches for the marker nearest to its expected place that the next one confirms; returns false if more bytes
+    /// are needed.
+    fn search(&mut self, ended: bool, output: &mut StreamOutput<'_, '_>) -> bool {
+        let period = self.period();
+        let in_step = matches!(self.start, Start::Marker { .. });
+        let due = if in_step { period } else { 0 };
+        let reach = due + period;
+        // The last position examined is confirmed within these bytes.
+        let needed = reach + period + MARKER.len();
+        // No marker is nearer than one in the expected place.
+        let in_place = self.has_marker(due) && self.has_marker(due + period);
+        if self.bytes.len() < needed && !ended && !in_place {
+            return false;
+        }
+        let length = self.bytes.len();
+        let first = usize::from(in_step);
+        let confirmed = (first..=reach.min(length)).filter(|&at| {
+            let next = at + period;
+            self.has_marker(at) && (self.has_marker(next) || ended && next == length)
+        });
+        let mut nearest = confirmed.min_by_key(|at| at.abs_diff(due));
+        // If a frame lacks more than half of its bytes, the marker after the next frame is nearer.
+        while let Some(at) = nearest
+            && at >= first + period
+            && self.has_marker(at - period)
+        {
+            nearest = Some(at - period);
+        }
+        let (gone, found) = match nearest {
+            Some(at) => (at, true),
+            None if ended => return false,
+            // Without a marker, drop everything that was examined.
+            None => (reach.min(length), false),
+        };
+        if in_step {
+            let frames = (gone + period / 2) / period;
+            output.lose(frames.max(1) as u64, &self.bytes, None);
+        } else if !found && output.counts.frames > 0 {
+            output.lose(1, &self.bytes, None);
+        }
+        self.bytes.drain(..gone);
+        self.start = if found {
+            Start::Marker { shown: false }
+        } else {
+            Start::Anywhere
+        };
+        true
+    }
+
+    /// Copies the cells after the marker into the frame.
+    fn fill(&mut self) {
+        let values = &self.bytes[MARKER.len()..];
+        for (slot, &byte) in self.frame.values_mut().iter_mut().zip(values) {
+            *slot = f64::from(byte);
+        }
+    }
+}
+
 const END: u8 = 0xff;
-/// The byte that begins a frame of the second kind.
 const OPEN: u8 = 0x5b;
-/// The byte that ends a frame of the second kind.
 const CLOSE: u8 = 0x5d;
 /// The byte before the number of a cell that would otherwise begin, end or escape.
 const ESCAPE: u8 = 0x5c;
 
-/// The number of frames of the right length that decide the kind.
 const SURE: usize = 2;
 /// If there are signs of brackets, the number of frames between `FF` that decide against them, in addition to the
 /// number of frames between brackets.
 const SURE_IN_DOUBT: usize = 4;
 
-/// A way to separate frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Framing {
     /// Each frame ends in [`END`].
@@ -35,7 +202,6 @@ enum Framing {
     Bracketed,
 }
 
-/// The position of a byte in the stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum BytePosition {
     /// At the beginning of a stream, which may be that of a frame; what is there up to the first end of a frame is
@@ -43,28 +209,21 @@ enum BytePosition {
     AtStart,
     /// Before the first start or end of a frame; what is there is dropped.
     BeforeFrames,
-    /// In a frame.
     InFrame,
     /// Behind the end of a bracketed frame, but not in the next one.
     BetweenFrames,
 }
 
-/// A splitter of bytes into frames of one kind.
 #[derive(Clone, Debug)]
 struct Parts {
-    /// The kind of frames.
     framing: Framing,
-    /// The number of cells in a frame.
     cells: usize,
     /// The cells of the current frame so far, or the bytes since the end of the last one.
     values: Vec<u8>,
-    /// The position of the next byte.
     position: BytePosition,
     /// Whether the last byte was an [`ESCAPE`].
     escaped: bool,
-    /// Whether the frame has too many cells or an unknown escape.
     broken: bool,
-    /// The number of frames of another length, reported once the kind is decided.
     dropped: u64,
 }
 
@@ -73,9 +232,7 @@ struct Parts {
 enum Part {
     /// The frame continues, or has not begun.
     More,
-    /// The frame has ended with all its cells.
     Whole,
-    /// The frame has ended with another number of cells, or broken.
     Dropped,
 }
 
@@ -97,7 +254,6 @@ impl Parts {
         }
     }
 
-    /// Takes the next byte.
     fn byte(&mut self, byte: u8) -> Part {
         match self.framing {
             Framing::Ended if byte == END => {
@@ -145,7 +301,6 @@ impl Parts {
         }
     }
 
-    /// Adds a cell, or a byte between two frames.
     fn value(&mut self, byte: u8) -> Part {
         // A board may end its frames as lines.
         let is_line_end = self.position == BytePosition::BetweenFrames && b"\r\n".contains(&byte);
@@ -179,19 +334,23 @@ impl Parts {
     }
 }
 
-/// A decoder of frames with an end.
+/// A decoder of frames with an end: a byte per cell, then `FF`; or `5B`, the cells with escapes, `5D`.
+///
+/// The first two frames of the right length decide which of the two it is. Frames of another length are dropped. In a
+/// bracketed stream, the bytes between two cells of `FF` may have the right length, too: if there are signs of that,
+/// more frames are needed to decide.
+/// ```text
+/// 00 0C 07 03 FF          cells are 0 to 254; FF ends the frame
+/// 5B 00 0C 07 03 5D       cells are 0 to 255; 5B, 5C and 5D among them are 5C 01, 5C 00 and 5C 02
+/// ```
 #[derive(Clone, Debug)]
 pub(super) struct MatsenseDecoder {
-    /// The kinds that are still possible, each with its frames so far.
     candidates: Vec<(Parts, Vec<Vec<u8>>)>,
-    /// Whether a frame of the first kind looked like parts of bracketed ones.
     doubted: bool,
-    /// The frame that is reported.
     frame: Frame,
 }
 
 impl MatsenseDecoder {
-    /// Prepares for frames of either kind.
     pub(super) fn new(size: FrameSize, from_start: bool) -> Self {
         let of = |framing| (Parts::new(framing, size.cells(), from_start), Vec::new());
         Self {
@@ -201,7 +360,6 @@ impl MatsenseDecoder {
         }
     }
 
-    /// Decodes bytes.
     pub(super) fn push(&mut self, bytes: &[u8], output: &mut StreamOutput<'_, '_>) {
         for &byte in bytes {
             let undecided = self.candidates.len() > 1;
@@ -228,12 +386,10 @@ impl MatsenseDecoder {
         }
     }
 
-    /// Returns true if the kind has been decided by frames of the right length.
     pub(super) fn is_sure(&self) -> bool {
         self.candidates.len() == 1
     }
 
-    /// Returns true if there was a frame of the right length.
     pub(super) fn has_frames(&self) -> bool {
         let waiting = |(_, frames): &(Parts, Vec<Vec<u8>>)| !frames.is_empty();
         self.is_sure() || self.candidates.iter().any(waiting)
@@ -255,7 +411,6 @@ impl MatsenseDecoder {
         (ended.len() >= enough).then_some(0)
     }
 
-    /// Reports the frames that waited for the decision, and forgets the other kind.
     fn decide(&mut self, index: usize, output: &mut StreamOutput<'_, '_>) {
         let (parts, waiting) = self.candidates.swap_remove(index);
         if parts.dropped > 0 {
@@ -282,7 +437,6 @@ impl MatsenseDecoder {
     }
 }
 
-/// Reports the values as the next frame.
 fn give(frame: &mut Frame, values: &[u8], output: &mut StreamOutput<'_, '_>) {
     for (slot, &value) in frame.values_mut().iter_mut().zip(values) {
         *slot = f64::from(value);
@@ -293,9 +447,8 @@ fn give(frame: &mut Frame, values: &[u8], output: &mut StreamOutput<'_, '_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::stream::event::{StreamCounts, StreamEvent};
+    use crate::formats::stream::event::StreamCounts;
 
-    /// Returns the frames in some bytes, and the number of dropped ones.
     fn decoded(bytes: &[u8], size: FrameSize, from_start: bool) -> (Vec<Vec<f64>>, u64) {
         let mut decoder = MatsenseDecoder::new(size, from_start);
         let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());

@@ -1,0 +1,243 @@
+//! Numbers of rows and columns, and distances between cells, as files give them.
+
+use crate::formats::recording::error::RecordingError;
+use crate::frame::{FrameSize, MAX_FRAME_SIDE};
+use crate::parameter::Parameter;
+use crate::parameter::number::to_decimals;
+use crate::quote::shortened;
+use crate::sensor::Sensor;
+
+/// Returns a number of rows or columns; None if it is 0 or larger than a frame can be.
+pub(in crate::formats) fn side(length: impl TryInto<u16>) -> Option<u16> {
+    let length = length.try_into().ok();
+    length.filter(|side| FrameSize::SIDES.contains(side))
+}
+
+/// Returns the size of a frame; None if a side is out of range.
+pub(in crate::formats) fn frame_size<T: TryInto<u16>>(columns: T, rows: T) -> Option<FrameSize> {
+    FrameSize::of_sides(side(columns), side(rows))
+}
+
+/// Returns the rows and columns of an array with these sizes: the first two, if all others are 1.
+pub(in crate::formats) fn matrix_size(sizes: &[u32]) -> Option<FrameSize> {
+    match *sizes {
+        [rows, columns, ref rest @ ..] if rest.iter().all(|&size| size == 1) => {
+            frame_size(columns, rows)
+        }
+        _ => None,
+    }
+}
+
+/// Returns the rows and columns of a message with this number of values: the `named` ones if they have that many
+/// cells, otherwise those that the message states. Many programs publish a layout of one row, or none.
+pub(super) fn arranged(
+    values: usize,
+    stated: Option<FrameSize>,
+    named: Option<FrameSize>,
+) -> Option<FrameSize> {
+    named.filter(|named| named.cells() == values).or(stated)
+}
+
+/// Returns the message for a frame with other rows and columns than those before it.
+pub(super) fn changed(size: FrameSize, before: FrameSize) -> String {
+    format!("{} as before", other_than(size, before))
+}
+
+pub(super) fn other_than(size: FrameSize, expected: FrameSize) -> String {
+    format!(
+        "found {}, expected {} of {}",
+        size.in_words(),
+        expected.rows(),
+        expected.columns()
+    )
+}
+
+/// Reads the number of rows or columns that a line states for a key, as `ROWS 28` does; `mark` is the character
+/// between them.
+pub(super) fn stated(key: &str, mark: char, value: &str, line: u64) -> Result<u16, RecordingError> {
+    let length: Option<u16> = value.parse().ok();
+    length.and_then(side).ok_or_else(|| {
+        let found = shortened(value);
+        let message = format!("{key}{mark}{found}: expected 1 to {MAX_FRAME_SIDE}");
+        RecordingError::in_line(line, message)
+    })
+}
+
+/// The number of successive frames after which another size becomes the size, if none was given.
+const AGAIN: u8 = 3;
+
+/// The size of the frames of a stream of text: the given one, or that of its first frame.
+///
+/// A frame of another size is dropped and counted, like a torn one. However, the first frame may have been something
+/// else, such as a version number, or the sensor may have been reconfigured: if no size was given, a size that
+/// arrives three times in succession becomes the size.
+#[derive(Clone, Debug)]
+pub(in crate::formats) struct StreamSize {
+    /// The current rows and columns: the given ones, otherwise those of the first whole frame, until others arrive
+    /// repeatedly.
+    present: Option<FrameSize>,
+    is_named: bool,
+    other: Option<(FrameSize, u8)>,
+}
+
+impl StreamSize {
+    /// Starts with the given rows and columns, if any.
+    pub(in crate::formats) fn new(named: Option<FrameSize>) -> Self {
+        Self {
+            present: named,
+            is_named: named.is_some(),
+            other: None,
+        }
+    }
+
+    /// Sets the rows and columns, if none are known yet.
+    pub(in crate::formats) fn begin(&mut self, own: FrameSize) {
+        self.present.get_or_insert(own);
+    }
+
+    /// Returns the current rows and columns; None before the first frame if none were given.
+    pub(in crate::formats) fn present(&self) -> Option<FrameSize> {
+        self.present
+    }
+
+    /// Returns the rows and columns if they were given.
+    pub(in crate::formats) fn named(&self) -> Option<FrameSize> {
+        self.present.filter(|_| self.is_named)
+    }
+
+    pub(in crate::formats) fn admit(&mut self, own: FrameSize) -> Result<(), String> {
+        let size = *self.present.get_or_insert(own);
+        if own == size {
+            self.other = None;
+            return Ok(());
+        }
+        if self.is_named {
+            self.other = None;
+            return Err(other_than(own, size));
+        }
+        let times = match self.other {
+            Some((other, times)) if other == own => times + 1,
+            _ => 1,
+        };
+        if times < AGAIN {
+            self.other = Some((own, times));
+            return Err(changed(own, size));
+        }
+        (self.present, self.other) = (Some(own), None);
+        Ok(())
+    }
+
+    /// Notes a frame that is not whole, which interrupts a succession of frames of another size.
+    pub(in crate::formats) fn pass_torn(&mut self) {
+        self.other = None;
+    }
+}
+
+/// The decimals of a distance in mm: a picometre is smaller than any atom.
+const DECIMALS: i32 = 9;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::formats::recording) enum LengthUnit {
+    Micrometres,
+    Millimetres,
+    Centimetres,
+    Metres,
+    Inches,
+}
+
+impl LengthUnit {
+    /// Returns the unit that a text names, such as `mm`, `Centimeters` or `in.`.
+    pub(in crate::formats::recording) fn of_name(text: &str) -> Option<Self> {
+        let name = text.to_lowercase();
+        match name.trim_end_matches('.') {
+            // The micro sign and the Greek letter look the same.
+            "um" | "\u{b5}m" | "\u{3bc}m" | "micrometers" | "micrometres" | "microns" => {
+                Some(Self::Micrometres)
+            }
+            "mm" | "millimeters" | "millimetres" => Some(Self::Millimetres),
+            "cm" | "centimeters" | "centimetres" => Some(Self::Centimetres),
+            "m" | "meters" | "metres" => Some(Self::Metres),
+            "in" | "inch" | "inches" => Some(Self::Inches),
+            _ => None,
+        }
+    }
+
+    /// Converts a distance between cells from this unit to mm, rounded to a picometre. None if no sensor can have
+    /// such a pitch, or if nothing is left after rounding.
+    pub(in crate::formats::recording) fn pitch_in_mm(self, length: f64) -> Option<f64> {
+        let mm = match self {
+            Self::Micrometres => length / 1000.0,
+            Self::Millimetres => length,
+            Self::Centimetres => length * 10.0,
+            Self::Metres => length * 1000.0,
+            Self::Inches => length * 25.4,
+        };
+        let rounded = to_decimals(mm, DECIMALS);
+        Sensor::LARGEST.check(Parameter::Pitch, rounded).ok()
+    }
+}
+
+/// Returns the distances along x and along y, each rounded and checked; None if one of them is unknown or cannot be a
+/// pitch.
+pub(in crate::formats::recording) fn pitches_in_mm(
+    distances: [Option<f64>; 2],
+    unit: LengthUnit,
+) -> Option<[f64; 2]> {
+    let [x, y] = distances.map(|distance| unit.pitch_in_mm(distance?));
+    Some([x?, y?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_side_is_1_to_512() {
+        assert_eq!([0, 1, 512, 513].map(side), [None, Some(1), Some(512), None]);
+        assert_eq!(side(-1), None);
+        assert_eq!(frame_size(2, 513), None);
+        let error = stated("ROWS", ' ', "0", 3).expect_err("no row");
+        assert_eq!(error.to_string(), "line 3: ROWS 0: expected 1 to 512");
+    }
+
+    #[test]
+    fn a_given_size_that_fits_takes_precedence_over_the_stated_one() {
+        let (row, square) = (
+            FrameSize::new(4, 1).expect("an allowed size"),
+            FrameSize::new(2, 2).expect("an allowed size"),
+        );
+        assert_eq!(arranged(4, Some(row), Some(square)), Some(square));
+        assert_eq!(
+            arranged(
+                4,
+                Some(row),
+                Some(FrameSize::new(3, 2).expect("an allowed size"))
+            ),
+            Some(row)
+        );
+        assert_eq!(
+            changed(row, square),
+            "found 1 row of 4, expected 2 of 2 as before"
+        );
+    }
+
+    #[test]
+    fn a_pitch_is_rounded_before_it_is_checked() {
+        for (length, unit, expected) in [
+            (0.57, LengthUnit::Centimetres, Some(5.7)),
+            (0.05, LengthUnit::Inches, Some(1.27)),
+            (1270.0, LengthUnit::Micrometres, Some(1.27)),
+            (1.27e-3, LengthUnit::Metres, Some(1.27)),
+            (1.0, LengthUnit::Metres, Some(1000.0)),
+            (1e-9, LengthUnit::Millimetres, Some(1e-9)),
+            (1e-13, LengthUnit::Metres, None),
+            (1e308, LengthUnit::Inches, None),
+            (1001.0, LengthUnit::Millimetres, None),
+            (0.0, LengthUnit::Centimetres, None),
+            (-1.0, LengthUnit::Millimetres, None),
+            (f64::NAN, LengthUnit::Millimetres, None),
+        ] {
+            assert_eq!(unit.pitch_in_mm(length), expected, "{length} {unit:?}");
+        }
+    }
+}

@@ -1,0 +1,595 @@
+//! Reads text: its lines, the fields of a line, and the numbers in them.
+//!
+//! Lines end in LF or CR LF. A byte order mark at the beginning of the text is not part of a line, nor are zero bytes
+//! there: a file begins with them if it was truncated while a program kept its place in it.
+//! ```text
+//! 0;1,5;;3      semicolons: a comma is the decimal sign, and an empty field is no cell
+//! 0,1.5,,3      commas, or tabs
+//! 0 1.5 nan 3   any number of blanks
+//! ```
+//! Numbers are read fast, since most are whole and short; the results are bit for bit those of the standard library.
+
+use std::io::{self, BufRead};
+
+use crate::formats::file::BYTE_ORDER_MARK;
+use crate::formats::job::too_large;
+use crate::formats::recording::error::RecordingError;
+use crate::formats::table::named_separator;
+use crate::frame::LARGEST_VALUE;
+use crate::parameter::number::counted;
+use crate::quote::shortened;
+
+/// Powers of ten that are exact in f64.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+
+/// The most decimal digits of which every number fits into the 53 bits of a float.
+const EXACT_DIGITS: usize = 15;
+
+/// Reads a finite decimal without blanks around it, such as `12`, `-0.5` or `+1e-3`; None for anything else.
+///
+/// A number of at most 15 digits is the quotient of two exact floats, and thus rounded correctly; other numbers are
+/// left to the standard library.
+pub(in crate::formats::recording) fn read_number(text: &[u8]) -> Option<f64> {
+    let (negative, digits) = match text {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        _ => (false, text),
+    };
+    if digits.len() > EXACT_DIGITS + 1 {
+        return slow(text);
+    }
+    let (mut whole, mut count, mut decimals, mut point) = (0_u64, 0_usize, 0_usize, false);
+    for &byte in digits {
+        match byte {
+            b'0'..=b'9' => {
+                whole = whole * 10 + u64::from(byte - b'0');
+                count += 1;
+                decimals += usize::from(point);
+            }
+            b'.' if !point => point = true,
+            _ => return slow(text),
+        }
+    }
+    if count == 0 || count > EXACT_DIGITS {
+        return slow(text);
+    }
+    #[expect(clippy::cast_precision_loss, reason = "15 digits are exact")]
+    let value = whole as f64 / POWERS[decimals];
+    Some(if negative { -value } else { value })
+}
+
+fn slow(text: &[u8]) -> Option<f64> {
+    // The standard library also accepts words: inf, nan, infinity.
+    let is_number = text
+        .iter()
+        .all(|byte| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));
+    let value: f64 = str::from_utf8(text)
+        .ok()
+        .filter(|_| is_number)?
+        .parse()
+        .ok()?;
+    value.is_finite().then_some(value)
+}
+
+/// Converts a number without a fraction, as labels are; None for any other, and beyond the whole numbers that a float
+/// holds exactly.
+#[expect(clippy::cast_possible_truncation, reason = "checked")]
+pub(in crate::formats::recording) fn whole(value: f64) -> Option<i64> {
+    (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
+}
+
+/// The size limit of a line in bytes, more than a frame of 512 × 512 values takes; thus one line cannot fill all
+/// memory.
+pub(in crate::formats) const LONGEST_LINE: usize = 8 << 20;
+
+/// The lines of a text, counted from 1, without their ends and without a byte order mark.
+#[derive(Debug)]
+pub(in crate::formats::recording) struct TextLines<R> {
+    /// The source of the bytes.
+    input: R,
+    line: Vec<u8>,
+    /// The number of that line; 0 before the first.
+    number: u64,
+}
+
+impl<R: BufRead> TextLines<R> {
+    /// Starts before the first line.
+    pub(in crate::formats::recording) fn new(input: R) -> Self {
+        Self {
+            input,
+            line: Vec::new(),
+            number: 0,
+        }
+    }
+
+    pub(in crate::formats::recording) fn number(&self) -> u64 {
+        self.number
+    }
+
+    pub(in crate::formats::recording) fn line(&self) -> &[u8] {
+        &self.line
+    }
+
+    /// Reads the next line; returns false at the end.
+    pub(in crate::formats::recording) fn advance(&mut self) -> Result<bool, RecordingError> {
+        self.line.clear();
+        loop {
+            let bytes = match self.input.fill_buf() {
+                Ok(bytes) => bytes,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error.into()),
+            };
+            if bytes.is_empty() {
+                if self.line.is_empty() {
+                    return Ok(false);
+                }
+                break;
+            }
+            if self.number == 0 && self.line.is_empty() && bytes[0] == 0 {
+                let zeros = bytes.iter().take_while(|&&byte| byte == 0).count();
+                self.input.consume(zeros);
+                continue;
+            }
+            let end = bytes.iter().position(|&byte| byte == b'\n');
+            let part = &bytes[..end.unwrap_or(bytes.len())];
+            if part.len() > LONGEST_LINE - self.line.len() {
+                let message = "longer than 8 MiB, the limit for a line of a recording";
+                return Err(RecordingError::in_line(self.number + 1, message));
+            }
+            self.line.extend_from_slice(part);
+            let used = end.map_or(bytes.len(), |end| end + 1);
+            self.input.consume(used);
+            if end.is_some() {
+                break;
+            }
+        }
+        self.number += 1;
+        if self.line.last() == Some(&b'\r') {
+            self.line.pop();
+        }
+        if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
+            self.line.drain(..BYTE_ORDER_MARK.len());
+        }
+        Ok(true)
+    }
+
+    /// Reads the next line that is not blank; returns false at the end. A line of commas is blank.
+    pub(in crate::formats::recording) fn advance_to_content(
+        &mut self,
+    ) -> Result<bool, RecordingError> {
+        while self.advance()? {
+            if !is_blank(&self.line) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
+
+pub(in crate::formats::recording) fn is_blank(line: &[u8]) -> bool {
+    line.iter()
+        .all(|byte| byte.is_ascii_whitespace() || *byte == b',')
+}
+
+pub(in crate::formats::recording) fn unpadded(line: &[u8]) -> &[u8] {
+    let is_padding = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
+    let end = line.iter().rposition(|byte| !is_padding(byte));
+    &line[..end.map_or(0, |end| end + 1)]
+}
+
+/// Decodes a name or a unit: as UTF-8, or as Latin-1 if it is not UTF-8.
+pub(in crate::formats::recording) fn text(bytes: &[u8]) -> String {
+    match str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
+    }
+}
+
+pub(in crate::formats) enum Field {
+    Value(f64),
+    /// No value: the cell does not exist.
+    NoCell,
+    Wrong,
+}
+
+impl Field {
+    /// Returns the value of a cell, NaN if there is none; None if the field is anything else.
+    pub(in crate::formats) fn cell(self) -> Option<f64> {
+        match self {
+            Self::Value(read_value) => Some(read_value),
+            Self::NoCell => Some(f64::NAN),
+            Self::Wrong => None,
+        }
+    }
+}
+
+pub(in crate::formats::recording) fn read_value(field: &[u8]) -> Field {
+    match read_number(field) {
+        Some(read_value) if read_value.abs() <= LARGEST_VALUE => Field::Value(read_value),
+        _ => Field::Wrong,
+    }
+}
+
+/// Fills a row of values from the fields of a line. Fields beyond the values must be empty.
+pub(in crate::formats::recording) fn fill_row<'a>(
+    values: &mut [f64],
+    fields: impl Iterator<Item = &'a [u8]>,
+    number: u64,
+    read: impl Fn(&[u8]) -> Field,
+) -> Result<(), RecordingError> {
+    let expected = values.len();
+    let mut fields = fields.zip(1..);
+    for (slot, found) in values.iter_mut().zip(0..) {
+        let field = fields.next().map(|(field, _)| field);
+        let Some(field) = field.filter(|field| !field.is_empty()) else {
+            return Err(wrong_count(number, found, expected));
+        };
+        *slot = read(field)
+            .cell()
+            .ok_or_else(|| wrong_field(number, found + 1, field))?;
+    }
+    match fields.filter(|(field, _)| !field.is_empty()).last() {
+        Some((_, found)) => Err(wrong_count(number, found, expected)),
+        None => Ok(()),
+    }
+}
+
+pub(in crate::formats::recording) fn wrong_count(
+    line: u64,
+    found: usize,
+    expected: usize,
+) -> RecordingError {
+    let found = counted(found as u64, "value");
+    RecordingError::in_line(line, format!("found {found}, expected {expected}"))
+}
+
+/// Returns the error for a field that is not a value.
+pub(in crate::formats::recording) fn wrong_field(
+    line: u64,
+    column: usize,
+    field: &[u8],
+) -> RecordingError {
+    if let Some(read_value) =
+        read_number(field).filter(|read_value| read_value.abs() > LARGEST_VALUE)
+    {
+        return RecordingError::in_field(line, column, too_large(read_value));
+    }
+    let found = shortened(&text(field));
+    RecordingError::in_field(line, column, format!("found {found:?}, expected a number"))
+}
+
+/// Returns true if the lines of a text end in CR alone, as on the first Macintosh computers.
+pub(in crate::formats) fn is_parted_by_cr(text: &[u8]) -> bool {
+    let ends_before = text.iter().rev().skip(1).any(|&byte| byte == b'\r');
+    ends_before && !text.contains(&b'\n') && !text.contains(&0)
+}
+
+/// The words for a cell without a value: those of C, Python, R and databases, of spreadsheets and of pandas.
+const NONE: [&[u8]; 8] = [
+    b"nan", b"-nan", b"null", b"none", b"na", b"n/a", b"#n/a", b"<na>",
+];
+
+/// Returns true if a field says that there is no value. A dash does not: lines of lists begin with one.
+pub(in crate::formats::recording) fn is_none(field: &[u8]) -> bool {
+    match field.first() {
+        None => true,
+        // Most fields are numbers.
+        Some(first) if first.is_ascii_digit() => false,
+        Some(_) => NONE.iter().any(|none| field.eq_ignore_ascii_case(none)),
+    }
+}
+
+/// Returns true if a line is skipped wherever it is: a comment, or the line in which spreadsheet programs name the
+/// separator, `sep=;`. A comment begins with `#`, with `//`, or with `%` before a blank or another `%`. Otherwise a `%`
+/// may belong to a name, as in `%time` of ROS; and `#N/A` is a cell.
+pub(in crate::formats) fn is_comment(line: &[u8]) -> bool {
+    let line = line.trim_ascii();
+    let begins = |word: &[u8]| {
+        let start = line.get(..word.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+    };
+    match line {
+        [b'#', ..] => !begins(b"#n/a"),
+        [b'/', b'/', ..] | [b'%'] => true,
+        [b'%', next, ..] => next.is_ascii_whitespace() || *next == b'%',
+        [b's' | b'S' | b'"', ..] => named_separator(line).is_some(),
+        _ => false,
+    }
+}
+
+pub(in crate::formats) fn unquoted(field: &[u8]) -> &[u8] {
+    let field = field.trim_ascii();
+    let inner = field
+        .strip_prefix(b"\"")
+        .and_then(|field| field.strip_suffix(b"\""));
+    inner.map_or(field, <[u8]>::trim_ascii)
+}
+
+/// The bytes that separate fields, the first one that a line has before the others; without any of them, blanks do.
+///
+/// Recordings and streams are read line by line, and docs/sensors.md promises this order. The table of an imprint is
+/// short and read as a whole, so it is separated by what its last line has, where names cannot mislead: see
+/// [`table`](crate::formats::table).
+pub(in crate::formats) const SEPARATORS: [u8; 3] = *b";,\t";
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::formats) enum Separator {
+    /// A byte; two in succession have an empty field between them.
+    Byte(u8),
+    /// Any number of blanks; there are no empty fields.
+    Spaces,
+}
+
+impl Separator {
+    /// Returns the separator of a line: the first of [`SEPARATORS`] that occurs outside quotes, otherwise blanks.
+    pub(in crate::formats::recording) fn of(line: &[u8]) -> Self {
+        let found = SEPARATORS
+            .into_iter()
+            .find(|&mark| Self::Byte(mark).split(line).nth(1).is_some());
+        found.map_or(Self::Spaces, Self::Byte)
+    }
+
+    /// Splits a line at its separators, and removes blanks and quotes around each part. A separator in quotes is part
+    /// of its field; if a quote is not closed, quotes are characters like any other, as in `width in "`.
+    pub(in crate::formats::recording) fn split(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
+        let quotes: usize = line.iter().map(|byte| usize::from(*byte == b'"')).sum();
+        let (has_quotes, mut is_quoted) = (quotes > 0 && quotes.is_multiple_of(2), false);
+        let is_end = move |byte: &u8| {
+            is_quoted ^= has_quotes && *byte == b'"';
+            let is_mark = match self {
+                Self::Byte(mark) => *byte == mark,
+                Self::Spaces => byte.is_ascii_whitespace(),
+            };
+            is_mark && !is_quoted
+        };
+        line.split(is_end).map(unquoted)
+    }
+
+    /// Returns the fields of a line like [`Self::fields`]. If the line has the `expected` number of fields only when
+    /// the empty ones at its ends count, they count.
+    pub(in crate::formats::recording) fn fields_of(
+        self,
+        line: &[u8],
+        expected: usize,
+    ) -> impl Iterator<Item = &[u8]> {
+        let (whole, ended) = (self.without_blanks(line), self.without_ends(line));
+        let is_whole = whole.len() > ended.len() && self.split(whole).count() == expected;
+        self.split_into_fields(if is_whole { whole } else { ended })
+    }
+
+    /// Returns the fields of a line, without blanks and quotes around them; an empty field at the end is left out, as
+    /// are those between tabs at both ends.
+    pub(in crate::formats) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
+        self.split_into_fields(self.without_ends(line))
+    }
+
+    fn split_into_fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
+        let fields = self.split(line);
+        fields.filter(move |field| self != Self::Spaces || !field.is_empty())
+    }
+
+    /// Removes the blanks at both ends of a line that are not separators.
+    fn without_blanks(self, line: &[u8]) -> &[u8] {
+        let is_end = |byte: &u8| !byte.is_ascii_whitespace() || self == Self::Byte(*byte);
+        let start = line.iter().position(is_end).unwrap_or(line.len());
+        let end = line.iter().rposition(is_end).map_or(start, |end| end + 1);
+        &line[start..end]
+    }
+
+    fn without_ends(self, line: &[u8]) -> &[u8] {
+        let line = line.trim_ascii();
+        match self {
+            Self::Byte(mark) => line.strip_suffix(&[mark]).unwrap_or(line),
+            Self::Spaces => line,
+        }
+    }
+
+    /// Reads the content of a field. With semicolons as separators, a comma is the decimal sign.
+    pub(in crate::formats) fn value(self, field: &[u8]) -> Field {
+        if is_none(field) {
+            return Field::NoCell;
+        }
+        match self {
+            Self::Byte(b';') => decimal(field),
+            _ => read_value(field),
+        }
+    }
+
+    /// Returns true if a field can be that of a cell: a number, or a word for a missing value.
+    pub(in crate::formats::recording) fn is_numeric(self, field: &[u8]) -> bool {
+        !matches!(self.value(field), Field::Wrong)
+    }
+
+    /// Returns the number in a field; NaN if there is none.
+    pub(in crate::formats::recording) fn number(self, field: &[u8]) -> f64 {
+        self.value(field).cell().unwrap_or(f64::NAN)
+    }
+}
+
+/// Reads a number whose decimal sign may be a comma; with a comma, it has at most 32 characters.
+pub(in crate::formats::recording) fn decimal(field: &[u8]) -> Field {
+    if !field.contains(&b',') {
+        return read_value(field);
+    }
+    let mut pointed = [0; 32];
+    let Some(pointed) = pointed.get_mut(..field.len()) else {
+        return Field::Wrong;
+    };
+    for (slot, &byte) in pointed.iter_mut().zip(field) {
+        *slot = if byte == b',' { b'.' } else { byte };
+    }
+    read_value(pointed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_as_the_standard_library_reads_them() {
+        for text in [
+            "0",
+            "-0",
+            "7",
+            "+7",
+            "007",
+            "1.5",
+            "-1.50",
+            ".5",
+            "5.",
+            "1e3",
+            "-2.5E-7",
+            "123456789012345",
+            "1234567890123456",
+            "0.1",
+            "2674.44",
+            "9007199254740993",
+            "0.30000000000000004",
+            "1e300",
+            "179769313486231570000000000000000000000",
+        ] {
+            let expected: f64 = text.parse().expect("a number");
+            let found = read_number(text.as_bytes()).expect(text);
+            assert_eq!(found.to_bits(), expected.to_bits(), "{text}");
+        }
+        for text in [
+            "", "-", ".", "+.", "e", "1e", "1e999", "inf", "nan", "NaN", "1,5", "1 2", "0x10",
+            "--1", "1.2.3", "infinity",
+        ] {
+            assert_eq!(read_number(text.as_bytes()), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn lines_have_no_ends_and_no_byte_order_mark() {
+        let text = &b"\xef\xbb\xbfone\r\n\n\xef\xbb\xbf\n two\r"[..];
+        let mut lines = TextLines::new(text);
+        let mut found = Vec::new();
+        while lines.advance().expect("short lines") {
+            found.push((lines.number(), lines.line().to_owned()));
+        }
+        let expected = [&b"one"[..], b"", b"\xef\xbb\xbf", b" two"];
+        let expected: Vec<_> = (1..).zip(expected.map(<[u8]>::to_vec)).collect();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn a_line_may_have_8_mib() {
+        let mut text = vec![b'1'; LONGEST_LINE];
+        assert!(TextLines::new(&text[..]).advance().expect("8 MiB"));
+        text.push(b'1');
+        let error = TextLines::new(&text[..]).advance().expect_err("too long");
+        let expected = "line 1: longer than 8 MiB, the limit for a line of a recording";
+        assert_eq!(error.to_string(), expected);
+    }
+
+    #[test]
+    fn padding_is_not_content() {
+        let mut lines = TextLines::new(&b" ,,\n\t\nROWS 2,,\n,"[..]);
+        assert!(lines.advance_to_content().expect("short lines"));
+        assert_eq!(
+            (lines.number(), unpadded(lines.line())),
+            (3, &b"ROWS 2"[..])
+        );
+        assert!(!lines.advance_to_content().expect("short lines"));
+    }
+
+    #[test]
+    fn names_may_be_latin_1() {
+        assert_eq!([text(b"\xc2\xb5m"), text(b"\xb5m")], ["µm", "µm"]);
+    }
+
+    fn values(line: &str, count: usize) -> Result<Vec<f64>, String> {
+        let mut values = vec![0.0; count];
+        let read = |field: &[u8]| match field {
+            b"-" => Field::NoCell,
+            _ => read_value(field),
+        };
+        let fields = line.split(',').map(str::as_bytes);
+        let filled = fill_row(&mut values, fields, 7, read);
+        filled.map(|()| values).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn fields_beyond_the_values_are_empty() {
+        assert_eq!(values("1,2.5,,", 2), Ok(vec![1.0, 2.5]));
+        assert!(values("-,1", 2).expect("values")[0].is_nan());
+        for (line, expected) in [
+            ("1,,3", "line 7: found 1 value, expected 3"),
+            ("1,2,3,,5", "line 7: found 5 values, expected 3"),
+            ("1,x,3", "line 7, column 2: found \"x\", expected a number"),
+        ] {
+            assert_eq!(values(line, 3), Err(expected.to_owned()));
+        }
+        let error = values("1,1e301,3", 3).expect_err("too large");
+        assert!(error.starts_with("line 7, column 2: "), "{error}");
+        assert!(!error.contains("expected a number"), "{error}");
+    }
+
+    #[test]
+    fn cr_alone_may_end_lines() {
+        assert!(is_parted_by_cr(b"1\r2"));
+        // The file may go on with LF.
+        assert!(!is_parted_by_cr(b"1 2\r"));
+        assert!(!is_parted_by_cr(b"1\r2\n"));
+    }
+
+    fn fields(line: &str) -> (Separator, Vec<&str>) {
+        let separator = Separator::of(line.as_bytes());
+        let fields = separator.fields(line.as_bytes());
+        let fields = fields.map(|field| str::from_utf8(field).expect("UTF-8"));
+        (separator, fields.collect())
+    }
+
+    #[test]
+    fn the_first_mark_outside_quotes_separates() {
+        for (line, mark, expected) in [
+            ("1,5;2,5", b';', &["1,5", "2,5"][..]),
+            ("\"a;b\",2, 3 ", b',', &["a;b", "2", "3"]),
+            ("1\t\t3\t", b'\t', &["1", "", "3"]),
+            ("width in \",2", b',', &["width in \"", "2"]),
+        ] {
+            let expected = (Separator::Byte(mark), expected.to_vec());
+            assert_eq!(fields(line), expected, "{line}");
+        }
+        assert_eq!(fields(" 1  2 "), (Separator::Spaces, vec!["1", "2"]));
+    }
+
+    #[test]
+    fn an_empty_field_at_the_end_counts_if_it_is_expected() {
+        let count = |expected| Separator::Byte(b',').fields_of(b"1,2,", expected).count();
+        assert_eq!([2, 3, 4].map(count), [2, 3, 2]);
+        let count = |expected| {
+            let fields = Separator::Byte(b'\t').fields_of(b" \t1\t\r", expected);
+            fields.count()
+        };
+        assert_eq!([1, 2, 3, 4].map(count), [1, 1, 3, 1]);
+    }
+
+    #[test]
+    fn a_comma_is_the_decimal_sign_between_semicolons() {
+        let number = |mark, field: &str| match Separator::Byte(mark).value(field.as_bytes()) {
+            Field::Value(value) => Some(value),
+            Field::NoCell | Field::Wrong => None,
+        };
+        assert_eq!(number(b';', "1,5"), Some(1.5));
+        assert_eq!(number(b'\t', "1,5"), None);
+        for none in ["", "NaN", "#N/A", "<NA>"] {
+            assert!(is_none(none.as_bytes()), "{none}");
+        }
+        assert!(!is_none(b"-"));
+    }
+
+    #[test]
+    fn comments_and_separator_lines_are_skipped() {
+        for line in ["# a", "// a", "%", "%% a", "% a", "sep=;", "\"sep=,\""] {
+            assert!(is_comment(line.as_bytes()), "{line}");
+        }
+        for line in ["#N/A,1", "%time,1", "/ 1", "seconds"] {
+            assert!(!is_comment(line.as_bytes()), "{line}");
+        }
+    }
+}
