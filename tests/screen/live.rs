@@ -330,18 +330,6 @@ fn a_silent_source_has_no_rate() {
     shows(&page, &["frame 3", "rate       10/s"]);
 }
 
-#[test]
-fn the_question_before_quitting_mentions_the_recording() {
-    let mut page = watched(6, "+");
-    let event = LiveEvent::Recording("touch-1.npy".to_owned());
-    page.send(Message::Worker(WorkerEvent::Live(1, event)));
-    then(
-        &mut page,
-        "<Enter>q",
-        &["The imprint is not saved; the recording in touch-1.npy ends. Quit anyway?"],
-    );
-}
-
 /// Returns a matrix with the same gain for every cell.
 fn gain_of(columns: u8, rows: u8, gain: f64) -> Matrix<f64> {
     Matrix::filled(MatrixSize::new(columns, rows).expect("1 to 64"), gain)
@@ -587,36 +575,6 @@ fn the_marks_of_a_recording_are_shown_when_it_is_played() {
     shows(&page, &["frame 2 (label 4)", "  marked\n"]);
 }
 
-/// The page is not visible then.
-#[test]
-fn the_matrix_says_that_frames_are_recorded() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut page = recording_in(folder.path());
-    then(&mut page, "+<Enter>", &["threshold 0.50 · recording\n"]);
-    then(&mut page, "wr<Enter>", &["threshold 0.50\n"]);
-}
-
-/// A recording that is begun after the end would remain empty; one that is running can still be ended.
-#[test]
-fn a_source_that_has_ended_cannot_be_recorded() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let world = world().confined_to(folder.path().to_owned());
-    let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>");
-    shows(&page, &["r record"]);
-    page.frames(20);
-    then(
-        &mut page,
-        "r",
-        &[
-            "ended",
-            "! the source has ended, so there is nothing to record; w, then r, records it",
-        ],
-    );
-    hides(&page, &["r record"]);
-    let mut files = std::fs::read_dir(folder.path()).expect("a folder");
-    assert!(files.next().is_none());
-}
-
 #[test]
 fn a_recording_stores_the_threshold_and_tare_at_its_end() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -637,33 +595,6 @@ fn a_recording_stores_the_threshold_and_tare_at_its_end() {
     );
     then(&mut page, "Tr", &["touch-1.npy: 3 frames recorded"]);
     assert!(beside().1.is_null());
-}
-
-#[test]
-fn a_key_selects_the_next_model_that_names_shapes() {
-    let mut page = watched(6, "nnn");
-    shows(&page, &["shapes are named by model shapes"]);
-    then(&mut page, "n", &["shapes are not named"]);
-    hides(&page, &["nearest"]);
-    then(
-        &mut page,
-        "n",
-        &["shapes are named by model figures", "shape      –"],
-    );
-    // The ring of the recording is none of the figures: only the nearest of their imprints can be named.
-    then(
-        &mut page,
-        "+++++++",
-        &[
-            "shape      unknown",
-            "nearest    ",
-            " taxels differ",
-            "model      figures",
-        ],
-    );
-    page.frames(2);
-    shows(&page, &["frame 7", "nearest    "]);
-    hides(&page, &["…", "training or"]);
 }
 
 /// The error of a source names flags that can be appended to the command.
@@ -691,19 +622,6 @@ fn watch_accepts_the_flags_of_the_command_line() {
             "threshold  4",
             "max        7 at 2, 1",
         ],
-    );
-}
-
-/// No frame comes after the end, so only the key can start the search.
-#[test]
-fn the_last_imprint_of_a_source_that_has_ended_is_named() {
-    let mut page = watched(6, "+++++++");
-    page.frames(60);
-    shows(&page, &["ended"]);
-    then(
-        &mut page,
-        "n",
-        &["shape      unknown", "model      figures"],
     );
 }
 
@@ -749,30 +667,6 @@ fn marks_and_the_age_of_the_tare_end_with_their_source() {
     page.frames(6);
     shows(&page, &["frame 5", "tare       3 frames"]);
     hides(&page, &["marked", "ago"]);
-}
-
-#[test]
-fn frames_of_an_earlier_watch_do_not_have_the_present_marks() {
-    let mut page = watched(2, "<Esc>w");
-    page.frames(1);
-    then(&mut page, "m", &["frame 0: marked", "marked     frame 0"]);
-    // The earlier frame 0, behind the earlier frame 1.
-    then(&mut page, "<Left><Left>", &["frame 0", "2 frames behind"]);
-    hides(&page, &["behind  marked", "marked  frozen"]);
-    let refused = "! frame 0 came before the source was watched again";
-    then(&mut page, "m", &[refused, "marked     frame 0"]);
-    then(&mut page, "<End>", &["frame 0", "marked     frame 0"]);
-    then(&mut page, "m", &["frame 0: mark removed"]);
-}
-
-#[test]
-fn a_tare_set_by_the_user_stays_when_the_page_is_reopened() {
-    let mut page = watched(6, "tp");
-    shows(&page, &["tare       6 frames", "max held"]);
-    then(&mut page, "<Esc>w", &[]);
-    page.frames(1);
-    shows(&page, &["tare       6 frames", "frame 0"]);
-    hides(&page, &["max held"]);
 }
 
 #[test]

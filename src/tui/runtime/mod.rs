@@ -1,7 +1,6 @@
 //! The runtime: performs the effects that `update` returns, and feeds the answers back as messages.
 //!
-//! Apart from the terminal, only this module touches files and threads. The file is long because each effect has an
-//! arm here, and the end of the program waits for all of them.
+//! Apart from the terminal, only this module touches files and threads.
 //! ```text
 //! effect      what update may ask for: the library, a worker, the terminal
 //! disk        reads and writes, in order, on a disk that may answer late

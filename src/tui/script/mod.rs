@@ -3,8 +3,7 @@
 //!
 //! ```text
 //! command   the lines of a script              runner    carries them out
-//! session   the program on a screen in memory  drawing   that screen as SVG
-//! record    writes a script while a user works
+//! session   the program on a screen in memory  record    writes a script while a user works
 //! ```
 
 pub mod session;
