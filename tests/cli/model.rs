@@ -483,9 +483,6 @@ fn meaningless_sets_are_refused_in_one_sentence() {
          or allow it with --allow-cut",
     );
     place.done(&format!("{cut} --allow-cut"));
-    let named = cut.replace("--out cut.npz", "--name cut");
-    assert_eq!(place.run(&named, "").status, Some(1));
-    assert!(!place.0.path().join("models").exists(), "it would be empty");
     refused(
         &train(
             "-",

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use super::model::{COARSE, Place, keys};
-use super::{Run, finish, misused, program, refused, sh};
+use super::{Run, finish, misused, program, refused};
 
 /// A square of 4 × 4, which only one of the four rectangles leaves.
 const SQUARE: &str = "......\n.####.\n.####.\n.####.\n.####.\n......\n";
@@ -494,23 +494,6 @@ fn mistyped_names_are_refused_before_training() {
         let is_trained = fs::exists(place.path("cache")).expect("it can be looked at");
         assert!(!is_trained, "{line}");
     }
-}
-
-/// One thread only: every further thread has a stack, which is counted, too.
-#[cfg(target_os = "linux")]
-#[test]
-fn the_training_of_a_built_in_set_respects_the_memory_limit() {
-    let place = place();
-    let mut command = sh("ulimit -d 12000; exec \"$0\" recognise square.txt");
-    command
-        .current_dir(place.0.path())
-        .env("XDG_CACHE_HOME", place.path("cache"))
-        .env("RAYON_NUM_THREADS", "1");
-    let run = command.output().expect("it starts");
-    let said = String::from_utf8_lossy(&run.stderr);
-    assert_eq!(run.status.code(), Some(1), "{said}");
-    assert!(said.contains("more memory than the 11.7M"), "{said}");
-    assert!(said.contains("taxel model train"), "{said}");
 }
 
 /// One of these frames has a square. The frames are named with `--model`, and through a pipe.

@@ -67,12 +67,12 @@ fn messages_name_the_script_and_the_line() {
 /// The screens before a failed expectation are printed.
 #[test]
 fn screens_are_printed_before_the_message() {
-    let Run { stdout, .. } = taxel("script -", "Size 20x6\nScreen one\nKeys q\nScreen two\n");
+    let Run { stdout, .. } = taxel("script -", "Size 60x20\nScreen one\nKeys q\nScreen two\n");
     assert!(
-        stdout.starts_with("--- screen one 20x6 cursor "),
+        stdout.starts_with("--- screen one 60x20 cursor "),
         "{stdout}"
     );
-    assert_eq!(stdout.lines().count(), 7, "{stdout}");
+    assert_eq!(stdout.lines().count(), 21, "{stdout}");
 }
 
 /// A record of many shapes is longer than any single shape.

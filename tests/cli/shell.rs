@@ -215,47 +215,6 @@ fn shells_accept_the_completions() {
     misused("completions csh", "invalid value 'csh'");
 }
 
-/// The words that bash offers after a line.
-#[test]
-fn bash_completes_commands_kinds_and_flags() {
-    if !has("bash") {
-        return;
-    }
-    let offered = |line: &str| {
-        let words: Vec<&str> = line.split(' ').collect();
-        let script = format!(
-            "source /dev/stdin; COMP_WORDS=({line}\"\"); COMP_CWORD={}; \
-             _taxel taxel \"${{COMP_WORDS[-1]}}\" \"${{COMP_WORDS[-2]}}\"; echo \"${{COMPREPLY[@]}}\"",
-            words.len() - 1
-        );
-        let mut bash = program(&["completions", "bash"], "C.UTF-8");
-        let completions = bash.output().expect("it runs").stdout;
-        let mut bash = Command::new("bash");
-        bash.args(["--norc", "-c", &script]);
-        let pipe = std::process::Stdio::piped;
-        let child = bash.stdin(pipe()).stdout(pipe()).stderr(pipe()).spawn();
-        super::finish(child.expect("it starts"), &completions).stdout
-    };
-    for (line, words) in [
-        ("taxel ", &["figure", "sweep", "man", "--theme"][..]),
-        ("taxel fig", &["figure"]),
-        ("taxel figure hex", &["hexagon"]),
-        ("taxel figure --radius-", &["--radius-x", "--radius-y"]),
-        ("taxel library re", &["restore"]),
-        ("taxel recognise --mod", &["--model"]),
-        ("taxel --theme ", &["dark", "light", "mono"]),
-    ] {
-        let found = offered(line);
-        for word in words {
-            assert!(
-                found.split_whitespace().any(|found| found == *word),
-                "{line}: no {word} in {found}"
-            );
-        }
-    }
-    assert_eq!(offered("taxel figure hex").trim(), "hexagon");
-}
-
 #[test]
 fn every_command_has_a_man_page() {
     let folder = tempfile::tempdir().expect("a folder");

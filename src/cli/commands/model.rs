@@ -51,19 +51,14 @@ pub(crate) fn train(
     let training = Training::new(shapes, sensor, anchor, ranges)?
         .with_shard(asked.shard)
         .allow_cut(asked.allow_cut);
-    let make_folder = || match &asked.to {
-        ModelTarget::Named(_) => Ok(Some(folder(shelf)?.make()?)),
-        ModelTarget::File(_) => Ok::<_, CliError>(None),
-    };
-    let _folder = make_folder()?;
+    if let ModelTarget::Named(_) = &asked.to {
+        folder(shelf)?.make()?;
+    }
     check_writable(&path, asked.existing)?;
     if !asked.quiet {
         note(&grid_text(&sensor, anchor, &ranges), charset);
     }
     let model = run(training, asked, grid.remedy, &signals, charset)?;
-    // Another training that was stopped may have removed the folder, which was empty. If it cannot be made again,
-    // `save_model` says so.
-    let _again = make_folder();
     let saved = save_model(&model, &path, asked.existing, stopped);
     let written = unless_stopped(saved.map_err(|error| match error {
         error if error.exists() => error.into(),

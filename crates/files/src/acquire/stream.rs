@@ -634,7 +634,10 @@ mod tests {
 
     #[test]
     fn a_sample_is_a_stream_or_refused_however_it_is_cut() {
-        let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/files/frames/samples");
+        let samples = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../tests/files/frames/samples"
+        );
         let (mut refused, mut names) = (0, 0);
         for sample in fs::read_dir(samples).expect("the samples") {
             let path = sample.expect("a sample").path();
