@@ -108,7 +108,7 @@ fn bad_lines_are_answered_in_their_places() {
         error("12: column 33: imprint: given twice"),
         error("13: side: 1e300 is above 16 (allowed: above 0, up to 16)"),
         error(
-            "14: column 25: least: invalid value: integer `-1`, expected a whole number from 1 to 4096",
+            "14: column 25: least: invalid type: integer `-1`, expected a whole number from 1 to 4096",
         ),
         error(
             "15: column 19: imprint: invalid type: string \\\"washer\\\", expected rows of '#' and '.'",

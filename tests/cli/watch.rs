@@ -333,7 +333,7 @@ fn a_file_of_another_kind_is_refused() {
     for command in [format!("frames {line}"), format!("watch {line}")] {
         let run = taxel(&command, "");
         assert_eq!(run.status, Some(1), "{command}");
-        let told = "a.csv: text in UTF-16 (save it as UTF-8), expected Tekscan ASCII";
+        let told = "a.csv: not a recording of a known format: expected Tekscan ASCII";
         assert!(run.stderr.contains(told), "{command}: {}", run.stderr);
     }
 }

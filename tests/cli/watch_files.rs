@@ -25,7 +25,7 @@ fn failure(line: &str, input: impl AsRef<[u8]>) -> String {
 fn a_source_is_never_its_own_target() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    let (own, other, json) = (path("s.npy"), path("other.npy"), path("p.asf"));
+    let (own, other, json) = (path("s.npy"), path("other.npy"), path("p.json"));
     fs::copy(sample("records.npy"), &own).expect("copied");
     fs::hard_link(&own, &other).expect("linked");
     fs::copy(sample("tekscan.asf"), &json).expect("copied");
