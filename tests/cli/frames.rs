@@ -214,17 +214,6 @@ fn the_rule_comes_from_flags_or_from_the_recording() {
     );
 }
 
-/// The number of values is known, so the message does not ask for what was given.
-#[test]
-fn rows_and_columns_that_do_not_fit_a_frame_are_named() {
-    let arguments = "--all --channel /state#tip --at-least 1 --rows 7 --columns 11";
-    unanswered(
-        "topics.mcap",
-        arguments,
-        "found 3 values a frame, expected 77: 7 rows of 11\n",
-    );
-}
-
 #[test]
 fn one_of_several_channels_must_be_named() {
     unanswered(
@@ -232,10 +221,17 @@ fn one_of_several_channels_must_be_named() {
         "--peak --at-least 9",
         "2 channels, choose one with --channel: left, right",
     );
-    unanswered(
-        "xsensor.csv",
-        "--peak --channel top",
-        "no channel named \"top\"; channels: left, right\n",
+    let unknown = "no channel named \"top\"; channels: left, right\n";
+    unanswered("xsensor.csv", "--peak --channel top", unknown);
+    unanswered("xsensor.csv", "--channel top", unknown);
+    let text = frames("xsensor.csv", "--channel right");
+    let begins = "xsensor, 1 channel\n\nchannel   right\n";
+    assert!(text.stdout.starts_with(begins), "{}", text.stdout);
+    assert!(!text.stdout.contains("left"), "{}", text.stdout);
+    let listed = &answered("xsensor.csv", "--channel right --json")[0]["channels"];
+    assert_eq!(
+        (&listed[0]["name"], &listed[1]),
+        (&"right".into(), &Value::Null)
     );
     let right = answered("xsensor.csv", "--channel right --peak --at-least 18 --json");
     assert_eq!(
@@ -261,6 +257,11 @@ fn the_only_array_of_an_archive_is_a_channel_with_the_arrays_name() {
 #[test]
 fn missing_rows_and_columns_are_asked_for_and_a_crop_must_fit() {
     unanswered("plain.csv", "", "--rows and --columns");
+    unanswered(
+        "topics.mcap",
+        "--all --channel /state#tip --at-least 1 --rows 7 --columns 11",
+        "found 3 values a frame, expected 77: 7 rows of 11\n",
+    );
     unanswered(
         "plain.csv",
         "--rows 4 --columns 4",
@@ -312,33 +313,6 @@ fn whole_frames_before_damage_are_answered_then_the_damage_is_reported() {
         run.stderr,
         "warning: standard input: frame 1 (label 2): Raw Sum should be 68, but the values give 67\n"
     );
-}
-
-#[test]
-fn a_file_that_is_not_a_recording_is_refused_by_its_beginning() {
-    for content in ["no recording", &"no recording\n".repeat(1 << 16)] {
-        let run = taxel("frames -", content);
-        assert_eq!(run.status, Some(1));
-        assert!(
-            run.stderr
-                .starts_with("error: standard input: not a recording"),
-            "{}",
-            run.stderr
-        );
-    }
-    // A pipe that its writer keeps open is not read to the end, because it may have no end.
-    let mut endless = super::program(&["frames", "-"], "C.UTF-8")
-        .spawn()
-        .expect("the program starts");
-    let mut input = endless.stdin.take().expect("standard input is piped");
-    let mut written = 0_u64;
-    let piece = vec![b'x'; 1 << 16];
-    while input.write_all(&piece).is_ok() {
-        written += 1 << 16;
-        assert!(written < 1 << 26, "64 MiB of it are read");
-    }
-    let status = endless.wait().expect("the program ends");
-    assert_eq!(status.code(), Some(1));
 }
 
 #[test]
@@ -498,17 +472,6 @@ fn no_frame_is_exported_if_a_later_one_cannot_be() {
     assert_eq!((forced.status, forced.stderr.as_str()), (Some(0), ""));
 }
 
-#[test]
-fn a_report_on_noise_accepts_no_pitch() {
-    misused(
-        &format!(
-            "frames {} --noise-report --at-least 9 --pitch 2",
-            sample("tekscan.asf")
-        ),
-        "the argument '--noise-report' cannot be used with '--pitch <MM>'",
-    );
-}
-
 /// Rows of four cells, each with a label; 7 occurs twice.
 const LABELLED: &str = "label,a,b,c,d\n7,1,0,0,0\n7,1,1,0,0\n8,1,1,1,0\n";
 
@@ -655,38 +618,13 @@ fn the_noise_of_a_recording_is_reported() {
         run.stdout
     );
     // Flags that have no meaning for many frames are refused, not ignored.
-    for flag in ["--save mask", "--model figures", "--heat"] {
+    for flag in ["--save mask", "--model figures", "--heat", "--pitch 2"] {
         let line = format!("frames - --noise-report --at-least 5 {flag}");
         misused(&line, "the argument '--noise-report' cannot be used with");
     }
 }
 
-#[test]
-fn a_listing_shows_only_the_requested_channel() {
-    let text = frames("xsensor.csv", "--channel right");
-    assert_eq!((text.status, text.stderr.as_str()), (Some(0), ""));
-    assert!(
-        text.stdout
-            .starts_with("xsensor, 1 channel\n\nchannel   right\n")
-            && !text.stdout.contains("left"),
-        "{}",
-        text.stdout
-    );
-    let listed = answered("xsensor.csv", "--channel right --json");
-    let channels = listed[0]["channels"].as_array().expect("a list");
-    let names: Vec<_> = channels.iter().map(|channel| &channel["name"]).collect();
-    assert_eq!(names, ["right"]);
-    let none = frames("xsensor.csv", "--channel middle");
-    assert_eq!((none.status, none.stdout.as_str()), (Some(1), ""));
-    assert!(
-        none.stderr
-            .contains("no channel named \"middle\"; channels: left, right\n"),
-        "{}",
-        none.stderr
-    );
-}
-
-/// Errors at the beginning are reported, although the input has no end.
+/// Errors at the beginning are reported, although the input has no end and is never read to it.
 #[test]
 fn an_endless_input_is_refused_at_once() {
     for (line, expected) in [
@@ -695,6 +633,7 @@ fn an_endless_input_is_refused_at_once() {
             "3 numbers a line, but the rows and columns of a frame are not stated",
         ),
         ("{\\\"frame\\\":[[1],[]]}", "line 1, column "),
+        ("no recording", "error: standard input: not a recording"),
     ] {
         let script = format!("yes \"{line}\" | timeout 5 \"$0\" frames -");
         let run = sh(&script).output().expect("started");
@@ -787,20 +726,9 @@ fn a_plain_table_of_factors_is_read_as_a_gain() {
         &flags,
         "expected a table: a line for each row",
     );
-    for (table, message) in [
-        ("1,x\n", "line 1, column 2: found \"x\", expected a number"),
-        (
-            "1,2\n3,x\n",
-            "line 2, column 2: found \"x\", expected a number",
-        ),
-        (
-            "1,x\n2,3\n",
-            "line 1, column 2: found \"x\", expected a number",
-        ),
-    ] {
-        std::fs::write(&path, table).expect("written");
-        unanswered("tekscan.asf", &flags, message);
-    }
+    std::fs::write(&path, "1,2\n3,x\n").expect("written");
+    let place = "line 2, column 2: found \"x\", expected a number";
+    unanswered("tekscan.asf", &flags, place);
     std::fs::write(&path, "a word\n").expect("written");
     unanswered("tekscan.asf", &flags, "not a recording of a known format");
     std::fs::copy(sample("tekscan.asf"), &path).expect("copied");
@@ -999,23 +927,6 @@ fn a_column_of_numbers_is_a_recording_if_rows_and_columns_are_given() {
     );
 }
 
-#[test]
-fn a_recording_without_values_has_no_peak() {
-    let empty = "{\"frame\":[[null,null]]}\n";
-    let message = "standard input: no frame has a cell with a value, so none is the peak";
-    for (text, flags) in [
-        (empty.repeat(3), ""),
-        (empty.repeat(3), "--tare 1"),
-        ("{\"frame\":[[null,7]]}\n".to_owned(), "--crop 0,0,1x1"),
-    ] {
-        let run = taxel(
-            &format!("frames - --peak --at-least 1 --json {flags}"),
-            &text,
-        );
-        super::refused(&run, 1, message);
-    }
-}
-
 /// Writes a file into a folder of its own, and returns the imprints of all its frames.
 fn imprints_of(name: &str, content: &[u8], flags: &str) -> Vec<Value> {
     let folder = tempfile::tempdir().expect("a folder");
@@ -1095,6 +1006,19 @@ fn a_frame_without_values_is_never_the_peak() {
     assert_eq!(peak("--peak --at-least 0 --tare 2")["frame"], 1);
     write(none);
     assert!(peak("")["channels"][0]["peak"].is_null());
+    let empty = "{\"frame\":[[null,null]]}\n";
+    let message = "standard input: no frame has a cell with a value, so none is the peak";
+    for (text, flags) in [
+        (empty.repeat(3), ""),
+        (empty.repeat(3), "--tare 1"),
+        ("{\"frame\":[[null,7]]}\n".to_owned(), "--crop 0,0,1x1"),
+    ] {
+        let run = taxel(
+            &format!("frames - --peak --at-least 1 --json {flags}"),
+            &text,
+        );
+        super::refused(&run, 1, message);
+    }
 }
 
 #[test]
