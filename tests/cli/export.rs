@@ -276,7 +276,7 @@ fn a_drawn_screen_has_the_theme_and_is_not_overwritten() {
         "{dark}"
     );
     assert!(dark.contains("fill=\"#1c1c1c\"/>") && dark.contains("fill=\"#87d787\"/>"));
-    assert!(dark.contains("NA 52 in all</text>"));
+    assert!(dark.contains("NA 52 in all"));
     let there = "\"./screen-1.svg\" already exists; --force replaces it";
     refused(&folder.run(line), 1, there);
     folder.write(

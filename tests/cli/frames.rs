@@ -1,7 +1,5 @@
 //! Tests of `taxel frames`: lists of recordings, and their frames as imprints.
 
-use std::io::Write;
-
 use serde_json::Value;
 
 use super::array::array;

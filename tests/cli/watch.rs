@@ -325,20 +325,6 @@ fn a_signal_before_the_first_frame_is_not_an_error() {
 }
 
 #[test]
-fn a_file_of_another_kind_is_refused() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("a.csv");
-    fs::write(&path, b"\xff\xfe1\0,\x002\0\n\0").expect("written");
-    let line = path.display().to_string();
-    for command in [format!("frames {line}"), format!("watch {line}")] {
-        let run = taxel(&command, "");
-        assert_eq!(run.status, Some(1), "{command}");
-        let told = "a.csv: not a recording of a known format: expected Tekscan ASCII";
-        assert!(run.stderr.contains(told), "{command}: {}", run.stderr);
-    }
-}
-
-#[test]
 fn only_a_serial_line_has_a_baud_rate() {
     let run = taxel("watch - --baud 9600", stream(0..3));
     let message = "--baud has no effect on standard input: it is for serial lines";
