@@ -551,7 +551,9 @@ mod tests {
             hexagon.with(Parameter::Side, 2.5, &sensor)?,
             Figure::hexagon(2.5).at(4.0, 4.0).on(&sensor)?
         );
-        let error = hexagon.with(Parameter::RadiusX, 2.5, &sensor).unwrap_err();
+        let error = hexagon
+            .with(Parameter::RadiusX, 2.5, &sensor)
+            .expect_err("refused");
         assert_eq!(
             error.to_string(),
             "radius_x: a parameter that the hexagon does not have, expected side, x0, y0, angle or thickness"

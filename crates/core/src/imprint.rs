@@ -289,7 +289,10 @@ pub struct ImprintRows {
 }
 
 impl ImprintRows {
-    /// Adds the next row, with the errors of [`Imprint::from_rows`].
+    /// Adds the next row.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Imprint::from_rows`].
     pub fn push(&mut self, text: &str) -> Result<(), ImprintError> {
         if self.count == MAX_SIDE {
             return Err(ImprintError::Rows);
@@ -319,7 +322,10 @@ impl ImprintRows {
         Ok(())
     }
 
-    /// The imprint of all rows; an error if there are none.
+    /// The imprint of all rows.
+    ///
+    /// # Errors
+    /// Returns an error if there are none.
     pub fn imprint(self) -> Result<Imprint, ImprintError> {
         let Self { imprint, count } = self;
         let imprint = imprint.ok_or(ImprintError::Rows)?;
@@ -417,7 +423,7 @@ mod tests {
     #[test]
     fn examples_of_imprint() {
         use crate::imprint::Imprint;
-        let imprint: Imprint = ".##.\n#..#\n.##.".parse().unwrap();
+        let imprint: Imprint = ".##.\n#..#\n.##.".parse().expect("rows");
         assert_eq!(
             (imprint.columns(), imprint.rows(), imprint.count()),
             (4, 3, 6)

@@ -300,7 +300,7 @@ mod tests {
             .on(plane.sensor())?;
         let mut counts = Vec::new();
         each_region(plane.touched(&ring), |region| {
-            counts.push(Description::of(region).nae)
+            counts.push(Description::of(region).nae);
         });
         assert_eq!(counts, [52, 12]);
         Ok(())

@@ -406,7 +406,7 @@ mod tests {
     #[test]
     fn examples_of_region() {
         use crate::prelude::*;
-        let two: Imprint = "##.#".parse().unwrap();
+        let two: Imprint = "##.#".parse().expect("a row");
         let mut counts = Vec::new();
         each_region(&two, |region| counts.push(Description::of(region).na));
         assert_eq!(counts, [2, 1]);

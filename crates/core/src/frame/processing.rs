@@ -6,7 +6,7 @@ use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
 /// The settings by which frames are processed, in the order in which they are applied.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Processing {
     /// The crop, flips, turns and mask.
     pub view: View,
@@ -20,20 +20,6 @@ pub struct Processing {
     pub least: u32,
     raw: Matrix<f64>,
     tared: Matrix<f64>,
-}
-
-impl Default for Processing {
-    fn default() -> Self {
-        Self {
-            view: View::default(),
-            tare: None,
-            gain: None,
-            rule: None,
-            least: 0,
-            raw: Matrix::default(),
-            tared: Matrix::default(),
-        }
-    }
 }
 
 /// A frame and the results of its processing.

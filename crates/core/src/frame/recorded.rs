@@ -424,7 +424,7 @@ mod tests {
         // The next frame, in the same memory.
         frame.set_values(&[0.0, 11.0, f64::NAN, 4.0, 10.0, 0.0])?;
         assert_eq!(
-            frame.set_values(&[0.0]).unwrap_err().to_string(),
+            frame.set_values(&[0.0]).expect_err("refused").to_string(),
             "found 1 value, expected 6 for a frame of 3 × 2"
         );
         Ok(())

@@ -295,6 +295,9 @@ impl FirstFrames {
     }
 
     /// Checks that the needed number of frames of this size fits into memory.
+    ///
+    /// # Errors
+    /// Returns [`FrameError::TareSize`] if it does not.
     pub fn check_memory(&self, values: usize) -> Result<(), FrameError> {
         self.frames.check_memory(values)
     }
@@ -312,6 +315,9 @@ impl FirstFrames {
     /// Adds the part of a frame that a view shows. Returns false if the tare begins again with it and the frames of its
     /// size just before it: those that were added before are not in the tare. After an error of its size, the frame is
     /// left out.
+    ///
+    /// # Errors
+    /// Returns the errors of [`TareFrames::add_frame`].
     pub fn add(&mut self, frame: &Frame, view: &View) -> Result<bool, FrameError> {
         let added = self.frames.add_frame(frame, view);
         let other = self.other.take();

@@ -148,7 +148,10 @@ pub struct UnknownName {
 }
 
 impl UnknownName {
-    /// Returns the value with a name, or the error for it.
+    /// Returns the value with a name.
+    ///
+    /// # Errors
+    /// Returns an error if no value has this name.
     pub fn unless_found<T: Copy>(
         what: &'static str,
         found: &str,
@@ -216,7 +219,9 @@ mod tests {
     #[test]
     fn examples_of_error() {
         use crate::prelude::*;
-        let error = Sensor::default().read(Parameter::ZoomX, "65").unwrap_err();
+        let error = Sensor::default()
+            .read(Parameter::ZoomX, "65")
+            .expect_err("refused");
         assert_eq!(
             error.to_string(),
             "zoom_x: 65 is above 64 (allowed: above 0, up to 64)"
@@ -228,7 +233,7 @@ mod tests {
         let complaint = |parameter, text| {
             Sensor::default()
                 .read(parameter, text)
-                .unwrap_err()
+                .expect_err("refused")
                 .complaint()
         };
         assert_eq!(

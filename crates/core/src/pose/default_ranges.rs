@@ -147,6 +147,7 @@ impl SensorSides {
     }
 
     /// Sets the sides along the given axes to those of `sensor`.
+    #[must_use]
     pub fn with_sides_of(self, sensor: &Sensor, is_given: impl Fn(Axis) -> bool) -> Self {
         Self {
             columns: is_given(Axis::X0).then(|| sensor.columns()),
@@ -197,7 +198,10 @@ fn is_allowed(source: &Source, sensor: &Sensor) -> bool {
     })
 }
 
-/// Returns an error if a given range exceeds that of its parameter.
+/// Checks the given ranges.
+///
+/// # Errors
+/// Returns an error if one exceeds the range of its parameter.
 pub fn check_given(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError> {
     for (axis, range) in given.iter() {
         if let Some(range) = range {
@@ -246,6 +250,9 @@ impl Reach {
     }
 
     /// Computes the reach of several shapes together.
+    ///
+    /// # Errors
+    /// Returns an error if a given range exceeds that of its parameter, or a figure has zooms other than 1.
     pub fn of_all<'a>(
         sources: impl IntoIterator<Item = &'a Source>,
         anchor: Anchor,
@@ -454,7 +461,7 @@ mod tests {
         let ranges = default_ranges(&washer.into(), &sensor, Anchor::Corner, &given)?;
         assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
         // A picture keeps its zooms.
-        let bar = Picture::of("###".parse().unwrap())
+        let bar = Picture::of("###".parse().expect("a row"))
             .zoom(0.5, 2.0)
             .on(&sensor)?;
         let ranges = default_ranges(&bar.into(), &sensor, Anchor::Centre, &given)?;

@@ -395,7 +395,10 @@ mod tests {
         );
         assert_eq!(range.to_string(), "5:5.99:0.01");
         assert_eq!(
-            "1:2:0".parse::<DecimalRange>().unwrap_err().to_string(),
+            "1:2:0"
+                .parse::<DecimalRange>()
+                .expect_err("refused")
+                .to_string(),
             "step 0 is not above 0"
         );
         assert_eq!(DecimalRange::new(5.0, 5.99, 0.01)?, "5:5.99:0.01".parse()?);

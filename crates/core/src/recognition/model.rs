@@ -267,6 +267,9 @@ impl Model {
     }
 
     /// Builds a model from the keys of a table, in any order, and the counts of each key, by shape.
+    ///
+    /// # Errors
+    /// Returns an error if numbers contradict each other.
     pub fn of_table<I: IntoIterator<Item = ShapeCount>>(
         head: ModelHead,
         table: &KeyTable,

@@ -562,6 +562,9 @@ impl Model {
     }
 
     /// Returns the shape that leaves a key most often (the first among equals), and how often.
+    ///
+    /// # Panics
+    /// Panics if there are not that many keys.
     pub fn most_frequent(&self, key: usize) -> (usize, u128) {
         let most = first_of_most(self.weighted_shapes(self.counts(key)));
         most.expect("every key is left by some shape")

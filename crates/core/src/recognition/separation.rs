@@ -245,7 +245,10 @@ impl Separation {
     }
 
     /// Returns the same as [`Self::at`], with the model that was counted and its evaluation. The model has the zooms of
-    /// its first shape only, so it stays in the crate.
+    /// its first shape only.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::at`].
     pub fn model_at(
         &self,
         axis: SizeAxis,

@@ -405,7 +405,7 @@ mod tests {
     #[test]
     fn examples_of_plan() {
         use crate::sweep::Shard;
-        let shard: Shard = "2/3".parse().unwrap();
+        let shard: Shard = "2/3".parse().expect("a shard");
         assert_eq!(shard.rows(10), 3..6);
         assert!("4/3".parse::<Shard>().is_err());
     }

@@ -141,7 +141,10 @@ impl SweepResult {
         parts
     }
 
-    /// Creates a result from its numbers; an error if they contradict each other or the grid.
+    /// Creates a result from its numbers.
+    ///
+    /// # Errors
+    /// Returns an error if they contradict each other or the grid.
     pub fn from_parts(grid: PoseGrid, shard: Shard, parts: &Parts) -> Result<Self, PartsError> {
         let check = |holds: bool, what: &'static str| holds.then_some(()).ok_or(PartsError(what));
         let size = grid.sensor().size();
