@@ -46,10 +46,6 @@ impl HistoryDialog {
         }
     }
 
-    pub fn selected(&self) -> usize {
-        self.selected
-    }
-
     pub fn select(&mut self, row: usize) {
         self.selected = row.min(self.steps.len());
     }
@@ -115,7 +111,7 @@ pub(in crate::tui) fn in_history(
 ) -> Option<Effect> {
     match *message {
         Message::Compare => {
-            let step = list.selected();
+            let step = list.selected;
             let state = app
                 .history
                 .after(step)
@@ -128,11 +124,11 @@ pub(in crate::tui) fn in_history(
         }
         Message::Quit => return None,
         Message::Accept => {
-            go_to(app, list.selected());
+            go_to(app, list.selected);
             return None;
         }
         _ => {
-            if let Some(row) = moved(list.selected(), message) {
+            if let Some(row) = moved(list.selected, message) {
                 list.select(row);
             }
         }

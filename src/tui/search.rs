@@ -41,10 +41,6 @@ impl SearchDialog {
         self.field.take(message);
     }
 
-    pub fn before(&self) -> &Help {
-        &self.before
-    }
-
     /// Returns the wanted text if it was not found; None otherwise.
     pub fn unfound(&self) -> Option<&str> {
         let text = self.field.text();
@@ -86,7 +82,7 @@ pub(in crate::tui) fn in_search(
     message: &Message,
 ) -> Option<Effect> {
     let list = match message {
-        Message::Cancel | Message::Quit => dialog.before().clone(),
+        Message::Cancel | Message::Quit => dialog.before.clone(),
         _ => {
             dialog.edit(message);
             dialog.searched(app.keymap(), app.body_size())

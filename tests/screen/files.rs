@@ -45,10 +45,10 @@ fn files_are_written_by_extension_and_opened_by_content() {
     );
     then(
         &mut session,
-        &format!(":export {place}/made.txt<Enter>"),
+        &format!(":write {place}/made.txt<Enter>"),
         &["already exists. Replace it?"],
     );
-    then(&mut session, "n", &[&format!(":export {place}/made.txt")]);
+    then(&mut session, "n", &[&format!(":write {place}/made.txt")]);
     then(&mut session, "<Enter>", &["already exists. Replace it?"]);
     then(&mut session, "y", &["written: "]);
     let drawing = std::fs::read_to_string(folder.path().join("made.svg")).expect("written");

@@ -83,10 +83,6 @@ fn the_cursor_and_the_shape_are_moved_by_commands() {
             "! --side is given twice",
         ),
         ("figure hexagon ----side 3", "! ----side is unknown"),
-        (
-            "train parts",
-            "! train works in a shell: 'taxel model train'",
-        ),
     ] {
         let session = session(&format!("f<Enter>:{line}<Enter>"));
         shows(&session, &[shown]);

@@ -2,15 +2,6 @@
 //!
 //! A [`Document`] is a sensor, the source that touched it, and the taxels set by hand since then. Everything else
 //! follows from it and is a [`Reading`].
-//!
-//! ```
-//! use taxel::prelude::*;
-//! use taxel::tui::app::document::{Document, Reading};
-//!
-//! let mut drawn = Document::empty(Sensor::default());
-//! drawn.edits.toggle(3, 4);
-//! assert_eq!(Reading::of(&drawn).imprint.count(), 1);
-//! ```
 
 use crate::description::{Description, Region, main_region, regions};
 use crate::formats::{Name, StoredShape};

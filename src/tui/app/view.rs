@@ -117,8 +117,9 @@ const LOW_FORM: u16 = 8;
 const LONGEST_FORM: u16 = 18;
 const LOW_PANEL: u16 = 10;
 
-/// On a lower screen matrix and descriptors each have the screen to themselves.
-const FULL: u16 = 24;
+/// On a lower screen matrix and descriptors each have the screen to themselves. A line less than 24, so that the line
+/// of a terminal multiplexer takes nothing but the title.
+const FULL: u16 = 23;
 
 pub const SMALLEST: (u16, u16) = (40, 12);
 
@@ -160,7 +161,7 @@ impl Panes {
             ..area
         };
         let title = Rect {
-            height: u16::from(is_full),
+            height: u16::from(area.height > FULL),
             ..body
         };
         let content = below(body, title.height);

@@ -59,7 +59,7 @@ fn table(results: &Results, area: Rect) -> String {
 
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let (result, feature) = (results.sweep(), results.feature());
-    let statistic = &result.statistics[results.feature_number()];
+    let statistic = &result.statistics[results.feature];
     let number = |value| theme.number(value, NUMBER);
     let unit = match feature.descriptor.dimension {
         Dimension::Count => "",

@@ -3,7 +3,7 @@
 //! ```text
 //!    #  ↓poses      %   x0   y0 pc ho       na   >7      #12     headings, an arrow at the sort column
 //! >  7     366   0.47 5.00 5.00  1  0       36   ·▄▄·    ▄██▄    the selected row, thumbnails from it on
-//!  a12     360   0.46 5.05 5.00  1  1       34   ·▀▀·    ·▀▀·    a row marked by a letter
+//!   12     360   0.46 5.05 5.00  1  1       34   ·▀▀·    ·▀▀·
 //! imprint 7 at x0 5.00, y0 5.00; 1 piece, 0 holes, na 36         everything about the selected imprint
 //! ```
 //! A row has the number of the imprint, how many poses leave it and their share, its first pose, pieces and holes,
@@ -100,8 +100,7 @@ impl ImprintTable {
             ..area
         };
         let x = table.right().saturating_add(2).min(area.right());
-        // A low tab has a row before it has headings, and these before the line about the selected imprint.
-        let (above, below) = (u16::from(area.height > 1), u16::from(area.height > 2));
+        let (above, below) = (area.height.min(1), u16::from(area.height > 1));
         let gallery = Rect {
             x,
             width: area.right() - x,

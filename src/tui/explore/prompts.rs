@@ -148,7 +148,7 @@ pub struct ExportKind {
 
 impl ExportKind {
     pub fn of(results: &Results) -> Self {
-        let tab = view::row(results.tab());
+        let tab = view::row(results.tab);
         Self {
             poses: results.sweep().complete(),
             drawing: tab.drawing.is_some(),
@@ -225,31 +225,5 @@ impl LinePrompt for ExportDialog {
             Some((table, others)) => format!("   ({table} page; {others} imprints)").into(),
             None => format!("   ({endings})").into(),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_extension_decides_the_format() {
-        let all = ExportKind {
-            poses: true,
-            drawing: true,
-            table: false,
-        };
-        let name = |text: &str| ExportDialog::new(text, all).name();
-        for good in ["a.csv", " a/b.jsonl ", "./c.npz", "poses.npy", "map.SVG"] {
-            assert_eq!(name(good).as_deref(), Ok(good.trim()));
-        }
-        for bad in ["", "a", "a.txt", ".csv", "csv", "npy"] {
-            let error = name(bad).expect_err("no format");
-            assert!(
-                error.contains("expected a name that ends in .csv"),
-                "{error}"
-            );
-        }
-        assert!(is_poses("a.npy") && !is_poses("a.csv") && !is_poses("npy"));
     }
 }

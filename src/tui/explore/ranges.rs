@@ -71,7 +71,7 @@ impl FormField for RangeField {
 #[derive(Clone, Debug)]
 pub struct RangesForm {
     source: Source,
-    form: FieldList<RangeField>,
+    pub(super) form: FieldList<RangeField>,
     anchor: Anchor,
     by_hand: u32,
     grid: Result<PoseGrid, FormError>,
@@ -205,30 +205,6 @@ impl RangesForm {
         }
     }
 
-    pub fn title(&self) -> String {
-        format!("Explore: {}", name_of(&self.source))
-    }
-
-    pub fn form(&self) -> &FieldList<RangeField> {
-        &self.form
-    }
-
-    pub fn anchor(&self) -> Anchor {
-        self.anchor
-    }
-
-    pub fn by_hand(&self) -> u32 {
-        self.by_hand
-    }
-
-    pub fn estimate(&self) -> Option<Duration> {
-        self.known()?.time
-    }
-
-    pub fn cut_off(&self) -> Option<u64> {
-        self.known()?.cut_off
-    }
-
     fn known(&self) -> Option<&Measured> {
         let measured = self.measured.as_ref();
         measured.filter(|known| self.grid.as_ref() == Ok(&known.grid))
@@ -267,10 +243,6 @@ impl RangesForm {
             self.form.set_focus(Some(index));
         }
         self.grid.clone()
-    }
-
-    pub fn grid(&self) -> Result<&PoseGrid, &FormError> {
-        self.grid.as_ref()
     }
 
     /// On the anchor, Space, a click and the arrows to the sides choose the other anchor.
@@ -348,10 +320,10 @@ impl Page for RangesForm {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        let title = self.title();
+        let title = format!("Explore: {}", name_of(&self.source));
         write::text(buffer, area, theme, &title, Role::Title);
         let rows = rows(self, area);
-        let fields = self.form();
+        let fields = &self.form;
         let mut cursor = rows.draw(theme, fields, (LABEL, INPUT), |_| None, buffer);
         let mut others = rows
             .visible()
@@ -367,27 +339,27 @@ impl Page for RangesForm {
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let row = rows(self, area).at(at.y)?;
         Some(Message::ToField(
-            (row < self.form().fields().len()).then_some(row),
+            (row < self.form.fields().len()).then_some(row),
         ))
     }
 }
 
 /// The title is above them; below them are three lines, or as many as the rows leave, but at least one.
 fn rows(form: &RangesForm, area: Rect) -> FieldRows {
-    let (below, rows) = (write::below(area, 1), form.form().fields().len() + 1);
+    let (below, rows) = (write::below(area, 1), form.form.fields().len() + 1);
     let foot = below.height.saturating_sub(narrow(rows)).clamp(1, 3);
     let height = below.height.saturating_sub(foot);
-    let focus = form.form().focus().unwrap_or(rows - 1);
+    let focus = form.form.focus().unwrap_or(rows - 1);
     FieldRows::of(Rect { height, ..below }, 0, rows, Some(focus))
 }
 
 fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
     let label = format!("{:LABEL$}", "Anchor");
-    let (name, meaning) = match form.anchor() {
+    let (name, meaning) = match form.anchor {
         Anchor::Corner => ("corner", "top left, before turning"),
         Anchor::Centre => ("centre", "point it turns about"),
     };
-    let role = if form.form().focus().is_none() {
+    let role = if form.form.focus().is_none() {
         Role::Focus
     } else {
         Role::Text
@@ -404,14 +376,17 @@ fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect)
 }
 
 fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
-    let (text, role) = match form.grid() {
+    let (text, role) = match &form.grid {
         Ok(grid) => {
             let poses = counted(grid.poses(), "pose");
-            let time = form.estimate().map(|time| format!(", {}", about(time)));
+            let time = form
+                .known()
+                .and_then(|known| known.time)
+                .map(|time| format!(", {}", about(time)));
             (poses + time.as_deref().unwrap_or(""), Role::Text)
         }
         // A wrong field shows its own error.
-        Err(_) if form.form().error().is_some() => (String::new(), Role::Text),
+        Err(_) if form.form.error().is_some() => (String::new(), Role::Text),
         Err(error) => {
             for (index, line) in error.brief.lines().enumerate() {
                 let pieces = [("! ", Role::Error), (line, Role::Error)];
@@ -422,8 +397,12 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
     };
     write::text(buffer, write::row(area, 0), theme, &text, role);
     let mut line = 1;
-    if let Some(cut_off) = form.cut_off().filter(|&poses| poses > 0) {
-        let all = form.grid().is_ok_and(|grid| grid.poses() == cut_off);
+    if let Some(cut_off) = form
+        .known()
+        .and_then(|known| known.cut_off)
+        .filter(|&poses| poses > 0)
+    {
+        let all = form.grid.as_ref().is_ok_and(|grid| grid.poses() == cut_off);
         let text = match cut_off {
             _ if all => "! the sensor cuts off every pose".to_owned(),
             1 => "! the sensor cuts off 1 pose".to_owned(),
@@ -433,8 +412,8 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
         write::text(buffer, row, theme, &text, Role::Error);
         line += 1;
     }
-    if form.by_hand() > 0 {
-        let taxels = counted(form.by_hand(), "taxel");
+    if form.by_hand > 0 {
+        let taxels = counted(form.by_hand, "taxel");
         let text = format!("without {taxels} set by hand");
         let row = write::row(area, line);
         write::text(buffer, row, theme, &text, Role::Quiet);
@@ -446,28 +425,4 @@ pub fn about(time: Duration) -> String {
         return "under a second".to_owned();
     }
     format!("about {}", time_in_words(time.as_secs_f64()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_are_given_in_a_fitting_unit() {
-        let said = [0, 1, 99, 100, 5_999, 7_300, 172_800, 400_000_000];
-        let said = said.map(|seconds| about(Duration::from_secs(seconds)));
-        assert_eq!(
-            said,
-            [
-                "under a second",
-                "about 1 second",
-                "about 99 seconds",
-                "about 100 seconds",
-                "about 100 minutes",
-                "about 2 hours",
-                "about 2 days",
-                "about 4,630 days"
-            ]
-        );
-    }
 }

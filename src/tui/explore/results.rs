@@ -21,18 +21,17 @@ const X_FEATURE: usize = 7;
 
 #[derive(Clone, Debug)]
 pub struct Results {
-    findings: Arc<Findings>,
-    tab: ExploreTab,
-    feature: usize,
+    pub(super) findings: Arc<Findings>,
+    pub(super) tab: ExploreTab,
+    pub(super) feature: usize,
     values: Vec<Option<f64>>,
     x_feature: (usize, Vec<Option<f64>>),
     /// The zooms for which the imprints of each angle were requested last, and the search for them; None until the
     /// tab of angles was opened.
     angles: Option<(PoseIndex, AngleSearch)>,
-    visible_imprints: VisibleImprints,
-    map_zoom: u8,
+    pub(in crate::tui::explore) visible_imprints: VisibleImprints,
+    pub(in crate::tui::explore) map_zoom: u8,
     pub(super) list: ImprintList,
-    column: usize,
     pose_index: PoseIndex,
 }
 
@@ -48,21 +47,12 @@ impl Results {
             map_zoom: 0,
             list: ImprintList::new(findings.by_poses.clone()),
             findings,
-            column: 0,
             pose_index: PoseIndex::new([0; 5]),
         }
     }
 
-    pub fn findings(&self) -> &Arc<Findings> {
-        &self.findings
-    }
-
     pub fn sweep(&self) -> &SweepResult {
         &self.findings.sweep
-    }
-
-    pub fn tab(&self) -> ExploreTab {
-        self.tab
     }
 
     pub fn open_tab(&mut self, tab: ExploreTab) {
@@ -72,10 +62,6 @@ impl Results {
     pub fn next_tab(&mut self, by: i8) {
         let next = around(self.tab as usize, by, ExploreTab::ALL.len());
         self.tab = ExploreTab::ALL[next];
-    }
-
-    pub fn feature_number(&self) -> usize {
-        self.feature
     }
 
     pub fn feature(&self) -> &'static Feature {
@@ -144,14 +130,6 @@ impl Results {
         }
     }
 
-    pub(super) fn visible_imprints(&self) -> &VisibleImprints {
-        &self.visible_imprints
-    }
-
-    pub fn map_zoom(&self) -> u8 {
-        self.map_zoom
-    }
-
     /// Zooms the map in, or out if `by` is negative; `last` is the closest zoom.
     pub fn zoom_map(&mut self, by: i8, last: u8) {
         self.map_zoom = self.map_zoom.min(last).saturating_add_signed(by).min(last);
@@ -211,15 +189,6 @@ impl Results {
     pub fn go_to_imprint_at(&mut self, pose: u64) -> Result<(), String> {
         let id = self.id_at(pose);
         self.go_to_imprint(id.ok_or("this pose was not swept: the sweep was stopped")?)
-    }
-
-    pub fn column(&self) -> usize {
-        self.column
-    }
-
-    pub fn move_columns(&mut self, by: i8, last: usize) {
-        let moved = (self.column.min(last)).saturating_add_signed(isize::from(by));
-        self.column = moved.min(last);
     }
 
     pub fn pose_index(&self) -> PoseIndex {
@@ -296,7 +265,6 @@ impl Results {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::atlas::SortDirection;
     use crate::figure::{Figure, FigureKind};
     use crate::picture::Picture;
     use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
@@ -330,30 +298,6 @@ mod tests {
     }
 
     #[test]
-    fn the_selected_imprint_stays_selected_when_the_descriptor_changes() {
-        let mut results = results();
-        results.sort(ListColumn::Value);
-        results.list.select(7);
-        let selected = |results: &Results| results.rows_from(results.list.selected()).next();
-        let before = selected(&results).map(|(_, entry)| entry.id);
-        results.next_feature(3);
-        assert_eq!(selected(&results).map(|(_, entry)| entry.id), before);
-        results.sort(ListColumn::Poses);
-        assert_eq!(selected(&results).map(|(_, entry)| entry.id), before);
-        let (_, most) = results.rows_from(0).next().expect("a row");
-        assert!(
-            results
-                .rows_from(0)
-                .all(|(_, entry)| entry.count <= most.count)
-        );
-        results.sort(ListColumn::Poses);
-        assert_eq!(
-            results.list.sort_key(),
-            (ListColumn::Poses, SortDirection::Ascending)
-        );
-    }
-
-    #[test]
     fn angles_of_an_earlier_zoom_do_not_replace_the_present_ones() {
         let mut results = with_zooms();
         results.open_tab(ExploreTab::Angles);
@@ -378,30 +322,6 @@ mod tests {
         results.turn(-1);
         results.move_along(Axis::ZoomX, -1);
         assert_eq!(results.missing_angles(), Some(first), "asked for again");
-    }
-
-    #[test]
-    fn angles_that_arrive_at_another_zoom_are_there_or_asked_for_again_on_the_way_back() {
-        let mut results = with_zooms();
-        results.open_tab(ExploreTab::Angles);
-        let curve = |place| Some(Arc::new(AngleCurve::of(results.sweep(), place)));
-        let first = results.pose_index();
-        let second = first.with(Axis::ZoomX, 1);
-        let (early, late) = (curve(first), curve(second));
-        assert_eq!(results.missing_angles(), Some(first));
-        results.take_angles(first, early.clone());
-        results.move_along(Axis::ZoomX, 1);
-        assert_eq!(results.missing_angles(), Some(second));
-        results.move_along(Axis::ZoomX, -1);
-        let asked = results.missing_angles();
-        results.take_angles(second, late);
-        assert_eq!(asked, Some(first));
-        results.take_angles(first, early);
-        assert!(results.angle_curve().is_some());
-        results.move_along(Axis::ZoomX, 1);
-        assert_eq!(results.missing_angles(), Some(second));
-        results.take_angles(second, None);
-        assert!(matches!(results.angles(), Some(AngleSearch::Failed)));
     }
 
     #[test]
@@ -450,36 +370,6 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_sorted_by_any_heading_that_is_shown() {
-        let mut results = results();
-        let shown = [
-            ListColumn::FirstPose,
-            ListColumn::Position(Axis::X0),
-            ListColumn::Position(Axis::Angle),
-        ];
-        results.list.move_heading(1, &shown);
-        assert_eq!(
-            results.list.heading(),
-            shown[0],
-            "that of poses is not shown"
-        );
-        results.list.move_heading(1, &shown);
-        results.sort(results.list.heading());
-        let places = |results: &Results, axis| {
-            let grid = results.sweep().grid.clone();
-            let rows = results.rows_from(0);
-            rows.map(|(_, entry)| grid.pose(entry.first_pose)[axis])
-                .collect::<Vec<f64>>()
-        };
-        assert!(places(&results, Axis::X0).is_sorted());
-        results.list.move_heading(9, &shown);
-        results.sort(results.list.heading());
-        results.sort(results.list.heading());
-        let angles = places(&results, Axis::Angle);
-        assert!(angles.iter().rev().is_sorted(), "{angles:?}");
-    }
-
-    #[test]
     fn the_cursor_of_the_map_stays_on_it() {
         let mut results = results();
         results.open_tab(ExploreTab::Map);
@@ -501,6 +391,6 @@ mod tests {
         assert_eq!(results.pose_index().into_array(), [0, 2, 0, 0, 0]);
         assert_eq!(results.pose(), Some(20));
         results.next_tab(1);
-        assert_eq!(results.tab(), ExploreTab::Scatter);
+        assert_eq!(results.tab, ExploreTab::Scatter);
     }
 }

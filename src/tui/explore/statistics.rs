@@ -6,8 +6,7 @@
 //! 1 of 23              min   mean    max     sd        the number of the chosen descriptor, and columns
 //! > na                   1 22.405     29 7.3052        a row for each descriptor
 //! ```
-//! The columns are [`STATISTIC_COLUMNS`]; columns that do not fit scroll to the side. The descriptor that is chosen
-//! here is also the one of the histogram and of the list of imprints.
+//! The columns are [`STATISTIC_COLUMNS`]. The descriptor that is chosen here is also the one of the histogram and of the list of imprints.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -16,7 +15,6 @@ use crate::atlas::{STATISTIC_COLUMNS, features};
 use crate::formats::value::grouped;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::view::{ResultsTab, choose_descriptor};
 use crate::tui::keys::keymap::Context;
@@ -36,7 +34,7 @@ pub static TAB: ResultsTab = ResultsTab {
         let row = StatisticsTable::of(area, results).rows.at(at)?;
         Some(Message::Select(row))
     },
-    update,
+    update: choose_descriptor,
 };
 
 fn table(results: &Results, _area: Rect) -> String {
@@ -53,15 +51,6 @@ fn table(results: &Results, _area: Rect) -> String {
     text
 }
 
-fn update(results: &mut Results, message: &Message, area: Rect) {
-    if let Message::Explore(ExploreMessage::Columns(by)) = message {
-        let (_, visible) = StatisticsTable::of(area, results).columns;
-        results.move_columns(*by, STATISTIC_COLUMNS.len() - visible);
-    } else {
-        choose_descriptor(results, message, area);
-    }
-}
-
 #[derive(Clone, Copy, Debug)]
 pub struct StatisticsTable {
     pub totals: Rect,
@@ -69,7 +58,6 @@ pub struct StatisticsTable {
     pub rows: ListRows,
     pub name: usize,
     pub column: usize,
-    pub columns: (usize, usize),
 }
 
 impl StatisticsTable {
@@ -78,9 +66,8 @@ impl StatisticsTable {
         let room = usize::from(area.width).saturating_sub(name);
         // Eight columns fit into 80 characters.
         let column = (room / count).clamp(7, 10);
-        let visible = (room / column).min(count);
         let totals = Rect {
-            height: if area.height > 6 { 2 } else { 0 },
+            height: area.height.min(2),
             ..area
         };
         let table = below(area, totals.height);
@@ -91,15 +78,10 @@ impl StatisticsTable {
                 height: table.height.min(1),
                 ..table
             },
-            rows: ListRows::around(rows, features().len(), results.feature_number()),
+            rows: ListRows::around(rows, features().len(), results.feature),
             name,
             column,
-            columns: (results.column().min(count - visible), visible),
         }
-    }
-
-    pub fn hides_columns(&self) -> bool {
-        self.columns.1 < STATISTIC_COLUMNS.len()
     }
 }
 
@@ -110,21 +92,19 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         let row = write::row(table.totals, index);
         write::text(buffer, row, theme, total, Role::Text);
     }
-    let (first, visible) = table.columns;
     let (name, width) = (table.name, table.column);
-    let columns = || STATISTIC_COLUMNS.iter().skip(first).take(visible);
     let mut headings = format!("{:name$}", head(&table, results));
-    for column in columns() {
+    for column in STATISTIC_COLUMNS {
         let title: String = column.title.chars().take(width - 1).collect();
         headings += &format!("{title:>width$}");
     }
     write::text(buffer, table.head, theme, &headings, Role::Title);
     for (index, row, statistic) in table.rows.visible(results.sweep().statistics.iter()) {
-        let chosen = index == results.feature_number();
+        let chosen = index == results.feature;
         let sign = if chosen { "> " } else { "  " };
         let key = format!("{:width$}", statistic.feature.key, width = name - 2);
         let mut values = String::new();
-        for column in columns() {
+        for column in STATISTIC_COLUMNS {
             let text = theme.number((column.value)(statistic), width - 1);
             values += &format!("{text:>width$}");
         }
@@ -136,28 +116,20 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         ];
         write::line(buffer, row, theme, pieces);
     }
-    table.rows.position(results.feature_number())
+    table.rows.position(results.feature)
 }
 
+/// Returns the number of the chosen descriptor where not all of them are visible.
 fn head(table: &StatisticsTable, results: &Results) -> String {
-    let (first, visible) = table.columns;
     let all = features().len();
-    let row = if usize::from(table.rows.area.height) < all {
-        format!("{} of {all} ", results.feature_number() + 1)
-    } else {
-        String::new()
-    };
-    let columns = match (first > 0, first + visible < STATISTIC_COLUMNS.len()) {
-        (false, false) => "",
-        (false, true) => "more >",
-        (true, false) => "< more",
-        (true, true) => "< more >",
-    };
-    row + columns
+    if usize::from(table.rows.area.height) >= all {
+        return String::new();
+    }
+    format!("{} of {all} ", results.feature + 1)
 }
 
 fn totals(results: &Results) -> [String; 2] {
-    let findings = results.findings();
+    let findings = &results.findings;
     let (result, classes) = (&findings.sweep, findings.classes);
     let (shifts, symmetry) = (classes.up_to_shifts, classes.up_to_symmetry);
     let many = |count: usize| grouped(count as u64);

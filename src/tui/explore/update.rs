@@ -61,10 +61,10 @@ pub(in crate::tui) fn in_results(
                 change_view(app, &mut results, asked);
             }
             let area = tab_area(app, &results);
-            let before = results.map_zoom();
-            (view::row(results.tab()).update)(&mut results, &message, area);
-            if let (Message::Zoom(by), ExploreTab::Map) = (&message, results.tab())
-                && results.map_zoom() == before
+            let before = results.map_zoom;
+            (view::row(results.tab).update)(&mut results, &message, area);
+            if let (Message::Zoom(by), ExploreTab::Map) = (&message, results.tab)
+                && results.map_zoom == before
             {
                 let end = ["this is the whole range", "every pose has its letter"];
                 refuse(app, end[usize::from(*by > 0)]);
@@ -90,7 +90,7 @@ fn compare(app: &mut App, results: Box<Results>) {
 fn export_of(results: &Results) -> ExportDialog {
     // A slash would separate folders.
     let name = name_of(results.sweep().grid.source()).replace('/', "-");
-    let row = view::row(results.tab());
+    let row = view::row(results.tab);
     let name = match (row.drawing, row.table) {
         (Some(_), _) => format!("{name}-{}.svg", row.title),
         (_, Some(_)) => format!("{name}-{}.csv", row.title),
@@ -104,7 +104,7 @@ fn change_view(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     match *asked {
         ExploreMessage::Tab(tab) => results.open_tab(tab),
         ExploreMessage::NextTab(by) => results.next_tab(by),
-        ExploreMessage::Feature(_) if results.tab() == ExploreTab::Map => {
+        ExploreMessage::Feature(_) if results.tab == ExploreTab::Map => {
             refuse(app, "the map shows no descriptor");
         }
         ExploreMessage::Feature(by) => results.next_feature(by),
@@ -132,7 +132,7 @@ fn only_one(app: &App, results: &Results, axis: Axis) -> Option<String> {
     if !grid.axes().any(|own| own == axis) {
         return Some(format!("a figure has no {name}"));
     }
-    let here = view::row(results.tab()).context;
+    let here = view::row(results.tab).context;
     let ranges = app.keymap().label(here, &action::RANGES);
     let is_only = grid.counts()[axis] == 1;
     is_only.then(|| format!("only one {name} was swept; {ranges} explores other ranges"))
@@ -178,7 +178,7 @@ fn follow(app: &mut App, results: &mut Results) {
     let Some(pose) = results.pose() else {
         return refuse(app, "nothing is selected here");
     };
-    if !matches!(results.tab(), ExploreTab::Map | ExploreTab::Angles) {
+    if !matches!(results.tab, ExploreTab::Map | ExploreTab::Angles) {
         results.go_to_pose(pose);
         return results.open_tab(ExploreTab::Map);
     }

@@ -17,7 +17,7 @@ use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::message::{ExploreMessage, ExploreTab};
 use crate::tui::explore::results::Results;
-use crate::tui::explore::statistics::{self, StatisticsTable};
+use crate::tui::explore::statistics;
 use crate::tui::explore::{angles, histogram, imprints, map, scatter};
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::rows::moved;
@@ -27,7 +27,7 @@ use crate::tui::widget::write::narrow;
 
 impl Page for Results {
     fn context(&self) -> Context {
-        row(self.tab()).context
+        row(self.tab).context
     }
 
     fn slot(&self) -> Slot {
@@ -43,16 +43,16 @@ impl Page for Results {
     ) -> Option<Position> {
         let parts = ResultPanes::of(area);
         for (tab, title, area) in parts.titles() {
-            let role = if tab == self.tab() {
+            let role = if tab == self.tab {
                 Role::Focus
             } else {
                 Role::Key
             };
             write::text(buffer, area, theme, &title, role);
         }
-        let summary = self.summary(row(self.tab()).filtered);
+        let summary = self.summary(row(self.tab).filtered);
         write::text(buffer, parts.summary, theme, &summary, Role::Text);
-        (row(self.tab()).draw)(self, theme, buffer, parts.tab)
+        (row(self.tab).draw)(self, theme, buffer, parts.tab)
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
@@ -62,23 +62,20 @@ impl Page for Results {
         if let Some((tab, ..)) = tab {
             return Some(Message::Explore(ExploreMessage::Tab(tab)));
         }
-        (row(self.tab()).click)(self, parts.tab, at)
+        (row(self.tab).click)(self, parts.tab, at)
     }
 
     fn wheel(&self) -> Wheel {
-        row(self.tab()).wheel
+        row(self.tab).wheel
     }
 
-    /// Scrolling, turning and zooming have no use if all columns of the statistics are visible, if there is a single
+    /// Scrolling, turning and zooming have no use if there is a single
     /// angle, or if the map has a single scale.
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {
         let tab = || ResultPanes::of(area).tab;
-        match (message, self.tab()) {
+        match (message, self.tab) {
             (Message::Accept | Message::Compare | Message::Explore(ExploreMessage::Follow), _) => {
                 self.pose().is_some()
-            }
-            (Message::Explore(ExploreMessage::Columns(_)), ExploreTab::Statistics) => {
-                StatisticsTable::of(tab(), self).hides_columns()
             }
             (Message::Explore(ExploreMessage::Angle(_)), _) => {
                 self.sweep().grid.counts()[Axis::Angle] > 1
@@ -153,7 +150,7 @@ pub fn row(tab: ExploreTab) -> &'static ResultsTab {
 
 /// None for a file that holds the results of the whole sweep.
 pub(super) fn file(results: &Results, name: &str, area: Rect) -> Option<Result<Vec<u8>, String>> {
-    let tab = row(results.tab());
+    let tab = row(results.tab);
     if has_ending(name, "svg") {
         return Some(match tab.drawing {
             Some(drawing) => drawing(results).map(String::into_bytes),
@@ -192,7 +189,7 @@ pub struct ResultsTab {
 }
 
 pub(in crate::tui) fn choose_descriptor(results: &mut Results, message: &Message, _area: Rect) {
-    if let Some(row) = moved(results.feature_number(), message) {
+    if let Some(row) = moved(results.feature, message) {
         results.choose_feature(row);
     }
 }

@@ -41,7 +41,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect
         ExploreMessage::Ranges => open_ranges(app),
         ExploreMessage::Start(grid) => Some(start(app, *grid)),
         ExploreMessage::Write(name, existing) => {
-            let found = Arc::clone(app.results_below()?.findings());
+            let found = Arc::clone(&app.results_below()?.findings);
             let poses = is_poses(&name).then(|| found.sweep.grid.poses());
             let number = begin(app, WorkKind::Write(name.clone(), poses));
             Some(Effect::Work(Work::Write(number, found, name, existing)))
@@ -138,7 +138,7 @@ pub(in crate::tui) fn in_ranges(
             }
             Err(error) => refuse(app, error.full),
         },
-        Message::Type(character) if form.form().focus().is_none() && character != ' ' => {
+        Message::Type(character) if form.form.focus().is_none() && character != ' ' => {
             refuse(app, "an arrow or Space chooses the other anchor");
         }
         message => form.take(&message),
@@ -191,7 +191,7 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
         return None;
     };
     let place = results.missing_angles()?;
-    let findings = Arc::clone(results.findings());
+    let findings = Arc::clone(&results.findings);
     Some(Effect::Work(Work::Angles(findings, place)))
 }
 
@@ -202,7 +202,7 @@ pub(in crate::tui) fn on_angles(
     curve: Result<Arc<AngleCurve>, String>,
 ) {
     let results = topmost!(&mut app.dialogs, Results).or(app.results.as_mut());
-    let Some(results) = results.filter(|own| Arc::ptr_eq(own.findings(), findings)) else {
+    let Some(results) = results.filter(|own| Arc::ptr_eq(&own.findings, findings)) else {
         return;
     };
     results.take_angles(place, curve.as_ref().ok().cloned());

@@ -101,10 +101,6 @@ impl FormDialog {
         dialog
     }
 
-    pub fn subject(&self) -> &FormSubject {
-        &self.subject
-    }
-
     pub fn title(&self) -> String {
         match &self.subject {
             FormSubject::Figure(_) => "Figure".to_owned(),

@@ -289,7 +289,6 @@ actions! {
         "cursor" Arguments::Taxel, "move the cursor, or put it on a taxel";
         "delete" Arguments::Shape(Purpose::Delete);
         "explore" Arguments::Ranges, "Explore: all imprints in these ranges";
-        "export" Arguments::File(FilePurpose::Write), "the same as :write";
         "figure" Arguments::Figure;
         "load" Arguments::Shape(Purpose::Load);
         "move" Arguments::Distance, "move the shape right and down, in cells";

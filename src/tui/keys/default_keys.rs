@@ -219,8 +219,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
             "" "choose a descriptor";
         [Home => FIRST, End => LAST] "" "first, last descriptor";
-        [LEFT => COLUMNS_LEFT, RIGHT => COLUMNS_RIGHT]
-            "columns" "columns further left, further right";
         [Enter => HISTOGRAM] "histogram" "show its histogram";
     }
 

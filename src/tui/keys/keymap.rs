@@ -3,20 +3,6 @@
 //! A change gives a key of a place to one of the actions of that place, or makes it do nothing. Changes that would
 //! surprise are refused: changing the same key twice, taking away the last key of an action without giving it a new
 //! one, a letter where text is typed, and any change of Ctrl-C, which always closes what is open.
-//!
-//! ```
-//! use taxel::tui::app::message::Message;
-//! use taxel::tui::keys::action;
-//! use taxel::tui::keys::keymap::Context;
-//! use taxel::tui::keys::key::Key;
-//! use taxel::tui::keys::keymap::{Change, Keymap};
-//!
-//! let change = Change { context: Context::Matrix, key: Key::Char('x'), action: Some(&action::TOGGLE) };
-//! let keymap = Keymap::with(&[change]).expect("x is free on the matrix");
-//! assert_eq!(keymap.lookup(Context::Matrix, Key::Char('x')), Some(Message::Toggle));
-//! // In a form the same key is typed.
-//! assert_eq!(keymap.lookup(Context::Form, Key::Char('x')), Some(Message::Type('x')));
-//! ```
 
 use std::borrow::Cow;
 
@@ -479,22 +465,6 @@ mod tests {
             let has_key = bound.any(|(_, own)| own == action);
             assert_eq!(has_key, **action != action::QUIT_NOW, "{}", action.name);
         }
-    }
-
-    #[test]
-    fn without_changes_every_key_does_what_the_table_says() {
-        let keymap = Keymap::default();
-        for binding in DEFAULT_KEYS {
-            for (key, action) in binding.keys.iter() {
-                let meaning = keymap.lookup(binding.context, *key);
-                assert_eq!(meaning.as_ref(), action.message(), "{key}");
-            }
-        }
-        assert_eq!(
-            keymap.lookup(Context::Name, Key::Char('x')),
-            Some(Message::Type('x'))
-        );
-        assert_eq!(keymap.lookup(Context::Matrix, Key::Char('x')), None);
     }
 
     #[test]

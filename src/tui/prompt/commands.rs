@@ -3,15 +3,6 @@
 //!
 //! A command is the first word of a spelling of an action ("cursor" of "cursor left"), or the name of an action that
 //! has no other spelling. The full name of an action works as well.
-//!
-//! ```
-//! use taxel::tui::prompt::commands::complete;
-//! let (line, candidates) = complete("fi", &[]);
-//! assert_eq!((line.as_str(), candidates.len()), ("figure ", 1));
-//! // Two kinds begin with h; both with "he".
-//! let (line, candidates) = complete("figure h", &[]);
-//! assert_eq!((line.as_str(), candidates.len()), ("figure he", 2));
-//! ```
 
 use std::sync::LazyLock;
 

@@ -33,23 +33,12 @@ use crate::tui::live::message::{LiveMessage, NamedSource};
 use crate::tui::prompt::commands::{ANCHOR, PromptCommand, commands, find};
 use crate::tui::recognise::state::RecogniseMessage;
 
-const IN_SHELL: [(&str, &str); 5] = [
-    ("batch", "taxel batch"),
-    ("config", "taxel config"),
-    ("frames", "taxel frames"),
-    ("model", "taxel model"),
-    ("train", "taxel model train"),
-];
-
 pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let line = line.trim();
     let (name, rest) = line
         .split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim()));
     let command = find(name).ok_or_else(|| {
-        if let Some((_, command)) = IN_SHELL.into_iter().find(|(word, _)| *word == name) {
-            return format!("{name} works in a shell: '{command}'");
-        }
         let complete = app.keymap().label(Context::Command, &action::NEXT);
         format!(
             "no command named {:?}; {complete} shows all{}",

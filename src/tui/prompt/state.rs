@@ -308,26 +308,6 @@ mod tests {
     }
 
     #[test]
-    fn earlier_lines_are_recalled_one_by_one() {
-        let lines = ["new", "grab", "new"].map(str::to_owned);
-        let mut dialog = CommandDialog::new(&lines);
-        dialog.edit(&Message::Type('z'));
-        let mut shown = Vec::new();
-        for earlier in [true, true, true, true, false, false, false, false] {
-            if earlier {
-                dialog.earlier();
-            } else {
-                dialog.later();
-            }
-            shown.push(dialog.field.text().to_owned());
-        }
-        assert_eq!(
-            shown,
-            ["new", "grab", "new", "new", "grab", "new", "z", "z"]
-        );
-    }
-
-    #[test]
     fn an_earlier_line_that_is_completed_counts_as_typed() {
         let mut dialog = CommandDialog::new(&["load wash".to_owned()]);
         dialog.earlier();
@@ -338,30 +318,5 @@ mod tests {
         assert_eq!(dialog.field.text(), "load wash");
         assert!(dialog.later());
         assert_eq!(dialog.field.text(), "load washer");
-    }
-
-    #[test]
-    fn a_path_is_shown_by_its_last_part() {
-        for (path, shown) in [
-            ("examples/cluster/", "cluster/"),
-            ("examples/classifiers.py", "classifiers.py"),
-            ("a b/c d", "c d"),
-            ("/dev/", "dev/"),
-            ("/", "/"),
-            ("--side", "--side"),
-        ] {
-            assert_eq!(last_part(path), shown);
-        }
-    }
-
-    #[test]
-    fn the_number_of_other_candidates_is_never_cut() {
-        let words = ["one", "three", "eleven", "two", "seventeen"];
-        let least = as_many_as_fit(&words, 0).chars().count();
-        for room in least..60 {
-            let text = as_many_as_fit(&words, room);
-            assert!(text.chars().count() <= room, "{room}: {text}");
-        }
-        assert_eq!(as_many_as_fit(&words, 24), "   one  three  … 3 more");
     }
 }

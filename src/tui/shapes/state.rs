@@ -21,7 +21,7 @@ pub enum ListPurpose {
 
 #[derive(Clone, Debug)]
 pub struct ListDialog {
-    purpose: ListPurpose,
+    pub(super) purpose: ListPurpose,
     entries: Vec<LibraryEntry>,
     /// The names of the shapes that are left out because they cannot be deleted.
     undeletable: Vec<String>,
@@ -30,7 +30,7 @@ pub struct ListDialog {
     selected: usize,
     read: HashMap<String, Result<LoadedShape, String>>,
     asked: HashSet<String>,
-    listed: bool,
+    pub(super) listed: bool,
     accepted: bool,
 }
 
@@ -64,20 +64,12 @@ impl ListDialog {
         self.apply_filter();
     }
 
-    pub fn is_listed(&self) -> bool {
-        self.listed
-    }
-
     pub fn accept(&mut self, accepted: bool) {
         self.accepted = accepted;
     }
 
     pub fn is_accepted(&self) -> bool {
         self.accepted && self.choice().is_some_and(|(_, read)| read.is_some())
-    }
-
-    pub fn purpose(&self) -> ListPurpose {
-        self.purpose
     }
 
     pub fn filter(&self) -> &str {

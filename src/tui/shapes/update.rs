@@ -273,13 +273,13 @@ fn choose_accepted(app: &mut App) -> Option<Effect> {
 /// A shape that cannot be read, or that does not fit, leaves the list open for another choice. Only deleting needs no
 /// reading: a broken file can be deleted, too.
 fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
-    let purpose = list.purpose();
+    let purpose = list.purpose;
     let chosen = list
         .choice()
         .map(|(entry, read)| (entry.name.clone(), read.cloned()));
     match (chosen, purpose) {
         (None, _) => {
-            let listed = list.is_listed();
+            let listed = list.listed;
             list.accept(!listed);
             app.dialogs.push(Dialog::List(list));
             if listed {

@@ -49,7 +49,7 @@ impl Page for ListDialog {
         area: Rect,
     ) -> Option<Position> {
         let (area, preview) = list(area);
-        let title = match self.purpose() {
+        let title = match self.purpose {
             ListPurpose::Load => "Load",
             ListPurpose::Delete => "Delete",
             ListPurpose::Picture => "Picture",
@@ -96,7 +96,7 @@ impl Page for ListDialog {
             message,
             Message::Accept | Message::Scroll(_) | Message::ScrollTo(_)
         );
-        !of_rows || !self.is_listed() || self.choice().is_some()
+        !of_rows || !self.listed || self.choice().is_some()
     }
 
     fn wheel(&self) -> Wheel {
@@ -109,8 +109,8 @@ fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
         return None;
     }
     Some(
-        match (dialog.undeletable(), dialog.total(), dialog.purpose()) {
-            _ if !dialog.is_listed() => "the library is being read".to_owned(),
+        match (dialog.undeletable(), dialog.total(), dialog.purpose) {
+            _ if !dialog.listed => "the library is being read".to_owned(),
             (Some(name), ..) => format!("{name} comes with taxel and cannot be deleted"),
             (_, 0, ListPurpose::Delete) => "there are no shapes of your own".to_owned(),
             (_, 0, _) => "the library is empty".to_owned(),

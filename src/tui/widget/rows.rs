@@ -156,16 +156,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moving_up_stops_at_the_first_row() {
-        let moved = |message| moved(3, &message);
-        assert_eq!(moved(Message::Scroll(-10)), Some(0));
-        assert_eq!(moved(Message::Scroll(10)), Some(13));
-        assert_eq!(moved(Message::ScrollTo(Endpoint::First)), Some(0));
-        assert_eq!(moved(Message::Select(7)), Some(7));
-        assert_eq!(moved(Message::Accept), None);
-    }
-
-    #[test]
     fn small_letters_find_capitals_and_capitals_only_themselves() {
         for (text, wanted, found) in [
             ("Home End", "end", Some((5, 8))),
@@ -179,31 +169,5 @@ mod tests {
         ] {
             assert_eq!(first(text, wanted), found, "{wanted:?} in {text:?}");
         }
-    }
-
-    #[test]
-    fn after_the_last_match_comes_the_first() {
-        let matches = [2, 5, 9];
-        let mut search = Search::default();
-        assert_eq!(search.begin("x", &matches, 6), Some(9));
-        assert_eq!(number(9, &matches), Some((3, 3)));
-        let mut at = 9;
-        let gone = [1, 1, -1, -1].map(|by| {
-            at = search.go(at, by, &matches).expect("a match");
-            at
-        });
-        assert_eq!(gone, [2, 5, 2, 9]);
-        assert_eq!((search.entry(), search.go(9, 1, &[])), (Some(9), None));
-        assert_eq!((search.begin("y", &[], 0), search.entry()), (None, None));
-    }
-
-    #[test]
-    fn every_match_of_a_line_is_marked() {
-        let pieces = marked("a, A and b", "a", Role::Text);
-        let text: String = pieces.iter().map(|(piece, _)| *piece).collect();
-        assert_eq!(text, "a, A and b");
-        let matches = pieces.iter().filter(|(_, role)| *role == Role::Match);
-        assert_eq!(matches.map(|(piece, _)| *piece).collect::<String>(), "aAa");
-        assert_eq!(marked("ab", "", Role::Key), [("ab", Role::Key)]);
     }
 }

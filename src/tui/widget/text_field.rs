@@ -2,19 +2,6 @@
 //!
 //! In a field that was just entered, the next typed character replaces the text, as in most programs with forms;
 //! moving the cursor first keeps the text.
-//!
-//! ```
-//! use taxel::tui::app::message::{Endpoint, Message};
-//! use taxel::tui::widget::text_field::TextField;
-//!
-//! let mut field = TextField::new("4.00", 10);
-//! field.enter();
-//! field.take(&Message::Type('7'));
-//! assert_eq!(field.text(), "7");
-//! field.take(&Message::ToEdge(Endpoint::First));
-//! field.take(&Message::Type('1'));
-//! assert_eq!(field.text(), "17");
-//! ```
 
 use tui_input::{Input, InputRequest};
 
@@ -155,30 +142,6 @@ mod tests {
         );
         assert_eq!(after(&[left, erase(Erase::Before)]), ("ac".to_owned(), 1));
         assert_eq!(after(&[erase(Erase::All), typed]), ("x".to_owned(), 1));
-    }
-
-    #[test]
-    fn typing_into_a_field_that_was_just_entered_replaces_its_text() {
-        let entered = |messages: &[Message]| {
-            let mut field = TextField::new("abc", 6);
-            field.enter();
-            assert!(field.fresh());
-            for message in messages {
-                field.take(message);
-            }
-            (field.text().to_owned(), field.fresh())
-        };
-        let (left, typed) = (Message::Choose(Arrow::Left), Message::Type('x'));
-        assert_eq!(entered(&[Message::Accept]), ("abc".to_owned(), true));
-        assert_eq!(
-            entered(&[typed.clone(), typed.clone()]),
-            ("xx".to_owned(), false)
-        );
-        assert_eq!(entered(&[left, typed]), ("abxc".to_owned(), false));
-        assert_eq!(
-            entered(&[Message::Erase(Erase::Before)]),
-            (String::new(), false)
-        );
     }
 
     #[test]

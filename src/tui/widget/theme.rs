@@ -2,13 +2,6 @@
 //!
 //! Nothing is expressed by colour alone: a character or a word says the same. The Unicode characters are those that
 //! the fonts of text consoles have (code page 437).
-//!
-//! ```
-//! use taxel::tui::widget::theme::{Role, Theme};
-//! let (ascii, unicode) = (Theme::plain(true), Theme::plain(false));
-//! assert_eq!(ascii.text("17° × 2"), "17 deg x 2");
-//! assert_eq!((ascii.taxel(Role::Chosen), unicode.taxel(Role::Chosen)), (['#', '#'], ['█', '█']));
-//! ```
 
 use std::borrow::Cow;
 

@@ -3,13 +3,6 @@
 //! Text has a [`Role`], from which the theme decides its style and characters. Text is cut at the edge of its area,
 //! and an ellipsis shows that something is missing. All functions accept any area, also an empty one or one beyond
 //! the buffer.
-//!
-//! ```
-//! use taxel::tui::widget::theme::Theme;
-//! use taxel::tui::widget::write::{first_fitting, fitted};
-//! assert_eq!(fitted("washer", 5, &Theme::plain(false)), "wash…");
-//! assert_eq!(first_fitting(&["3.00 to 4.00 cells", "3.00 to 4.00"], 12), "3.00 to 4.00");
-//! ```
 
 use std::borrow::Cow;
 
@@ -332,25 +325,6 @@ mod tests {
         }
         assert_eq!(fitted("washer", 5, &ascii), "wa...");
         assert_eq!(fitted("washer", 2, &ascii), "wa");
-    }
-
-    #[test]
-    fn a_field_marks_what_is_hidden_before_its_start() {
-        let (unicode, ascii) = (Theme::plain(false), Theme::plain(true));
-        for (text, cursor, expected) in [
-            ("1234", 4, ("1234", 4)),
-            ("12345", 5, ("…345", 4)),
-            ("12345", 0, ("12345", 0)),
-            ("字字字", 6, ("… 字", 4)),
-            // The character under the cursor is visible, though more text follows.
-            ("1234567", 3, ("1234567", 3)),
-            ("1234567", 4, ("…34567", 3)),
-        ] {
-            let (shown, column) = field_text(text, cursor, 5, &unicode);
-            assert_eq!((&*shown, column), expected, "{text} at {cursor}");
-        }
-        assert_eq!(field_text("1234567", 7, 5, &ascii).0, "...7");
-        assert_eq!(field_text("1234567", 7, 2, &ascii).0, "7");
     }
 
     #[test]

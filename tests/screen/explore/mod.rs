@@ -344,9 +344,6 @@ fn the_wheel_skips_no_descriptor() {
 #[test]
 fn keys_of_explore_that_can_do_nothing_say_so() {
     let swept = format!("fr<Enter>{SHORT}");
-    hides(&session(&format!("{swept}2")), &["columns"]);
-    let narrow = sized((60, 20), false, &format!("{swept}2"));
-    shows(&narrow, &["Left Right columns"]);
     for key in ["z", "Z", "w", "W"] {
         let text = format!(
             "! a figure has no zoom {}",

@@ -70,7 +70,7 @@ impl MapPane {
         let scales = scales((width, height), (across, body.height));
         // There are at most as many scales as a number has bits, plus two.
         let closest = scales.len() - 1;
-        let scale = scales[usize::from(results.map_zoom()).min(closest)];
+        let scale = scales[usize::from(results.map_zoom).min(closest)];
         let (stride, lines) = match scale {
             MapScale::Letters => (1, 1),
             MapScale::Picture(stride) => (stride, 2),

@@ -82,8 +82,12 @@ fn meaning(theme: &Theme, pane: &MapPane) -> Vec<String> {
     if pane.stride == 1 {
         return vec![full];
     }
-    let part = format!("1 pose in {0} × {0}", pane.stride);
-    vec![format!("{full}; {part}"), format!("  {part}")]
+    let stride = format!("{0} × {0}", pane.stride);
+    vec![
+        format!("{full}; 1 pose in {stride}"),
+        format!("{full}; 1 in {stride}"),
+        format!("  1 pose in {stride}"),
+    ]
 }
 
 pub(in crate::tui) fn draw(
@@ -156,7 +160,7 @@ fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
         stride: pane.stride,
     };
     let find = || sampled(results, pane.first, pane.count, pane.stride);
-    results.visible_imprints().of(poses, find)
+    results.visible_imprints.of(poses, find)
 }
 
 fn sampled(
