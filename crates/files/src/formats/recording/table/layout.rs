@@ -488,12 +488,17 @@ impl<'a> UnnamedFirst<'a> {
     }
 }
 
-/// Returns true if one field counts up by 1 from line to line, in whole numbers, and another never falls.
+/// Returns true if one field counts up by 1 from line to line, in whole numbers, and another never falls and is not
+/// the same in all lines.
 fn counts_up(lines: &[Vec<f64>], label: usize, time: usize) -> bool {
     let is_next = |pair: &[Vec<f64>]| {
         pair[1][label] == pair[0][label] + 1.0 && pair[1][time] >= pair[0][time]
     };
-    whole(lines[0][label]).is_some() && lines.windows(2).all(is_next)
+    let [first, .., last] = lines else {
+        return true;
+    };
+    let rises = last[time] > first[time];
+    whole(first[label]).is_some() && rises && lines.windows(2).all(is_next)
 }
 
 fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
