@@ -109,14 +109,22 @@ impl RecordArray {
         self.buffer.clear();
         if let Err(error) = written {
             // The file ends after a whole record. The first error is the one that is reported.
-            let _ = self.file.set_len(start);
-            self.records = self.in_file;
+            let end = self.file.metadata().map_or(start, |found| found.len());
+            let whole = end.saturating_sub(start) / record;
+            self.records = self.records.min(self.in_file + whole);
+            let _ = self.file.set_len(HEADER + self.records * record);
+            let _ = self.count();
             return Err(error);
         }
-        self.in_file = self.records;
         self.written = Instant::now();
+        self.count()
+    }
+
+    /// Writes the header with the number of records, in one piece.
+    fn count(&mut self) -> io::Result<()> {
+        self.in_file = self.records;
         self.file.seek(SeekFrom::Start(0))?;
-        self.file.write_all(&header(self.size, self.in_file))
+        self.file.write_all(&header(self.size, self.records))
     }
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
