@@ -31,7 +31,7 @@ pub struct Screen {
     abilities: Abilities,
     /// The position of the terminal's cursor; None if it is not certain, as after the last column.
     at: Option<Position>,
-    style: (Color, Color, Modifier),
+    style: CellStyle,
     visible: bool,
     /// The position at which to show the cursor; None to hide it.
     wanted: Option<Position>,
@@ -40,7 +40,10 @@ pub struct Screen {
     out: Vec<u8>,
 }
 
-const PLAIN: (Color, Color, Modifier) = (Color::Reset, Color::Reset, Modifier::empty());
+/// The colours of the text and behind it, and the attributes.
+type CellStyle = (Color, Color, Modifier);
+
+const PLAIN: CellStyle = (Color::Reset, Color::Reset, Modifier::empty());
 
 impl Screen {
     pub fn new(size: Size, abilities: Abilities) -> Self {
@@ -104,21 +107,47 @@ impl Screen {
         self.at = Some(to);
     }
 
-    fn write(&mut self, cell: &Cell) {
-        let style = (cell.fg, cell.bg, cell.modifier);
+    fn set_style(&mut self, style: CellStyle) {
         if self.abilities.styles && style != self.style {
             self.out.extend(sgr(style).as_bytes());
             self.style = style;
         }
+    }
+
+    fn write(&mut self, cell: &Cell) {
+        self.set_style((cell.fg, cell.bg, cell.modifier));
         // Ratatui leaves out control characters but not these two, which end a line or a paragraph.
         let symbol = match cell.symbol() {
             "\u{2028}" | "\u{2029}" => " ",
             symbol => symbol,
         };
         self.out.extend(symbol.as_bytes());
-        let last = self.size.width.saturating_sub(1);
-        let known = self.at.filter(|at| at.x < last && is_narrow(symbol));
-        self.at = known.map(|at| Position { x: at.x + 1, ..at });
+        self.moved(1, is_narrow(symbol));
+    }
+
+    /// Writes blanks that look plain in one piece.
+    fn write_blanks(&mut self, (at, count): (Position, u16)) {
+        self.go(at);
+        if shows_on_blanks(self.style) {
+            self.set_style(PLAIN);
+        }
+        if self.abilities.synchronized && count > 8 {
+            // Erases them (ECH); the cursor stays.
+            self.out.extend(format!("\x1b[{count}X").as_bytes());
+        } else {
+            self.out.extend(" ".repeat(count.into()).as_bytes());
+            self.moved(count, true);
+        }
+    }
+
+    /// Notes where the cursor is after this many columns; after the last one, terminals differ.
+    fn moved(&mut self, columns: u16, known: bool) {
+        let right = self.size.width;
+        let at = self.at.filter(|at| known && at.x + columns < right);
+        self.at = at.map(|at| Position {
+            x: at.x + columns,
+            ..at
+        });
     }
 }
 
@@ -129,12 +158,32 @@ impl Backend for Screen {
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
     {
+        let mut blanks: Option<(Position, u16)> = None;
         for (x, y, cell) in content {
-            if x < self.size.width && y < self.size.height {
-                self.go(Position { x, y });
+            if x >= self.size.width || y >= self.size.height {
+                continue;
+            }
+            let style = (cell.fg, cell.bg, cell.modifier);
+            let is_blank = cell.symbol() == " " && !shows_on_blanks(style);
+            let at = Position { x, y };
+            match &mut blanks {
+                Some((start, count)) if is_blank && start.y == y && start.x + *count == x => {
+                    *count += 1;
+                    continue;
+                }
+                _ => blanks
+                    .take()
+                    .into_iter()
+                    .for_each(|run| self.write_blanks(run)),
+            }
+            if is_blank {
+                blanks = Some((at, 1));
+            } else {
+                self.go(at);
                 self.write(cell);
             }
         }
+        blanks.into_iter().for_each(|run| self.write_blanks(run));
         Ok(())
     }
 
@@ -197,7 +246,13 @@ const ATTRIBUTES: [(Modifier, &str); 7] = [
     (Modifier::CROSSED_OUT, "9"),
 ];
 
-fn sgr((fore, back, attributes): (Color, Color, Modifier)) -> String {
+/// Returns true if a blank in this style does not look like a plain one.
+fn shows_on_blanks((_, back, attributes): CellStyle) -> bool {
+    let seen = Modifier::REVERSED | Modifier::UNDERLINED | Modifier::CROSSED_OUT;
+    back != Color::Reset || attributes.intersects(seen)
+}
+
+fn sgr((fore, back, attributes): CellStyle) -> String {
     let set = ATTRIBUTES
         .iter()
         .filter(|(own, _)| attributes.contains(*own));

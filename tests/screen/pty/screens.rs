@@ -221,7 +221,6 @@ fn a_record_of_keys_shows_the_same_screen() {
     ];
     let mut program = Program::started(&Start {
         command: &command,
-        size: (80, 24),
         ..Start::default()
     });
     program.types(b"fr\t3.57\x1b[D\x7f\r");
