@@ -8,7 +8,6 @@ use crate::formats::seconds::to_nanoseconds;
 /// The time between two ticks, and the longest wait until it is asked again whether more is wanted.
 pub(super) const TICK: Duration = Duration::from_millis(100);
 
-/// A clock that says when the next tick is due, however often frames arrive.
 #[derive(Debug)]
 pub(super) struct Ticker {
     last: Instant,
@@ -21,7 +20,6 @@ impl Ticker {
         }
     }
 
-    /// Whether a tick is due; the next one is due [`TICK`] later.
     pub(super) fn is_due(&mut self) -> bool {
         let now = Instant::now();
         let is_due = now - self.last >= TICK;
@@ -45,7 +43,6 @@ pub(super) struct SilenceWatch {
     /// The time between the last two frames that did not arrive together; None before the first frame.
     interval: Option<Duration>,
     frame_came: bool,
-    /// The number of bytes up to the last frame or the last look at the silence.
     bytes: u64,
     looked: Option<Instant>,
     /// Whether the silence was reported: without bytes, and with bytes that are no frame.
@@ -73,7 +70,6 @@ impl SilenceWatch {
         self.begin(now);
     }
 
-    /// Notes that the source is open again. `bytes` is the number of bytes so far.
     pub(super) fn reopen(&mut self, bytes: u64, now: Instant) {
         self.bytes = bytes;
         self.begin(now);
@@ -195,12 +191,10 @@ const UNEVEN: f64 = 0.1;
 /// ```
 #[derive(Clone, Debug)]
 pub struct FrameRate {
-    /// The last bursts, each followed by another one.
     bursts: VecDeque<Burst>,
     most: usize,
     /// The burst that has not ended: the time of its first frame, and its number of frames.
     open: Option<(f64, u32)>,
-    /// The number of frames that were earlier than the open burst.
     falls: usize,
 }
 

@@ -19,7 +19,6 @@ const UNCHANGED: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub(super) struct Growth {
     file: File,
-    /// The length of the file in bytes when it was opened.
     length: u64,
     /// The number of bytes that were read; those that are read again count once.
     bytes: Cell<u64>,
@@ -63,12 +62,9 @@ impl Growth {
     }
 }
 
-/// The reason why reading a followed file ended before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FollowEnd {
-    /// No more is wanted.
     Stopped,
-    /// The file must be read again from its start.
     Anew(ReadAnew),
 }
 
@@ -81,11 +77,9 @@ pub(super) struct FollowedFile<'a> {
     end: Option<FollowEnd>,
     /// Whether the last byte that was read ends a line, or none was read.
     ended_line: bool,
-    /// The number of bytes from the start of the file to the next one.
     offset: u64,
 }
 
-/// Follows an open file of that path, at its start. Also returns its growth.
 pub(super) fn of(path: &Path, file: File) -> io::Result<(GrowingFile, Growth)> {
     let growth = Growth {
         length: file.metadata()?.len(),

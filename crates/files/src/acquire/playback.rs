@@ -68,16 +68,13 @@ struct Player<'a, 'b> {
     ended: Cell<bool>,
     ticker: RefCell<Ticker>,
     follows: Cell<bool>,
-    /// The counts of a followed file: bytes, frames and wrong frames.
     counts: RefCell<StreamCounts>,
     silence: RefCell<SilenceWatch>,
     damage: RefCell<Option<RecordingError>>,
 }
 
-/// A channel that was reported.
 struct KnownChannel {
     name: Option<String>,
-    /// The number of its first frame in this round.
     first: u64,
     next: u64,
 }
@@ -220,7 +217,6 @@ impl Player<'_, '_> {
         flow
     }
 
-    /// Reports a tick if one is due. Returns `Break` if no more is wanted.
     fn tick(&self) -> ControlFlow<()> {
         if self.ended.get() || self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
@@ -386,7 +382,6 @@ pub(super) struct Pace<'a> {
     step: f64,
     speed: f64,
     frames: u32,
-    /// The time when the last of them was due, in seconds of the recording.
     last: Option<f64>,
     /// The seconds from the first to the last of them, with long pauses shortened.
     played: f64,
@@ -394,14 +389,12 @@ pub(super) struct Pace<'a> {
     /// The channel that sets the pace. Playback does not wait for frames of other channels, whether before, between or
     /// after those of this channel.
     channel: ChannelChoice,
-    /// The number of values in a frame of the channel, if its rows and columns are unknown.
     unshaped: Option<u64>,
     /// The growth of a file that is followed: once it has grown, playback waits for no frame.
     growth: Option<&'a Growth>,
 }
 
 impl<'a> Pace<'a> {
-    /// Begins a recording now; `growth` is that of its file, if it is followed.
     pub(super) fn new(options: &AcquireOptions, growth: Option<&'a Growth>) -> Self {
         let speed = match options.playback {
             Playback::Paced { speed, .. } if speed > 0.0 => speed,
@@ -463,7 +456,6 @@ impl<'a> Pace<'a> {
         })
     }
 
-    /// Whether the recording is a file that has grown, so that playback does not wait.
     fn has_grown(&self) -> bool {
         self.growth.is_some_and(Growth::has_grown)
     }

@@ -100,12 +100,10 @@ impl StreamReader<'_, '_> {
         }
     }
 
-    /// Opens the source. Returns None if no more is wanted meanwhile.
     fn open(&mut self) -> io::Result<Option<ByteInput>> {
         ByteInput::open(self.source, self.options, &mut || self.wait())
     }
 
-    /// Reports a tick while opening a source or waiting for it. Returns `Break` if no more is wanted.
     fn wait(&mut self) -> ControlFlow<()> {
         if self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
@@ -180,7 +178,6 @@ impl StreamClock {
         }
     }
 
-    /// Reports an event of the decoder. A frame without a time gets that of its arrival.
     fn report(
         &mut self,
         event: StreamEvent<'_>,
@@ -270,7 +267,6 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
         self.step(StreamDecoder::finish)
     }
 
-    /// Reports what is left of bytes that may end within a frame.
     pub(super) fn cut_off(&mut self) -> ControlFlow<()> {
         self.step(StreamDecoder::cut_off)
     }
@@ -336,9 +332,7 @@ impl<'a, 'b> StreamReporter<'a, 'b> {
 /// The start of a source, as long as it may be that of a recording that only a file can be. With its first frame, a
 /// source is a stream.
 pub(super) struct StreamStart {
-    /// The search; None once it has ended.
     search: Option<StartSearch>,
-    /// The number of frames before the first byte.
     frames: u64,
 }
 
@@ -370,7 +364,6 @@ impl StreamStart {
         Some(found)
     }
 
-    /// Checks that a source with these counts is a stream, if it is of this kind according to its start.
     pub(super) fn check(&self, kind: StartKind, counts: &StreamCounts) -> Result<(), AcquireError> {
         match kind {
             StartKind::Recording(format) if counts.frames == self.frames => {

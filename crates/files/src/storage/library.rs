@@ -434,10 +434,8 @@ impl Library {
     }
 }
 
-/// The trash inside a library when its folder was read.
 struct Trash {
     folder: PathBuf,
-    /// The shapes, the last deleted first.
     shapes: Vec<DeletedShape>,
 }
 

@@ -86,9 +86,7 @@ pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
 /// The version of a file: another one once the file was written again, as far as its size and its time show it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileVersion {
-    /// The size of the file, in bytes.
     bytes: u64,
-    /// The time when it was written.
     modified: SystemTime,
 }
 

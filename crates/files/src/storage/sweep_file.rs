@@ -168,7 +168,6 @@ pub fn is_poses(name: impl AsRef<Path>) -> bool {
 pub struct PoseFile {
     file: UnfinishedFile,
     start: u64,
-    /// The number of rows of the grid, and of poses in each.
     rows: u64,
     row_length: u64,
     missing: u64,

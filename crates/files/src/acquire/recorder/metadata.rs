@@ -118,7 +118,6 @@ pub(super) fn read_beside(path: &Path) -> Option<Result<RecordingMetadata, Metad
     }
 }
 
-/// The consequence of missing metadata.
 const UNKNOWN: &str = "the recording's threshold and tare are unknown";
 
 /// The error for metadata beside an array that is missing or cannot be read.
@@ -160,7 +159,6 @@ pub enum MetadataFileError {
     },
 }
 
-/// The metadata of a recording, and the notes for it.
 #[derive(Debug)]
 pub(super) struct MetadataNotes {
     metadata: RecordingMetadata,
@@ -174,7 +172,6 @@ pub(super) struct MetadataNotes {
 }
 
 impl MetadataNotes {
-    /// Begins the notes for a recording that has not ended yet.
     pub(super) fn new(metadata: &RecordingMetadata) -> Self {
         let mut metadata = metadata.clone();
         metadata.ended = Some(false);
@@ -210,7 +207,6 @@ impl MetadataNotes {
         }
     }
 
-    /// Notes the number and the time of a frame that is recorded.
     pub(super) fn note_frame(&mut self, frame: &Frame, time: Option<f64>) {
         if let Some(time) = time {
             self.rate.add(time);
@@ -231,7 +227,6 @@ impl MetadataNotes {
         }
     }
 
-    /// Keeps the reason why the recording ends early, if it is the first.
     pub(super) fn note_reason(&mut self, reason: &str) {
         self.reason.get_or_insert_with(|| reason.to_owned());
     }

@@ -30,7 +30,6 @@ const WRITTEN_OUT: Duration = Duration::from_millis(400);
 /// The number of waiting bytes at which records are written out at once.
 const BUFFER: usize = 1 << 18;
 
-/// An array in a file, and the records that wait to be written into it.
 #[derive(Debug)]
 pub(super) struct RecordArray {
     file: File,
