@@ -20,7 +20,7 @@ pub enum RecordingError {
     /// A file of another kind.
     #[error("{kind}, expected {}", readable_formats())]
     Foreign {
-        /// The kind of file, with its article: "a PNG image".
+        /// The kind of file, with its article: "an imprint as text".
         kind: &'static str,
     },
     /// A place from which on the file does not follow its format. Lines and columns count from 1; a column is a field
