@@ -3,8 +3,8 @@
 use std::fs;
 use std::process::{Command, Stdio};
 
-use taxel::formats::{Name, StoredShape};
-use taxel::prelude::*;
+use taxel_core::prelude::*;
+use taxel_files::formats::{Name, StoredShape};
 
 use timing::{Work, in_turn};
 

@@ -6,10 +6,10 @@
 
 use std::hint::black_box;
 
-use taxel::prelude::*;
-use taxel::progress::ToTheEnd;
-use taxel::recognition::{Evaluation, Evidence, GridSteps, Model, Training, equal_figures};
-use taxel::sweep::Sweep;
+use taxel_core::prelude::*;
+use taxel_core::progress::ToTheEnd;
+use taxel_core::recognition::{Evaluation, Evidence, GridSteps, Model, Training, equal_figures};
+use taxel_core::sweep::Sweep;
 
 use timing::{Work, in_turn};
 

@@ -6,8 +6,8 @@
 
 use std::hint::black_box;
 
-use taxel::prelude::*;
-use taxel::recognition::{Model, ModelHead, NamedShape, Noise, ShapeCount};
+use taxel_core::prelude::*;
+use taxel_core::recognition::{Model, ModelHead, NamedShape, Noise, ShapeCount};
 
 use timing::{Least, Work, in_turn};
 

@@ -9,13 +9,13 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use taxel::atlas::{ImprintSummary, feature_values};
-use taxel::figure::FigureKind;
-use taxel::parameter::Parameter;
-use taxel::pose::{Axis, Pose, PoseGrid};
-use taxel::source::Source;
-use taxel::sweep::Sweep;
-use taxel::touch::Plane;
+use taxel_core::atlas::{ImprintSummary, feature_values};
+use taxel_core::figure::FigureKind;
+use taxel_core::parameter::Parameter;
+use taxel_core::pose::{Axis, Pose, PoseGrid};
+use taxel_core::source::Source;
+use taxel_core::sweep::Sweep;
+use taxel_core::touch::Plane;
 
 use cases::{Case, cases, figure, sensor};
 use peer::{Outline, Peer};

@@ -6,14 +6,14 @@
 
 use std::hint::black_box;
 
-use taxel::description::{DESCRIPTORS, Description, Region, RegionKind, each_region, regions};
-use taxel::figure::{Figure, FigureKind};
-use taxel::parameter::Parameter;
-use taxel::sensor::Sensor;
-use taxel::touch::Plane;
 use taxel::tui::app::state::Options;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
+use taxel_core::description::{DESCRIPTORS, Description, Region, RegionKind, each_region, regions};
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::Sensor;
+use taxel_core::touch::Plane;
 
 use peer::{Outline, Peer};
 use timing::{Work, in_turn, selected};

@@ -10,7 +10,7 @@
 
 use std::fmt::Write;
 
-use taxel::prelude::*;
+use taxel_core::prelude::*;
 
 /// The descriptors of the shape, as opposed to its place.
 const DESCRIBING: [&str; 8] = [
@@ -68,7 +68,7 @@ pub(crate) fn report(angles: &str) -> Result<String, String> {
 fn row(
     results: &[SweepResult],
     key: &str,
-    deviation: fn(&taxel::atlas::Statistic) -> Option<f64>,
+    deviation: fn(&taxel_core::atlas::Statistic) -> Option<f64>,
 ) -> String {
     let percent = |result: &SweepResult| {
         let statistic = result

@@ -7,8 +7,8 @@
 
 use std::fmt::Write;
 
-use taxel::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
-use taxel::prelude::*;
+use taxel_core::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
+use taxel_core::prelude::*;
 
 /// A plate bounded by a polygon, with a round hole; lengths in cells.
 struct Plate {

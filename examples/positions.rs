@@ -8,7 +8,7 @@
 
 use std::fmt::Write;
 
-use taxel::prelude::*;
+use taxel_core::prelude::*;
 
 /// The name of each experiment, its ranges of x0 and y0, and what the paper says about it.
 const EXPERIMENTS: [(&str, &str, &str, &str); 3] = [

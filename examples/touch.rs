@@ -4,8 +4,8 @@
 
 use std::fmt::Write;
 
-use taxel::formats::value;
-use taxel::prelude::*;
+use taxel_core::prelude::*;
+use taxel_files::formats::value;
 
 fn main() {
     print!("{}", report());

@@ -111,7 +111,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
         "library|restore|my ring",
         "no shape named \"my ring\" in the trash",
     );
-    let count = taxel::storage::shipped::names().count() + 1;
+    let count = taxel_files::storage::shipped::names().count() + 1;
     assert_eq!(
         shelf.does("library|check", ""),
         format!("{count} shapes, all intact\n")
@@ -188,7 +188,7 @@ fn ambiguous_names_are_reported() {
     let file = |name: &str| shelf.folder.join(name);
     std::fs::rename(file("ring.json"), file("Ma\u{df}.json")).expect("renamed");
     std::fs::copy(file("Ma\u{df}.json"), file("MASS.json")).expect("copied");
-    let all = taxel::storage::shipped::names().count() + 2;
+    let all = taxel_files::storage::shipped::names().count() + 2;
     let says = "the name inside the file is \"ring\"; the name of the file counts";
     assert_eq!(
         shelf.does("library|check", ""),
@@ -253,7 +253,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     );
     let run = shelf.run("library|check", "");
     let folder = shelf.folder.display().to_string();
-    let all = taxel::storage::shipped::names().count() + 3;
+    let all = taxel_files::storage::shipped::names().count() + 3;
     assert_eq!(
         run.stdout.replace(&folder, "FOLDER"),
         "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is unknown to this version, which reads \"taxel-shape/1\"\n\

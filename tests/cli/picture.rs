@@ -5,7 +5,7 @@ use super::library::Shelf;
 #[test]
 fn without_flags_a_picture_is_the_shape_itself() {
     let shelf = Shelf::new();
-    for name in taxel::storage::shipped::names() {
+    for name in taxel_files::storage::shipped::names() {
         let shown = shelf.does(&format!("library|show|{name}|--json"), "");
         let touched = shelf.does(&format!("picture|{name}|--json"), "");
         assert_eq!(shown, touched, "{name}");

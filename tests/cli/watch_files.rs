@@ -5,10 +5,10 @@ use std::fs;
 use std::io::{BufRead, BufReader, Write};
 
 use serde_json::Value;
-use taxel::acquire::FrameRecorder;
-use taxel::formats::recording::{FrameMark, RecordingMetadata};
-use taxel::frame::Frame;
-use taxel::storage::Existing;
+use taxel_core::frame::Frame;
+use taxel_files::acquire::FrameRecorder;
+use taxel_files::formats::recording::{FrameMark, RecordingMetadata};
+use taxel_files::storage::Existing;
 
 use super::array::{self, array};
 use super::watch::{lines, sample, started, stream};

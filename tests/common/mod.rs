@@ -1,11 +1,11 @@
 //! Helpers for several test files: random numbers from a fixed seed, and short notations for shapes.
 #![allow(dead_code, reason = "every test file uses its own part of this one")]
 
-use taxel::figure::{Figure, FigureKind};
-use taxel::imprint::Imprint;
-use taxel::parameter::Parameter;
-use taxel::picture::Picture;
-use taxel::sensor::{MatrixSize, Sensor};
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
+use taxel_core::picture::Picture;
+use taxel_core::sensor::{MatrixSize, Sensor};
 
 /// Returns the size of a matrix. Panics if it is not allowed.
 pub(crate) fn size(columns: u8, rows: u8) -> MatrixSize {

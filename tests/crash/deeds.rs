@@ -6,7 +6,7 @@ use std::io::{Write, stdout};
 use std::path::Path;
 use std::process::{Command, Output};
 
-use taxel::storage::{Expected, Journal, Library};
+use taxel_files::storage::{Expected, Journal, Library};
 
 use super::array;
 use super::state::{State, program, shape};

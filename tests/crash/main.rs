@@ -15,16 +15,16 @@ mod deeds;
 mod state;
 mod strace;
 
-use std::env;
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 use std::time::{Duration, SystemTime};
+use std::{env, thread};
+
+use taxel_files::storage::LibraryError;
 
 use deeds::{DEEDS, Deed, perform, restart};
 use state::State;
-use taxel::storage::LibraryError;
 
 fn main() {
     if perform() {

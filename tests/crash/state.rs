@@ -1,16 +1,15 @@
 //! A library and a recording before a deed, and the states that they may be in afterwards.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::thread;
 use std::time::{Duration, Instant};
+use std::{fs, thread};
 
-use taxel::formats::recording::RecordingMetadata;
-use taxel::formats::{Name, StoredShape};
-use taxel::imprint::Imprint;
-use taxel::sensor::Sensor;
-use taxel::storage::{Expected, Library, LibraryError, LoadedShape, Orphan, ShapeOrigin};
+use taxel_core::imprint::Imprint;
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::recording::RecordingMetadata;
+use taxel_files::formats::{Name, StoredShape};
+use taxel_files::storage::{Expected, Library, LibraryError, LoadedShape, Orphan, ShapeOrigin};
 use tempfile::TempDir;
 
 /// The longest time that a program may take, even on the busiest machine.

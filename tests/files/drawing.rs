@@ -4,13 +4,13 @@
 
 use std::path::Path;
 
-use taxel::description::regions;
-use taxel::figure::Figure;
-use taxel::formats::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
-use taxel::imprint::Imprint;
-use taxel::picture::Picture;
-use taxel::sensor::Sensor;
-use taxel::touch::Plane;
+use taxel_core::description::regions;
+use taxel_core::figure::Figure;
+use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
+use taxel_core::sensor::Sensor;
+use taxel_core::touch::Plane;
+use taxel_files::formats::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
 
 use crate::common::size;
 

@@ -2,9 +2,9 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use taxel::formats::imprint_file::MAX_BYTES;
-use taxel::formats::{ImprintFormat, ImprintFormatError, read_imprint};
-use taxel::imprint::Imprint;
+use taxel_core::imprint::Imprint;
+use taxel_files::formats::imprint_file::MAX_BYTES;
+use taxel_files::formats::{ImprintFormat, ImprintFormatError, read_imprint};
 
 use crate::common::size;
 use crate::property::config;

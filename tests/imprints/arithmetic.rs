@@ -2,11 +2,12 @@
 //!
 //! The constants were computed with 60 digits by series in whole-number arithmetic, independently of the code here.
 
+use taxel_core::geometry::{Double, Real, cell_area};
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::Sensor;
+use taxel_core::touch::Plane;
+
 use crate::common::figure;
-use taxel::geometry::{Double, Real, cell_area};
-use taxel::parameter::Parameter;
-use taxel::sensor::Sensor;
-use taxel::touch::Plane;
 
 const PI: &str = "3.1415926535897932384626433832795";
 

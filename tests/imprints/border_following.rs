@@ -6,9 +6,10 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use taxel_core::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
+use taxel_core::imprint::Imprint;
+
 use crate::common::{Random, size};
-use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
-use taxel::imprint::Imprint;
 
 /// Rows of taxels.
 type Mask = Vec<Vec<bool>>;
@@ -187,7 +188,7 @@ fn plain_region(kind: RegionKind, own: &[(usize, usize)]) -> Plain {
         }
     };
     let side = |value: usize| u8::try_from(value).expect("at most 64");
-    let rect = taxel::imprint::Bounds {
+    let rect = taxel_core::imprint::Bounds {
         left: side(left),
         top: side(top),
         right: side(right),

@@ -4,9 +4,10 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use taxel_core::geometry::{Ellipse, Extent, Pen, Point, Polygon, Real, Side, Solid};
+use taxel_core::touch::{Plane, reaches_beyond};
+
 use crate::common::{Random, figure, picture, sensor};
-use taxel::geometry::{Ellipse, Extent, Pen, Point, Polygon, Real, Side, Solid};
-use taxel::touch::{Plane, reaches_beyond};
 
 /// The number of columns and of rows of the sensor.
 const SIDE: u8 = 16;

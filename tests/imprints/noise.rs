@@ -4,9 +4,9 @@
 use std::path::PathBuf;
 
 use serde_json::Value;
-use taxel::prelude::*;
-use taxel::progress::ToTheEnd;
-use taxel::recognition::{
+use taxel_core::prelude::*;
+use taxel_core::progress::ToTheEnd;
+use taxel_core::recognition::{
     AnswerState, Evidence, Model, NamedShape, Noise, NoisyTouches, SearchMethod,
 };
 

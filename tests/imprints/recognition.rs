@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use taxel::prelude::*;
-use taxel::progress::ToTheEnd;
-use taxel::recognition::{
+use taxel_core::prelude::*;
+use taxel_core::progress::ToTheEnd;
+use taxel_core::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
     ImprintKey, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding, SearchMethod,
     ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError,
 };
-use taxel::sweep::{Shard, ShardOrderError};
+use taxel_core::sweep::{Shard, ShardOrderError};
 
 use crate::common::size;
 
@@ -44,7 +44,7 @@ pub(crate) fn published() -> Ranges {
 /// S1: seven figures of about 30 cells.
 pub(crate) fn s1() -> Vec<NamedShape> {
     let sensor = sensor(32);
-    let shape = |name: &str, figure: taxel::figure::FigureBuilder| {
+    let shape = |name: &str, figure: taxel_core::figure::FigureBuilder| {
         NamedShape::new(name, figure.on(&sensor).expect("in range"))
     };
     vec![

@@ -6,9 +6,9 @@
 use std::path::PathBuf;
 
 use serde_json::Value;
-use taxel::formats::{DescribedImprint, Job};
-use taxel::sensor::Sensor;
-use taxel::touch::Plane;
+use taxel_core::sensor::Sensor;
+use taxel_core::touch::Plane;
+use taxel_files::formats::{DescribedImprint, Job};
 
 use crate::skip::skipped;
 

@@ -6,16 +6,16 @@
 use std::collections::HashSet;
 use std::f64::consts::SQRT_2;
 
+use taxel_core::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
+use taxel_core::imprint::Imprint;
+use taxel_core::touch::Plane;
+
 use crate::common::{figure, grid, sensor};
 use crate::paper::RING_IMPRINTS;
-use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
-use taxel::imprint::Imprint;
-use taxel::touch::Plane;
+use RegionKind::{Exterior, Hole};
 
 /// The kind of region; NA, NAE, CE; the sums of x and of y; straight and diagonal steps; left, top, right, bottom.
 type Row = (RegionKind, [u32; 3], [f64; 2], [u32; 2], [u8; 4]);
-
-use RegionKind::{Exterior, Hole};
 
 fn assert_regions(name: &str, imprint: &Imprint, expected: &[Row]) {
     let found: Vec<Row> = regions(imprint)

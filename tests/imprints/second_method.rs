@@ -10,13 +10,14 @@
 
 use std::f64::consts::PI;
 
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::geometry::Solid;
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
+use taxel_core::picture::Picture;
+use taxel_core::touch::Plane;
+
 use crate::common::{Random, sensor, size};
-use taxel::figure::{Figure, FigureKind};
-use taxel::geometry::Solid;
-use taxel::imprint::Imprint;
-use taxel::parameter::Parameter;
-use taxel::picture::Picture;
-use taxel::touch::Plane;
 
 /// The number of poses of each of the seven kinds; that of pictures follows.
 const POSES: u32 = 30_000;
@@ -260,7 +261,11 @@ fn drawn_plane(random: &mut Random) -> Plane {
     Plane::new(sensor(columns, rows, threshold))
 }
 
-fn drawn_figure(random: &mut Random, kind: FigureKind, sensor: &taxel::sensor::Sensor) -> Figure {
+fn drawn_figure(
+    random: &mut Random,
+    kind: FigureKind,
+    sensor: &taxel_core::sensor::Sensor,
+) -> Figure {
     let side = sensor.side();
     let wall = random.chance(400);
     // Small sensors get large figures, which reach beyond them; large sensors get mostly small ones.

@@ -1,7 +1,7 @@
 //! The user's files: opening, writing, completion; and the commands that are remembered.
 
-use taxel::storage::Library;
 use taxel::tui::runtime::World;
+use taxel_files::storage::Library;
 
 use crate::session::{hides, press, session, shows, started, then};
 

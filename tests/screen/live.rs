@@ -3,17 +3,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use taxel::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule};
-use taxel::imprint::Imprint;
-use taxel::matrix::Matrix;
-use taxel::recognition::Noise;
-use taxel::sensor::MatrixSize;
 use taxel::tui::app::message::{Message, WorkerEvent};
 use taxel::tui::live::message::{
     FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, RecordedFrames, SourceState,
     WatchRequest,
 };
 use taxel::tui::script::Session;
+use taxel_core::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule};
+use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
+use taxel_core::recognition::Noise;
+use taxel_core::sensor::MatrixSize;
 
 use crate::array::{self, array};
 use crate::session::{hides, session, shows, sized, started, then, world};

@@ -7,18 +7,18 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-use taxel::figure::Figure;
-use taxel::formats::Name;
-use taxel::pose::{Anchor, Axis, Ranges};
-use taxel::recognition::{NamedShape, Training};
-use taxel::sensor::Sensor;
-use taxel::storage::{Existing, Library, ModelCache, ModelFolder};
 use taxel::tui::app::message::{Message, WorkerEvent};
 use taxel::tui::app::state::App;
 use taxel::tui::app::update::{next_work, update};
 use taxel::tui::runtime::World;
 use taxel::tui::runtime::effect::{Effect, Work};
 use taxel::tui::script::Session;
+use taxel_core::figure::Figure;
+use taxel_core::pose::{Anchor, Axis, Ranges};
+use taxel_core::recognition::{NamedShape, Training};
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::Name;
+use taxel_files::storage::{Existing, Library, ModelCache, ModelFolder};
 
 use crate::session::{hides, models, press, session, sized, started, then, untrained, world};
 

@@ -1,9 +1,9 @@
 //! Screens in every size and character set.
 
-use taxel::sensor::Sensor;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
+use taxel_core::sensor::Sensor;
 
 use crate::session::{hides, on, press, shows, sized, then, world};
 

@@ -245,7 +245,11 @@ fn malformed_commands_are_reported_with_their_line() {
 #[test]
 fn a_signal_keeps_unsaved_work() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let world = || World::new(taxel::storage::Library::open(folder.path().to_owned()));
+    let world = || {
+        World::new(taxel_files::storage::Library::open(
+            folder.path().to_owned(),
+        ))
+    };
     let settings = settings(false, false);
     run(
         "Keys f<Enter>\nSignal HUP\nQuit",

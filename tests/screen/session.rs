@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use taxel::storage::ModelCache;
 use taxel::tui::app::state::Options;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
+use taxel_files::storage::ModelCache;
 
 /// Makes an empty library in a temporary folder, which is deleted with the session. A set that any of these tests has
 /// trained is not trained again.

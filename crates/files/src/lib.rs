@@ -10,11 +10,6 @@
 
 #![warn(missing_docs)]
 
-use taxel_core::{
-    atlas, description, figure, frame, geometry, imprint, index, lock, matrix, parameter, picture,
-    pose, progress, quote, recognition, sensor, serialize, source, sweep, touch,
-};
-
 #[cfg(unix)]
 pub mod acquire;
 pub mod formats;

@@ -11,12 +11,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use taxel_core::lock::{locked, try_locked};
+use taxel_core::pose::PoseGrid;
+use taxel_core::progress::{Progress, stop_if};
+use taxel_core::sweep::{Sweep, TimingSample};
+
 use crate::formats::value::counted;
-use crate::lock::locked;
-use crate::lock::try_locked;
-use crate::pose::PoseGrid;
-use crate::progress::{Progress, stop_if};
-use crate::sweep::{Sweep, TimingSample};
 
 const PAUSE: Duration = Duration::from_millis(20);
 
@@ -279,12 +279,13 @@ fn free() -> Option<MemorySize> {
 mod tests {
     use std::ops::ControlFlow;
 
+    use taxel_core::figure::{Figure, FigureKind};
+    use taxel_core::pose::{Anchor, Axis, Ranges};
+    use taxel_core::progress::ToTheEnd;
+    use taxel_core::sensor::Sensor;
+    use taxel_core::source::Source;
+
     use super::*;
-    use crate::figure::{Figure, FigureKind};
-    use crate::pose::{Anchor, Axis, Ranges};
-    use crate::progress::ToTheEnd;
-    use crate::sensor::Sensor;
-    use crate::source::Source;
 
     #[test]
     fn amounts_are_read_and_shown() {

@@ -1,6 +1,6 @@
 //! Archives and MCAP files that are complete, except that one byte was changed.
 
-use taxel::frame::Frame;
+use taxel_core::frame::Frame;
 
 use super::samples::sample;
 use super::{Recorded, channel_shape, recorded};

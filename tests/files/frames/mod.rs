@@ -18,10 +18,10 @@ mod vendors;
 use std::io::Cursor;
 use std::ops::ControlFlow;
 
-use taxel::formats::recording::{
+use taxel_core::frame::{Frame, FrameSize};
+use taxel_files::formats::recording::{
     ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingNote, read,
 };
-use taxel::frame::{Frame, FrameSize};
 
 /// Everything that was read from a recording.
 #[derive(Debug, Default)]

@@ -7,8 +7,10 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant, SystemTime};
 
-use taxel::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
-use taxel::frame::FrameSize;
+use taxel_core::frame::FrameSize;
+use taxel_files::acquire::{
+    AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire,
+};
 
 use super::frame_size;
 

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde_json::Value;
-use taxel::formats::DescribedImprint;
-use taxel::formats::recording::RecordingNote;
-use taxel::frame::{Crop, FrameError, Peak, Processing, Rule, TareFrames};
-use taxel::matrix::Matrix;
+use taxel_core::frame::{Crop, FrameError, Peak, Processing, Rule, TareFrames};
+use taxel_core::matrix::Matrix;
+use taxel_files::formats::DescribedImprint;
+use taxel_files::formats::recording::RecordingNote;
 
 use super::{Recorded, recorded};
 use crate::skip::skipped;

@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use taxel::frame::{Processing, Rule};
-
-use crate::array::array;
+use taxel_core::frame::{Processing, Rule};
 
 use super::{Recorded, channel_shape, recorded};
+use crate::array::array;
 
 /// The imprints at a threshold of 9.
 const IMPRINTS: [&str; 3] = [

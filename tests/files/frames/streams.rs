@@ -1,11 +1,10 @@
 //! Streams in pieces of any size, intact and damaged: every whole frame is found, and no false one.
 
-use taxel::formats::recording::ChannelInfo;
-use taxel::formats::stream::{
+use taxel_core::frame::Frame;
+use taxel_files::formats::recording::ChannelInfo;
+use taxel_files::formats::stream::{
     StreamCounts, StreamDecoder, StreamEvent, StreamFormat, StreamOptions,
 };
-
-use taxel::frame::Frame;
 
 use super::samples::sample;
 use super::{frame_size, recorded};

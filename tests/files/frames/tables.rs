@@ -1,6 +1,6 @@
 //! Tables as various programs write them.
 
-use taxel::frame::Frame;
+use taxel_core::frame::Frame;
 
 use super::{Recorded, channel_shape, recorded};
 

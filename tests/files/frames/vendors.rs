@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use taxel::frame::Frame;
+use taxel_core::frame::Frame;
 
 use super::{Recorded, channel_shape, recorded};
 

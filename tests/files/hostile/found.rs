@@ -2,10 +2,10 @@
 
 use std::io::Cursor;
 
-use taxel::atlas::features;
-use taxel::formats::atlas::read as read_atlas;
-use taxel::formats::read_model;
-use taxel::pose::DecimalRange;
+use taxel_core::atlas::features;
+use taxel_core::pose::DecimalRange;
+use taxel_files::formats::atlas::read as read_atlas;
+use taxel_files::formats::read_model;
 
 use super::bodies::{body, session_of, with_spread};
 use super::malice;

@@ -6,7 +6,7 @@ use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
 
-use taxel::storage::{Expected, Journal, Library, Orphan};
+use taxel_files::storage::{Expected, Journal, Library, Orphan};
 
 use super::{Scratch, is_root, refusal, shape};
 use crate::skip::skipped;

@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use taxel::formats::{Name, StoredShape};
-use taxel::prelude::*;
-use taxel::storage::{Expected, Journal, Orphan};
+use taxel_core::prelude::*;
+use taxel_files::formats::{Name, StoredShape};
+use taxel_files::storage::{Expected, Journal, Orphan};
 
 use super::{Scratch, files, shape};
 

@@ -8,10 +8,10 @@ mod trash;
 
 use std::path::{Path, PathBuf};
 
-use taxel::formats::{Name, StoredShape};
-use taxel::imprint::Imprint;
-use taxel::sensor::Sensor;
-use taxel::storage::{Expected, Library, LibraryError, ShapeOrigin};
+use taxel_core::imprint::Imprint;
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::{Name, StoredShape};
+use taxel_files::storage::{Expected, Library, LibraryError, ShapeOrigin};
 use tempfile::TempDir;
 
 /// A library in a temporary folder.

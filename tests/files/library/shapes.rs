@@ -6,14 +6,14 @@ use std::process::{Child, Command, Stdio};
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use taxel::figure::{Figure, FigureKind};
-use taxel::formats::{Name, NameError, StoredShape};
-use taxel::imprint::Imprint;
-use taxel::parameter::Parameter;
-use taxel::picture::Picture;
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::storage::{Expected, Library, LibraryError, ShapeOrigin};
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
+use taxel_core::picture::Picture;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_files::formats::{Name, NameError, StoredShape};
+use taxel_files::storage::{Expected, Library, LibraryError, ShapeOrigin};
 
 use super::{Scratch, refusal, shape};
 use crate::common::size;

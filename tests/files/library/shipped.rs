@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use taxel::description::{RegionKind, regions};
-use taxel::imprint::Imprint;
-use taxel::picture::Picture;
-use taxel::storage::{Library, LoadedShape, ShapeOrigin, shipped};
-use taxel::touch::Plane;
+use taxel_core::description::{RegionKind, regions};
+use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
+use taxel_core::touch::Plane;
+use taxel_files::storage::{Library, LoadedShape, ShapeOrigin, shipped};
 
 use super::{Scratch, files, shape};
 

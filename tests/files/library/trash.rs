@@ -1,6 +1,6 @@
 //! Deleting and restoring.
 
-use taxel::storage::{Library, LibraryError, TRASH_KEPT};
+use taxel_files::storage::{Library, LibraryError, TRASH_KEPT};
 
 use super::{Scratch, files, refusal, shape};
 

@@ -3,11 +3,11 @@
 //! Drawings have one character pair for a taxel. Where a line or a point lies between taxels, a drawing has twice the
 //! resolution: four columns and two lines for a taxel, whose centre is in the middle.
 
-use taxel::description::{DESCRIPTORS, Description, Region, Value, regions};
-use taxel::formats::value;
-use taxel::imprint::Imprint;
-use taxel::sensor::Sensor;
-use taxel::touch::Plane;
+use taxel_core::description::{DESCRIPTORS, Description, Region, Value, regions};
+use taxel_core::imprint::Imprint;
+use taxel_core::sensor::Sensor;
+use taxel_core::touch::Plane;
+use taxel_files::formats::value;
 
 use crate::common;
 use crate::docs::{Block, document};

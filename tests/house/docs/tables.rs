@@ -1,15 +1,15 @@
 //! Tables in the documents, made from the program's own tables.
 
-use taxel::description::{DESCRIPTORS, Dimension};
-use taxel::parameter::{PARAMETERS, Parameter};
-use taxel::sensor::Sensor;
 use taxel::tui::keys::action::Arguments;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::keys::keymap::Context;
 use taxel::tui::prompt::commands::commands;
+use taxel_core::description::{DESCRIPTORS, Dimension};
+use taxel_core::parameter::{PARAMETERS, Parameter};
+use taxel_core::sensor::Sensor;
 
 pub(crate) fn descriptors() -> String {
-    let row = |descriptor: &taxel::description::Descriptor| {
+    let row = |descriptor: &taxel_core::description::Descriptor| {
         let unit = match descriptor.dimension {
             Dimension::Count | Dimension::Area => "taxels",
             Dimension::Length => "cells",
@@ -64,7 +64,7 @@ pub(crate) fn prompt() -> String {
 
 /// The parameters that can be set, with their ranges on the paper's sensor.
 pub(crate) fn parameters() -> String {
-    let row = |row: &taxel::parameter::ParameterRow| {
+    let row = |row: &taxel_core::parameter::ParameterRow| {
         let (flag, range) = (row.parameter.flag(), Sensor::default().range(row.parameter));
         // The table of parameters has values for these two, which apply once they are switched on. Without the flag
         // there is neither a hole nor a scale.

@@ -1,11 +1,11 @@
 //! Shapes drawn at random, in hundredths of a cell side.
 
 use proptest::prelude::*;
-use taxel::figure::{Figure, FigureKind};
-use taxel::geometry::Polygon;
-use taxel::imprint::Imprint;
-use taxel::parameter::Parameter;
-use taxel::sensor::{MAX_SIDE, Sensor};
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::geometry::Polygon;
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::{MAX_SIDE, Sensor};
 
 use crate::common::size;
 

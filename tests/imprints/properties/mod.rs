@@ -5,19 +5,20 @@
 
 mod drawn;
 
+use proptest::prelude::*;
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::geometry::Extent;
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::{PARAMETERS, Parameter};
+use taxel_core::picture::Picture;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::touch::{Plane, reaches_beyond};
+use taxel_files::formats::StoredShape;
+
 use self::drawn::{angle, area, drawn, figure, hundredths, imprints, kind, moved, polygon, star};
 use crate::common::{sensor, size};
 use crate::property::config;
-use proptest::prelude::*;
-use taxel::figure::{Figure, FigureKind};
-use taxel::formats::StoredShape;
-use taxel::geometry::Extent;
-use taxel::imprint::Imprint;
-use taxel::parameter::{PARAMETERS, Parameter};
-use taxel::picture::Picture;
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::touch::{Plane, reaches_beyond};
 
 proptest! {
     #![proptest_config(config(10_000))]
@@ -203,7 +204,7 @@ proptest! {
                 Some(Source::Figure(figure(&drawn, sensor.side()).with(Parameter::Y0, long(numbers[1]), &sensor).expect("in range")))
             }
         };
-        let name = taxel::formats::Name::new(&name).expect("the names of the test are right");
+        let name = taxel_files::formats::Name::new(&name).expect("the names of the test are right");
         let shape = StoredShape::new(name, sensor, imprint, source).expect("of one size");
         let text = shape.write();
         let marked = format!("\u{feff}{text}");
@@ -223,7 +224,7 @@ proptest! {
         if sensor.range(parameter).contains(given) {
             // The number is shown in full, even if it has more decimals than a form accepts.
             prop_assert_eq!(parameter.format(given).parse::<f64>(), Ok(given));
-            if parameter.row().unit != taxel::parameter::Unit::Taxels {
+            if parameter.row().unit != taxel_core::parameter::Unit::Taxels {
                 prop_assert_eq!(sensor.read(parameter, &parameter.format(given)), Ok(given));
                 value = given;
             }

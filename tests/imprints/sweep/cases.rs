@@ -2,14 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use taxel::figure::{Figure, FigureKind};
-use taxel::parameter::Parameter;
-use taxel::picture::Picture;
-use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::sweep::{Sweep, SweepResult};
-use taxel::touch::{Plane, reaches_beyond};
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::parameter::Parameter;
+use taxel_core::picture::Picture;
+use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::sweep::{Sweep, SweepResult};
+use taxel_core::touch::{Plane, reaches_beyond};
 
 /// A source to sweep, with its sensor and ranges.
 #[derive(Clone)]

@@ -12,16 +12,16 @@ mod reach;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::paper::RING_IMPRINTS;
+use taxel_core::figure::FigureKind;
+use taxel_core::parameter::Parameter;
+use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
+use taxel_core::progress::stop_if;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::sweep::{MergeError, Shard, ShardOrderError, Sweep, SweepMerge, SweepResult};
 
 use self::cases::{cases, differences, figure, picture};
-use taxel::figure::FigureKind;
-use taxel::parameter::Parameter;
-use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
-use taxel::progress::stop_if;
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::sweep::{MergeError, Shard, ShardOrderError, Sweep, SweepMerge, SweepResult};
+use crate::paper::RING_IMPRINTS;
 
 fn sweep(grid: &PoseGrid) -> SweepResult {
     Sweep::new(grid).run()

@@ -1,8 +1,8 @@
 //! Ranges and grids of poses are exact, or are refused with the reason.
 
-use taxel::figure::FigureKind;
-use taxel::pose::{Anchor, Axis, DecimalRange, PoseGrid, Ranges};
-use taxel::sensor::Sensor;
+use taxel_core::figure::FigureKind;
+use taxel_core::pose::{Anchor, Axis, DecimalRange, PoseGrid, Ranges};
+use taxel_core::sensor::Sensor;
 
 use super::cases::{figure, picture};
 

@@ -1,19 +1,19 @@
 //! The poses that the sensor cuts off, the default ranges of a sweep, and the smallest sensor that is large enough.
 
 use proptest::prelude::*;
-use taxel::figure::{Figure, FigureKind};
-use taxel::formats::StoredShape;
-use taxel::geometry::Extent;
-use taxel::parameter::Parameter;
-use taxel::picture::Picture;
-use taxel::pose::{
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::geometry::Extent;
+use taxel_core::parameter::Parameter;
+use taxel_core::picture::Picture;
+use taxel_core::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges,
     smallest_sensor,
 };
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::sweep::Sweep;
-use taxel::touch::reaches_beyond;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::sweep::Sweep;
+use taxel_core::touch::reaches_beyond;
+use taxel_files::formats::StoredShape;
 
 use super::cases::{self, picture};
 

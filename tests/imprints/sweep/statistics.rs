@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use taxel::atlas::{feature_values, features};
-use taxel::description::{Description, main_region, regions};
-use taxel::figure::FigureKind;
-use taxel::imprint::Imprint;
-use taxel::touch::Plane;
+use taxel_core::atlas::{feature_values, features};
+use taxel_core::description::{Description, main_region, regions};
+use taxel_core::figure::FigureKind;
+use taxel_core::imprint::Imprint;
+use taxel_core::touch::Plane;
 
 use super::cases::{figure, picture};
 use super::{small, sweep};

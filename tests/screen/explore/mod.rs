@@ -7,10 +7,10 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use proptest::prelude::*;
-use taxel::storage::Library;
 use taxel::tui::app::message::{Message, Mouse, MouseKind, WorkerEvent};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
+use taxel_files::storage::Library;
 
 use crate::property::config;
 use crate::session::{hides, press, session, shows, sized, started, then, world};

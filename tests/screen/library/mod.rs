@@ -5,11 +5,11 @@ mod unsaved;
 use std::path::Path;
 
 use proptest::prelude::*;
-use taxel::storage::Library;
 use taxel::tui::app::document::Document;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
+use taxel_files::storage::Library;
 
 use crate::property::config;
 use crate::session::{press, session, shows, started, then};

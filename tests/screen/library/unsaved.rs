@@ -5,16 +5,12 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
-use taxel::storage::{Library, LibraryEntry, ShapeOrigin};
 use taxel::tui::app::message::{Message, WorkerEvent};
 use taxel::tui::runtime::World;
+use taxel_files::storage::{Library, LibraryEntry, ShapeOrigin};
 
 use super::session_on;
-use crate::session::press;
-use crate::session::session;
-use crate::session::shows;
-use crate::session::started;
-use crate::session::then;
+use crate::session::{press, session, shows, started, then};
 
 #[test]
 fn unsaved_work_is_offered_back_once() {

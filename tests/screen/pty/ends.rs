@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use rustix::process::Signal;
-use taxel::storage::{Library, Orphan};
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::runtime::{World, mailbox};
 use taxel::tui::terminal;
 use taxel::tui::terminal::input::Input;
 use taxel::tui::terminal::settings::{Flags, TerminalSettings};
+use taxel_files::storage::{Library, Orphan};
 
 use super::program::{Program, Start, TAXEL};
 

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::Path;
 
 use rustix::process::Signal;
-use taxel::storage::{Library, Orphan};
+use taxel_files::storage::{Library, Orphan};
 
 use super::program::{Program, Start};
 

@@ -1,16 +1,16 @@
 //! The options of an acquisition, its reports, and its errors.
 
 use std::io;
-use std::ops::ControlFlow;
-use std::ops::RangeInclusive;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::time::Duration;
+
+use taxel_core::frame::{Frame, FrameSize};
 
 use crate::acquire::followed_file::ReadAnew;
 use crate::formats::file::system_reason;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingFormat, RecordingNote};
 use crate::formats::stream::{Silence, StreamCounts, StreamFormat, StreamOptions};
 use crate::formats::value::decimal;
-use crate::frame::{Frame, FrameSize};
 
 /// The options of an acquisition: how a source is read.
 #[derive(Clone, Debug, PartialEq)]

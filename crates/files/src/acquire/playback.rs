@@ -8,6 +8,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use taxel_core::frame::Frame;
+
 use crate::acquire::clocks::{ArrivalClock, SilenceWatch, TICK, Ticker};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, AcquireSink, Playback};
 use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
@@ -18,7 +20,6 @@ use crate::formats::recording::{
     RecordingFormat, RecordingInput, RecordingMetadata, RecordingNote, format_after, read_as,
 };
 use crate::formats::stream::{Silence, StreamCounts};
-use crate::frame::Frame;
 
 /// Creates the error for a followed file that was replaced by a recording of another kind.
 fn replaced_by(format: RecordingFormat) -> RecordingError {

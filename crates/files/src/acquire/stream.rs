@@ -385,10 +385,11 @@ mod tests {
     use std::io::Write;
     use std::net::TcpListener;
 
+    use taxel_core::frame::FrameSize;
+
     use super::*;
     use crate::formats::recording::recognised;
     use crate::formats::stream::StreamFormat;
-    use crate::frame::FrameSize;
 
     /// Two connections: the first ends with the last byte of a frame, the second one byte later.
     #[test]

@@ -4,13 +4,13 @@
 //! read, in either byte order and in C or Fortran order, if their values are 0 and one other number. The format's
 //! versions 1 to 3 are read. For the source, see [`crate::formats::npy`].
 
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::counted;
+use taxel_core::quote::shortened;
+use taxel_core::sensor::MatrixSize;
+
 use crate::formats::imprint_file::Mask;
-use crate::formats::npy;
-use crate::formats::npy::{Dtype, NumberType};
-use crate::imprint::Imprint;
-use crate::parameter::number::counted;
-use crate::quote::shortened;
-use crate::sensor::MatrixSize;
+use crate::formats::npy::{self, Dtype, NumberType};
 
 /// The meaning of an array's numbers in an imprint, by their bits: no value has to be computed.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 //! can be read back and merged.
 //!
 //! Columns of the CSV: `id`, `count`, `share` of all poses, the first pose (`first_x0` and so on, zooms for pictures
-//! only), `pieces`, `holes`, each feature of [`crate::atlas::features`] (empty where it does not exist), and
+//! only), `pieces`, `holes`, each feature of [`taxel_core::atlas::features`] (empty where it does not exist), and
 //! `imprint`, its rows of `#` and `.` from the top with `/` between them.
 //!
 //! In the archive, per imprint, in order: `rows` (a word per row of the sensor, bit `i` for column `i`; shaped imprints
@@ -16,20 +16,19 @@ use std::io::{self, Read, Seek, Write};
 
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
+use taxel_core::atlas::{Atlas, AtlasEntry, ImprintSummary, feature_values, features};
+use taxel_core::parameter::number::share;
+use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
+use taxel_core::quote::shortened;
+use taxel_core::sensor::Sensor;
+use taxel_core::sweep::{Parts, Shard, SweepResult};
 
-use crate::atlas::{Atlas, AtlasEntry, ImprintSummary, feature_values, features};
-use crate::formats::json;
-use crate::formats::json::RegionRecord;
+use crate::formats::json::{self, RegionRecord};
 use crate::formats::npy::Dtype;
 use crate::formats::npz::{
     ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
 };
 use crate::formats::record::{Record, Values, no_names};
-use crate::parameter::number::share;
-use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
-use crate::quote::shortened;
-use crate::sensor::Sensor;
-use crate::sweep::{Parts, Shard, SweepResult};
 
 /// Returns the share of all poses that leave this imprint: above 0, up to 1.
 pub fn pose_share(result: &SweepResult, entry: &AtlasEntry) -> f64 {

@@ -15,13 +15,14 @@
 
 use std::path::Path;
 
+use taxel_core::imprint::{Imprint, ImprintError};
+use taxel_core::parameter::named;
+use taxel_core::parameter::number::counted;
+use taxel_core::quote::quoted_character;
+
 use crate::formats::file::{has_ending, without_mark};
 use crate::formats::shape::{ShapeError, StoredShape};
 use crate::formats::{array, pbm, table};
-use crate::imprint::{Imprint, ImprintError};
-use crate::parameter::named;
-use crate::parameter::number::counted;
-use crate::quote::quoted_character;
 
 /// The size limit of an imprint's file in bytes, 1 MiB; a larger file is refused unread.
 pub const MAX_BYTES: usize = 1 << 20;

@@ -4,18 +4,18 @@
 use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Unexpected, Visitor};
+use taxel_core::frame::{Frame, FrameError, LARGEST_VALUE, Processing, Rule};
+use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
+use taxel_core::parameter::number::counted;
+use taxel_core::sensor::{MAX_SIDE, MatrixSize, Sensor};
+use taxel_core::source::Source;
+use taxel_core::touch::Plane;
 
 use crate::formats::json::{WithoutNan, message_of_line};
 use crate::formats::record::{
     KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
 };
-use crate::frame::{Frame, FrameError, LARGEST_VALUE, Processing, Rule};
-use crate::imprint::Imprint;
-use crate::matrix::Matrix;
-use crate::parameter::number::counted;
-use crate::sensor::{MAX_SIDE, MatrixSize, Sensor};
-use crate::source::Source;
-use crate::touch::Plane;
 
 /// The task in a line: a figure, a picture or a whole matrix, perhaps with its own sensor; or the values of a real
 /// sensor with a threshold.
@@ -65,12 +65,12 @@ impl Job {
     /// {"frame":[[0,3,8],[1,null,12]],"at_least":5}
     /// ```
     /// A figure or a picture touches the sensor; an imprint is a whole matrix, which is described as it is and has no
-    /// sensor. Sizes, position, angle and zooms have no defaults ([`PARAMETERS`](crate::parameter::PARAMETERS) lists
+    /// sensor. Sizes, position, angle and zooms have no defaults ([`PARAMETERS`](taxel_core::parameter::PARAMETERS) lists
     /// keys, units and ranges); a figure without `thickness` is solid. A picture is given by its rows, or by a name
     /// that `lookup` finds. The sensor is `sensor` with the changes that the line makes, as in
     /// `"sensor":{"columns":32,"rows":32,"threshold":0.5}`.
     ///
-    /// A frame has the values of a sensor in rows, null where there is no cell, and a [`Rule`](crate::frame::Rule):
+    /// A frame has the values of a sensor in rows, null where there is no cell, and a [`Rule`](taxel_core::frame::Rule):
     /// `at_least`, `percent`, or `low` and `high`. With `least`, pieces of fewer taxels are dropped.
     ///
     /// # Errors

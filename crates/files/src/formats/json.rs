@@ -8,10 +8,9 @@ use std::io::{self, Write};
 use serde::de::{MapAccess, Visitor};
 use serde::ser::{SerializeMap, SerializeSeq, Serializer};
 use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
-
-use crate::description::{DESCRIPTORS, Description, each_region};
-use crate::imprint::Imprint;
-use crate::quote::shortened_message;
+use taxel_core::description::{DESCRIPTORS, Description, each_region};
+use taxel_core::imprint::Imprint;
+use taxel_core::quote::shortened_message;
 
 /// Returns a value as JSON on one line.
 pub fn text(value: &(impl Serialize + ?Sized)) -> String {

@@ -3,6 +3,13 @@
 use std::io::{Read, Seek, Write};
 
 use serde::{Deserialize, Serialize};
+use taxel_core::imprint::Imprint;
+use taxel_core::index::index;
+use taxel_core::pose::Axis;
+use taxel_core::recognition::{
+    ImprintKey, KeyTable, Model, ModelError, ModelHead, NamedShape, ShapeCount,
+};
+use taxel_core::sensor::{MatrixSize, Sensor};
 
 use crate::formats::atlas::{anchor, ranges};
 use crate::formats::json;
@@ -11,13 +18,6 @@ use crate::formats::npz::{
     ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
 };
 use crate::formats::record::{Record, Values, no_names};
-use crate::imprint::Imprint;
-use crate::index::index;
-use crate::pose::Axis;
-use crate::recognition::{
-    ImprintKey, KeyTable, Model, ModelError, ModelHead, NamedShape, ShapeCount,
-};
-use crate::sensor::{MatrixSize, Sensor};
 
 /// The required value of the header's key `format`.
 pub const FORMAT: &str = "taxel-model/1";

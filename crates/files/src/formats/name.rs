@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::quote::{is_invisible, quoted_character};
+use taxel_core::quote::{is_invisible, quoted_character};
 
 /// The most characters of a name.
 pub const LONGEST: usize = 64;

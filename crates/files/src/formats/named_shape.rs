@@ -3,17 +3,17 @@
 use std::num::NonZeroU32;
 
 use serde::de::{Deserialize, Deserializer, MapAccess};
+use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
+use taxel_core::pose::Axis;
+use taxel_core::recognition::NamedShape;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
 
 use crate::formats::json::message_of_line;
 use crate::formats::record::{
     KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
 };
-use crate::imprint::Imprint;
-use crate::picture::Picture;
-use crate::pose::Axis;
-use crate::recognition::NamedShape;
-use crate::sensor::Sensor;
-use crate::source::Source;
 
 /// The error for an object or a text that is not a shape of a set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

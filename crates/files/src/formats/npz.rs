@@ -4,6 +4,9 @@
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use serde::Deserialize;
+use taxel_core::pose::{GridError, RangeError};
+use taxel_core::quote::shortened;
+use taxel_core::sweep::{PartsError, Shard, ShardError};
 use zip::read::ZipFile;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
@@ -11,13 +14,9 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::formats::file::system_reason;
 use crate::formats::json;
-use crate::formats::npy;
-use crate::formats::npy::Dtype;
+use crate::formats::npy::{self, Dtype};
 use crate::formats::record::RecordError;
 use crate::formats::value::{counted, grouped};
-use crate::pose::{GridError, RangeError};
-use crate::quote::shortened;
-use crate::sweep::{PartsError, Shard, ShardError};
 
 /// The name of the array that describes the archive: JSON as bytes.
 pub(crate) const HEADER: &str = "header";
@@ -335,7 +334,7 @@ pub enum ArchiveError {
     Untrained,
     /// Shapes or numbers that do not make a model.
     #[error(transparent)]
-    Model(#[from] crate::recognition::ModelError),
+    Model(#[from] taxel_core::recognition::ModelError),
 }
 
 impl From<io::Error> for ArchiveError {
@@ -396,7 +395,7 @@ mod tests {
     #[test]
     fn an_error_of_the_header_is_printed_once() {
         let wrong = "5:1"
-            .parse::<crate::pose::DecimalRange>()
+            .parse::<taxel_core::pose::DecimalRange>()
             .expect_err("the end is before the start");
         let error = ArchiveError::from(wrong.clone());
         assert_eq!(error.to_string(), format!("header: {wrong}"));
@@ -426,7 +425,8 @@ mod tests {
 
     #[test]
     fn the_error_of_a_model_keeps_its_message() {
-        let shards = crate::recognition::ModelError::from(crate::sweep::ShardOrderError::Nothing);
+        let shards =
+            taxel_core::recognition::ModelError::from(taxel_core::sweep::ShardOrderError::Nothing);
         let wrapped = ArchiveError::from(shards.clone());
         assert_eq!(wrapped.to_string(), shards.to_string());
         assert!(wrapped.source().is_none());

@@ -4,9 +4,9 @@
 //! of a plain bitmap need no spaces between them. A file holds one bitmap, of at most 64 × 64. Padding bits in the
 //! last byte of a row do not count. In errors, a column is a byte.
 
-use crate::imprint::Imprint;
-use crate::parameter::number::counted;
-use crate::sensor::MatrixSize;
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::counted;
+use taxel_core::sensor::MatrixSize;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Imprint, String> {
     let raw = bytes.get(1) == Some(&b'4');

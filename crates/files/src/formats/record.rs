@@ -7,14 +7,13 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
-
-use crate::figure::{Figure, FigureKind};
-use crate::imprint::{Imprint, ImprintRows};
-use crate::parameter::{PARAMETERS, Parameter, ParameterError};
-use crate::picture::{PICTURE_PARAMETERS, Picture};
-use crate::quote::{did_you_mean, shortened};
-use crate::sensor::{SENSOR_PARAMETERS, Sensor};
-use crate::source::Source;
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::imprint::{Imprint, ImprintRows};
+use taxel_core::parameter::{PARAMETERS, Parameter, ParameterError};
+use taxel_core::picture::{PICTURE_PARAMETERS, Picture};
+use taxel_core::quote::{did_you_mean, shortened};
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::source::Source;
 
 /// The error for an object without a meaning, although it is JSON and its keys are known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Times of frames in seconds, without the rounding noise of subtraction.
 
-use crate::parameter::number::to_decimals;
+use taxel_core::parameter::number::to_decimals;
 
 /// Rounds a number of seconds to the nanosecond; the result is finite.
 pub(crate) fn to_nanoseconds(seconds: f64) -> f64 {

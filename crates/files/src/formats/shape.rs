@@ -1,8 +1,13 @@
 //! A stored shape: one JSON file with a name, a sensor, an imprint and, where it was not drawn by hand, its source.
 
+use std::fmt;
+
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
-use std::fmt;
+use taxel_core::imprint::Imprint;
+use taxel_core::quote::shortened;
+use taxel_core::sensor::{MatrixSize, Sensor};
+use taxel_core::source::Source;
 
 use crate::formats::file::without_mark;
 use crate::formats::json::{self, message};
@@ -11,10 +16,6 @@ use crate::formats::record::{
     ImprintRecord, KeyedObject, KnownKeys, Record, RecordError, Text, Values, keyed_object,
     no_names, once, value_of,
 };
-use crate::imprint::Imprint;
-use crate::quote::shortened;
-use crate::sensor::{MatrixSize, Sensor};
-use crate::source::Source;
 
 /// The required value of a file's first key.
 pub const FORMAT: &str = "taxel-shape/1";

@@ -6,11 +6,12 @@
 //! with `#`, a row of names, below it a first column without a name, and a separator after the last value of every
 //! row. In errors, a column is one of the table.
 
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::counted;
+use taxel_core::quote::shortened;
+use taxel_core::sensor::{MAX_SIDE, MatrixSize};
+
 use crate::formats::imprint_file::Mask;
-use crate::imprint::Imprint;
-use crate::parameter::number::counted;
-use crate::quote::shortened;
-use crate::sensor::{MAX_SIDE, MatrixSize};
 
 pub(super) fn read(text: &str) -> Result<Imprint, String> {
     let table = Table::of(text)?;

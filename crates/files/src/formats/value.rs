@@ -1,9 +1,9 @@
 //! Descriptor values as people read them: at most four decimals, shares in percent, directions in degrees.
 
-use crate::description::{Dimension, Value};
-use crate::recognition::{AngleEstimate, PoseEstimate};
+use taxel_core::description::{Dimension, Value};
+use taxel_core::recognition::{AngleEstimate, PoseEstimate};
 
-pub use crate::parameter::number::{counted, grouped, time_in_words};
+pub use taxel_core::parameter::number::{counted, grouped, time_in_words};
 
 /// Formats a value; None if the value does not exist.
 ///

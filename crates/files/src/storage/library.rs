@@ -9,10 +9,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use taxel_core::quote::did_you_mean;
+
 use crate::formats::file::is_missing;
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
-use crate::quote::did_you_mean;
 use crate::storage::error::{FileError, LibraryError};
 use crate::storage::file::{self, PREFIX, sync_folder};
 use crate::storage::folder::{self, stamp};

@@ -7,30 +7,28 @@
 //! ```
 
 use std::ffi::{OsStr, OsString};
-use std::fmt;
-use std::fs;
 use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::SystemTime;
+use std::{fmt, fs};
 
+use taxel_core::picture::Picture;
+use taxel_core::quote::{did_you_mean, shortened};
+use taxel_core::recognition::{
+    GridSteps, Model, NamedShape, Training, TrainingError, default_figures, equal_figures,
+};
+use taxel_core::sweep::Shard;
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::formats::file::without_mark;
 use crate::formats::name::folded;
 use crate::formats::{ArchiveError, Name, StoredShape, model_header, read_model, write_model};
-use crate::picture::Picture;
-use crate::quote::{did_you_mean, shortened};
-use crate::recognition::{
-    GridSteps, Model, NamedShape, Training, TrainingError, default_figures, equal_figures,
-};
 use crate::storage::error::{ArchiveFileError, LibraryError};
 use crate::storage::file::{self, Existing, UnfinishedFile, sync_folder};
-use crate::storage::folder;
-use crate::storage::shipped;
 use crate::storage::sweep_file::{FirstErrorWriter, open_archive};
-use crate::sweep::Shard;
+use crate::storage::{folder, shipped};
 
 const ENDING: &str = "npz";
 
@@ -400,11 +398,12 @@ fn shipped_shapes() -> Vec<NamedShape> {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::figure::Figure;
+    use taxel_core::pose::{Anchor, Axis, Ranges};
+    use taxel_core::recognition::Evaluation;
+    use taxel_core::sensor::Sensor;
+
     use super::*;
-    use crate::figure::Figure;
-    use crate::pose::{Anchor, Axis, Ranges};
-    use crate::recognition::Evaluation;
-    use crate::sensor::Sensor;
 
     fn training(side: f64) -> Training<'static> {
         let sensor = Sensor::default();

@@ -9,16 +9,16 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::formats::atlas;
-use crate::formats::atlas::{write_csv, write_jsonl};
+use taxel_core::pose::PoseGrid;
+use taxel_core::progress::stop_if;
+use taxel_core::sweep::SweepResult;
+
+use crate::formats::ArchiveError;
+use crate::formats::atlas::{self, write_csv, write_jsonl};
 use crate::formats::file::has_ending;
-use crate::formats::npy::Dtype;
-use crate::formats::{ArchiveError, npy};
-use crate::pose::PoseGrid;
-use crate::progress::stop_if;
+use crate::formats::npy::{self, Dtype};
 use crate::storage::error::ArchiveFileError;
 use crate::storage::file::{Existing, FinishedFile, UnfinishedFile, check_writable};
-use crate::sweep::SweepResult;
 
 /// The file for an atlas: its path and its format.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -321,13 +321,14 @@ impl<W: Write + Seek> Seek for FirstErrorWriter<'_, W> {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::figure::{Figure, FigureKind};
+    use taxel_core::index::index;
+    use taxel_core::pose::{Anchor, Axis, Ranges};
+    use taxel_core::sensor::Sensor;
+    use taxel_core::source::Source;
+    use taxel_core::sweep::{Shard, Sweep};
+
     use super::*;
-    use crate::figure::{Figure, FigureKind};
-    use crate::index::index;
-    use crate::pose::{Anchor, Axis, Ranges};
-    use crate::sensor::Sensor;
-    use crate::source::Source;
-    use crate::sweep::{Shard, Sweep};
 
     fn result() -> SweepResult {
         let ranges = Ranges::default().with(Axis::Angle, "0".parse().expect("a range"));

@@ -3,15 +3,15 @@
 use std::cell::LazyCell;
 use std::io::{Cursor, Read, Write};
 
-use taxel::figure::{Figure, FigureKind};
-use taxel::formats::atlas::{read, write, write_csv, write_jsonl};
-use taxel::formats::npy;
-use taxel::imprint::Imprint;
-use taxel::picture::Picture;
-use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::sweep::{Shard, Sweep, SweepMerge, SweepResult};
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
+use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::sweep::{Shard, Sweep, SweepMerge, SweepResult};
+use taxel_files::formats::atlas::{read, write, write_csv, write_jsonl};
+use taxel_files::formats::npy;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 

@@ -1,13 +1,13 @@
 //! Texts and arrays: shapes, jobs, imprints in every format, ranges, numpy headers, settings.
 
 use taxel::cli::settings::file::Config;
-use taxel::formats::npy::{Dtype, content, header, words};
-use taxel::formats::{DescribedImprint, ImprintFormat, Job, StoredShape, imprint_file};
-use taxel::imprint::Imprint;
-use taxel::pose::{DecimalRange, MAX_VALUES};
-use taxel::sensor::{SENSOR_PARAMETERS, Sensor};
-use taxel::sweep::Shard;
-use taxel::touch::Plane;
+use taxel_core::imprint::Imprint;
+use taxel_core::pose::{DecimalRange, MAX_VALUES};
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::sweep::Shard;
+use taxel_core::touch::Plane;
+use taxel_files::formats::npy::{Dtype, content, header, words};
+use taxel_files::formats::{DescribedImprint, ImprintFormat, Job, StoredShape, imprint_file};
 
 use super::{is_short, refused};
 

@@ -3,9 +3,9 @@
 use std::io::Cursor;
 use std::ops::ControlFlow;
 
-use taxel::formats::recording::{ReadOptions, RecordingEvent, RecordingMetadata, read};
-use taxel::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
-use taxel::frame::{FrameSize, Processing, Rule};
+use taxel_core::frame::{FrameSize, Processing, Rule};
+use taxel_files::formats::recording::{ReadOptions, RecordingEvent, RecordingMetadata, read};
+use taxel_files::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
 
 use super::{is_short, refused};
 

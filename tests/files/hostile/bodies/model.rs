@@ -3,14 +3,14 @@
 use std::cell::LazyCell;
 use std::io::Cursor;
 
-use taxel::figure::Figure;
-use taxel::formats::{named_shape, read_model, write_model};
-use taxel::imprint::Imprint;
-use taxel::picture::Picture;
-use taxel::pose::{Anchor, Axis, Ranges};
-use taxel::recognition::{Evaluation, Evidence, Model, ModelMerge, NamedShape, Training};
-use taxel::sensor::Sensor;
-use taxel::sweep::Shard;
+use taxel_core::figure::Figure;
+use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
+use taxel_core::pose::{Anchor, Axis, Ranges};
+use taxel_core::recognition::{Evaluation, Evidence, Model, ModelMerge, NamedShape, Training};
+use taxel_core::sensor::Sensor;
+use taxel_core::sweep::Shard;
+use taxel_files::formats::{named_shape, read_model, write_model};
 
 use super::archive::{Arrays, changed, unpacked};
 use super::{is_short, refused};

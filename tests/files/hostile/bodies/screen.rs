@@ -9,7 +9,6 @@ use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use taxel::storage::Library;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::app::update::{next_work, update};
@@ -22,6 +21,7 @@ use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 use taxel::tui::script::command::{ScriptCommand, ScriptSetting, read};
 use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, run};
+use taxel_files::storage::Library;
 use tempfile::TempDir;
 
 use super::refused;

@@ -5,13 +5,13 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use taxel_core::frame::Frame;
+
 use crate::acquire::clocks::FrameRate;
 use crate::acquire::recorder::RecorderError;
 use crate::acquire::recorder::record_array::{HEADER, is_own};
-use crate::formats::file::has_ending;
-use crate::formats::file::system_reason;
+use crate::formats::file::{has_ending, system_reason};
 use crate::formats::recording::{MetadataError, RecordedView, RecordingMetadata};
-use crate::frame::Frame;
 use crate::storage::{Existing, FileId, FinishedFile};
 
 const LARGEST_METADATA: u64 = 1 << 22;

@@ -12,18 +12,19 @@
 mod metadata;
 mod record_array;
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::{fs, io};
+
+use taxel_core::frame::{Frame, FrameSize};
 
 use crate::formats::file::write_reason;
 use crate::formats::recording::{RecordedView, RecordingMetadata};
-use crate::frame::{Frame, FrameSize};
 use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile, check_writable};
 use metadata::{MetadataDraft, MetadataNotes, is_array, read_beside};
-pub use metadata::{MetadataFileError, metadata_beside};
 use record_array::{RecordArray, header};
+
+pub use metadata::{MetadataFileError, metadata_beside};
 
 /// A recorder that writes frames to a file, until [`Self::finish`] ends the recording and reports errors.
 ///

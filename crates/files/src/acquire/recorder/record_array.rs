@@ -10,9 +10,10 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::time::{Duration, Instant};
 
+use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE};
+use taxel_core::index::index;
+
 use crate::formats::npy::{BEFORE_TEXT, header_of};
-use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
-use crate::index::index;
 use crate::storage::FileId;
 
 /// The beginning of the header's text, before the rows and columns of a frame.

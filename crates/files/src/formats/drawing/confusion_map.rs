@@ -3,13 +3,13 @@
 //! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. The numbers
 //! are there for readers who cannot tell the shades apart.
 
-use crate::formats::drawing::svg;
+use taxel_core::parameter::number::share;
+
 use crate::formats::drawing::svg::{
-    CELLS, DrawingPage, Element, MARGIN, Position, Stroke, TEXT, TextAnchor, cut, label, path_of,
-    rectangle, upright_title, width,
+    self, CELLS, DrawingPage, Element, MARGIN, Position, Stroke, TEXT, TextAnchor, cut, label,
+    path_of, rectangle, upright_title, width,
 };
 use crate::formats::value::percent;
-use crate::parameter::number::share;
 
 /// The most shapes; more would make a page too large to print.
 const MOST: usize = 64;

@@ -13,20 +13,19 @@
 
 use std::collections::VecDeque;
 
-use crate::description::{Description, Region, RegionKind, Value, main_region, regions};
+use taxel_core::description::{Description, Region, RegionKind, Value, main_region, regions};
+use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
+use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::Sensor;
+
 use crate::formats::drawing::plots::{AxisMarks, Ticks, axes, left_of};
-use crate::formats::drawing::svg;
 use crate::formats::drawing::svg::{
-    CELLS, DrawingPage, Element, MARGIN, Position, ROW, Segment, Stroke, TEXT, TextAnchor, circle,
-    cut, label, path_of, rectangle, width,
+    self, CELLS, DrawingPage, Element, MARGIN, Position, ROW, Segment, Stroke, TEXT, TextAnchor,
+    circle, cut, label, path_of, rectangle, width,
 };
-use crate::formats::value;
-use crate::formats::value::{fitting, shade};
-use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
-use crate::imprint::Imprint;
-use crate::matrix::Matrix;
-use crate::parameter::Parameter;
-use crate::sensor::Sensor;
+use crate::formats::value::{self, fitting, shade};
 
 /// The larger side of the plane, unless its cells would become too large.
 const PLANE: f64 = 288.0;
@@ -550,9 +549,10 @@ impl Pen<f64> for Tracer {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::figure::Figure;
+    use taxel_core::sensor::Sensor;
+
     use super::*;
-    use crate::figure::Figure;
-    use crate::sensor::Sensor;
 
     #[test]
     fn rings_are_closed_pieces_in_either_sense() {

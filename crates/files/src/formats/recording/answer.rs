@@ -1,11 +1,11 @@
 //! A frame with its imprint and descriptors as JSON: a line of `taxel frames --json` and of `taxel watch`.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
+use taxel_core::description::{Description, regions};
+use taxel_core::frame::{Frame, Processed, SetRule};
+use taxel_core::serialize::Shortest;
 
-use crate::description::{Description, regions};
 use crate::formats::json::RegionRecord;
-use crate::frame::{Frame, Processed, SetRule};
-use crate::serialize::Shortest;
 
 /// An answer that serialises as an object:
 /// ```text
@@ -65,7 +65,7 @@ impl Serialize for FrameAnswer<'_> {
         map.serialize_entry("rule", &self.rule)?;
         let imprint = self.processed.imprint.as_ref();
         map.serialize_entry("imprint", &imprint)?;
-        map.serialize_entry("na", &imprint.map(crate::imprint::Imprint::count))?;
+        map.serialize_entry("na", &imprint.map(taxel_core::imprint::Imprint::count))?;
         let regions = imprint.map_or_else(Vec::new, regions);
         let records = regions
             .iter()
@@ -77,10 +77,10 @@ impl Serialize for FrameAnswer<'_> {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::frame::{FrameSize, Processing, Rule, RuleOrigin};
+
     use super::*;
     use crate::formats::json;
-    use crate::frame::FrameSize;
-    use crate::frame::{Processing, Rule, RuleOrigin};
 
     #[test]
     fn without_a_rule_there_is_no_imprint() {

@@ -1,8 +1,9 @@
 //! The channels of a recording or a stream, as they appear, and the choice of one of them by its name.
 
+use taxel_core::frame::Frame;
+use taxel_core::quote::did_you_mean;
+
 use crate::formats::recording::event::{ChannelInfo, UNNAMED_CHANNEL};
-use crate::frame::Frame;
-use crate::quote::did_you_mean;
 
 /// The channels so far, in the order of their first frames. A limit keeps names that change with every frame from
 /// filling the memory.

@@ -3,10 +3,11 @@
 use std::io;
 use std::sync::Arc;
 
+use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE};
+use taxel_core::parameter::named;
+use taxel_core::parameter::number::counted;
+
 use crate::formats::file::system_reason;
-use crate::frame::{FrameSize, MAX_FRAME_SIDE};
-use crate::parameter::named;
-use crate::parameter::number::counted;
 
 /// The error for a recording that cannot be read, or not to its end.
 #[derive(Clone, Debug, thiserror::Error)]

@@ -3,10 +3,11 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
+use taxel_core::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
+use taxel_core::parameter::number::{counted, short, time_in_words, to_decimals};
+
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::metadata::{FrameMark, RecordingMetadata};
-use crate::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
-use crate::parameter::number::{counted, short, time_in_words, to_decimals};
 
 /// Options for reading a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -332,9 +333,10 @@ pub(super) fn until_enough(
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::matrix::Matrix;
+    use taxel_core::sensor::MatrixSize;
+
     use super::*;
-    use crate::matrix::Matrix;
-    use crate::sensor::MatrixSize;
 
     #[test]
     fn metadata_fills_only_the_missing_fields_of_a_channel() {

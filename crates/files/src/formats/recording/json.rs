@@ -22,6 +22,8 @@ use serde::de::{
     DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor,
 };
 use serde_json::Value;
+use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE, MAX_FRAME_CELLS};
+use taxel_core::parameter::number::counted;
 
 use crate::formats::job::too_large;
 use crate::formats::json;
@@ -34,8 +36,6 @@ use crate::formats::recording::size::{StreamSize, frame_size};
 use crate::formats::recording::text::TextLines;
 use crate::formats::recording::time::field_role::{FieldRole, is_named_time, rest_of_second, role};
 use crate::formats::recording::time::{self, FrameClock, Time, TimeUnit};
-use crate::frame::{Frame, FrameSize, LARGEST_VALUE, MAX_FRAME_CELLS};
-use crate::parameter::number::counted;
 
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,

@@ -3,14 +3,14 @@
 
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
+use taxel_core::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
+use taxel_core::matrix::Matrix;
+use taxel_core::quote::shortened_message;
 
 use crate::formats::job::{FrameRows, LeastTaxels, RuleRecord, matrix};
 use crate::formats::json;
 use crate::formats::recording::size::{LengthUnit, pitches_in_mm};
 use crate::formats::recording::time::TimeUnit;
-use crate::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
-use crate::matrix::Matrix;
-use crate::quote::shortened_message;
 
 const FORMAT: &str = "taxel-touch/1";
 
@@ -289,9 +289,10 @@ fn rows(matrix: &Matrix<f64>) -> FrameRows {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::frame::TareFrames;
+    use taxel_core::sensor::MatrixSize;
+
     use super::*;
-    use crate::frame::TareFrames;
-    use crate::sensor::MatrixSize;
 
     #[test]
     fn metadata_is_read_as_it_was_written() {

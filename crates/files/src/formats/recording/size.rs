@@ -1,11 +1,12 @@
 //! Numbers of rows and columns, and distances between cells, as files give them.
 
+use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE};
+use taxel_core::parameter::Parameter;
+use taxel_core::parameter::number::to_decimals;
+use taxel_core::quote::shortened;
+use taxel_core::sensor::Sensor;
+
 use crate::formats::recording::error::RecordingError;
-use crate::frame::{FrameSize, MAX_FRAME_SIDE};
-use crate::parameter::Parameter;
-use crate::parameter::number::to_decimals;
-use crate::quote::shortened;
-use crate::sensor::Sensor;
 
 /// Returns a number of rows or columns; None if it is 0 or larger than a frame can be.
 pub(in crate::formats) fn side(length: impl TryInto<u16>) -> Option<u16> {

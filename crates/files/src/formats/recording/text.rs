@@ -11,13 +11,14 @@
 
 use std::io::{self, BufRead};
 
+use taxel_core::frame::LARGEST_VALUE;
+use taxel_core::parameter::number::counted;
+use taxel_core::quote::shortened;
+
 use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::job::too_large;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::table::named_separator;
-use crate::frame::LARGEST_VALUE;
-use crate::parameter::number::counted;
-use crate::quote::shortened;
 
 /// Powers of ten that are exact in f64.
 const POWERS: [f64; 23] = [

@@ -1,7 +1,8 @@
 //! Decodes the bytes of boards: FlexiTac and MatSense.
 
+use taxel_core::frame::{Frame, FrameSize};
+
 use crate::formats::stream::event::{StreamEvent, StreamOutput};
-use crate::frame::{Frame, FrameSize};
 
 /// The bytes before each frame.
 pub(in crate::formats) const MARKER: [u8; 2] = [0xaa, 0x55];

@@ -295,10 +295,11 @@ fn is_object(line: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::frame::FrameSize;
+
     use super::*;
     use crate::formats::file::BYTE_ORDER_MARK;
     use crate::formats::stream::StreamEvent;
-    use crate::frame::FrameSize;
 
     #[test]
     fn large_frames_after_markers_are_found_wherever_the_stream_is_joined() {

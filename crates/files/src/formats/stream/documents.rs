@@ -3,13 +3,14 @@
 //! Unlike a recording, a stream continues after a line or a message that is wrong, or of another size than earlier
 //! ones: it is dropped and counted.
 
+use taxel_core::frame::{Frame, FrameSize};
+
 use crate::formats::recording::RecordingError;
 use crate::formats::recording::json::{FrameLineError, JsonFrames};
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::size::StreamSize;
 use crate::formats::recording::time::FrameClock;
 use crate::formats::stream::event::{StreamEvent, StreamOutput, StreamRefusal};
-use crate::frame::{Frame, FrameSize};
 
 /// A decoder of JSON lines. Its channels and times continue after a gap.
 #[derive(Debug)]

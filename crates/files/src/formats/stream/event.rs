@@ -1,9 +1,10 @@
 //! The formats and options of streams, and the events and counts that a decoder reports.
 
+use taxel_core::frame::{Frame, FrameSize};
+use taxel_core::parameter::named;
+
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
 use crate::formats::value::{counted, grouped};
-use crate::frame::{Frame, FrameSize};
-use crate::parameter::named;
 
 /// A format of streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -11,13 +11,14 @@
 //! A stream that shows none of this is taken for numbers if it is text, and otherwise for `MatSense`, whose decoder
 //! counts what it drops.
 
+use taxel_core::frame::{FrameSize, MAX_FRAME_CELLS};
+
 use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::recording::ros::echo;
 use crate::formats::recording::time;
 use crate::formats::stream::boards::{MARKER, MatsenseDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamFormat, StreamOutput};
 use crate::formats::stream::row_block;
-use crate::frame::{FrameSize, MAX_FRAME_CELLS};
 
 /// The number of bytes of text within which a line must end; otherwise it is not a known stream.
 const LOOKED_AT: usize = 1 << 16;

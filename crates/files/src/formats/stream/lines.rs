@@ -17,13 +17,13 @@
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are
 //! never joined. If frames are known to be single lines, each line that is not a frame counts as a lost one.
 
+use taxel_core::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
+
 use crate::formats::recording::size::StreamSize;
 use crate::formats::recording::text::is_comment;
 use crate::formats::recording::time::{self, FrameClock, Time};
 use crate::formats::stream::event::{StreamEvent, StreamOutput};
-use crate::formats::stream::row_block;
-use crate::formats::stream::row_block::{RowBlock, WrongRow, may_be_end};
-use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
+use crate::formats::stream::row_block::{self, RowBlock, WrongRow, may_be_end};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LineKind {

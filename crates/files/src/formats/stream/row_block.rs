@@ -1,10 +1,11 @@
 //! The rows of a frame, one per line, and what is wrong with them.
 
+use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE};
+use taxel_core::parameter::number::counted;
+
 use crate::formats::recording::size::frame_size;
 use crate::formats::recording::text::{SEPARATORS, Separator, unquoted};
 use crate::formats::recording::time::{self, Time};
-use crate::frame::{FrameSize, MAX_FRAME_SIDE};
-use crate::parameter::number::counted;
 
 #[derive(Debug, Default)]
 pub(super) struct RowBlock {

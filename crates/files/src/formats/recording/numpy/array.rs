@@ -16,19 +16,19 @@
 
 use std::io::{ErrorKind, Read};
 
+use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE};
+use taxel_core::parameter::number::counted;
+use taxel_core::quote::shortened;
+use taxel_core::sensor::MAX_SIDE;
+
 use crate::formats::job::too_large;
-use crate::formats::npy;
-use crate::formats::npy::{Header, NumberType};
+use crate::formats::npy::{self, Header, NumberType};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::size::frame_size;
 use crate::formats::seconds::since;
-use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
-use crate::parameter::number::counted;
-use crate::quote::shortened;
-use crate::sensor::MAX_SIDE;
 
 /// The most bytes of a header.
 const LONGEST_HEADER: usize = 1 << 20;

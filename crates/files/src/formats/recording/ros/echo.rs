@@ -19,11 +19,12 @@
 
 use std::io::BufRead;
 
+use taxel_core::frame::{Frame, FrameSize, MAX_FRAME_CELLS};
+
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::size::{StreamSize, arranged, matrix_size};
 use crate::formats::recording::text::{self, Field, TextLines};
-use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS};
 
 #[derive(Debug, Default)]
 pub(in crate::formats) struct RosMessage {

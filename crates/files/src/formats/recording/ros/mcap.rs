@@ -24,6 +24,9 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::rc::Rc;
 
+use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE};
+use taxel_core::parameter::number::counted;
+
 use crate::formats::job::too_large;
 use crate::formats::npy::{Dtype, NumberType};
 use crate::formats::recording::channels::ChannelTable;
@@ -34,8 +37,6 @@ use crate::formats::recording::event::{
 use crate::formats::recording::ros::records::{McapRecord, each_record};
 use crate::formats::recording::size::{arranged, changed, frame_size, matrix_size};
 use crate::formats::recording::time;
-use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
-use crate::parameter::number::counted;
 
 /// The most topics whose messages could have frames.
 const MOST_TOPICS: usize = 4096;

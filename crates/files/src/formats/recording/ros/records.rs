@@ -11,12 +11,12 @@
 use std::io::{self, BufReader, Read, Take};
 
 use flate2::CrcReader;
+use taxel_core::index::wide;
+use taxel_core::quote::shortened_message;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::EarlyEnd;
 use crate::formats::recording::ros::MCAP_MAGIC;
-use crate::index::wide;
-use crate::quote::shortened_message;
 
 const LARGEST_RECORD: u64 = 1 << 24;
 

@@ -27,6 +27,10 @@
 
 use std::io::{BufRead, Seek};
 
+use taxel_core::frame::{Frame, FrameSize};
+use taxel_core::parameter::number::counted;
+use taxel_core::quote::shortened;
+
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, RecordingSink, Sink,
@@ -40,9 +44,6 @@ use crate::formats::recording::text::{
     self, Field, Separator, TextLines, is_blank, is_comment, whole,
 };
 use crate::formats::recording::time::{self, FrameClock, Time, TimeUnit};
-use crate::frame::{Frame, FrameSize};
-use crate::parameter::number::counted;
-use crate::quote::shortened;
 
 /// Reads a recording. Its arrangement is kept in `earlier`, for the next content of a followed file.
 pub(in crate::formats::recording) fn read(

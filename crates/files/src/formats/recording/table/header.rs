@@ -12,6 +12,8 @@
 
 use std::io::BufRead;
 
+use taxel_core::frame::FrameSize;
+
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::table::delimited::TimeFields;
 use crate::formats::recording::text::{Separator, TextLines, is_blank, is_comment, is_none};
@@ -19,7 +21,6 @@ use crate::formats::recording::time;
 use crate::formats::recording::time::field_role::{
     FieldRole, is_named_time, rest_of_second, role, roles, time_unit,
 };
-use crate::frame::FrameSize;
 
 /// The most fields beside the cells.
 pub(super) const MOST_BESIDE: usize = 16;

@@ -13,6 +13,9 @@
 
 use std::io::BufRead;
 
+use taxel_core::frame::{FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
+use taxel_core::parameter::number::{counted, grouped};
+
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::size::side;
@@ -26,8 +29,6 @@ use crate::formats::recording::text::{
 };
 use crate::formats::recording::time::field_role::{FieldRole, role, roles};
 use crate::formats::recording::time::{self, TimeUnit};
-use crate::frame::{FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
-use crate::parameter::number::{counted, grouped};
 
 pub(super) fn layout(
     input: &mut impl BufRead,

@@ -25,6 +25,10 @@
 
 use std::io::BufRead;
 
+use taxel_core::frame::{Frame, FrameSize};
+use taxel_core::parameter::number::counted;
+use taxel_core::quote::shortened;
+
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
@@ -35,9 +39,6 @@ use crate::formats::recording::text::{
 };
 use crate::formats::recording::time::TimeUnit;
 use crate::formats::seconds::{of_label, since};
-use crate::frame::{Frame, FrameSize};
-use crate::parameter::number::counted;
-use crate::quote::shortened;
 
 /// The largest difference between two sums that is not an error.
 const ROUNDING: f64 = 0.5;

@@ -27,6 +27,9 @@
 
 use std::io::BufRead;
 
+use taxel_core::frame::{Frame, FrameSize};
+use taxel_core::parameter::number::counted;
+
 use crate::formats::recording::channels::ChannelTable;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, EarlyEnd, RecordingEvent, Sink};
@@ -34,8 +37,6 @@ use crate::formats::recording::size::{LengthUnit, stated};
 use crate::formats::recording::text::{self, Field, Separator, TextLines, decimal, text, whole};
 use crate::formats::recording::time::{self, Midnights, Moment};
 use crate::formats::seconds::since;
-use crate::frame::{Frame, FrameSize};
-use crate::parameter::number::counted;
 
 /// The most sensors in a file; each has a name of its own.
 const MOST_SENSORS: usize = 64;
