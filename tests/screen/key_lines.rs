@@ -3,7 +3,7 @@
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 
-use crate::session::{Screen, press, session, shows, sized};
+use crate::session::{Screen, press, session, shows};
 
 /// Returns the first and the last line of a screen.
 fn lines(of: &(impl Screen + ?Sized)) -> (String, String) {
@@ -27,65 +27,6 @@ fn click(session: &mut Session, text: &str) {
     for kind in [MouseKind::Press, MouseKind::Release] {
         session.send(Message::Mouse(Mouse { kind, column, row }));
     }
-}
-
-#[test]
-fn the_menu_shows_the_keys_of_the_page() {
-    let paper = "n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help";
-    for (keys, menu, hints) in [
-        ("", paper, "Space toggle"),
-        ("f<CR>g", paper, "arrows move  + - step"),
-        ("f", "Enter accept   Esc cancel   ? help", "Tab field"),
-        ("l", "Enter accept   Esc cancel   ? help", "Up Down choose"),
-        (
-            "<Space>s",
-            "Enter save   Esc cancel   F1 help",
-            "Ctrl-U clear",
-        ),
-        (":", "Enter run   Esc cancel   F1 help", "Tab complete"),
-        (
-            "<Space>q",
-            "y yes   n no   s save first   Esc cancel   ? help",
-            "",
-        ),
-        // Nothing can be saved there.
-        (
-            "f<CR>:save mine<CR>:delete mine<CR>",
-            "y yes   n no   Esc cancel   ? help",
-            "",
-        ),
-        ("?", "q close", "Up Down scroll"),
-        ("f<CR>e", "Enter start   Esc cancel   ? help", "Tab field"),
-        (
-            "f<CR>:explore --x0 5 --y0 5 --angle 0<CR>",
-            "Tab page   d D descriptor   x export   e ranges   ? help   Esc close",
-            "Enter to matrix",
-        ),
-    ] {
-        let (first, last) = lines(keys);
-        assert_eq!(first, menu, "{keys}");
-        assert!(last.starts_with(hints), "{keys}: {last}");
-        assert!(
-            !last.contains("Esc cancel"),
-            "{keys}: once is enough: {last}"
-        );
-    }
-    let (_, hints) = lines(&sized((60, 20), false, "r"));
-    assert!(hints.starts_with("i matrix"), "{hints}");
-    let (_, hints) = lines(&sized((60, 20), false, "ri"));
-    assert!(hints.starts_with("i answer"), "{hints}");
-    let (menu, hints) = lines("f<CR>r");
-    assert!(menu.starts_with("t touch"), "{menu}");
-    assert!(
-        menu.ends_with("? Help") || menu.ends_with("? help"),
-        "{menu}"
-    );
-    assert!(hints.contains("< > turn"), "{hints}");
-    // On this page, o chooses the next set instead of the outline.
-    assert!(
-        hints.starts_with("Space toggle") && !hints.contains("outline"),
-        "{hints}"
-    );
 }
 
 #[test]

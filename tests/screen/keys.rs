@@ -554,36 +554,6 @@ fn a_page_that_is_closed_leaves_a_held_shape_held() {
 }
 
 #[test]
-fn recognise_names_the_shape_and_follows_the_matrix() {
-    shows("r", &["Recognise: model figures", "The matrix is empty"]);
-    shows("f<Enter>r", &["certain: ellipse", "100.0 %", "any angle"]);
-    shows("rf<Enter>", &["certain: ellipse"]);
-    shows(
-        "f<Enter>r<Space>",
-        &[
-            "unknown: no shape",
-            "nearest: ellipse, 1 taxel differs",
-            "- 1 missing",
-        ],
-    );
-    shows("f<Enter>r<Space>u", &["certain: ellipse"]);
-    // A held shape is moved by the arrows; otherwise they move the cursor of the matrix.
-    shows("f<Enter>rg<Right>", &["at 4.01, 4.00", "certain: ellipse"]);
-    shows(
-        "f<Enter>r<Right>",
-        &["column  9, row  8", "certain: ellipse"],
-    );
-    for close in ["<Esc>", "r", "q", "<C-c>"] {
-        shows(
-            &format!("f<Enter>r{close}"),
-            &["Region 1 of 1", "NA     52"],
-        );
-    }
-    // The answer is shown again at once.
-    shows("f<Enter>r<Esc>r", &["certain: ellipse"]);
-}
-
-#[test]
 fn recognise_steps_through_sets_and_accepts_a_name() {
     shows(
         "ro",

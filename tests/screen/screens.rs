@@ -139,37 +139,6 @@ fn ascii_screens_are_ascii() {
     }
 }
 
-/// Returns the lines of a screen as one text, joining lines that were broken.
-fn joined(screen: &str) -> String {
-    let lines: Vec<&str> = screen.lines().map(str::trim).collect();
-    lines.join(" ")
-}
-
-#[test]
-fn a_list_shows_how_many_rows_are_out_of_view() {
-    let name = "a name of more than twenty-four characters";
-    let mut session = sized((80, 24), false, &format!("<Space>s{name}<Enter>l"));
-    let screen = session.screen();
-    assert!(screen.contains("\n  0 above, 12 below"), "{screen}");
-    assert!(
-        screen.contains("> a name of more than twe… 16 × 16"),
-        "{screen}"
-    );
-    assert!(joined(&screen).contains(" a name of more than twenty-four"));
-    press(&mut session, "<End>");
-    shows(&session, &["\n  12 above, 0 below"]);
-    press(&mut session, "<C-u>washer");
-    let screen = session.screen();
-    assert!(
-        !screen.contains(" above, "),
-        "all of it is in sight\n{screen}"
-    );
-    // The source is longer than the preview is wide, so it is wrapped.
-    let whole = "ellipse rx 4.00 ry 4.00 at 1.99,";
-    assert!(screen.contains(whole), "{screen}");
-    assert!(screen.contains("1.47, 0°, wall 2.00"), "{screen}");
-}
-
 #[test]
 fn matrix_and_descriptors_are_swapped_only_if_one_is_visible() {
     let mut wide = sized((80, 24), false, "i");

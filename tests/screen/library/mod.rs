@@ -6,7 +6,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use taxel::tui::app::document::Document;
-use taxel::tui::app::message::{Message, Mouse, MouseKind};
+
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 use taxel_files::storage::Library;
@@ -17,10 +17,6 @@ use crate::session::{press, session, shows, started, then};
 /// Starts a session on a library that outlasts it.
 fn session_on(folder: &Path, keys: &str) -> Session {
     started(World::new(Library::open(folder.to_owned())), keys)
-}
-
-fn mouse(session: &mut Session, kind: MouseKind, column: u16, row: u16) {
-    session.send(Message::Mouse(Mouse { kind, column, row }));
 }
 
 #[test]
@@ -261,36 +257,6 @@ fn a_shape_of_another_sensor_is_loaded_if_it_fits() {
         &mut session,
         "S4<Tab>4<Enter>lmiddle<Enter>",
         &["! middle is 16 × 16 and does not fit on 4 × 4 taxels"],
-    );
-}
-
-#[test]
-fn the_mouse_draws_and_clicks() {
-    let mut session = session("");
-    // Column 2, row 1 of the matrix: 3 columns of ruler and 2 for each taxel; menu, title and ruler above.
-    mouse(&mut session, MouseKind::Press, 7, 4);
-    shows(&session, &["column  2, row  1    active", "NA 1 in all"]);
-    mouse(&mut session, MouseKind::Drag, 9, 4);
-    mouse(&mut session, MouseKind::Drag, 11, 5);
-    mouse(&mut session, MouseKind::Drag, 7, 4);
-    mouse(&mut session, MouseKind::Release, 7, 4);
-    // A line is drawn between two reported places.
-    shows(&session, &["NA 4 in all"]);
-    mouse(&mut session, MouseKind::Drag, 20, 11);
-    shows(&session, &["NA 4 in all"]);
-    then(&mut session, "u", &["NA 0 in all"]);
-    // "f Figure", then the field Radius y, then a place with nothing.
-    mouse(&mut session, MouseKind::Press, 20, 0);
-    shows(&session, &["Kind", "Radius x"]);
-    mouse(&mut session, MouseKind::Press, 50, 7);
-    then(&mut session, "2", &["ellipse rx 4.00 ry 2.00"]);
-    mouse(&mut session, MouseKind::Press, 79, 19);
-    mouse(&mut session, MouseKind::Press, 65535, 65535);
-    press(&mut session, "<Enter>?");
-    mouse(&mut session, MouseKind::ScrollDown, 5, 5);
-    assert!(
-        !session.screen().contains("On the matrix"),
-        "the wheel scrolls help"
     );
 }
 

@@ -226,7 +226,7 @@ fn a_record_of_keys_shows_the_same_screen() {
     program.types(b"fr\t3.57\x1b[D\x7f\r");
     program.shows("rectangle length 3.70");
     program.resize((90, 26));
-    program.types(b"\x1b[<0;4;3M\x1b[<32;14;3M\x1b[<32;14;7M\x1b[<0;14;7m");
+    program.types(b"\x1b[<0;4;5M\x1b[<32;14;5M\x1b[<32;14;9M\x1b[<0;14;9m");
     program.shows("by hand");
     let rows = program.rows();
     program.types(b"qy");
