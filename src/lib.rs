@@ -13,11 +13,5 @@ struct LibraryGuide;
 #[cfg(not(unix))]
 compile_error!("taxel needs a Unix-like system; on Windows use WSL");
 
-pub use taxel_core::{
-    atlas, description, figure, frame, geometry, imprint, index, lock, matrix, parameter, picture,
-    pose, prelude, progress, quote, recognition, sensor, source, sweep, touch,
-};
-pub use taxel_files::{acquire, formats, memory, storage};
-
 pub mod cli;
 pub mod tui;

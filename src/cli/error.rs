@@ -6,23 +6,24 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::acquire::RecorderError;
+use taxel_core::frame::FrameError;
+use taxel_core::parameter::ParameterError;
+use taxel_core::parameter::number::short;
+use taxel_core::pose::GridError;
+use taxel_core::quote::shortened_message;
+use taxel_core::recognition::{NoiseError, TrainingError};
+use taxel_core::sensor::MatrixSize;
+use taxel_core::sweep::MergeError;
+use taxel_files::acquire::RecorderError;
+use taxel_files::formats::Name;
+use taxel_files::formats::file::{system_reason, write_reason};
+use taxel_files::formats::recording::{RecordingError, RecordingNote};
+use taxel_files::formats::stream::StreamRefusal;
+use taxel_files::formats::value::counted;
+use taxel_files::storage::{ArchiveFileError, FileError, LibraryError};
+
 use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
-use crate::formats::Name;
-use crate::formats::file::{system_reason, write_reason};
-use crate::formats::recording::{RecordingError, RecordingNote};
-use crate::formats::stream::StreamRefusal;
-use crate::formats::value::counted;
-use crate::frame::FrameError;
-use crate::parameter::ParameterError;
-use crate::parameter::number::short;
-use crate::pose::GridError;
-use crate::quote::shortened_message;
-use crate::recognition::{NoiseError, TrainingError};
-use crate::sensor::MatrixSize;
-use crate::storage::{ArchiveFileError, FileError, LibraryError};
-use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
 pub(crate) const MOST_PAIRED: usize = 4096;

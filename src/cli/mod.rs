@@ -46,6 +46,10 @@ use std::ffi::OsString;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+
+use crate::tui::live::message::WatchRequest;
 use arguments::definitions;
 use arguments::flags::Form;
 use arguments::frames::FramesArguments;
@@ -54,12 +58,11 @@ use arguments::model::ModelRequest;
 use arguments::request::{self, Invocation, Request};
 use arguments::sweep::{SweepArguments, Swept};
 use arguments::touch::Kept;
-use commands::export::Exported;
-use commands::frames::FramesOutput;
-use commands::recognise::FrameNamer;
+use commands::export::{self, Exported};
+use commands::frames::{self, FramesOutput};
+use commands::recognise::{self, FrameNamer};
 use commands::{
-    Summary, confusion, export, frames, library, man, model, noise, recognise, screen, script,
-    separate, sweep, touch, watch,
+    Summary, confusion, library, man, model, noise, screen, script, separate, sweep, touch, watch,
 };
 use error::CliError;
 use input::lines::LineInput;
@@ -67,10 +70,6 @@ use input::shapes::Shelf;
 use output::charset::{Charset, note};
 use output::progress::ProgressDisplay;
 use settings::resolved::Effective;
-
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::tui::live::message::WatchRequest;
 
 /// Runs the program with the given arguments and returns its exit status. The first argument is the program's own name.
 ///

@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
+use taxel_core::progress::{Progress, stop_if};
+use taxel_core::recognition::TrainingError;
 
 use crate::cli::error::CliError;
-use crate::progress::{Progress, stop_if};
-use crate::recognition::TrainingError;
 
 const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
 

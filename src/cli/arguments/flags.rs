@@ -19,20 +19,18 @@ use clap::builder::{OsStringValueParser, PossibleValuesParser, StyledStr, TypedV
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 use taxel_core::figure::{Figure, FigureKind};
-use taxel_core::parameter::{PARAMETERS, ParameterError, Unit, UnknownName};
+use taxel_core::parameter::{PARAMETERS, Parameter, ParameterError, Unit, UnknownName, number};
 use taxel_core::picture::{PICTURE_PARAMETERS, Picture};
-use taxel_core::sensor::Sensor;
+use taxel_core::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::sweep::{Shard, ShardError};
+use taxel_files::formats::Name;
+use taxel_files::formats::file::has_ending;
+use taxel_files::memory::MemorySize;
+use taxel_files::storage::Existing;
 
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::{Effective, Pitch};
-use crate::formats::Name;
-use crate::formats::file::has_ending;
-use crate::memory::MemorySize;
-use crate::parameter::{Parameter, number};
-use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
-use crate::sensor::SENSOR_PARAMETERS;
-use crate::storage::Existing;
-use crate::sweep::{Shard, ShardError};
 use crate::tui::widget::write::broken;
 
 pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {

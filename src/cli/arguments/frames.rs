@@ -13,6 +13,10 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+use taxel_core::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule, View};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::{Parameter, number};
+use taxel_core::recognition::Noise;
 use taxel_files::acquire::{AcquireOptions, Playback};
 use taxel_files::formats::stream::StreamFormat;
 use taxel_files::storage::Existing;
@@ -25,10 +29,6 @@ use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::arguments::{program, touch};
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::{LEAST, SensorSettings};
-use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule, View};
-use crate::imprint::Imprint;
-use crate::parameter::{Parameter, number};
-use crate::recognition::Noise;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FrameChoice {

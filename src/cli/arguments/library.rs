@@ -3,6 +3,8 @@
 use std::ffi::OsString;
 
 use clap::{ArgMatches, Command};
+use taxel_core::parameter::Parameter;
+use taxel_files::formats::Name;
 
 use crate::cli::arguments::flags::{
     Form, existing, force, json, name, of_sensor, required, unhandled_subcommand, what,
@@ -14,8 +16,6 @@ use crate::cli::arguments::help::{
 use crate::cli::arguments::touch::Saving;
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::Effective;
-use crate::formats::Name;
-use crate::parameter::Parameter;
 
 #[derive(Clone, Debug)]
 pub(crate) enum LibraryCommand {

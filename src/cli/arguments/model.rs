@@ -19,6 +19,7 @@ use taxel_core::recognition::{
 };
 use taxel_core::sensor::{MatrixSize, Sensor};
 use taxel_core::sweep::Shard;
+use taxel_files::formats::Name;
 use taxel_files::formats::file::has_ending;
 use taxel_files::memory::MemorySize;
 use taxel_files::storage::Existing;
@@ -33,7 +34,6 @@ use crate::cli::arguments::help::{
     MODEL_SEPARATE_EXAMPLES, MODEL_SHOW_EXAMPLES, MODEL_TOUCHES_EXAMPLES, MODEL_TRAIN_EXAMPLES,
 };
 use crate::cli::error::CliError;
-use crate::formats::Name;
 
 /// The model that is used if none is named: the seven figures at their default sizes.
 pub(crate) const DEFAULT_MODEL: &str = "figures";

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use clap_complete::Shell;
+use taxel_files::storage::Existing;
 
 use crate::cli::arguments::flags::{self, option, switch};
 use crate::cli::arguments::help::{
@@ -13,7 +14,6 @@ use crate::cli::arguments::help::{
 };
 use crate::cli::input::content::InputSource;
 use crate::cli::settings::file::AUTO;
-use crate::storage::Existing;
 use crate::tui::script::command;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 

@@ -3,15 +3,15 @@
 use std::ffi::OsString;
 
 use clap::{ArgMatches, Command};
+use taxel_core::index::wide;
+use taxel_core::parameter::Parameter;
+use taxel_core::recognition::{Noise, NoiseError};
 
 use crate::cli::arguments::flags::{
     self, jobs, json, of_sensor, option, parse_probability, switch, what, whole,
 };
 use crate::cli::arguments::help::RECOGNISE_EXAMPLES;
 use crate::cli::arguments::model::DEFAULT_MODEL;
-use crate::index::wide;
-use crate::parameter::Parameter;
-use crate::recognition::{Noise, NoiseError};
 
 #[derive(Clone, Debug)]
 pub(crate) struct RecogniseArguments {

@@ -13,8 +13,11 @@ use clap::{ArgMatches, Command};
 use clap_complete::Shell;
 use taxel_core::figure::FigureKind;
 use taxel_core::quote::{as_argument, joined};
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
 
+use crate::cli::arguments::definitions;
 use crate::cli::arguments::flags::{self, Form, Given, misused, required, unhandled_subcommand};
 use crate::cli::arguments::frames::{FramesArguments, WatchArguments};
 use crate::cli::arguments::library::LibraryCommand;
@@ -22,12 +25,9 @@ use crate::cli::arguments::model::ModelRequest;
 use crate::cli::arguments::program::Script;
 use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::arguments::sweep::{SweepArguments, Wanted};
-use crate::cli::arguments::touch::{Export, Kept};
-use crate::cli::arguments::{definitions, touch};
+use crate::cli::arguments::touch::{self, Export, Kept};
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::{Chosen, Effective, Loaded, Pitch};
-use crate::sensor::Sensor;
-use crate::source::Source;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Invocation {

@@ -5,6 +5,13 @@ use std::path::PathBuf;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+use taxel_core::figure::FigureKind;
+use taxel_core::pose::{Anchor, Axis, GivenRanges};
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::sweep::Shard;
+use taxel_files::memory::MemorySize;
+use taxel_files::storage::{AtlasFile, Existing};
 
 use crate::cli::arguments::flags::{
     self, Given, anchor, jobs, json, memory, misused, name_or_path, npy, option, quiet, range,
@@ -14,13 +21,6 @@ use crate::cli::arguments::help::{MERGE_EXAMPLES, SWEEP_EXAMPLES};
 use crate::cli::arguments::touch;
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::Effective;
-use crate::figure::FigureKind;
-use crate::memory::MemorySize;
-use crate::pose::{Anchor, Axis, GivenRanges};
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::storage::{AtlasFile, Existing};
-use crate::sweep::Shard;
 
 #[derive(Clone, Debug)]
 pub(crate) struct SweepArguments {

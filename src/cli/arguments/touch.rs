@@ -5,6 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+use taxel_core::figure::FigureKind;
+use taxel_core::parameter::Parameter;
+use taxel_core::picture::PICTURE_PARAMETERS;
+use taxel_core::quote::joined;
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
 use taxel_files::formats::{ImprintFormat, Name};
 use taxel_files::storage::Existing;
@@ -18,12 +24,6 @@ use crate::cli::arguments::help::{
 };
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::{Effective, Pitch};
-use crate::figure::FigureKind;
-use crate::parameter::Parameter;
-use crate::picture::PICTURE_PARAMETERS;
-use crate::quote::joined;
-use crate::sensor::{SENSOR_PARAMETERS, Sensor};
-use crate::source::Source;
 
 /// Defines `taxel figure KIND`, such as `taxel figure ellipse --x0 1.99 --radius-x 4`. There is a flag for each
 /// parameter of any kind; [`Given::foreign`](flags::Given::foreign) refuses those that the given kind does not

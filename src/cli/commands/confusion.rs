@@ -7,6 +7,12 @@ use std::iter;
 use std::path::Path;
 
 use serde_json::json;
+use taxel_core::parameter::number::share;
+use taxel_core::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model};
+use taxel_files::formats::file::has_ending;
+use taxel_files::formats::value::percent;
+use taxel_files::formats::{ConfusionMap, json};
+use taxel_files::storage::check_writable;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::{ConfusionArguments, Evaluated};
@@ -19,12 +25,6 @@ use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
-use crate::formats::file::has_ending;
-use crate::formats::value::percent;
-use crate::formats::{ConfusionMap, json};
-use crate::parameter::number::share;
-use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model};
-use crate::storage::check_writable;
 
 pub(crate) fn confusion(
     asked: &ConfusionArguments,

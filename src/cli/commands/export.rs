@@ -4,20 +4,20 @@
 //! Standard output, `-`, gets the same bytes.
 
 use std::ffi::OsStr;
-use std::fs;
-use std::io;
 use std::path::Path;
+use std::{fs, io};
+
+use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
+use taxel_core::source::Source;
+use taxel_files::formats::{Content, Drawing, Name, StoredShape};
+use taxel_files::storage::{Existing, FinishedFile, check_writable};
 
 use crate::cli::arguments::touch::{Export, ExportFormat, Kept, Saving};
 use crate::cli::error::CliError;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::settings::resolved::Pitch;
-use crate::formats::{Content, Drawing, Name, StoredShape};
-use crate::imprint::Imprint;
-use crate::matrix::Matrix;
-use crate::source::Source;
-use crate::storage::{Existing, FinishedFile, check_writable};
 
 impl Export {
     pub(crate) fn numbered(&self, number: u64) -> Self {

@@ -23,30 +23,31 @@ use std::io::Write;
 use std::ops::{ControlFlow, Range};
 use std::slice;
 
+use taxel_core::frame::{
+    FlipReport, Frame, Processed, Processing, Rule, RuleOrigin, SetRule, Tare,
+};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
+use taxel_core::parameter::number::short;
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, RecordingError};
+use taxel_files::formats::value::counted;
+use taxel_files::formats::{Name, StoredShape, json};
+
 use crate::cli::arguments::flags::Form;
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
 use crate::cli::arguments::touch::{Export, Kept};
 use crate::cli::commands::export::{Begun, Exported};
 use crate::cli::commands::recognise::FrameNamer;
-use crate::cli::commands::recording_scan;
-use crate::cli::commands::recording_scan::Scan;
+use crate::cli::commands::recording_scan::{self, Scan};
 use crate::cli::error::{CliError, frame_advice};
-use crate::cli::input::recording;
-use crate::cli::input::recording::RecordingFile;
+use crate::cli::input::recording::{self, RecordingFile};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::heat_map;
 use crate::cli::output::recording_list::{self, ListedChannel};
 use crate::cli::output::report;
 use crate::cli::settings::resolved::Pitch;
-use crate::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, RecordingError};
-use crate::formats::value::counted;
-use crate::formats::{Name, StoredShape, json};
-use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, RuleOrigin, SetRule, Tare};
-use crate::imprint::Imprint;
-use crate::parameter::Parameter;
-use crate::parameter::number::short;
-use crate::sensor::Sensor;
 
 pub(crate) struct FramesOutput<'a> {
     pub(crate) form: Form,

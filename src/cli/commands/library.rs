@@ -8,6 +8,11 @@ use std::path::Path;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
+use taxel_core::description::{RegionKind, regions};
+use taxel_core::quote::{as_argument, shortened_message};
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::{Content, Name, StoredShape, json};
+use taxel_files::storage::{Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
 
 use crate::cli::arguments::flags::Form;
 use crate::cli::arguments::touch::Saving;
@@ -15,12 +20,6 @@ use crate::cli::commands::touch;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::description::{RegionKind, regions};
-use crate::formats::Content;
-use crate::formats::{Name, StoredShape, json};
-use crate::quote::{as_argument, shortened_message};
-use crate::sensor::Sensor;
-use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
 
 struct ListLine {
     name: String,

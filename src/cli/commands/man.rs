@@ -5,13 +5,13 @@ use std::path::Path;
 
 use clap::Command;
 use clap_mangen::Man;
+use taxel_files::formats::value::counted;
+use taxel_files::storage::Existing;
 
 use crate::cli::arguments::definitions;
 use crate::cli::arguments::help::{ENVIRONMENT, EXAMPLES, FILES};
 use crate::cli::commands::export;
 use crate::cli::error::CliError;
-use crate::formats::value::counted;
-use crate::storage::Existing;
 
 pub(crate) fn main_page() -> Result<Vec<u8>, CliError> {
     page(&built()).map_err(CliError::Write)

@@ -7,8 +7,23 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
-use taxel_core::pose::{GivenRanges, Reach, SensorSides, check_given};
-use taxel_core::recognition::{CellPositions, LEAST_SIDE};
+use taxel_core::pose::{
+    Anchor, Axis, DecimalRange, GivenRanges, Ranges, Reach, SensorSides, check_given,
+};
+use taxel_core::quote::did_you_mean;
+use taxel_core::recognition::{
+    CellPositions, Evaluation, LEAST_SIDE, Model, NamedShape, Training, TrainingError,
+};
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::sweep::Shard;
+use taxel_files::formats::value::{counted, grouped, percent};
+use taxel_files::formats::{Name, json};
+use taxel_files::memory::MemoryGuard;
+use taxel_files::storage::{
+    ArchiveFileError, ModelCache, ModelChoice, ModelFolder, cached_or_trained, check_writable,
+    load_model, load_whole_model, model_hash, save_model, unknown_set,
+};
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::model::{ModelTarget, TrainArguments};
@@ -19,21 +34,7 @@ use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::sweep_summary::ranges_in_words;
-use crate::cli::signals;
-use crate::cli::signals::Signals;
-use crate::formats::value::{counted, grouped, percent};
-use crate::formats::{Name, json};
-use crate::memory::MemoryGuard;
-use crate::pose::{Anchor, Axis, DecimalRange, Ranges};
-use crate::quote::did_you_mean;
-use crate::recognition::{Evaluation, Model, NamedShape, Training, TrainingError};
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::storage::{
-    ArchiveFileError, ModelCache, ModelChoice, ModelFolder, cached_or_trained, check_writable,
-    load_model, load_whole_model, model_hash, save_model, unknown_set,
-};
-use crate::sweep::Shard;
+use crate::cli::signals::{self, Signals};
 
 /// Trains a model and writes it. Returns the text to print, with the error if there is no file. The path is tried
 /// before the work begins. A signal stops the training and leaves no file.

@@ -18,6 +18,15 @@ use std::fmt::Write;
 use std::iter;
 
 use serde_json::json;
+use taxel_core::index::narrow;
+use taxel_core::parameter::number::share;
+use taxel_core::recognition::{
+    GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
+};
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::file::has_ending;
+use taxel_files::formats::value::{counted, grouped, percent};
+use taxel_files::formats::{LinePlot, json};
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::{ConfusionArguments, NoiseArguments, TouchesArguments};
@@ -30,15 +39,6 @@ use crate::cli::output::evaluation::{self, bar};
 use crate::cli::output::plot;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
-use crate::formats::file::has_ending;
-use crate::formats::value::{counted, grouped, percent};
-use crate::formats::{LinePlot, json};
-use crate::index::narrow;
-use crate::parameter::number::share;
-use crate::recognition::{
-    GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
-};
-use crate::sensor::Sensor;
 
 struct NoiseRow {
     noise: f64,

@@ -10,6 +10,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
+use taxel_core::imprint::Imprint;
+use taxel_core::progress::ToTheEnd;
+use taxel_core::quote::{did_you_mean, shortened_message};
+use taxel_core::recognition::{Answer, AnswerState, Evidence, Model, NamedShape, Noise};
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::file::without_mark;
+use taxel_files::formats::job::{FrameRows, RuleRecord};
+use taxel_files::formats::record::Text;
+use taxel_files::formats::value::counted;
+use taxel_files::formats::{Content, json};
+use taxel_files::memory::MemoryGuard;
 
 use crate::cli::arguments::frames::NamingArguments;
 use crate::cli::arguments::recognise::RecogniseArguments;
@@ -21,17 +32,6 @@ use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText, PoseReport};
 use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::progress::ProgressDisplay;
-use crate::formats::file::without_mark;
-use crate::formats::job::{FrameRows, RuleRecord};
-use crate::formats::record::Text;
-use crate::formats::value::counted;
-use crate::formats::{Content, json};
-use crate::imprint::Imprint;
-use crate::memory::MemoryGuard;
-use crate::progress::ToTheEnd;
-use crate::quote::{did_you_mean, shortened_message};
-use crate::recognition::{Answer, AnswerState, Evidence, Model, NamedShape, Noise};
-use crate::sensor::Sensor;
 
 pub(crate) fn recognise(
     asked: &RecogniseArguments,

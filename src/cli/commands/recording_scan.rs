@@ -7,20 +7,18 @@
 use std::ops::ControlFlow;
 
 use serde::Serialize;
-use taxel_core::frame::{FlipCounter, FlipReport, Processing};
+use taxel_core::frame::{FlipCounter, FlipReport, FrameError, FrameSize, Processing, View};
 use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
 use taxel_files::formats::json;
-use taxel_files::formats::value::grouped;
+use taxel_files::formats::recording::{
+    RecordingError, RecordingEvent, RecordingFormat, RecordingNote, no_channel,
+};
+use taxel_files::formats::value::{counted, grouped};
 
 use crate::cli::error::{CliError, note_advice};
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::output::recording_list::ListedChannel;
-use crate::formats::recording::{
-    RecordingError, RecordingEvent, RecordingFormat, RecordingNote, no_channel,
-};
-use crate::formats::value::counted;
-use crate::frame::{FrameError, FrameSize, View};
-use crate::matrix::Matrix;
 
 const MOST_WARNINGS: usize = 20;
 

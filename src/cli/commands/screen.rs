@@ -10,12 +10,13 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use taxel_files::formats::file::system_reason;
+use taxel_files::storage::ModelCache;
+
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::{Charset, note};
 use crate::cli::settings::resolved::Effective;
-use crate::formats::file::system_reason;
-use crate::storage::ModelCache;
 use crate::tui::app::message::{Message, WorkerEvent};
 use crate::tui::app::state::{App, Options};
 use crate::tui::live::message::{LiveMessage, WatchRequest};

@@ -19,6 +19,11 @@ use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
+use taxel_files::formats::Name;
+use taxel_files::formats::file::without_mark;
+use taxel_files::formats::name::folded;
+use taxel_files::storage;
+
 use crate::cli::arguments::program::Script;
 use crate::cli::commands::export;
 use crate::cli::error::CliError;
@@ -26,16 +31,11 @@ use crate::cli::input::content::InputSource;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::resolved::Effective;
-use crate::formats::Name;
-use crate::formats::file::without_mark;
-use crate::formats::name::folded;
-use crate::storage;
 use crate::tui::app::state::Options;
 use crate::tui::keys::key::parse;
 use crate::tui::runtime::World;
 use crate::tui::script::command::ScriptError;
-use crate::tui::script::runner;
-use crate::tui::script::runner::{ScriptOptions, ScriptOutput};
+use crate::tui::script::runner::{self, ScriptOptions, ScriptOutput};
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 /// The longest script, in bytes.

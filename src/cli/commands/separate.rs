@@ -9,29 +9,26 @@
 
 use std::ffi::{OsStr, OsString};
 
+use taxel_core::pose::{Axis, DecimalRange, Ranges};
+use taxel_core::progress::Progress;
+use taxel_core::quote::shortened_message;
+use taxel_core::recognition::{CellPositions, Model, Separation, TrainingError};
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::Name;
+use taxel_files::formats::file::has_ending;
+use taxel_files::memory::MemoryGuard;
+use taxel_files::storage::{ModelChoice, check_writable};
+
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::SeparateArguments;
 use crate::cli::commands::export::{put, written};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
-use crate::cli::input::shapes;
-use crate::cli::input::shapes::Shelf;
+use crate::cli::input::shapes::{self, Shelf};
 use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::progress::ProgressDisplay;
-use crate::cli::output::separation;
-use crate::cli::output::separation::{SeparationCurve, csv, drawing};
-use crate::cli::signals;
-use crate::cli::signals::Signals;
-use crate::formats::Name;
-use crate::formats::file::has_ending;
-use crate::memory::MemoryGuard;
-use crate::pose::{Axis, DecimalRange, Ranges};
-use crate::progress::Progress;
-use crate::quote::shortened_message;
-use crate::recognition::{CellPositions, Model, Separation, TrainingError};
-use crate::sensor::Sensor;
-use crate::storage::ModelChoice;
-use crate::storage::check_writable;
+use crate::cli::output::separation::{self, SeparationCurve, csv, drawing};
+use crate::cli::signals::{self, Signals};
 
 const REFINED: u64 = 9;
 

@@ -16,10 +16,18 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use taxel_core::pose::{Anchor, Axis, GivenRanges, PoseGrid, default_ranges, figure_ranges};
 use taxel_core::recognition::{Evaluation, Model, ModelError, ModelMerge, TrainingError};
-use taxel_core::sweep::{MergeError, ShardOrderError, SweepMerge};
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::sweep::{MergeError, Shard, ShardOrderError, Sweep, SweepMerge, SweepResult};
+use taxel_files::formats::value::{counted, grouped};
 use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
-use taxel_files::storage::{load_atlas, load_model, open_archive, save_model};
+use taxel_files::memory::MemoryGuard;
+use taxel_files::storage::{
+    ArchiveFileError, AtlasFile, FinishedFile, PoseFile, load_atlas, load_model, open_archive,
+    save_model,
+};
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::model::model_file;
@@ -32,15 +40,7 @@ use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::sweep_summary::SweepSummary;
-use crate::cli::signals;
-use crate::cli::signals::Signals;
-use crate::formats::value::{counted, grouped};
-use crate::memory::MemoryGuard;
-use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, default_ranges, figure_ranges};
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile};
-use crate::sweep::{Shard, Sweep, SweepResult};
+use crate::cli::signals::{self, Signals};
 
 impl Wanted {
     pub(super) fn note_written(&self, summary: &Summary, charset: Charset) {

@@ -5,8 +5,12 @@ use std::ffi::OsStr;
 use std::io::Write;
 
 use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
 use taxel_core::quote::shortened_message;
-use taxel_files::formats::{DescribedImprint, Job};
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::touch::Plane;
+use taxel_files::formats::{Content, DescribedImprint, Job, StoredShape};
 
 use crate::cli::arguments::flags::{Form, Given};
 use crate::cli::arguments::touch::{Export, Kept};
@@ -15,11 +19,6 @@ use crate::cli::input::lines::{self, LineInput};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
-use crate::formats::{Content, StoredShape};
-use crate::picture::Picture;
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::touch::Plane;
 
 pub(crate) struct Touched {
     /// For standard output: the imprint with its descriptors, or with `--export -` the exported file instead.

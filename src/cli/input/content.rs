@@ -10,13 +10,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-
-use crate::formats::file::system_reason;
-use crate::formats::file::without_mark;
-use crate::formats::recording::may_be_recording;
-use crate::formats::shape::MAX_BYTES;
-use crate::formats::{Content, ContentError, read_content};
-use crate::quote::shortened_message;
+use taxel_core::quote::shortened_message;
+use taxel_files::formats::file::{system_reason, without_mark};
+use taxel_files::formats::recording::may_be_recording;
+use taxel_files::formats::shape::MAX_BYTES;
+use taxel_files::formats::{Content, ContentError, read_content};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum InputSource {

@@ -9,24 +9,22 @@ use std::os::fd::AsFd;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-use taxel_core::frame::{FrameError, Peak, Processing, Rule, SetRule, TareFrames, View};
+use taxel_core::frame::{Frame, FrameError, Peak, Processing, Rule, SetRule, TareFrames, View};
+use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
 use taxel_core::sensor::MatrixSize;
+use taxel_files::acquire::metadata_beside;
 use taxel_files::formats::file::system_reason;
-use taxel_files::formats::recording::ChannelInfo;
+use taxel_files::formats::recording::{
+    ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata,
+    format_of, read, read_rows,
+};
+use taxel_files::storage::FileId;
 
-use crate::acquire::metadata_beside;
 use crate::cli::arguments::frames::ProcessingArguments;
 use crate::cli::error::{CliError, frame_advice};
 use crate::cli::input::content::{self, InputError, InputSource};
 use crate::cli::output::recording_list::ListedChannel;
-use crate::formats::recording::{
-    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, format_of,
-    read, read_rows,
-};
-use crate::frame::Frame;
-use crate::imprint::Imprint;
-use crate::storage::FileId;
 
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;

@@ -10,23 +10,21 @@ use std::io::{BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
 
-use taxel_core::figure::Figure;
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::imprint::Imprint;
+use taxel_core::lock::locked;
 use taxel_core::picture::Picture;
+use taxel_core::quote::as_argument;
 use taxel_core::recognition::NamedShape;
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::file::{has_ending, system_reason, without_mark};
-use taxel_files::formats::{NamedShapeError, ShapeLookup, named_shape};
+use taxel_files::formats::name::folded;
+use taxel_files::formats::{Content, NamedShapeError, ShapeLookup, StoredShape, named_shape};
+use taxel_files::storage::{Existing, Expected, Library, LibraryError};
 
 use crate::cli::arguments::model::SetArguments;
 use crate::cli::error::CliError;
 use crate::cli::input::content::{self, InputError, InputSource};
-use crate::figure::FigureKind;
-use crate::formats::name::folded;
-use crate::formats::{Content, StoredShape};
-use crate::imprint::Imprint;
-use crate::lock::locked;
-use crate::quote::as_argument;
-use crate::storage::{Existing, Expected, Library, LibraryError};
 
 /// The library, which is opened when it is first used: most commands never need it.
 #[derive(Clone, Debug)]
@@ -372,8 +370,9 @@ fn set_lines(
 
 #[cfg(test)]
 mod tests {
+    use taxel_files::storage::FileError;
+
     use super::*;
-    use crate::storage::FileError;
 
     /// The lock or the temporary file is the first that cannot be written, but does not matter to the user.
     #[test]

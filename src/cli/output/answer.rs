@@ -6,18 +6,18 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::{differing, short};
 use taxel_core::pose::{Anchor, Axis, Placed, Pose, PoseGrid, Ranges};
-use taxel_core::recognition::{AngleEstimate, PoseEstimate};
+use taxel_core::recognition::{
+    AngleEstimate, Answer, AnswerState, Evidence, Model, Nearest, Noise, PoseEstimate, SearchMethod,
+};
 use taxel_core::sensor::Sensor;
-use taxel_files::formats::value::{self, decimal, deviation};
+use taxel_files::formats::value::{self, decimal, deviation, percent};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::bar;
 use crate::cli::output::plot::{canvas_of_taxels, character};
-use crate::formats::value::percent;
-use crate::imprint::Imprint;
-use crate::parameter::number::{differing, short};
-use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest, Noise, SearchMethod};
 use crate::tui::widget::plot::DotCanvas;
 
 const SHOWN: usize = 8;

@@ -9,7 +9,8 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::iter;
 
-use crate::quote::is_invisible;
+use taxel_core::quote::is_invisible;
+
 use crate::tui::widget::theme::spelling;
 use crate::tui::widget::write::width;
 

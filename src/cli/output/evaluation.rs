@@ -6,13 +6,13 @@ use std::iter;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::json;
-
-use crate::cli::output::charset::Charset;
-use crate::formats::value::{counted, grouped, percent, percentage};
-use crate::parameter::number::share;
-use crate::recognition::{
+use taxel_core::parameter::number::share;
+use taxel_core::recognition::{
     ChosenDescriptor, Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation,
 };
+use taxel_files::formats::value::{counted, grouped, percent, percentage};
+
+use crate::cli::output::charset::Charset;
 use crate::tui::widget::write::width;
 
 pub(crate) struct EvaluationJson<'a> {
@@ -394,12 +394,13 @@ pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) ->
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::figure::Figure;
+    use taxel_core::pose::{Anchor, Axis, Ranges};
+    use taxel_core::recognition::{Model, ModelHead, NamedShape, ShapeCount};
+    use taxel_core::sensor::Sensor;
+    use taxel_files::formats::json;
+
     use super::*;
-    use crate::figure::Figure;
-    use crate::formats::json;
-    use crate::pose::{Anchor, Axis, Ranges};
-    use crate::recognition::{Model, ModelHead, NamedShape, ShapeCount};
-    use crate::sensor::Sensor;
 
     #[test]
     fn counts_beyond_64_bits_are_texts_wherever_they_stand() {

@@ -9,8 +9,9 @@ use std::sync::mpsc::{
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
+use taxel_core::imprint::Imprint;
+
 use crate::cli::error::CliError;
-use crate::imprint::Imprint;
 
 /// The most lines that may wait; for frames of 64 × 64 they take about 5 MB.
 const WAITING: usize = 1000;

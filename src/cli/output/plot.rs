@@ -8,10 +8,9 @@
 //! ```
 
 use taxel_core::matrix::Matrix;
-use taxel_files::formats::value::{self, characters, fitting};
+use taxel_files::formats::value::{self, characters, decimal, fitting};
 
 use crate::cli::output::charset::Charset;
-use crate::formats::value::decimal;
 use crate::tui::widget::plot::{DOTS, DotCanvas, glyph};
 use crate::tui::widget::theme::Theme;
 

@@ -8,11 +8,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use taxel_core::lock::try_locked;
+use taxel_core::progress::Progress;
+use taxel_files::formats::value::grouped;
 
 use crate::cli::output::charset::Charset;
-use crate::formats::value::grouped;
-use crate::lock::try_locked;
-use crate::progress::Progress;
 
 const PAUSE: Duration = Duration::from_secs(10);
 

@@ -4,13 +4,13 @@
 use std::fmt;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
+use taxel_core::frame::{Frame, FrameSize, Peak, View};
+use taxel_core::parameter::number::short;
+use taxel_files::formats::json;
+use taxel_files::formats::recording::{ChannelInfo, RecordingFormat};
+use taxel_files::formats::value::{counted, decimal};
 
 use crate::cli::output::charset::Charset;
-use crate::formats::json;
-use crate::formats::recording::{ChannelInfo, RecordingFormat};
-use crate::formats::value::{counted, decimal};
-use crate::frame::{Frame, FrameSize, Peak, View};
-use crate::parameter::number::short;
 
 #[derive(Debug, Default)]
 pub(crate) struct ListedChannel {

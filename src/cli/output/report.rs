@@ -18,14 +18,17 @@
 use std::fmt::Write;
 use std::iter;
 
+use taxel_core::description::{
+    DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, regions,
+};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::short;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::touch::reaches_beyond;
+use taxel_files::formats::{DescribedImprint, json, value};
+
 use crate::cli::output::charset::Charset;
-use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, regions};
-use crate::formats::{DescribedImprint, json, value};
-use crate::imprint::Imprint;
-use crate::parameter::number::short;
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::touch::reaches_beyond;
 
 /// The width of a table, in characters. A single region is never split, even if it is wider.
 const WIDTH: usize = 80;

@@ -9,14 +9,14 @@ use std::fmt::Write;
 
 use serde::Serialize;
 use serde_json::Value;
+use taxel_core::pose::DecimalRange;
+use taxel_core::recognition::{SeparationPoint, SizeAxis, SmallestSize};
+use taxel_files::formats::value::{decimal, grouped, percent};
+use taxel_files::formats::{LinePlot, json};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::number;
 use crate::cli::output::plot;
-use crate::formats::value::{decimal, grouped, percent};
-use crate::formats::{LinePlot, json};
-use crate::pose::DecimalRange;
-use crate::recognition::{SeparationPoint, SizeAxis, SmallestSize};
 
 /// Returns the table and a plot for each threshold. `wanted` is the error of `--want`; the result of its search comes
 /// last, in a sentence for each threshold.

@@ -4,14 +4,13 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
-use taxel_core::pose::Ranges;
+use taxel_core::atlas::{DistinctClasses, STATISTIC_COLUMNS, Statistic, StatisticColumn};
+use taxel_core::pose::{Axis, PoseGrid, Ranges};
+use taxel_core::sweep::SweepResult;
+use taxel_files::formats::json;
+use taxel_files::formats::value::{counted, grouped};
 
-use crate::atlas::{DistinctClasses, STATISTIC_COLUMNS, Statistic, StatisticColumn};
 use crate::cli::output::charset::Charset;
-use crate::formats::json;
-use crate::formats::value::{counted, grouped};
-use crate::pose::{Axis, PoseGrid};
-use crate::sweep::SweepResult;
 
 pub(crate) struct SweepSummary<'a> {
     result: &'a SweepResult,

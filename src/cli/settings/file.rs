@@ -12,6 +12,10 @@
 //!      did you mean \"color\"?");
 //! ```
 
+use taxel_core::parameter::{Parameter, ParameterError};
+use taxel_core::quote::{did_you_mean, shortened_message};
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_files::formats::stream::StreamFormat;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -19,10 +23,6 @@ use crate::cli::settings::resolved::Choice;
 use crate::cli::settings::sensors::{
     FormatSetting, SENSOR_SETTINGS, SensorSetting, SensorSettings, SettingKind,
 };
-use crate::formats::stream::StreamFormat;
-use crate::parameter::{Parameter, ParameterError};
-use crate::quote::{did_you_mean, shortened_message};
-use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::tui::keys::action;
 use crate::tui::keys::key::{Key, parse};
 use crate::tui::keys::keymap::{Change, Context, Keymap, KeymapError, actions};

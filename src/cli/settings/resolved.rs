@@ -10,16 +10,16 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_files::formats::file::{is_missing, system_reason};
+use taxel_files::storage::location;
 
 use crate::cli::arguments::flags::Given;
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, Wrong};
 use crate::cli::settings::sensors::{SENSOR_SETTINGS, SensorSettings, TABLES};
-use crate::formats::file::{is_missing, system_reason};
-use crate::parameter::Parameter;
-use crate::sensor::{SENSOR_PARAMETERS, Sensor};
-use crate::storage::location;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 

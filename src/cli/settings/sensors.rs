@@ -5,9 +5,10 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use crate::acquire::AcquireOptions;
-use crate::formats::stream::StreamFormat;
-use crate::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
+use taxel_core::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
+use taxel_files::acquire::AcquireOptions;
+use taxel_files::formats::stream::StreamFormat;
+
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::live::message::WatchRequest;
 

@@ -5,13 +5,14 @@
 //! belong to the document that they began on. The cursor stays where it was put; [`App::cursor`] keeps it on the
 //! sensor.
 
-use crate::formats::value::counted;
-use crate::imprint::Imprint;
-use crate::parameter::Parameter;
-use crate::parameter::number::to_decimals;
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::storage::Existing;
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
+use taxel_core::parameter::number::to_decimals;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_files::formats::value::counted;
+use taxel_files::storage::Existing;
+
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, History};

@@ -3,13 +3,13 @@
 //! A [`Document`] is a sensor, the source that touched it, and the taxels set by hand since then. Everything else
 //! follows from it and is a [`Reading`].
 
-use crate::description::{Description, Region, main_region, regions};
-use crate::formats::{Name, StoredShape};
-use crate::imprint::Imprint;
-use crate::matrix::Matrix;
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::touch::{Plane, reaches_beyond};
+use taxel_core::description::{Description, Region, main_region, regions};
+use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::touch::{Plane, reaches_beyond};
+use taxel_files::formats::{Name, StoredShape};
 
 /// The content of the matrix. It is plain and small, so that a list of earlier documents is the undo history.
 #[derive(Clone, Debug, PartialEq)]

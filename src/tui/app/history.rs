@@ -4,10 +4,10 @@ use taxel_core::parameter::Parameter;
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_core::source::Source;
 use taxel_core::touch::Plane;
+use taxel_files::formats::name::folded;
 use taxel_files::formats::value::counted;
+use taxel_files::storage::ShapeOrigin;
 
-use crate::formats::name::folded;
-use crate::storage::ShapeOrigin;
 use crate::tui::app::document::Document;
 
 /// All states from one origin to the next belong together, and share the name that they are stored under.
@@ -475,8 +475,9 @@ fn of_edits(from: &Document, to: &Document) -> String {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::sensor::Sensor;
+
     use super::*;
-    use crate::sensor::Sensor;
 
     #[test]
     fn a_change_that_is_amended_to_nothing_leaves_no_step() {

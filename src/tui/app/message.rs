@@ -6,11 +6,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use taxel_core::imprint::Imprint;
 use taxel_core::pose::{PoseGrid, PoseIndex};
+use taxel_files::formats::StoredShape;
 use taxel_files::storage::{Expected, LibraryEntry, LoadedShape};
 
-use crate::formats::StoredShape;
-use crate::imprint::Imprint;
 use crate::tui::app::document::Document;
 use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};

@@ -7,9 +7,9 @@ use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::imprint::Imprint;
+use taxel_core::recognition::PlacedSource;
 
-use crate::imprint::Imprint;
-use crate::recognition::PlacedSource;
 use crate::tui::app::message::Message;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::text_field::TextField;

@@ -6,12 +6,12 @@
 use std::collections::VecDeque;
 
 use ratatui::layout::Rect;
+use taxel_core::imprint::{Bounds, Imprint};
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_files::formats::{Name, StoredShape};
+use taxel_files::storage::Expected;
 
-use crate::formats::{Name, StoredShape};
-use crate::imprint::{Bounds, Imprint};
-use crate::sensor::Sensor;
-use crate::source::Source;
-use crate::storage::Expected;
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};

@@ -11,11 +11,11 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::description::Descriptor;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
+use taxel_files::formats::value;
 
-use crate::description::Descriptor;
-use crate::formats::value;
 use crate::tui::app::change::is_other;
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;

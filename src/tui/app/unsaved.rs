@@ -2,9 +2,9 @@
 //! so nothing that is asked about is missing in the journal.
 
 use taxel_core::source::Source;
+use taxel_files::formats::{Name, StoredShape};
+use taxel_files::storage::UNNAMED;
 
-use crate::formats::{Name, StoredShape};
-use crate::storage::UNNAMED;
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, StatePlace, UnsavedState};

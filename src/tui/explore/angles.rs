@@ -17,12 +17,11 @@ use ratatui::layout::{Position, Rect};
 use rayon::prelude::*;
 use taxel_core::atlas::{Feature, mean_direction};
 use taxel_core::index::{index, wide};
-use taxel_core::pose::PoseIndex;
+use taxel_core::pose::{Axis, PoseIndex};
 use taxel_core::sweep::SweepResult;
+use taxel_files::formats::value::fitting;
+use taxel_files::formats::{PointPlot, axis_ends};
 
-use crate::formats::value::fitting;
-use crate::formats::{PointPlot, axis_ends};
-use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::message::ExploreMessage;

@@ -11,10 +11,10 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::atlas::Histogram;
+use taxel_core::description::Dimension;
+use taxel_files::formats::value::{counted, grouped, percentage};
 
-use crate::atlas::Histogram;
-use crate::description::Dimension;
-use crate::formats::value::{counted, grouped, percentage};
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::view::{ResultsTab, choose_descriptor};

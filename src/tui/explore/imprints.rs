@@ -12,13 +12,12 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use taxel_core::atlas::{Atlas, AtlasFilter, SortDirection};
+use taxel_core::atlas::{Atlas, AtlasEntry, AtlasFilter, SortDirection};
+use taxel_core::index::wide;
+use taxel_core::pose::Axis;
 use taxel_core::sweep::SweepResult;
+use taxel_files::formats::value::{counted, grouped, percentage};
 
-use crate::atlas::AtlasEntry;
-use crate::formats::value::{counted, grouped, percentage};
-use crate::index::wide;
-use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::message::{ExploreMessage, ListColumn};
@@ -27,8 +26,8 @@ use crate::tui::explore::view::ResultsTab;
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write::narrow;
-use crate::tui::widget::{thumbnail, write};
+use crate::tui::widget::thumbnail;
+use crate::tui::widget::write::{self, narrow};
 
 const VALUE: usize = 8;
 const SHARE: usize = 6;
@@ -250,7 +249,10 @@ fn row_text(theme: &Theme, results: &Results, list: &ImprintTable, entry: &Atlas
 }
 
 fn share(results: &Results, entry: &AtlasEntry) -> String {
-    percentage(crate::formats::atlas::pose_share(results.sweep(), entry), 2)
+    percentage(
+        taxel_files::formats::atlas::pose_share(results.sweep(), entry),
+        2,
+    )
 }
 
 fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use crate::atlas::{DistinctClasses, SortDirection, SortKey, sorted};
-use crate::pose::{Axis, PoseGrid};
-use crate::source::Source;
-use crate::storage::Existing;
-use crate::sweep::SweepResult;
+use taxel_core::atlas::{DistinctClasses, SortDirection, SortKey, sorted};
+use taxel_core::pose::{Axis, PoseGrid};
+use taxel_core::source::Source;
+use taxel_core::sweep::SweepResult;
+use taxel_files::storage::Existing;
 
 #[derive(Debug)]
 pub struct Findings {

@@ -5,12 +5,13 @@
 
 use std::sync::Arc;
 
-use crate::atlas::{AtlasEntry, AtlasFilter, Feature, features};
-use crate::formats::value::{counted, grouped};
-use crate::imprint::Imprint;
-use crate::pose::{Axis, Pose, PoseIndex};
-use crate::sweep::SweepResult;
-use crate::touch::Plane;
+use taxel_core::atlas::{AtlasEntry, AtlasFilter, Feature, features};
+use taxel_core::imprint::Imprint;
+use taxel_core::pose::{Axis, Pose, PoseIndex};
+use taxel_core::sweep::SweepResult;
+use taxel_core::touch::Plane;
+use taxel_files::formats::value::{counted, grouped};
+
 use crate::tui::explore::angles::{AngleCurve, AngleSearch, zooms_of};
 use crate::tui::explore::imprints::ImprintList;
 use crate::tui::explore::map::layout::VisibleImprints;
@@ -264,13 +265,14 @@ impl Results {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::figure::{Figure, FigureKind};
+    use taxel_core::picture::Picture;
+    use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
+    use taxel_core::sensor::Sensor;
+    use taxel_core::source::Source;
+    use taxel_core::sweep::Sweep;
+
     use super::*;
-    use crate::figure::{Figure, FigureKind};
-    use crate::picture::Picture;
-    use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
-    use crate::sensor::Sensor;
-    use crate::source::Source;
-    use crate::sweep::Sweep;
 
     fn results() -> Results {
         let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, &Sensor::default()));

@@ -12,11 +12,11 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::atlas::{AtlasEntry, features};
+use taxel_core::index::wide;
+use taxel_files::formats::value::counted;
+use taxel_files::formats::{PointPlot, axis_ends};
 
-use crate::atlas::{AtlasEntry, features};
-use crate::formats::value::counted;
-use crate::formats::{PointPlot, axis_ends};
-use crate::index::wide;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::imprints::no_row;

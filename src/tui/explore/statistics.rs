@@ -10,9 +10,9 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::atlas::{STATISTIC_COLUMNS, features};
+use taxel_files::formats::value::grouped;
 
-use crate::atlas::{STATISTIC_COLUMNS, features};
-use crate::formats::value::grouped;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::results::Results;

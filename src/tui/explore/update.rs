@@ -4,10 +4,11 @@
 //! Messages that mean the same on all tabs are handled here: the tab, the descriptor, the order, the map's angle and
 //! zoom. Scrolling and selecting are left to the tab's own row in [`crate::tui::explore::view`].
 
-use crate::formats::value::{counted, grouped};
-use crate::pose::Axis;
-use crate::storage::{Existing, is_poses};
-use crate::touch::Plane;
+use taxel_core::pose::Axis;
+use taxel_core::touch::Plane;
+use taxel_files::formats::value::{counted, grouped};
+use taxel_files::storage::{Existing, is_poses};
+
 use crate::tui::app::change::{
     change, compare_with, from_prompt, inform, let_go, refuse, write_file,
 };

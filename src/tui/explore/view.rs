@@ -9,21 +9,19 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::pose::Axis;
 use taxel_files::formats::file::has_ending;
 
-use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::message::{ExploreMessage, ExploreTab};
 use crate::tui::explore::results::Results;
-use crate::tui::explore::statistics;
-use crate::tui::explore::{angles, histogram, imprints, map, scatter};
+use crate::tui::explore::{angles, histogram, imprints, map, scatter, statistics};
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
-use crate::tui::widget::write::narrow;
+use crate::tui::widget::write::{self, narrow};
 
 impl Page for Results {
     fn context(&self) -> Context {

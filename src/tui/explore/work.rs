@@ -12,13 +12,13 @@ use std::time::Duration;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::picture::Picture;
+use taxel_core::pose::{PoseGrid, PoseIndex};
+use taxel_core::source::Source;
+use taxel_files::formats::file::has_ending;
+use taxel_files::formats::value::{counted, grouped};
+use taxel_files::storage::{Existing, is_poses};
 
-use crate::formats::file::has_ending;
-use crate::formats::value::{counted, grouped};
-use crate::picture::Picture;
-use crate::pose::{PoseGrid, PoseIndex};
-use crate::source::Source;
-use crate::storage::{Existing, is_poses};
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question, topmost};
 use crate::tui::app::message::Message;

@@ -5,17 +5,15 @@
 //! matrix shows while that field is invalid. The third one is needed because a text that becomes invalid may have
 //! been valid on the way, such as the 1 on the way to 17.
 
-use taxel_core::parameter::ParameterError;
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::{Parameter, ParameterError};
+use taxel_core::picture::{PICTURE_PARAMETERS, Picture};
 use taxel_core::pose::{Anchor, Axis, DecimalRange};
-use taxel_core::sensor::MatrixSize;
+use taxel_core::sensor::{MatrixSize, SENSOR_PARAMETERS, Sensor};
+use taxel_core::source::Source;
+use taxel_files::formats::value::counted;
 
-use crate::figure::{Figure, FigureKind};
-use crate::formats::value::counted;
-use crate::imprint::Imprint;
-use crate::parameter::Parameter;
-use crate::picture::{PICTURE_PARAMETERS, Picture};
-use crate::sensor::{SENSOR_PARAMETERS, Sensor};
-use crate::source::Source;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::widget::field_list::{FieldList, FormError, FormField};

@@ -13,11 +13,11 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::figure::{FigureKind, NO_ROOM};
+use taxel_core::parameter::Parameter;
 use taxel_core::quote::quoted_character;
+use taxel_core::source::Source;
 
-use crate::figure::{FigureKind, NO_ROOM};
-use crate::parameter::Parameter;
-use crate::source::Source;
 use crate::tui::app::change::{refuse, replace};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;

@@ -12,12 +12,15 @@
 //! of help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes
 //! the `:` commands from them.
 
-use crate::pose::Axis;
+use taxel_core::pose::Axis;
+
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message, Purpose};
 use crate::tui::explore::message::{ExploreMessage, ExploreTab, ListColumn};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::state::RecogniseMessage;
+use ExploreMessage::{Along, Angle, Columns, Feature, NextTab, Sort};
+use Message::{Explore, Recognise};
 
 #[derive(Debug, PartialEq)]
 pub struct Action {
@@ -138,9 +141,6 @@ macro_rules! actions {
         ];
     };
 }
-
-use ExploreMessage::{Along, Angle, Columns, Feature, NextTab, Sort};
-use Message::{Explore, Recognise};
 
 actions! {
     alone {

@@ -12,10 +12,10 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
+use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
+use taxel_files::formats::value::measured;
 
-use crate::formats::value::measured;
-use crate::imprint::Imprint;
-use crate::matrix::Matrix;
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;

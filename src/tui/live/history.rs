@@ -3,10 +3,10 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use taxel_core::frame::Frame;
+use taxel_files::acquire::FrameRate;
 use taxel_files::formats::recording::FrameMark;
 
-use crate::acquire::FrameRate;
-use crate::frame::Frame;
 use crate::tui::live::message::ProvisionalChange;
 use crate::tui::live::reading::hold;
 use crate::tui::live::update::LiveRefusal;
@@ -389,8 +389,9 @@ impl FrameMarks {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::frame::FrameSize;
+
     use super::*;
-    use crate::frame::FrameSize;
 
     #[test]
     fn the_oldest_frames_are_dropped_when_memory_is_full() {

@@ -7,19 +7,17 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use taxel_core::frame::{FrameError, FrameSize, Processing, RuleOrigin, SetRule};
+use taxel_core::frame::{Frame, FrameError, FrameSize, Processing, Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::{UnknownName, number};
 use taxel_core::quote::shortened;
 use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
 use taxel_files::acquire::{AcquireOptions, Playback, SourceName};
-use taxel_files::formats::stream::StreamFormat;
+use taxel_files::formats::recording::ChannelInfo;
+use taxel_files::formats::stream::{StreamCounts, StreamFormat};
+use taxel_files::formats::value::decimal;
 use taxel_files::storage::{Existing, ModelChoice};
 
-use crate::formats::recording::ChannelInfo;
-use crate::formats::stream::StreamCounts;
-use crate::formats::value::decimal;
-use crate::frame::{Frame, Rule};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::prompt::read;

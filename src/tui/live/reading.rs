@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
+use taxel_core::description::{Description, main_region, regions};
+use taxel_core::frame::{Frame, FrameError, Processing};
+use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::Name;
 use taxel_files::formats::recording::ChannelInfo;
 
-use crate::description::{Description, main_region, regions};
-use crate::frame::{Frame, FrameError, Processing};
-use crate::imprint::Imprint;
-use crate::matrix::Matrix;
 use crate::tui::app::change::{begin, inform, refuse};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::DocumentOrigin;

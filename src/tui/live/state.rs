@@ -2,21 +2,20 @@
 
 use std::sync::Arc;
 
+use taxel_core::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
+use taxel_core::imprint::Imprint;
 use taxel_core::recognition::Noise;
+use taxel_files::acquire::SourceName;
+use taxel_files::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use taxel_files::storage::ModelChoice;
 
-use crate::acquire::SourceName;
-use crate::formats::recording::{ChannelInfo, FrameMark, RecordedView};
-use crate::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
-use crate::imprint::Imprint;
 use crate::tui::live::history::{FrameCursor, FrameMarks, ProvisionalOutcome};
 use crate::tui::live::message::{
     FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, SourceGaps, SourceState,
     WatchRequest,
 };
 use crate::tui::live::reading::{HeatLayer, LiveDisplay, LiveReading, ShadeRange};
-use crate::tui::live::tare;
-use crate::tui::live::tare::LiveTare;
+use crate::tui::live::tare::{self, LiveTare};
 use crate::tui::live::update::LiveRefusal;
 use crate::tui::widget::write::other;
 

@@ -3,12 +3,10 @@
 
 use std::sync::Arc;
 
-use taxel_core::frame::Rule;
-use taxel_files::formats::value::{fitting, measured};
+use taxel_core::frame::{FirstFrames, Frame, FrameError, Processing, Rule, Tare, TareFrames};
+use taxel_files::formats::recording::ChannelInfo;
+use taxel_files::formats::value::{counted, fitting, measured};
 
-use crate::formats::recording::ChannelInfo;
-use crate::formats::value::counted;
-use crate::frame::{FirstFrames, Frame, FrameError, Processing, Tare, TareFrames};
 use crate::tui::live::message::WatchRequest;
 use crate::tui::live::reading::{nine_digits, round_up};
 
@@ -209,8 +207,9 @@ pub(super) fn other_unit(rule: Option<Rule>, largest: f64) -> Result<Rule, Frame
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::frame::FrameSize;
+
     use super::*;
-    use crate::frame::FrameSize;
 
     #[test]
     fn frames_of_another_size_are_left_out_of_a_tare() {

@@ -4,15 +4,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use taxel_core::frame::FrameError;
+use taxel_core::frame::{FrameError, Rule};
 use taxel_files::acquire::SourceName;
-use taxel_files::formats::value::grouped;
-use taxel_files::storage::Existing;
+use taxel_files::formats::recording::RecordingMetadata;
+use taxel_files::formats::value::{counted, grouped};
+use taxel_files::storage::{Existing, ModelChoice};
 
-use crate::formats::recording::RecordingMetadata;
-use crate::formats::value::counted;
-use crate::frame::Rule;
-use crate::storage::ModelChoice;
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::message::{Endpoint, LibraryRequest, Message};
@@ -524,8 +521,9 @@ pub(super) fn name_by(page: &Live) -> Effect {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::frame::{Frame, FrameSize};
+
     use super::*;
-    use crate::frame::{Frame, FrameSize};
     use crate::tui::live::message::FrameBatch;
 
     /// A recording that is played in a loop: its numbers begin again.

@@ -11,13 +11,13 @@ use std::path::Path;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::description::{Descriptor, Value};
+use taxel_core::frame::RuleOrigin;
+use taxel_core::imprint::Imprint;
+use taxel_core::recognition::AnswerState;
+use taxel_files::formats::recording::FrameMark;
+use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 
-use crate::description::{Descriptor, Value};
-use crate::formats::recording::FrameMark;
-use crate::formats::value::{self, counted, fitting, grouped, measured};
-use crate::frame::RuleOrigin;
-use crate::imprint::Imprint;
-use crate::recognition::AnswerState;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;

@@ -7,11 +7,11 @@
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Modifier;
+use taxel_core::description::Description;
+use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
+use taxel_core::recognition::PlacedSource;
+use taxel_core::source::Source;
 
-use crate::description::Description;
-use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
-use crate::recognition::PlacedSource;
-use crate::source::Source;
 use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::widget::plot::{DOTS, DotCanvas, DotPosition, glyph};
 use crate::tui::widget::theme::{Role, Theme};

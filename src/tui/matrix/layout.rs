@@ -13,8 +13,8 @@
 use std::ops::Range;
 
 use ratatui::layout::Rect;
+use taxel_core::imprint::{Bounds, Imprint};
 
-use crate::imprint::{Bounds, Imprint};
 use crate::tui::widget::write::{narrow, taxels};
 
 pub const RULER: u16 = 3;

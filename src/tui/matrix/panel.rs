@@ -11,13 +11,12 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use taxel_core::description::{DESCRIPTORS, Description, Descriptor, Value};
+use taxel_files::formats::value;
 
-use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
-use crate::formats::value;
 use crate::tui::matrix::view::MatrixView;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
-use crate::tui::widget::write::narrow;
+use crate::tui::widget::write::{self, narrow};
 
 const SYMBOL: usize = 7;
 const VALUE: usize = 17;

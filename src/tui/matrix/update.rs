@@ -5,20 +5,18 @@
 
 use std::path::Path;
 
+use taxel_core::description::{DESCRIPTORS, Descriptor};
+use taxel_core::figure::Figure;
 use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
+use taxel_core::parameter::number::short;
+use taxel_core::picture::Picture;
 use taxel_core::quote::shortened;
+use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
-use taxel_files::formats::{Drawing, ImprintFormat, Name};
-use taxel_files::storage::{Existing, UNNAMED};
+use taxel_files::formats::{Drawing, ImprintFormat, Name, StoredShape, value};
+use taxel_files::storage::{Existing, ShapeOrigin, UNNAMED};
 
-use crate::description::{DESCRIPTORS, Descriptor};
-use crate::figure::Figure;
-use crate::formats::{StoredShape, value};
-use crate::parameter::Parameter;
-use crate::parameter::number::short;
-use crate::picture::Picture;
-use crate::source::Source;
-use crate::storage::ShapeOrigin;
 use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
     shift, travel, turn, write_file, zoom,

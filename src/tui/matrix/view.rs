@@ -14,18 +14,17 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::description::{Region, RegionKind};
+use taxel_core::imprint::{Bounds, Imprint};
+use taxel_core::source::Source;
 
-use crate::description::{Region, RegionKind};
-use crate::imprint::{Bounds, Imprint};
-use crate::source::Source;
 use crate::tui::app::document::Reading;
 use crate::tui::app::page::{Page, PoseLayer};
 use crate::tui::app::state::{App, Display};
 use crate::tui::matrix::layers::{Layers, Overlay};
 use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
-use crate::tui::widget::write::narrow;
+use crate::tui::widget::write::{self, narrow};
 
 #[derive(Clone, Copy, Debug)]
 pub struct MatrixView<'a> {

@@ -6,10 +6,11 @@
 
 use std::sync::LazyLock;
 
-use crate::figure::FigureKind;
-use crate::parameter::Parameter;
-use crate::pose::Axis;
-use crate::sensor::SENSOR_PARAMETERS;
+use taxel_core::figure::FigureKind;
+use taxel_core::parameter::Parameter;
+use taxel_core::pose::Axis;
+use taxel_core::sensor::SENSOR_PARAMETERS;
+
 use crate::tui::app::message::Message;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
 use crate::tui::keys::default_keys::DEFAULT_KEYS;

@@ -12,16 +12,17 @@
 //! Names, flags and ranges are those of the program's own command line. Parameters of a figure that are not given have
 //! their defaults; those of the sensor keep their values.
 
-use crate::figure::{Figure, FigureKind};
-use crate::formats::Name;
-use crate::formats::record::RecordError;
-use crate::frame::{FrameError, Rule};
-use crate::parameter::{Parameter, number};
-use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
-use crate::quote::{did_you_mean, joined, shortened};
-use crate::sensor::{SENSOR_PARAMETERS, Sensor};
-use crate::source::Source;
-use crate::storage::ModelChoice;
+use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::frame::{FrameError, Rule};
+use taxel_core::parameter::{Parameter, number};
+use taxel_core::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
+use taxel_core::quote::{did_you_mean, joined, shortened};
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::source::Source;
+use taxel_files::formats::Name;
+use taxel_files::formats::record::RecordError;
+use taxel_files::storage::ModelChoice;
+
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{LibraryRequest, Message, Purpose};
 use crate::tui::app::state::App;

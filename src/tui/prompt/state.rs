@@ -7,17 +7,16 @@ use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use taxel_files::formats::name::LONGEST;
+use taxel_files::formats::{Name, NameError};
 
-use crate::formats::name::LONGEST;
-use crate::formats::{Name, NameError};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::LinePrompt;
 use crate::tui::keys::keymap::Context;
 use crate::tui::prompt::commands::{Offer, complete, offers};
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
-use crate::tui::widget::write::narrow;
+use crate::tui::widget::write::{self, narrow};
 
 const LONGEST_COMMAND: usize = 200;
 

@@ -4,20 +4,20 @@
 //! matrix, or later by the library. Completion asks the library for names where a command takes one; the answer
 //! completes the word when it arrives.
 
-use crate::formats::value::counted;
+use taxel_files::formats::value::counted;
+
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{LibraryRequest, Message};
 use crate::tui::app::state::App;
 use crate::tui::keys::action::Arguments;
 use crate::tui::keys::key::Arrow;
-use crate::tui::live;
-use crate::tui::matrix;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::prompt::read::read;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect};
 use crate::tui::widget::text_field::TextField;
+use crate::tui::{live, matrix};
 
 /// Handles a message in the `:` prompt, which stays open until a command was understood.
 pub(in crate::tui) fn in_command(

@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::share;
 use taxel_core::recognition::{Evaluation, Model, ShapeCount};
+use taxel_core::sensor::Sensor;
+use taxel_files::formats::value::{counted, grouped, percent};
 
-use crate::formats::value::{counted, grouped, percent};
-use crate::imprint::Imprint;
-use crate::parameter::number::share;
-use crate::sensor::Sensor;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::key::Arrow;
@@ -19,8 +19,8 @@ use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::recognise::state::RecogniseMessage;
 use crate::tui::recognise::trained::{TrainedModel, onto};
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write::narrow;
-use crate::tui::widget::{thumbnail, write};
+use crate::tui::widget::thumbnail;
+use crate::tui::widget::write::{self, narrow};
 
 #[derive(Clone, Debug)]
 pub struct Confusion {

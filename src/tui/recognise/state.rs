@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
-use taxel_core::recognition::{Nearest, PlacedSource, PoseEstimate};
+use taxel_core::imprint::Imprint;
+use taxel_core::recognition::{Answer, Evidence, Nearest, PlacedSource, PoseEstimate};
+use taxel_core::sensor::MatrixSize;
+use taxel_core::source::Source;
+use taxel_files::formats::Name;
+use taxel_files::storage::ModelChoice;
 
-use crate::formats::Name;
-use crate::imprint::Imprint;
-use crate::recognition::{Answer, Evidence};
-use crate::sensor::MatrixSize;
-use crate::source::Source;
-use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::write::other;

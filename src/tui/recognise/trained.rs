@@ -2,13 +2,13 @@
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
+use taxel_core::imprint::Imprint;
+use taxel_core::pose::{Axis, DecimalRange, PoseGrid, Ranges};
+use taxel_core::recognition::{Evaluation, Model, below};
+use taxel_core::sensor::Sensor;
+use taxel_core::touch::Plane;
+use taxel_files::storage::{FileVersion, ModelChoice};
 
-use crate::imprint::Imprint;
-use crate::pose::{Axis, DecimalRange, PoseGrid, Ranges};
-use crate::recognition::{Evaluation, Model, below};
-use crate::sensor::Sensor;
-use crate::storage::{FileVersion, ModelChoice};
-use crate::touch::Plane;
 use crate::tui::recognise::confusion::Examples;
 
 #[derive(Debug)]
@@ -80,9 +80,9 @@ impl TrainedModel {
 impl TrainedModel {
     /// Creates a small model under the name of a set: a bar of 6 × 2 at every tenth of a cell and every ten degrees.
     pub(in crate::tui) fn of_a_bar(choice: ModelChoice) -> Self {
-        use crate::figure::Figure;
-        use crate::pose::Anchor;
-        use crate::recognition::{NamedShape, Training};
+        use taxel_core::figure::Figure;
+        use taxel_core::pose::Anchor;
+        use taxel_core::recognition::{NamedShape, Training};
 
         let sensor = Sensor::default();
         let bar = Figure::rectangle(6.0, 2.0).on(&sensor).expect("in range");
@@ -184,10 +184,11 @@ fn finer(range: &DecimalRange, step: f64) -> Option<DecimalRange> {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::figure::Figure;
+    use taxel_core::pose::Anchor;
+    use taxel_core::recognition::{NamedShape, Training};
+
     use super::*;
-    use crate::figure::Figure;
-    use crate::pose::Anchor;
-    use crate::recognition::{NamedShape, Training};
 
     fn between(weights: [u32; 2]) -> (u64, u64) {
         let sensor = Sensor::default();

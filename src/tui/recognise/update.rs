@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
+use taxel_files::storage::ModelChoice;
 
-use crate::storage::ModelChoice;
 use crate::tui::app::change::{begin_drawn, inform, let_go, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;

@@ -18,13 +18,12 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::{differing, share, short};
+use taxel_core::pose::Axis;
+use taxel_core::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
+use taxel_files::formats::value::{self, counted, decimal, grouped, percent};
 
-use crate::formats::value;
-use crate::formats::value::{counted, decimal, grouped, percent};
-use crate::imprint::Imprint;
-use crate::parameter::number::{differing, share, short};
-use crate::pose::Axis;
-use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, PoseLayer, Slot};
 use crate::tui::explore::work::gauge;
@@ -35,8 +34,7 @@ use crate::tui::recognise::state::{
 };
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
-use crate::tui::widget::write::narrow;
+use crate::tui::widget::write::{self, narrow};
 
 const PERCENT: usize = 9;
 

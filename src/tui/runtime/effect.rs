@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::formats::recording::{RecordedView, RecordingMetadata};
-use crate::imprint::Imprint;
-use crate::pose::{PoseGrid, PoseIndex};
-use crate::storage::Existing;
-use crate::storage::ModelChoice;
+use taxel_core::imprint::Imprint;
+use taxel_core::pose::{PoseGrid, PoseIndex};
+use taxel_files::formats::recording::{RecordedView, RecordingMetadata};
+use taxel_files::storage::{Existing, ModelChoice};
+
 use crate::tui::app::message::LibraryRequest;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::message::{NamingRequest, WatchRequest};

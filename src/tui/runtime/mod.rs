@@ -28,28 +28,27 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+use taxel_files::formats::StoredShape;
+use taxel_files::formats::file::system_reason;
+use taxel_files::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan};
 use tempfile::TempDir;
 
+use crate::tui::app::message::{Leftover, LibraryEvent, Message, WorkerEvent};
+use crate::tui::app::state::App;
+use crate::tui::app::update::{next_work, update};
+use crate::tui::keys::key::Key;
+use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::disk::files::WriteAccess;
 use crate::tui::runtime::disk::journal_writer::JournalWriter;
 use crate::tui::runtime::disk::queue::DiskQueue;
 use crate::tui::runtime::disk::request::{
     DiskAnswer, DiskRequest, Reminders, newest_orphan, not_recorded,
 };
+use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork, TerminalEffect};
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::work::execution::PATIENCE;
 use crate::tui::runtime::work::models::ModelStore;
 use crate::tui::runtime::work::workers::Workers;
-
-use crate::formats::StoredShape;
-use crate::formats::file::system_reason;
-use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan};
-use crate::tui::app::message::{Leftover, LibraryEvent, Message, WorkerEvent};
-use crate::tui::app::state::App;
-use crate::tui::app::update::{next_work, update};
-use crate::tui::keys::key::Key;
-use crate::tui::live::message::LiveEvent;
-use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork, TerminalEffect};
 
 /// A temporary folder that only its owner can look into.
 fn temporary_folder() -> io::Result<TempDir> {

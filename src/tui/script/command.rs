@@ -18,10 +18,10 @@ use std::path::PathBuf;
 
 use regex_lite::{Regex, RegexBuilder};
 use taxel_core::parameter::{Parameter, ParameterError};
+use taxel_core::quote::{did_you_mean, shortened};
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_files::formats::{StoredShape, json};
 
-use crate::quote::{did_you_mean, shortened};
 use crate::tui::app::state::Options;
 use crate::tui::keys::key::{Key, parse};
 use crate::tui::widget::theme::{ColorDepth, Palette};

@@ -16,12 +16,11 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
-use taxel_files::formats::StoredShape;
+use taxel_core::quote::shortened;
+use taxel_files::formats::value::counted;
+use taxel_files::formats::{DescribedImprint, StoredShape};
 use taxel_files::storage::{Library, location};
 
-use crate::formats::DescribedImprint;
-use crate::formats::value::counted;
-use crate::quote::shortened;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::{App, Options};
 use crate::tui::keys::key::Key;

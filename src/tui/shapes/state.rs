@@ -5,8 +5,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::formats::name::{LONGEST, folded};
-use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
+use taxel_files::formats::name::{LONGEST, folded};
+use taxel_files::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
+
 use crate::tui::app::message::Message;
 use crate::tui::widget::text_field::TextField;
 

@@ -3,14 +3,14 @@
 //! Requests to the library are effects ([`LibraryRequest`]); its answers come back as messages, perhaps after the
 //! page that asked was closed. An answer for a closed page changes nothing.
 
-use crate::formats::StoredShape;
-use crate::formats::value::counted;
-use crate::imprint::Imprint;
-use crate::picture::Picture;
-use crate::storage::ModelChoice;
-use crate::storage::{
-    Expected, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin, UNNAMED, shipped,
+use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
+use taxel_files::formats::StoredShape;
+use taxel_files::formats::value::counted;
+use taxel_files::storage::{
+    Expected, LibraryEntry, LibraryError, LoadedShape, ModelChoice, ShapeOrigin, UNNAMED, shipped,
 };
+
 use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse, resume};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;

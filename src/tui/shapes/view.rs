@@ -12,9 +12,9 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use taxel_core::description::{Region, RegionKind, regions};
+use taxel_files::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 
-use crate::description::{Region, RegionKind, regions};
-use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
@@ -22,8 +22,8 @@ use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::shapes::state::{ListDialog, ListPurpose};
 use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write::narrow;
-use crate::tui::widget::{thumbnail, write};
+use crate::tui::widget::thumbnail;
+use crate::tui::widget::write::{self, narrow};
 
 const BESIDE: usize = 18;
 

@@ -28,8 +28,8 @@ use signal_hook::consts::{
 };
 use signal_hook::iterator::backend::SignalDelivery;
 use signal_hook::iterator::exfiltrator::SignalOnly;
+use taxel_core::lock::locked;
 
-use crate::lock::locked;
 use crate::tui::terminal::device::Device;
 use crate::tui::terminal::settings::TerminalSettings;
 

@@ -6,10 +6,9 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use taxel_core::parameter::Range;
+use taxel_core::parameter::{Parameter, ParameterError, Range};
+use taxel_core::sensor::Sensor;
 
-use crate::parameter::{Parameter, ParameterError};
-use crate::sensor::Sensor;
 use crate::tui::app::message::Message;
 use crate::tui::keys::key::Arrow;
 use crate::tui::widget::text_field::TextField;

@@ -6,9 +6,8 @@
 use std::borrow::Cow;
 
 use ratatui::style::{Color, Modifier, Style};
-
-use crate::atlas::SortDirection;
-use crate::formats::value::fitting;
+use taxel_core::atlas::SortDirection;
+use taxel_files::formats::value::fitting;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {

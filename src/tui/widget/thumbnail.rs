@@ -3,9 +3,9 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
+use taxel_core::imprint::Imprint;
 use taxel_files::formats::value;
 
-use crate::imprint::Imprint;
 use crate::tui::widget::theme::{ColorDepth, Palette, Role, Theme, Tone};
 use crate::tui::widget::write::{self, taxels};
 
@@ -88,8 +88,9 @@ pub(in crate::tui) fn edge(theme: &Theme) -> char {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::sensor::MatrixSize;
+
     use super::*;
-    use crate::sensor::MatrixSize;
 
     #[test]
     fn the_last_of_an_odd_number_of_rows_is_drawn() {

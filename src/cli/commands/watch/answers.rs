@@ -1,14 +1,13 @@
 //! The answers to the frames of a source, on standard output.
 
-use taxel_core::frame::{FirstFrames, View};
+use taxel_core::frame::{FirstFrames, Frame, FrameError, Processing, SetRule, Tare, View};
+use taxel_files::formats::json;
+use taxel_files::formats::recording::FrameAnswer;
+use taxel_files::formats::value::counted;
 
 use crate::cli::commands::watch::recording::SourceReports;
 use crate::cli::error::CliError;
 use crate::cli::output::line_writer::LineWriter;
-use crate::formats::json;
-use crate::formats::recording::FrameAnswer;
-use crate::formats::value::counted;
-use crate::frame::{Frame, FrameError, Processing, SetRule, Tare};
 
 pub(super) struct Answers {
     output: Output,

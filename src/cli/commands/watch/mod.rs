@@ -31,11 +31,16 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use taxel_core::frame::{Frame, FrameSize, Processing, SetRule};
 use taxel_core::quote::as_argument;
-use taxel_files::acquire::Playback;
-use taxel_files::formats::recording::{ChannelChoice, ReadOptions, no_channel};
+use taxel_files::acquire::{
+    AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire,
+};
+use taxel_files::formats::recording::{
+    ChannelChoice, ChannelInfo, ReadOptions, RecordingMetadata, no_channel,
+};
+use taxel_files::formats::stream::StreamCounts;
 
-use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, acquire};
 use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::commands::model;
 use crate::cli::commands::recognise::FrameNamer;
@@ -48,9 +53,6 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::line_writer::LineWriter;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
-use crate::formats::recording::{ChannelInfo, RecordingMetadata};
-use crate::formats::stream::StreamCounts;
-use crate::frame::{Frame, FrameSize, Processing, SetRule};
 use crate::tui::live::message::WatchRequest;
 use crate::tui::runtime::check_source;
 

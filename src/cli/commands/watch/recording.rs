@@ -3,16 +3,16 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use taxel_files::acquire::{AcquireError, AcquireEvent, AcquireOptions};
-use taxel_files::formats::recording::RecordingError;
+use taxel_core::frame::Frame;
+use taxel_files::acquire::{
+    AcquireError, AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, RecorderError,
+};
+use taxel_files::formats::recording::{RecordingError, RecordingMetadata};
 use taxel_files::formats::stream::{NoFrameReason, StreamCounts, StreamFormat, StreamRefusal};
+use taxel_files::formats::value::counted;
 
-use crate::acquire::{FrameRecorder, FrameSource, RecorderError};
 use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::error::{CliError, note_advice, stream_advice};
-use crate::formats::recording::RecordingMetadata;
-use crate::formats::value::counted;
-use crate::frame::Frame;
 
 /// A recording, and its metadata, which is written again when something new becomes known.
 pub(super) struct WatchRecording<'a> {

@@ -12,7 +12,7 @@ use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
-use crate::lock::locked;
+use taxel_core::lock::locked;
 
 /// The items under way per worker: one in work, the others so that it need not wait when another worker is slow.
 const UNDER_WAY: usize = 4;

@@ -14,12 +14,12 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use taxel_core::lock::locked;
+use taxel_files::formats::file::without_mark;
+use taxel_files::formats::json;
 
 use crate::cli::error::CliError;
 use crate::cli::input::content::{self, InputSource};
 use crate::cli::signals;
-use crate::formats::file::without_mark;
-use crate::formats::json;
 
 pub(crate) mod in_order;
 

@@ -10,9 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use ratatui::layout::{Position, Rect};
-use taxel_core::pose::PoseIndex;
+use taxel_core::pose::{Axis, PoseIndex};
 
-use crate::pose::Axis;
 use crate::tui::explore::results::Results;
 use crate::tui::widget::write::{below, narrow};
 

@@ -13,12 +13,11 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use taxel_core::index::index;
 use taxel_core::parameter::Parameter;
-use taxel_core::pose::PoseGrid;
+use taxel_core::pose::{Axis, PoseGrid};
 use taxel_core::touch::Plane;
 use taxel_files::formats::PoseMap;
 use taxel_files::formats::value::{counted, grouped};
 
-use crate::pose::Axis;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::map::layout::{LETTERS, MapPane, VisiblePoses, letter, signs};

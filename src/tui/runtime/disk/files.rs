@@ -7,12 +7,12 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use taxel_core::lock::locked;
+use taxel_files::acquire::FrameSource;
+use taxel_files::formats::file::system_reason;
+use taxel_files::formats::recording::may_be_recording;
+use taxel_files::formats::{Content, imprint_file, read_content};
+use taxel_files::storage::{Existing, FinishedFile, ModelChoice, location};
 
-use crate::acquire::FrameSource;
-use crate::formats::file::system_reason;
-use crate::formats::recording::may_be_recording;
-use crate::formats::{Content, imprint_file, read_content};
-use crate::storage::{Existing, FinishedFile, ModelChoice, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::live::message::WatchRequest;
 use crate::tui::runtime::effect::FileRequest;

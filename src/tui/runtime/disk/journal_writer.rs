@@ -16,7 +16,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::storage::{Journal, Library, LibraryError, Orphan};
+use taxel_files::storage::{Journal, Library, LibraryError, Orphan};
+
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::app::state::App;
 use crate::tui::app::unsaved::UnsavedWork;
@@ -263,11 +264,13 @@ impl JournalThread {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::formats::{Name, StoredShape};
-    use crate::imprint::Imprint;
-    use crate::sensor::Sensor;
     use std::fs;
+
+    use taxel_core::imprint::Imprint;
+    use taxel_core::sensor::Sensor;
+    use taxel_files::formats::{Name, StoredShape};
+
+    use super::*;
 
     fn drawing(taxels: u8) -> UnsavedWork {
         let sensor = Sensor::default();

@@ -13,7 +13,8 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-use crate::storage::Library;
+use taxel_files::storage::Library;
+
 use crate::tui::app::message::{LibraryEvent, LibraryRequest, WorkerEvent};
 use crate::tui::runtime::disk::files::WriteAccess;
 use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest};

@@ -7,18 +7,18 @@ use std::time::Duration;
 use rustix::fs::{Access, access};
 use rustix::io::Errno;
 use taxel_core::source::Source;
+use taxel_files::formats::recording::{RecordedView, RecordingMetadata};
 use taxel_files::formats::value::counted;
-use taxel_files::storage::ModelChoice;
+use taxel_files::formats::{Name, StoredShape};
+use taxel_files::storage::{
+    Expected, Library, LibraryError, ModelChoice, Orphan, RememberedFile, UNNAMED,
+};
 
-use crate::formats::recording::{RecordedView, RecordingMetadata};
-use crate::formats::{Name, StoredShape};
-use crate::storage::{Expected, Library, LibraryError, Orphan, RememberedFile, UNNAMED};
 use crate::tui::app::message::{FileEvent, LibraryEvent, LibraryRequest, Purpose};
 use crate::tui::app::state::App;
 use crate::tui::explore::ranges::about;
 use crate::tui::live::message::LiveEvent;
-use crate::tui::runtime::disk::files;
-use crate::tui::runtime::disk::files::WriteAccess;
+use crate::tui::runtime::disk::files::{self, WriteAccess};
 use crate::tui::runtime::disk::queue::DiskQueue;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::frames::recording::Recording;
@@ -335,8 +335,9 @@ impl Reminders {
 
 #[cfg(test)]
 mod tests {
+    use taxel_files::storage::FileError;
+
     use super::*;
-    use crate::storage::FileError;
 
     #[test]
     fn the_error_itself_says_that_a_library_is_read_only() {

@@ -13,15 +13,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use taxel_files::formats::recording::{ChannelChoice, ChannelInfo};
+use taxel_core::frame::Frame;
+use taxel_core::lock::locked;
+use taxel_files::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
+use taxel_files::formats::file::system_reason;
+use taxel_files::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
 use taxel_files::formats::stream::StreamCounts;
+use taxel_files::storage::Existing;
 
-use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
-use crate::formats::file::system_reason;
-use crate::formats::recording::RecordingMetadata;
-use crate::frame::Frame;
-use crate::lock::locked;
-use crate::storage::Existing;
 use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{
     FeedStatus, FrameBatch, ProvisionalChange, RecordedFrames, SourceState, WatchRequest,
@@ -378,10 +377,11 @@ impl Pending {
 
 #[cfg(test)]
 mod tests {
+    use taxel_core::frame::FrameSize;
+    use taxel_files::formats::recording::ChannelInfo;
+    use taxel_files::formats::stream::StreamCounts;
+
     use super::*;
-    use crate::formats::recording::ChannelInfo;
-    use crate::formats::stream::StreamCounts;
-    use crate::frame::FrameSize;
     use crate::tui::live::state::Live;
 
     fn after(page: &mut Live, feed: &FrameFeed, event: AcquireEvent<'_>) -> Option<u64> {

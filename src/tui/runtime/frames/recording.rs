@@ -13,12 +13,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use crate::acquire::{FrameRecorder, RecorderError};
-use crate::formats::recording::{RecordedView, RecordingMetadata};
-use crate::formats::value::grouped;
-use crate::frame::Frame;
-use crate::lock::locked;
-use crate::storage::Existing;
+use taxel_core::frame::Frame;
+use taxel_core::lock::locked;
+use taxel_files::acquire::{FrameRecorder, RecorderError};
+use taxel_files::formats::recording::{RecordedView, RecordingMetadata};
+use taxel_files::formats::value::grouped;
+use taxel_files::storage::Existing;
+
 use crate::tui::live::message::{LiveEvent, RecordedFrames};
 use crate::tui::runtime::disk::files::WriteAccess;
 

@@ -6,13 +6,12 @@ use std::os::fd::AsFd;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-use taxel_files::acquire::AcquireError;
+use taxel_files::acquire::{AcquireError, FrameSource, SourceName};
 use taxel_files::formats::recording::RecordingError;
 use taxel_files::formats::stream::{NoFrameReason, StreamCounts, StreamRefusal};
 use taxel_files::formats::value::counted;
+use taxel_files::storage::location;
 
-use crate::acquire::{FrameSource, SourceName};
-use crate::storage::location;
 use crate::tui::runtime::disk::files::WriteAccess;
 
 pub(in crate::tui::runtime) fn named(name: &SourceName) -> FrameSource {

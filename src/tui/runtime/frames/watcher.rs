@@ -16,8 +16,8 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use taxel_files::acquire::{FrameSource, Playback};
+use taxel_files::storage::Existing;
 
-use crate::storage::Existing;
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::live::message::{FrameBatch, LiveEvent, WatchRequest};
 use crate::tui::runtime::disk::files::WriteAccess;

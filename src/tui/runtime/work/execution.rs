@@ -7,10 +7,11 @@ use std::sync::{Arc, Mutex};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
-use crate::formats::file::system_reason;
-use crate::lock::try_locked;
-use crate::memory::MemoryGuard;
-use crate::progress::{Progress, stop_if};
+use taxel_core::lock::try_locked;
+use taxel_core::progress::{Progress, stop_if};
+use taxel_files::formats::file::system_reason;
+use taxel_files::memory::MemoryGuard;
+
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::explore::message::SweepProgress;
 

@@ -16,15 +16,15 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
 use taxel_core::imprint::Imprint;
-
-use crate::formats::Name;
-use crate::memory::MemoryGuard;
-use crate::quote::shortened;
-use crate::recognition::{Model, TrainingError};
-use crate::storage::{
+use taxel_core::quote::shortened;
+use taxel_core::recognition::{Model, TrainingError};
+use taxel_files::formats::Name;
+use taxel_files::memory::MemoryGuard;
+use taxel_files::storage::{
     FileVersion, Library, ModelCache, ModelChoice, ModelFolder, cached_or_trained,
     load_whole_model, location, unknown_set,
 };
+
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::live::message::{LiveEvent, NamedImprint, NamingRequest};
 use crate::tui::recognise::state::{Prepared, RecognitionEvent};

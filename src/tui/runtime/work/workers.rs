@@ -16,11 +16,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::memory::MemoryGuard;
-use crate::pose::{PoseGrid, PoseIndex};
-use crate::progress::Progress;
-use crate::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile, is_poses};
-use crate::sweep::{Sweep, SweepResult, TimingSample};
+use taxel_core::pose::{PoseGrid, PoseIndex};
+use taxel_core::progress::Progress;
+use taxel_core::sweep::{Sweep, SweepResult, TimingSample};
+use taxel_files::memory::MemoryGuard;
+use taxel_files::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile, is_poses};
+
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::message::Findings;
@@ -363,16 +364,16 @@ fn search(
 
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
+    use taxel_core::figure::{Figure, FigureKind};
+    use taxel_core::pose::{Anchor, Axis, Ranges};
+    use taxel_core::sensor::Sensor;
+    use taxel_core::source::Source;
+    use taxel_files::memory::MemorySize;
     #[cfg(test)]
     #[cfg(test)]
     use taxel_files::storage::ModelChoice;
 
     use super::*;
-    use crate::figure::{Figure, FigureKind};
-    use crate::memory::MemorySize;
-    use crate::pose::{Anchor, Axis, Ranges};
-    use crate::sensor::Sensor;
-    use crate::source::Source;
     #[cfg(test)]
     use crate::tui::recognise::trained::TrainedModel;
 
