@@ -6,14 +6,17 @@
 //!
 //! A character that some terminals may show wider than others is followed by a move to an absolute position.
 
+use std::collections::BTreeMap;
 use std::convert::Infallible;
 
 use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 use ratatui::style::{Color, Modifier};
+use ratatui::text::Span;
 
 use crate::tui::terminal::settings::Abilities;
+use crate::tui::widget::write::narrow;
 
 /// The size in bytes from which a frame is marked as synchronized. A smaller one fits into one network packet, so it
 /// arrives in one piece without marks.
@@ -29,6 +32,8 @@ const SHOW_CURSOR: &[u8] = b"\x1b[?25h";
 pub struct Screen {
     size: Size,
     abilities: Abilities,
+    /// What the terminal shows, row by row.
+    cells: Vec<Cell>,
     /// The position of the terminal's cursor; None if it is not certain, as after the last column.
     at: Option<Position>,
     style: CellStyle,
@@ -50,6 +55,7 @@ impl Screen {
         Self {
             size,
             abilities,
+            cells: empty(size),
             at: None,
             style: PLAIN,
             visible: true,
@@ -62,7 +68,12 @@ impl Screen {
     /// Changes the size; the next frame is drawn on an empty screen.
     pub fn resize(&mut self, size: Size) {
         self.size = size;
+        self.cells = empty(size);
         self.at = None;
+    }
+
+    fn index(&self, x: u16, y: u16) -> usize {
+        usize::from(y) * usize::from(self.size.width) + usize::from(x)
     }
 
     /// Forgets cursor and style, because another program has had the terminal.
@@ -100,54 +111,54 @@ impl Screen {
     fn go(&mut self, to: Position) {
         let moved = match self.at {
             Some(at) if at == to => return,
-            Some(at) if at.y == to.y && at.x < to.x => format!("\x1b[{}C", to.x - at.x),
+            Some(at) if at.y == to.y && at.x < to.x => self.forward(at, to.x - at.x),
             _ => format!("\x1b[{};{}H", u32::from(to.y) + 1, u32::from(to.x) + 1),
         };
         self.out.extend(moved.as_bytes());
         self.at = Some(to);
     }
 
+    /// Returns the move over cells to the right; a few blanks are written again, which is shorter.
+    fn forward(&self, at: Position, count: u16) -> String {
+        let first = self.index(at.x, at.y);
+        let between = &self.cells[first..first + usize::from(count)];
+        if count <= 4 && between.iter().all(is_blank) && !shows_on_blanks(self.style) {
+            return " ".repeat(count.into());
+        }
+        format!("\x1b[{count}C")
+    }
+
     fn set_style(&mut self, style: CellStyle) {
         if self.abilities.styles && style != self.style {
-            self.out.extend(sgr(style).as_bytes());
+            self.out.extend(sgr(style, self.style == PLAIN).as_bytes());
             self.style = style;
         }
     }
 
     fn write(&mut self, cell: &Cell) {
-        self.set_style((cell.fg, cell.bg, cell.modifier));
+        let style = (cell.fg, cell.bg, cell.modifier);
+        if !is_blank(cell) || shows_on_blanks(self.style) {
+            self.set_style(style);
+        }
         // Ratatui leaves out control characters but not these two, which end a line or a paragraph.
         let symbol = match cell.symbol() {
             "\u{2028}" | "\u{2029}" => " ",
             symbol => symbol,
         };
         self.out.extend(symbol.as_bytes());
-        self.moved(1, is_narrow(symbol));
+        // After the last column, terminals differ.
+        let right = self.size.width;
+        let at = (self.at).filter(|at| is_narrow(symbol) && at.x + 1 < right);
+        self.at = at.map(|at| Position { x: at.x + 1, ..at });
     }
 
-    /// Writes blanks that look plain in one piece.
-    fn write_blanks(&mut self, (at, count): (Position, u16)) {
+    /// Erases to the end of the row; the cursor stays.
+    fn erase_from(&mut self, at: Position) {
         self.go(at);
         if shows_on_blanks(self.style) {
             self.set_style(PLAIN);
         }
-        if self.abilities.synchronized && count > 8 {
-            // Erases them (ECH); the cursor stays.
-            self.out.extend(format!("\x1b[{count}X").as_bytes());
-        } else {
-            self.out.extend(" ".repeat(count.into()).as_bytes());
-            self.moved(count, true);
-        }
-    }
-
-    /// Notes where the cursor is after this many columns; after the last one, terminals differ.
-    fn moved(&mut self, columns: u16, known: bool) {
-        let right = self.size.width;
-        let at = self.at.filter(|at| known && at.x + columns < right);
-        self.at = at.map(|at| Position {
-            x: at.x + columns,
-            ..at
-        });
+        self.out.extend(b"\x1b[K");
     }
 }
 
@@ -158,32 +169,43 @@ impl Backend for Screen {
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
     {
-        let mut blanks: Option<(Position, u16)> = None;
+        let mut rows = BTreeMap::<u16, (bool, Vec<u16>)>::new();
         for (x, y, cell) in content {
             if x >= self.size.width || y >= self.size.height {
                 continue;
             }
-            let style = (cell.fg, cell.bg, cell.modifier);
-            let is_blank = cell.symbol() == " " && !shows_on_blanks(style);
-            let at = Position { x, y };
-            match &mut blanks {
-                Some((start, count)) if is_blank && start.y == y && start.x + *count == x => {
-                    *count += 1;
+            let (first, end) = (self.index(0, y), self.index(0, y + 1));
+            let had_wide = || has_wide(&self.cells[first..end]);
+            let row = rows.entry(y).or_insert_with(|| (had_wide(), Vec::new()));
+            row.1.push(x);
+            let index = first + usize::from(x);
+            // Ratatui does not report the cell that a wide character covers.
+            self.cells[index..end.min(index + columns(cell))].fill(Cell::default());
+            self.cells[index] = cell.clone();
+        }
+        for (y, (had_wide, changed)) in rows {
+            let row = self.cells[self.index(0, y)..self.index(0, y + 1)].to_vec();
+            // Terminals differ in what they show of a wide character that is half overwritten.
+            let changed = if had_wide || has_wide(&row) {
+                (0..self.size.width).collect()
+            } else {
+                changed
+            };
+            let mut covered = 0;
+            for x in changed.into_iter().map(usize::from) {
+                if x < covered {
                     continue;
                 }
-                _ => blanks
-                    .take()
-                    .into_iter()
-                    .for_each(|run| self.write_blanks(run)),
-            }
-            if is_blank {
-                blanks = Some((at, 1));
-            } else {
+                let at = Position::new(narrow(x), y);
+                if row[x..].iter().all(is_blank) {
+                    self.erase_from(at);
+                    break;
+                }
                 self.go(at);
-                self.write(cell);
+                self.write(&row[x]);
+                covered = x + columns(&row[x]);
             }
         }
-        blanks.into_iter().for_each(|run| self.write_blanks(run));
         Ok(())
     }
 
@@ -215,6 +237,7 @@ impl Backend for Screen {
     fn clear_region(&mut self, _: ClearType) -> Result<(), Self::Error> {
         let plain = if self.abilities.styles { "\x1b[m" } else { "" };
         self.out = format!("{plain}\x1b[H\x1b[2J").into_bytes();
+        self.cells = empty(self.size);
         (self.style, self.at) = (PLAIN, Some(Position::ORIGIN));
         Ok(())
     }
@@ -246,13 +269,34 @@ const ATTRIBUTES: [(Modifier, &str); 7] = [
     (Modifier::CROSSED_OUT, "9"),
 ];
 
+/// Returns the number of columns that a cell takes.
+fn columns(cell: &Cell) -> usize {
+    match cell.symbol() {
+        symbol if is_narrow(symbol) => 1,
+        symbol => Span::raw(symbol).width().max(1),
+    }
+}
+
+fn has_wide(cells: &[Cell]) -> bool {
+    !cells.iter().all(|cell| is_narrow(cell.symbol()))
+}
+
+fn empty(size: Size) -> Vec<Cell> {
+    vec![Cell::default(); usize::from(size.width) * usize::from(size.height)]
+}
+
+/// Returns true if a cell looks like an erased one.
+fn is_blank(cell: &Cell) -> bool {
+    cell.symbol() == " " && !shows_on_blanks((cell.fg, cell.bg, cell.modifier))
+}
+
 /// Returns true if a blank in this style does not look like a plain one.
 fn shows_on_blanks((_, back, attributes): CellStyle) -> bool {
     let seen = Modifier::REVERSED | Modifier::UNDERLINED | Modifier::CROSSED_OUT;
     back != Color::Reset || attributes.intersects(seen)
 }
 
-fn sgr((fore, back, attributes): CellStyle) -> String {
+fn sgr((fore, back, attributes): CellStyle, is_plain: bool) -> String {
     let set = ATTRIBUTES
         .iter()
         .filter(|(own, _)| attributes.contains(*own));
@@ -262,8 +306,10 @@ fn sgr((fore, back, attributes): CellStyle) -> String {
             steps.push(color_parameters(color, base));
         }
     }
-    // Empty means 0, the reset.
-    steps.insert(0, String::new());
+    if !is_plain {
+        // Empty means 0, the reset.
+        steps.insert(0, String::new());
+    }
     format!("\x1b[{}m", steps.join(";"))
 }
 
@@ -322,7 +368,6 @@ mod tests {
     use ratatui::Terminal;
     use ratatui::buffer::Buffer;
     use ratatui::style::Style;
-    use ratatui::text::Span;
 
     const SIZE: Size = Size {
         width: 11,
