@@ -101,9 +101,7 @@ fn a_script_changes_nothing_outside_its_folder() {
         run_in("C.UTF-8", &[&["script", file][..], flags].concat(), b"")
     };
     let export = |path: &str, answer: &str| {
-        format!(
-            "Keys f<Enter>:export<Space>\nType \"{path}\"\nKeys <Enter>{answer}\nWait\nScreen\n"
-        )
+        format!("Keys f<Enter>:write<Space>\nType \"{path}\"\nKeys <Enter>{answer}\nWait\nScreen\n")
     };
     // A refusal is shown on the screen.
     for (path, answer, refusal) in [

@@ -526,9 +526,11 @@ fn nearest_neighbours_with_equal_features_vote_together() {
     let model = train(s4(), 32, ranges("10:10.9:0.1", "10:10.9:0.1", "0:350:10"));
     for descriptors in ["cg_cd", "cg_cd,cg_cd_direction"] {
         let given: GivenDescriptors = descriptors.parse().expect("descriptors");
-        let mut settings = ClassifierSettings::default();
-        settings.descriptors = Some(given.descriptors().to_vec());
-        settings.sample = usize::MAX;
+        let settings = ClassifierSettings {
+            descriptors: Some(given.descriptors().to_vec()),
+            sample: usize::MAX,
+            ..ClassifierSettings::default()
+        };
         let reached = Classifier::Knn.evaluate(&model, &settings, &ToTheEnd);
         let reached = reached.expect("not stopped").evaluation;
         let (reached, limit) = (reached.right, given.evaluate(&model).right);

@@ -319,7 +319,7 @@ pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option
     }
     let label = match axis {
         SizeAxis::Pitch => "pitch / mm",
-        _ => "scale",
+        SizeAxis::Scale => "scale",
     };
     let mut plot = LinePlot::new(label, "error");
     let mut all = Vec::new();

@@ -249,12 +249,13 @@ impl<F: FormField> FieldRow<'_, F> {
     }
 
     fn draw_range(&self, theme: &Theme, buffer: &mut Buffer, area: Rect, under: Option<Rect>) {
-        let range = self.range.to_string();
-        let range = self.field.parameter().row().unit.after(&range);
+        let bare = self.range.to_string();
+        let range = self.field.parameter().row().unit.after(&bare);
         let (beside, below) = match (self.remark.filter(|_| self.error.is_none()), under) {
-            (None, _) => (range.to_string(), None),
-            (Some(remark), Some(under)) => (range.to_string(), Some((under, remark))),
-            (Some(remark), None) => (format!("{range}; {remark}"), None),
+            (None, _) => (range, None),
+            (Some(remark), Some(under)) => (range, Some((under, remark))),
+            // Without the unit, both have room on a screen of 80 columns.
+            (Some(remark), None) => (format!("{bare}; {remark}"), None),
         };
         write::text(buffer, area, theme, &beside, Role::Quiet);
         if let Some((under, remark)) = below {

@@ -48,7 +48,6 @@ pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
 
 /// Returns all kinds, solid and with a hole: sizes that cause ties, figures beyond the sensor, other sensors,
 /// thresholds and anchors.
-#[expect(clippy::too_many_lines, reason = "a list")]
 pub(crate) fn cases() -> Vec<Case> {
     let case = |name, source| Case {
         name,

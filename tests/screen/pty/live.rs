@@ -15,7 +15,7 @@ use crate::wait::{connection, fifo, writer_of};
 /// Returns frames of 4 × 4 whose first value is their number.
 fn frames(numbers: std::ops::Range<u32>) -> String {
     numbers
-        .map(|number| format!("{number} 1 2 3\n4 5 6 7\n8 9 10 11\n12 13 14 15\n\n"))
+        .map(|number| format!("{number} 1 3 2\n4 5 6 7\n8 9 10 11\n12 13 14 15\n\n"))
         .collect()
 }
 

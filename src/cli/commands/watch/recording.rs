@@ -174,7 +174,7 @@ impl<'a> SourceReports<'a> {
                 };
                 self.refused(&format!("{error}; {advice}"))
             }
-            error => self.refused(&error),
+            AcquireError::Io { .. } => self.refused(&error),
         }
     }
 

@@ -36,7 +36,7 @@ pub static TAB: ResultsTab = ResultsTab {
     drawing: Some(drawing),
     table: None,
     wheel: Wheel::Rows,
-    draw: draw,
+    draw,
     click,
     update,
 };

@@ -109,13 +109,12 @@ impl DiskQueue {
             locks: request.locks(),
             reader,
         });
-        match &self.thread {
+        if let Some(thread) = &self.thread {
             // The thread ends only after this end of the channel is dropped.
-            Some(thread) => drop(thread.requests.send(request)),
-            None => {
-                let answer = request.perform(&self.library, &self.access);
-                self.take_over(answer);
-            }
+            drop(thread.requests.send(request));
+        } else {
+            let answer = request.perform(&self.library, &self.access);
+            self.take_over(answer);
         }
     }
 

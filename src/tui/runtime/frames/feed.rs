@@ -234,7 +234,7 @@ impl FrameFeed {
                 let reason = source::reason_at_end(&source::named(&request.source), counts);
                 pending.end_stream(counts, reason);
             }),
-            _ => false,
+            AcquireEvent::Again => false,
         }
     }
 }

@@ -152,7 +152,10 @@ impl Recording {
     pub(in crate::tui::runtime) fn write_metadata(&self, view: RecordedView) -> Result<(), String> {
         let one_at_a_time = locked(&self.metadata);
         let draft = self.open(|recorder| recorder.set_view(view)).flatten();
-        let written = draft.map_or(Ok(()), |draft| draft.write());
+        let written = match draft {
+            Some(draft) => draft.write(),
+            None => Ok(()),
+        };
         drop(one_at_a_time);
         written.map_err(|error| {
             self.open(|recorder| recorder.note_failure(&error));

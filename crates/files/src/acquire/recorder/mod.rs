@@ -98,7 +98,7 @@ impl FrameRecorder {
     /// The system's error, or [`RecorderError::Replaced`].
     pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
         self.notes.describe(metadata);
-        let written = self.draft().map_or(Ok(()), |draft| draft.write());
+        let written = self.draft().map_or(Ok(()), MetadataDraft::write);
         self.noted(written)
     }
 
@@ -232,7 +232,7 @@ impl FrameRecorder {
     pub fn finish(mut self) -> Result<u64, RecorderError> {
         let written = self.flush();
         self.notes.end();
-        let described = self.draft().map_or(Ok(()), |draft| draft.write());
+        let described = self.draft().map_or(Ok(()), MetadataDraft::write);
         let frames = self.frames();
         // Frames that could not be written are not tried again.
         self.array = None;

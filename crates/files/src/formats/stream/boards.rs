@@ -1,4 +1,4 @@
-//! Decodes the bytes of boards: FlexiTac and MatSense.
+//! Decodes the bytes of boards: `FlexiTac` and `MatSense`.
 
 use taxel_core::frame::{Frame, FrameSize};
 
