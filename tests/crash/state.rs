@@ -57,9 +57,11 @@ impl State {
         }
         state.put("new.txt", "0,1\n2,3\n\n4,5\n6,7\n\n8,9\n1,2\n\n");
         state.put("touch.npy", old_array());
-        let mut metadata = RecordingMetadata::default();
-        metadata.source = "old.txt".to_owned();
-        metadata.ended = Some(true);
+        let metadata = RecordingMetadata {
+            source: "old.txt".to_owned(),
+            ended: Some(true),
+            ..RecordingMetadata::default()
+        };
         state.put("touch.json", metadata.text());
         state
     }

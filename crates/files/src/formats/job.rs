@@ -70,7 +70,7 @@ impl Job {
     /// that `lookup` finds. The sensor is `sensor` with the changes that the line makes, as in
     /// `"sensor":{"columns":32,"rows":32,"threshold":0.5}`.
     ///
-    /// A frame has the values of a sensor in rows, null where there is no cell, and a [`Rule`](taxel_core::frame::Rule):
+    /// A frame has the values of a sensor in rows, null where there is no cell, and a [`Rule`]:
     /// `at_least`, `percent`, or `low` and `high`. With `least`, pieces of fewer taxels are dropped.
     ///
     /// # Errors

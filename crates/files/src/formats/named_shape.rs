@@ -53,7 +53,7 @@ pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
 /// {"name":"washer","picture":"washer","weight":2}
 /// {"name":"corner","picture":["##","#."]}
 /// ```
-/// The sizes of a figure have no defaults ([`PARAMETERS`] lists keys, units and ranges); without `thickness` it is
+/// The sizes of a figure have no defaults ([`PARAMETERS`](taxel_core::parameter::PARAMETERS) lists keys, units and ranges); without `thickness` it is
 /// solid. A picture is given by its rows, or by the name of a stored shape, which `lookup` finds. The weight, from 1,
 /// says how often the shape is expected compared with the others; by default 1.
 ///
