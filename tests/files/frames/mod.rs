@@ -55,7 +55,7 @@ pub(crate) fn recorded(bytes: &[u8], shape: Option<(u16, u16)>) -> Recorded {
             RecordingEvent::Channel(info) => found.channels.push(info.clone()),
             RecordingEvent::Frame(frame) => found.frames.push(frame.clone()),
             RecordingEvent::Note(note) => found.notes.push(note.clone()),
-            _ => {}
+            RecordingEvent::Damage { .. } => {}
         }
         ControlFlow::Continue(())
     });

@@ -91,8 +91,10 @@ fn the_channels_of_a_file_that_is_rewritten_keep_their_names_and_count_on() {
         names.iter().map(line).collect()
     };
     fs::write(&path, lines(&["left", "right", "left"])).expect("written");
-    let mut options = AcquireOptions::default();
-    options.channel = Some("left".to_owned());
+    let options = AcquireOptions {
+        channel: Some("left".to_owned()),
+        ..AcquireOptions::default()
+    };
     let (mut channels, mut frames) = (Vec::new(), Vec::new());
     let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
         match event {
@@ -200,8 +202,10 @@ fn values_of_a_rewritten(
     count: usize,
 ) -> (Vec<f64>, u64) {
     fs::write(path, before).expect("written");
-    let mut options = AcquireOptions::default();
-    options.size = size;
+    let options = AcquireOptions {
+        size,
+        ..AcquireOptions::default()
+    };
     let (mut values, mut ticks, mut dropped, mut is_cut) = (Vec::new(), 0, 0, false);
     let result = run(path, &options, &AtomicBool::new(false), &mut |event| {
         match event {
@@ -361,8 +365,10 @@ fn a_consumer_that_broke_off_while_more_was_waited_for_gets_no_more() {
     let path = folder.path().join("r.bin");
     // The end of the file confirms its last frame.
     fs::write(&path, b"\xaa\x55\x01\x02".repeat(4)).expect("written");
-    let mut options = AcquireOptions::default();
-    options.size = Some(frame_size(1, 2));
+    let options = AcquireOptions {
+        size: Some(frame_size(1, 2)),
+        ..AcquireOptions::default()
+    };
     let (mut frames, mut has_ended) = (0, false);
     let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
         assert!(!has_ended, "{event:?}");
@@ -416,10 +422,12 @@ fn a_recording_that_is_repeated_has_the_same_numbers_in_each_round() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("two.jsonl");
     fs::write(&path, "{\"frame\":[[1,2]]}\n{\"frame\":[[3,4]]}\n").expect("written");
-    let mut options = AcquireOptions::default();
-    options.playback = Playback::Paced {
-        speed: 1e9,
-        repeat: true,
+    let options = AcquireOptions {
+        playback: Playback::Paced {
+            speed: 1e9,
+            repeat: true,
+        },
+        ..AcquireOptions::default()
     };
     let mut numbers = Vec::new();
     let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {

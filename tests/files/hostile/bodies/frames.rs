@@ -32,7 +32,7 @@ pub(crate) fn recording(bytes: &[u8]) -> bool {
                     }
                 }
                 RecordingEvent::Note(note) => is_short(&note.to_string()),
-                _ => {}
+                RecordingEvent::Damage { .. } => {}
             }
             ControlFlow::Continue(())
         });
@@ -62,9 +62,11 @@ pub(crate) fn stream(bytes: &[u8]) -> bool {
     let Some((&first, bytes)) = bytes.split_first() else {
         return false;
     };
-    let mut options = StreamOptions::default();
-    options.from_start = first & 1 == 0;
-    options.size = FrameSize::new(5, 4).ok().filter(|_| first & 2 != 0);
+    let options = StreamOptions {
+        from_start: first & 1 == 0,
+        size: FrameSize::new(5, 4).ok().filter(|_| first & 2 != 0),
+        ..StreamOptions::default()
+    };
     let decoded = |pieces: &[&[u8]]| {
         let mut decoder = StreamDecoder::new(options);
         let mut frames = Vec::new();
