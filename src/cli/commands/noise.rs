@@ -1,4 +1,4 @@
-//! The cost of noise: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
+//! The cost of noise: `taxel model confusion --noise` and `taxel model touches`.
 //!
 //! Noise flips each taxel independently with the same probability. Dead taxels are inactive; they are drawn anew for
 //! each touch. The tables look like this:

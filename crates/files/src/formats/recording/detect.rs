@@ -8,7 +8,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use crate::formats::file::without_mark;
 use crate::formats::npy;
-use crate::formats::recording::error::{RecordingError, RecordingFormat};
+use crate::formats::recording::error::{RecordingError, RecordingFormat, known_formats};
 use crate::formats::recording::event::{ReadOptions, RecordingSink, until_enough};
 use crate::formats::recording::numpy::{archive, array};
 use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
@@ -88,8 +88,9 @@ fn refused(start: &[u8]) -> RecordingError {
         Some(line) => RecordingError::in_line(
             1,
             format!(
-                "found text, expected a table; numbers begin in line {line}: delete the lines above, or read the file \
-                 with taxel watch --once"
+                "found text, expected a table or one of {}; numbers begin in line {line}: delete the lines above, or \
+                 read the file with taxel watch --once",
+                known_formats()
             ),
         ),
         None => RecordingError::Unknown,

@@ -16,10 +16,10 @@ pub enum RecordingError {
     #[error("cannot read: {}", system_reason(.0))]
     Io(Arc<io::Error>),
     /// Not one of the known formats.
-    #[error("not a recording of a known format: expected {}", readable_formats())]
+    #[error("not a recording of a known format: expected {}", known_formats())]
     Unknown,
     /// A file of another kind.
-    #[error("{kind}, expected {}", readable_formats())]
+    #[error("{kind}, expected {}", known_formats())]
     Foreign {
         /// The kind of file, with its article: "an imprint as text".
         kind: &'static str,
@@ -65,7 +65,7 @@ fn most_of(numbers: u64) -> String {
     }
 }
 
-fn readable_formats() -> String {
+pub(super) fn known_formats() -> String {
     let titles: Vec<&str> = RecordingFormat::ALL
         .iter()
         .map(|format| format.title())
