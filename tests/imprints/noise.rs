@@ -418,21 +418,15 @@ fn the_recognition_rate_is_as_published_and_as_claimed() {
     let apart = |found: f64, expected: f64, error: f64| (found - expected).abs() / error;
     println!("{rate:?}");
     let error = rate
-        .standard_error()
+        .standard_error
         .hypot((0.654_f64 * 0.346 / 7000.0).sqrt());
     assert!(
-        apart(rate.accuracy(), 0.654, error) < 3.0,
+        apart(rate.accuracy, 0.654, error) < 3.0,
         "{}",
-        rate.accuracy()
+        rate.accuracy
     );
     // The accuracy equals the average claimed probability.
-    assert!(
-        apart(
-            rate.mean_confidence(),
-            rate.accuracy(),
-            rate.standard_error()
-        ) < 3.0
-    );
+    assert!(apart(rate.mean_confidence, rate.accuracy, rate.standard_error) < 3.0);
 }
 
 #[test]
@@ -444,7 +438,7 @@ fn the_claimed_accuracy_is_reached_at_every_noise() {
             let touches = NoisyTouches::new(Sensor::default().size(), noise, 150, 11);
             let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
             let rate = rate.expect("not stopped");
-            let apart = (rate.mean_confidence() - rate.accuracy()).abs() / rate.standard_error();
+            let apart = (rate.mean_confidence - rate.accuracy).abs() / rate.standard_error;
             assert!(apart < 3.0, "{name} at {flip}: {rate:?}");
         }
     }

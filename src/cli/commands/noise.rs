@@ -178,7 +178,7 @@ fn given_of(asked: &NoiseArguments, all_asked: &ConfusionArguments) -> Option<Gi
 fn noise_points(table: &[NoiseRow]) -> Vec<(u32, Vec<(f64, f64)>)> {
     let groups = table.chunk_by(|one, other| one.dead == other.dead);
     let points = |rows: &[NoiseRow]| {
-        let points = rows.iter().map(|row| (row.noise, row.rate.accuracy()));
+        let points = rows.iter().map(|row| (row.noise, row.rate.accuracy));
         (rows[0].dead, points.collect())
     };
     groups.map(points).collect()
@@ -212,12 +212,12 @@ fn noise_json(table: &[NoiseRow], sensor: &Sensor, seed: u64) -> String {
             json!({
                 "noise": row.noise,
                 "dead": row.dead,
-                "touches": evaluation::number(row.rate.weighted_touches()),
-                "right": evaluation::number(row.rate.weighted_right()),
-                "accuracy": row.rate.accuracy(),
-                "standard_error": row.rate.standard_error(),
-                "claimed": row.rate.mean_confidence(),
-                "held": row.rate.held_share(),
+                "touches": evaluation::number(row.rate.weighted_touches),
+                "right": evaluation::number(row.rate.weighted_right),
+                "accuracy": row.rate.accuracy,
+                "standard_error": row.rate.standard_error,
+                "claimed": row.rate.mean_confidence,
+                "held": row.rate.held_share,
             })
         })
         .collect();
@@ -240,12 +240,12 @@ fn noise_csv(table: &[NoiseRow]) -> String {
             "{},{},{},{},{},{},{},{}",
             row.noise,
             row.dead,
-            rate.weighted_touches(),
-            rate.weighted_right(),
-            rate.accuracy(),
-            rate.standard_error(),
-            rate.mean_confidence(),
-            rate.held_share()
+            rate.weighted_touches,
+            rate.weighted_right,
+            rate.accuracy,
+            rate.standard_error,
+            rate.mean_confidence,
+            rate.held_share
         );
     }
     text
@@ -257,16 +257,16 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
     let mut text = String::from("  noise  dead     right            held   claimed\n");
     for row in table {
         let rate = &row.rate;
-        let bar = bar(rate.accuracy(), BAR, charset);
+        let bar = bar(rate.accuracy, BAR, charset);
         let _ = writeln!(
             text,
             "{:>7}  {:>4}  {:>8} ± {:<4}  {:>7}  {:>8}  {bar}",
             row.noise,
             row.dead,
-            percent(rate.accuracy()),
-            format!("{:.1}", 100.0 * rate.standard_error()),
-            percent(rate.held_share()),
-            percent(rate.mean_confidence()),
+            percent(rate.accuracy),
+            format!("{:.1}", 100.0 * rate.standard_error),
+            percent(rate.held_share),
+            percent(rate.mean_confidence),
         );
     }
     let touches = table.first().map_or(0, |row| row.rate.touches);

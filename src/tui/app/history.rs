@@ -368,10 +368,6 @@ impl History {
         self.origins.get(oldest.origin)?.brought_by.as_deref()
     }
 
-    pub fn step_number(&self) -> usize {
-        self.past.len()
-    }
-
     pub fn before(&self) -> Option<&Document> {
         let past = self.past.iter().rev();
         let mut others = past.filter(|state| state.document != self.present.document);

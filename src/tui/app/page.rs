@@ -87,11 +87,6 @@ pub trait Page {
         false
     }
 
-    /// False by default.
-    fn awaits_work(&self) -> bool {
-        false
-    }
-
     /// Hints leave out keys whose messages it has no use for; pressing one shows why it does nothing.
     fn has_use_for(&self, _message: &Message, _area: Rect) -> bool {
         true

@@ -190,7 +190,7 @@ const CURVES: [(SpreadValue, bool); 3] = [
 ];
 
 fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
-    let now = results.pose_index()[Axis::Angle];
+    let now = results.pose_index[Axis::Angle];
     spread
         .iter()
         .min_by_key(|at| at.index.abs_diff(now))

@@ -195,7 +195,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
 
 /// The chosen heading looks like the selected row.
 fn draw_headings(theme: &Theme, results: &Results, list: &ImprintTable, buffer: &mut Buffer) {
-    let (by, direction) = results.list.sort_key();
+    let (by, direction) = results.list.sort;
     let key: String = results.feature().key.chars().take(VALUE - 1).collect();
     let mut pieces: Vec<(String, Role)> = Vec::new();
     for (column, width) in list.columns() {
@@ -313,7 +313,7 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
 
 #[derive(Clone, Debug)]
 pub struct ImprintList {
-    sort: (ListColumn, SortDirection),
+    pub(in crate::tui::explore) sort: (ListColumn, SortDirection),
     heading: ListColumn,
     filter: String,
     /// The numbers of all imprints, sorted. They are kept because a filter is typed letter by letter, which does not
@@ -337,10 +337,6 @@ impl ImprintList {
             selected: 0,
             top: 0,
         }
-    }
-
-    pub fn sort_key(&self) -> (ListColumn, SortDirection) {
-        self.sort
     }
 
     /// Sorts by a column, which becomes the chosen heading; by the same column again, reverses the order. The

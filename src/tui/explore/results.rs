@@ -33,7 +33,7 @@ pub struct Results {
     pub(in crate::tui::explore) visible_imprints: VisibleImprints,
     pub(in crate::tui::explore) map_zoom: u8,
     pub(super) list: ImprintList,
-    pose_index: PoseIndex,
+    pub(in crate::tui::explore) pose_index: PoseIndex,
 }
 
 impl Results {
@@ -81,7 +81,7 @@ impl Results {
     pub fn choose_feature(&mut self, number: usize) {
         self.feature = number.min(features().len() - 1);
         self.values = self.sweep().atlas.values(self.feature);
-        if self.list.sort_key().0 == ListColumn::Value {
+        if self.list.sort.0 == ListColumn::Value {
             self.list.arrange(&self.findings.sweep, &self.values);
         }
     }
@@ -192,10 +192,6 @@ impl Results {
         self.go_to_imprint(id.ok_or("this pose was not swept: the sweep was stopped")?)
     }
 
-    pub fn pose_index(&self) -> PoseIndex {
-        self.pose_index
-    }
-
     pub fn point(&mut self, x0: u64, y0: u64) {
         let counts = self.sweep().grid.counts();
         self.pose_index[Axis::X0] = x0.min(counts[Axis::X0] - 1);
@@ -304,7 +300,7 @@ mod tests {
         let mut results = with_zooms();
         results.open_tab(ExploreTab::Angles);
         let curve = |place| Arc::new(AngleCurve::of(results.sweep(), place));
-        let first = results.pose_index();
+        let first = results.pose_index;
         let second = first.with(Axis::ZoomX, 1);
         let (early, late) = (curve(first), curve(second));
         assert_eq!(results.missing_angles(), Some(first));
@@ -381,16 +377,16 @@ mod tests {
             (Axis::Y0, 1, [1, 1, 0, 0, 0]),
         ] {
             results.move_along(axis, by);
-            assert_eq!(results.pose_index().into_array(), place);
+            assert_eq!(results.pose_index.into_array(), place);
         }
         results.point(u64::MAX, u64::MAX);
         results.turn(-1);
         results.move_along(Axis::ZoomX, 1);
-        assert_eq!(results.pose_index().into_array(), [9, 5, 4, 0, 0]);
+        assert_eq!(results.pose_index.into_array(), [9, 5, 4, 0, 0]);
         results.move_along(Axis::Y0, -3);
         results.move_along(Axis::X0, i64::MIN);
         results.turn(1);
-        assert_eq!(results.pose_index().into_array(), [0, 2, 0, 0, 0]);
+        assert_eq!(results.pose_index.into_array(), [0, 2, 0, 0, 0]);
         assert_eq!(results.pose(), Some(20));
         results.next_tab(1);
         assert_eq!(results.tab, ExploreTab::Scatter);

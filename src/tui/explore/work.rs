@@ -406,10 +406,6 @@ impl Page for Running {
         None
     }
 
-    fn awaits_work(&self) -> bool {
-        true
-    }
-
     fn cancels_itself(&self) -> bool {
         true
     }

@@ -306,7 +306,7 @@ const LONGEST: usize = 24;
 #[derive(Clone, Debug)]
 pub struct ParameterField {
     parameter: Parameter,
-    optional: bool,
+    pub(in crate::tui) optional: bool,
     input: TextField,
     /// The initial value, which is always accepted: a shape that was moved or loaded may have more decimals than the
     /// form shows.
@@ -326,10 +326,6 @@ impl ParameterField {
             initial: value,
             initial_text: text,
         }
-    }
-
-    pub fn optional(&self) -> bool {
-        self.optional
     }
 
     pub fn changed(&self) -> bool {

@@ -143,7 +143,7 @@ fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<&'static str> {
     if field.parameter() == Parameter::Pitch {
         return Some("1: not set");
     }
-    if !field.optional() {
+    if !field.optional {
         return None;
     }
     match &dialog.shown().source {

@@ -143,11 +143,6 @@ impl FrameCursor {
         }
     }
 
-    /// Returns the number of frames that have come since the source was last watched anew.
-    pub(super) fn arrived(&self) -> u64 {
-        self.next_number() - self.watched_from
-    }
-
     pub(super) fn next_number(&self) -> u64 {
         self.history.next_number()
     }

@@ -96,11 +96,6 @@ impl Live {
         &self.status
     }
 
-    /// Returns the number of frames that have come since the source was last watched anew.
-    pub fn arrived(&self) -> u64 {
-        self.cursor.arrived()
-    }
-
     pub fn stopped(&self) -> bool {
         self.stopped
     }

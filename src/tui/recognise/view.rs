@@ -128,10 +128,6 @@ impl Page for Recognition {
         true
     }
 
-    fn awaits_work(&self) -> bool {
-        matches!(self.state(), ModelState::Preparing(_))
-    }
-
     fn cancels_itself(&self) -> bool {
         true
     }

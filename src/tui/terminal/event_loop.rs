@@ -214,11 +214,7 @@ impl<'a> EventLoop<'a> {
     fn patience(&self) -> Option<Duration> {
         let reader = self.reader.patience(self.pacing.is_waiting());
         let reader = reader.map(|patience| patience.saturating_sub(self.read_at.elapsed()));
-        let due = [
-            self.frames_due,
-            self.pacing.deadline(),
-            self.world.disk_due(),
-        ];
+        let due = [self.frames_due, self.pacing.deadline, self.world.disk_due()];
         let due = due.into_iter().flatten().min();
         let due = due.map(|due| due.saturating_duration_since(Instant::now()));
         reader.into_iter().chain(due).min()
@@ -513,7 +509,7 @@ pub(in crate::tui) struct PicturePacing {
     answers: Answers,
     open: u32,
     /// The end of the wait for these answers; None if the next picture does not wait.
-    deadline: Option<Instant>,
+    pub(in crate::tui) deadline: Option<Instant>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -571,11 +567,6 @@ impl PicturePacing {
     /// Returns true if an answer may still come.
     pub(in crate::tui) fn is_asked(&self) -> bool {
         self.open > 0
-    }
-
-    /// Returns the time until which the next picture waits; None if it does not wait.
-    pub(in crate::tui) fn deadline(&self) -> Option<Instant> {
-        self.deadline
     }
 
     pub(in crate::tui) fn on_time(&mut self, now: Instant) {

@@ -29,46 +29,22 @@ pub struct RecognitionRate {
     pub right: u64,
     /// Touches whose imprint some shape also leaves without noise.
     pub held: u64,
-    weighted_touches: u128,
-    weighted_right: u128,
-    accuracy: f64,
-    standard_error: f64,
-    mean_confidence: f64,
-    held_share: f64,
+    /// The number of touches, each counted with the weight of its shape.
+    pub weighted_touches: u128,
+    /// The number of touches that were named right, each counted with the weight of its shape.
+    pub weighted_right: u128,
+    /// The share of touches that were named right.
+    pub accuracy: f64,
+    /// The standard error of [`Self::accuracy`]. The number of touches of each shape is fixed, so only the
+    /// variation among the touches of one shape counts, not the differences between shapes.
+    pub standard_error: f64,
+    /// The mean probability of the answers. It estimates the accuracy if the assumed noise is the real one.
+    pub mean_confidence: f64,
+    /// The share of touches whose imprint the model holds.
+    pub held_share: f64,
 }
 
 impl RecognitionRate {
-    /// Returns the number of touches, each counted with the weight of its shape.
-    pub fn weighted_touches(&self) -> u128 {
-        self.weighted_touches
-    }
-
-    /// Returns the number of touches that were named right, each counted with the weight of its shape.
-    pub fn weighted_right(&self) -> u128 {
-        self.weighted_right
-    }
-
-    /// Returns the share of touches that were named right.
-    pub fn accuracy(&self) -> f64 {
-        self.accuracy
-    }
-
-    /// Returns the standard error of [`Self::accuracy`]. The number of touches of each shape is fixed, so only the
-    /// variation among the touches of one shape counts, not the differences between shapes.
-    pub fn standard_error(&self) -> f64 {
-        self.standard_error
-    }
-
-    /// Returns the mean probability of the answers. It estimates the accuracy if the assumed noise is the real one.
-    pub fn mean_confidence(&self) -> f64 {
-        self.mean_confidence
-    }
-
-    /// Returns the share of touches whose imprint the model holds.
-    pub fn held_share(&self) -> f64 {
-        self.held_share
-    }
-
     fn of(shapes: &[(u32, ShapeRate)]) -> Self {
         let sum = |of: fn(&ShapeRate) -> u64| shapes.iter().map(|(_, own)| of(own)).sum();
         let weighted = |of: fn(&ShapeRate) -> u64| -> u128 {
@@ -514,10 +490,10 @@ mod tests {
         let rate = rate.expect("not stopped");
         // The long one is always named, so only the confidence is left to chance.
         assert_eq!((rate.touches, rate.right), (4000, 2000));
-        let weighted = (rate.weighted_touches(), rate.weighted_right());
+        let weighted = (rate.weighted_touches, rate.weighted_right);
         assert_eq!(weighted, (20_000, 18_000));
-        assert_eq!((rate.accuracy(), rate.standard_error()), (0.9, 0.0));
-        assert!((rate.mean_confidence() - 0.9).abs() < 0.002, "{rate:?}");
+        assert_eq!((rate.accuracy, rate.standard_error), (0.9, 0.0));
+        assert!((rate.mean_confidence - 0.9).abs() < 0.002, "{rate:?}");
     }
 
     /// On a matrix as large as the shapes, one taxel tells them apart. If it is dead, the first shape is named.
@@ -543,10 +519,10 @@ mod tests {
         };
         let rates: Vec<RecognitionRate> = (0..100).map(rate).collect();
         let count = float(rates.len() as u64);
-        let mean = rates.iter().map(RecognitionRate::accuracy).sum::<f64>() / count;
-        let apart = rates.iter().map(|rate| (rate.accuracy() - mean).powi(2));
+        let mean = rates.iter().map(|rate| rate.accuracy).sum::<f64>() / count;
+        let apart = rates.iter().map(|rate| (rate.accuracy - mean).powi(2));
         let found = (apart.sum::<f64>() / (count - 1.0)).sqrt();
-        let stated = rates.iter().map(RecognitionRate::standard_error);
+        let stated = rates.iter().map(|rate| rate.standard_error);
         let stated = stated.sum::<f64>() / count;
         assert!(stated > 0.0);
         assert!((found / stated - 1.0).abs() < 0.3, "{found} {stated}");
@@ -582,10 +558,10 @@ mod tests {
             ..ShapeRate::default()
         };
         let found = RecognitionRate::of(&[(3, rate(50)), (1, rate(80))]);
-        assert_eq!(found.accuracy(), 230.0 / 400.0);
+        assert_eq!(found.accuracy, 230.0 / 400.0);
         // The variances are 25 and 16.
         let error = (9.0 * 25.0 + 16.0_f64).sqrt() / 400.0;
-        assert!((found.standard_error() - error).abs() < 1e-15, "{found:?}");
+        assert!((found.standard_error - error).abs() < 1e-15, "{found:?}");
     }
 
     #[test]
@@ -673,7 +649,7 @@ mod tests {
         let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
         assert_eq!(rate.map(|rate| (rate.touches, rate.right)), Some((20, 10)));
         // One is always named right, the other never: the accuracy is ½ for every seed.
-        let error = rate.map(|rate| (rate.accuracy(), rate.standard_error()));
+        let error = rate.map(|rate| (rate.accuracy, rate.standard_error));
         assert_eq!(error, Some((0.5, 0.0)));
     }
 

@@ -50,7 +50,7 @@ impl Elliptic {
         self.ellipse.threshold = threshold;
         let outer = &mut self.ellipse.outer;
         // If no section is high enough, no cell is covered enough.
-        if !outer.cut(top) || outer.highest() < threshold - 2.0 * DOUBT {
+        if !outer.cut(top) || outer.highest < threshold - 2.0 * DOUBT {
             return;
         }
         if let Some(inner) = &mut self.ellipse.inner {
@@ -102,7 +102,7 @@ fn follow(ellipse: &HollowEllipse, tracks: &mut Tracks) -> Option<Passages> {
     let covered = |band: &EllipseBand, u: f64| band.coverage(&band.at(u), &band.at(u + 1.0));
     let least = covered(outer, first).min(covered(outer, last));
     // The hole is nowhere high enough to matter.
-    if least - inner.highest() > threshold + DOUBT {
+    if least - inner.highest > threshold + DOUBT {
         return Some(solid);
     }
     let (hole, end) = (
@@ -123,7 +123,7 @@ fn follow(ellipse: &HollowEllipse, tracks: &mut Tracks) -> Option<Passages> {
 
 fn learn(spans: &Spans, tracks: &mut Tracks) {
     let all = spans.all();
-    match (spans.sharp(), all) {
+    match (spans.sharp, all) {
         (true, [only]) => {
             tracks[0].note(only.from);
             tracks[1].note(only.to);
@@ -172,7 +172,7 @@ pub(crate) struct EllipseBand {
     count: usize,
     /// The places between which the section is highest; `highest` is its height there.
     peak: (f64, f64),
-    highest: f64,
+    pub(crate) highest: f64,
     /// The area of the ellipse in the band.
     total: f64,
 }
@@ -429,10 +429,6 @@ impl EllipseBand {
             (Some(first), Some(last)) => (self.x + first.left, self.x + last.right),
             _ => (self.x, self.x),
         }
-    }
-
-    pub(crate) fn highest(&self) -> f64 {
-        self.highest
     }
 
     /// Returns the places between which a cell is full; None if no cell is.

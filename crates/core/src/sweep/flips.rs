@@ -34,7 +34,7 @@ pub(crate) struct FlipWriter<'s, 'e, 'a> {
 impl FlipWriter<'_, '_, '_> {
     pub(crate) fn spans(&mut self, spans: &Spans) {
         // The fast path needs span ends that are known more precisely than the grid step.
-        if spans.sharp() && NEAR * self.steps.per_cell < 0.25 {
+        if spans.sharp && NEAR * self.steps.per_cell < 0.25 {
             for span in spans.all() {
                 self.span(span);
             }
@@ -227,7 +227,7 @@ pub(crate) struct Span {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spans {
     list: Vec<Span>,
-    sharp: bool,
+    pub(crate) sharp: bool,
     level: Option<(f64, Level)>,
 }
 
@@ -320,10 +320,6 @@ impl Spans {
         }
         self.sharp &= span.sharp;
         self.list.push(span);
-    }
-
-    pub(crate) fn sharp(&self) -> bool {
-        self.sharp
     }
 
     pub(crate) fn all(&self) -> &[Span] {

@@ -57,11 +57,6 @@ impl AtlasFile {
         Ok(Self { path, format })
     }
 
-    /// Whether it is an archive, which can be read again.
-    pub fn is_archive(&self) -> bool {
-        self.format == AtlasFormat::Archive
-    }
-
     /// The path of the file.
     pub fn path(&self) -> &Path {
         &self.path

@@ -76,7 +76,7 @@ impl MapPane {
         };
         let double = scale == MapScale::Letters && 2 * width <= u64::from(across);
         let cell = if double { 2 } else { 1 };
-        let [x0, y0, ..] = results.pose_index().into_array();
+        let [x0, y0, ..] = results.pose_index.into_array();
         let (from_x, seen_x) = seen(x0, width, stride, u64::from(across / cell), 1);
         let rows = u64::from(body.height) * u64::from(lines);
         let (from_y, seen_y) = seen(y0, height, stride, rows, lines.into());
@@ -156,20 +156,10 @@ fn seen(at: u64, all: u64, stride: u64, room: u64, block: u64) -> (u64, u64) {
 
 pub const LETTERS: u8 = 62;
 
-/// Returns the letter of each cell of a map as a number from 0, or None where there is no imprint. `width` is the
-/// number of cells in a row. Different imprints have different letters until all are used; then letters are repeated,
-/// but not for cells that touch, also across corners. Only around an imprint that touches more than 61 others can
-/// letters run out. By default the imprint's number decides, so that most letters stay when the map moves.
-///
-/// ```
-/// use taxel::tui::explore::map::layout::letters;
-/// // 62 would have the letter of 0.
-/// assert_eq!(letters(&[Some(0), Some(62), None, Some(3)], 2), [Some(0), Some(1), None, Some(3)]);
-/// ```
-pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
-    signs(ids, width, LETTERS)
-}
-
+/// Returns the sign of each cell of a map as a number below `count`, or None where there is no imprint. `width` is the
+/// number of cells in a row. Different imprints have different signs until all are used; then signs are repeated, but
+/// not for cells that touch, also across corners. Only around an imprint that touches `count` others can they run out.
+/// By default the imprint's number decides, so that most signs stay when the map moves.
 pub fn signs(ids: &[Option<u32>], width: usize, count: u8) -> Vec<Option<u8>> {
     let width = width.max(1);
     let mut neighbours: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
@@ -310,7 +300,7 @@ mod tests {
             };
             let places = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
             let ids: Vec<_> = places().map(|(x, y)| id(x, y)).collect();
-            let found = letters(&ids, width);
+            let found = signs(&ids, width, LETTERS);
             let at = |x: usize, y: usize| (ids[y * width + x], found[y * width + x]);
             for (x, y) in places() {
                 let (own, letter) = at(x, y);
@@ -326,7 +316,10 @@ mod tests {
                 }
             }
         }
-        assert_eq!(letters(&[], 0), []);
+        // 62 would have the letter of 0.
+        let found = signs(&[Some(0), Some(62), None, Some(3)], 2, LETTERS);
+        assert_eq!(found, [Some(0), Some(1), None, Some(3)]);
+        assert_eq!(signs(&[], 0, LETTERS), []);
         let all: String = (0..LETTERS).map(letter).collect();
         assert!(
             all.starts_with("abc") && all.ends_with("XYZ0123456789"),
@@ -334,7 +327,7 @@ mod tests {
         );
         // As many imprints as there are letters: no letter twice, whatever their numbers.
         let ids: Vec<_> = (0..u32::from(LETTERS)).map(|id| Some(id * 31)).collect();
-        let different: BTreeSet<_> = letters(&ids, 8).into_iter().flatten().collect();
+        let different: BTreeSet<_> = signs(&ids, 8, LETTERS).into_iter().flatten().collect();
         assert_eq!(different.len(), ids.len());
     }
 

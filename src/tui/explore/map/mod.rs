@@ -133,7 +133,7 @@ pub(in crate::tui) fn drawing(results: &Results) -> Result<String, String> {
 
 fn heading(results: &Results) -> String {
     let grid = &results.sweep().grid;
-    let (place, counts) = (results.pose_index(), grid.counts());
+    let (place, counts) = (results.pose_index, grid.counts());
     let parts = grid
         .axes()
         .filter(|axis| !matches!(axis, Axis::X0 | Axis::Y0))
@@ -154,7 +154,7 @@ fn heading(results: &Results) -> String {
 fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
     let (x, y) = pane.first;
     let poses = VisiblePoses {
-        first: results.pose_index().with(Axis::X0, x).with(Axis::Y0, y),
+        first: results.pose_index.with(Axis::X0, x).with(Axis::Y0, y),
         count: pane.count,
         stride: pane.stride,
     };
@@ -168,7 +168,7 @@ fn sampled(
     (width, height): (u64, u64),
     stride: u64,
 ) -> Vec<Option<u32>> {
-    let place = results.pose_index();
+    let place = results.pose_index;
     if stride == 1 {
         return results.sweep().ids(place, x..x + width, y..y + height);
     }
@@ -214,7 +214,7 @@ fn draw_cells(
             }
         }
     }
-    let [x0, y0, ..] = results.pose_index().into_array();
+    let [x0, y0, ..] = results.pose_index.into_array();
     let (cursor, _) = pane.position((x0, y0))?;
     for column in 0..pane.cell {
         if let Some(cell) = buffer.cell_mut(Position::new(cursor.x + column, cursor.y)) {
@@ -301,7 +301,7 @@ fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buff
 fn draw_pose(theme: &Theme, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
     let result = results.sweep();
     let grid = &result.grid;
-    let number = grid.number(results.pose_index());
+    let number = grid.number(results.pose_index);
     let pose = grid.pose(number);
     let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(number));
     let entry = results.id(&imprint).and_then(|id| result.atlas.entry(id));

@@ -81,7 +81,7 @@ impl FrameFeed {
     }
 
     pub(in crate::tui::runtime) fn has_new(&self) -> bool {
-        locked(&self.pending).is_new()
+        locked(&self.pending).is_new
     }
 
     fn recorded(
@@ -245,7 +245,7 @@ impl FrameFeed {
 pub(super) struct Pending {
     batch: FrameBatch,
     bytes: usize,
-    is_new: bool,
+    pub(super) is_new: bool,
     /// The channels so far, and the one that is watched.
     channels: ChannelChoice,
     begun: bool,
@@ -266,10 +266,6 @@ impl Pending {
     /// Returns the state of the source, to change it.
     pub(super) fn status(&mut self) -> &mut FeedStatus {
         &mut self.batch.status
-    }
-
-    pub(super) fn is_new(&self) -> bool {
-        self.is_new
     }
 
     pub(super) fn set_new(&mut self) -> bool {
