@@ -106,7 +106,7 @@ pub struct History {
     /// While the last change can go on: the states that could be redone before it. They can be redone again if the
     /// change comes to nothing.
     future_before: Option<Vec<Revision>>,
-    origins: Vec<DocumentOrigin>,
+    pub(in crate::tui) origins: Vec<DocumentOrigin>,
     gone: Vec<(usize, DocumentOrigin)>,
 }
 
@@ -145,10 +145,6 @@ impl History {
         self.origins
             .get(self.present.origin)
             .unwrap_or(&self.origins[0])
-    }
-
-    pub fn origin_at(&self, index: usize) -> Option<&DocumentOrigin> {
-        self.origins.get(index)
     }
 
     /// Returns true if a document of this name was loaded or saved since the start of the program.

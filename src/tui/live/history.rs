@@ -318,7 +318,7 @@ impl FrameCursor {
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameMarks {
     own: Vec<(u64, FrameMark)>,
-    recorded: Vec<FrameMark>,
+    pub(in crate::tui) recorded: Vec<FrameMark>,
     /// Whether the marks set by keys have changed since [`FrameMarks::take_change`] was called last.
     is_changed: bool,
 }
@@ -336,10 +336,6 @@ impl FrameMarks {
     /// Returns true if the marks set by keys have changed since the last call.
     pub(super) fn take_change(&mut self) -> bool {
         std::mem::take(&mut self.is_changed)
-    }
-
-    pub(super) fn set_recorded(&mut self, recorded: &[FrameMark]) {
-        self.recorded = recorded.to_vec();
     }
 
     pub(super) fn recorded(&self) -> &[FrameMark] {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use taxel_core::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
+use taxel_core::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
 use taxel_core::recognition::Noise;
 use taxel_files::acquire::SourceName;
@@ -30,7 +30,7 @@ pub struct Live {
     request: Arc<WatchRequest>,
     number: u64,
     /// The processing of a frame before it is shown: view, tare, threshold.
-    processing: Processing,
+    pub(in crate::tui) processing: Processing,
     rule: Option<SetRule>,
     converted: Option<(Rule, Rule)>,
     /// Whether the threshold or the tare has changed since they were last written into a recording.
@@ -46,8 +46,8 @@ pub struct Live {
     pub(super) tare: LiveTare,
     /// The number of frames that were never drawn, because others came before the screen was drawn again.
     not_drawn: u64,
-    recording: RecordingState,
-    marks: FrameMarks,
+    pub(in crate::tui) recording: RecordingState,
+    pub(super) marks: FrameMarks,
     pub names: ShapeNames,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
     reading: Option<LiveReading>,
@@ -135,11 +135,6 @@ impl Live {
         self.rule
     }
 
-    /// Returns the values that are subtracted from the cells; None without a tare.
-    pub fn tare_values(&self) -> Option<&Tare> {
-        self.processing.tare.as_ref()
-    }
-
     pub fn not_drawn(&self) -> u64 {
         self.not_drawn + self.status.overflowed
     }
@@ -181,10 +176,6 @@ impl Live {
     /// Returns the frames that were marked since the source was last watched anew, in the order in which they came.
     pub fn marks(&self) -> Vec<FrameMark> {
         self.marks.own()
-    }
-
-    pub fn recorded_marks(&self) -> &[FrameMark] {
-        self.marks.recorded()
     }
 
     /// Returns threshold, tare and the marks of recorded frames, if frames are recorded and any of these has changed.
@@ -285,7 +276,7 @@ impl Live {
         if self.rule.is_none() {
             self.set_rule(channel.own_rule(self.processing.least));
         }
-        self.marks.set_recorded(&channel.marks);
+        self.marks.recorded.clone_from(&channel.marks);
         self.retare(|tare, processing| tare.take_own(channel, processing));
     }
 
@@ -409,10 +400,6 @@ impl Live {
         self.range.is_own
     }
 
-    pub(super) fn request_recording(&mut self) {
-        self.recording.request(self.cursor.next_number());
-    }
-
     pub fn set_recording(&mut self, name: Option<String>) {
         self.recording.set(name);
         // These belong to the recording before.
@@ -430,12 +417,6 @@ impl Live {
     pub fn stop(&mut self) {
         self.stopped = true;
         self.recording.stop();
-    }
-
-    /// Returns true once if a recording ended because its source was left: it does not go on when the source is watched
-    /// again.
-    pub fn take_stopped_recording(&mut self) -> bool {
-        self.recording.take_stopped()
     }
 
     pub fn has_ended(&self) -> bool {
@@ -482,7 +463,7 @@ impl Live {
     pub fn restart(&mut self, number: u64) {
         self.number = number;
         self.stopped = false;
-        self.recording.forget_refusal();
+        self.recording.refusal = None;
         self.cursor.restart();
         self.marks.clear();
         self.tare.restart();
@@ -641,7 +622,7 @@ pub struct RecordingState {
     /// recorded.
     from: u64,
     /// Why nothing is recorded although it was requested.
-    refusal: Option<String>,
+    pub(in crate::tui) refusal: Option<String>,
     write_failure: Option<String>,
     /// Whether a recording ended because its source was left, which the user has not been told yet.
     was_stopped: bool,
@@ -696,10 +677,6 @@ impl RecordingState {
     /// Returns true once if a recording ended because its source was left.
     pub(super) fn take_stopped(&mut self) -> bool {
         std::mem::take(&mut self.was_stopped)
-    }
-
-    pub(super) fn forget_refusal(&mut self) {
-        self.refusal = None;
     }
 }
 

@@ -260,14 +260,14 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     if page.status().state.is_final() {
         return Err(LiveRefusal::SourceEnded);
     }
-    page.request_recording();
+    page.recording.request(page.cursor.next_number());
     let channel = page.status().channel.as_deref();
     let metadata = RecordingMetadata {
         source: page.request().source.to_string(),
         unit: channel.and_then(|channel| channel.unit.clone()),
         pitch_mm: channel.and_then(|channel| channel.pitch_mm),
         rule: page.rule(),
-        tare: page.tare_values().cloned(),
+        tare: page.processing.tare.clone(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
         // Frames that were marked before are not in the recording.
         marks: Vec::new(),
@@ -505,7 +505,7 @@ pub(super) fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
 }
 
 fn say_not_recording(app: &mut App, page: &mut Live) {
-    if page.take_stopped_recording() {
+    if page.recording.take_stopped() {
         let record = app.keymap().label(Context::Live, &action::RECORD);
         inform(
             app,

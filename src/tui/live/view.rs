@@ -232,7 +232,7 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
 /// Returns the last marked frames: those marked by keys, and those that were marked while the recording was made, which
 /// it knows by their labels. None if no frame is marked.
 fn marked(live: &Live) -> Option<String> {
-    let (own, recorded) = (live.marks(), live.recorded_marks());
+    let (own, recorded) = (live.marks(), live.marks.recorded());
     let text = |what, marks: &[FrameMark]| {
         let numbers = marks.iter().rev().map(|mark| mark.number.to_string());
         let numbers: Vec<String> = numbers.take(20).collect();

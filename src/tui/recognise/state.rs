@@ -58,21 +58,21 @@ pub struct Recognition {
     choice: ModelChoice,
     /// The set that could not be read last: the next step through the sets goes on from there.
     unreadable: Option<ModelChoice>,
-    stored: Vec<Name>,
+    pub(in crate::tui) stored: Vec<Name>,
     state: ModelState,
     kept: Vec<Imprint>,
     present: Imprint,
     /// The shape that left it, in its pose; None if no shape did.
     source: Option<Source>,
     /// The threshold at which a shape touched the matrix; None if no shape does.
-    threshold: Option<f64>,
+    pub(in crate::tui) threshold: Option<f64>,
     kept_source: Option<Source>,
     present_kept: bool,
     /// The answer about all touches; None without a model or a touch.
     answer: Option<Answer>,
     searches: PoseSearches,
     /// Whether outlines of poses are shown; None shows them if taxels are large.
-    outlines: Option<bool>,
+    pub(in crate::tui) outlines: Option<bool>,
     pub(super) random: Pcg64,
 }
 
@@ -128,10 +128,6 @@ impl Recognition {
         other(all, &self.choice, self.unreadable.as_ref(), by)
     }
 
-    pub fn has_own_models(&self) -> bool {
-        !self.stored.is_empty()
-    }
-
     /// Chooses a set, whose model is prepared by the work with this number. Kept touches stay, so that sets can be
     /// compared. A stored model may be missing or damaged; then the earlier
     /// set returns. `opened`: whether the page was opened for this set. A search in progress is forgotten, because it
@@ -150,7 +146,7 @@ impl Recognition {
                 trained,
                 preparing,
             };
-            self.searches.forget_result();
+            self.searches.ended = None;
             before = before.or_else(|| Some(Box::new(set)));
         }
         before = before.filter(|_| self.choice.is_read());
@@ -164,7 +160,7 @@ impl Recognition {
             opened,
             before,
         });
-        self.searches.forget_running();
+        self.searches.running = None;
         self.ask();
     }
 
@@ -317,11 +313,6 @@ impl Recognition {
         self.threshold.filter(|&threshold| threshold != trained)
     }
 
-    /// Records the threshold at which a shape touched the matrix; None if no shape does.
-    pub fn note_threshold(&mut self, threshold: Option<f64>) {
-        self.threshold = threshold;
-    }
-
     pub fn show(&mut self, imprint: Imprint, source: Option<&Source>) {
         if imprint != self.present || source != self.source.as_ref() {
             (self.present, self.source) = (imprint, source.cloned());
@@ -378,10 +369,6 @@ impl Recognition {
         self.outlines
     }
 
-    pub fn show_outlines(&mut self, shown: bool) {
-        self.outlines = Some(shown);
-    }
-
     pub fn take_result(
         &mut self,
         number: u64,
@@ -427,7 +414,7 @@ pub struct PoseSearchResult {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
     pub number: u64,
-    pub stored: Vec<Name>,
+    pub(in crate::tui) stored: Vec<Name>,
     pub trained: Result<Arc<TrainedModel>, String>,
 }
 
@@ -459,20 +446,11 @@ struct RunningSearch {
 #[derive(Clone, Debug, Default)]
 pub(super) struct PoseSearches {
     /// The last search and its result; None if it failed.
-    ended: Option<(PoseSearch, Option<Box<PoseSearchResult>>)>,
+    pub(in crate::tui) ended: Option<(PoseSearch, Option<Box<PoseSearchResult>>)>,
     running: Option<RunningSearch>,
 }
 
 impl PoseSearches {
-    /// Forgets the search in progress, which is about a model that was replaced: its result is dropped.
-    pub(super) fn forget_running(&mut self) {
-        self.running = None;
-    }
-
-    pub(super) fn forget_result(&mut self) {
-        self.ended = None;
-    }
-
     pub(super) fn found(&self, needed: Option<&PoseSearch>) -> Option<&PoseSearchResult> {
         let (search, found) = self.ended.as_ref()?;
         found.as_deref().filter(|_| needed == Some(search))

@@ -95,7 +95,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
 /// models of the user's own come about, as long as there are none.
 fn next_model(app: &mut App, by: i8) -> Option<Effect> {
     let page = &app.recognition;
-    let (choice, has_own) = (page.other(by), page.has_own_models());
+    let (choice, has_own) = (page.other(by), !page.stored.is_empty());
     let mut text = choice.to_string();
     if !has_own {
         text += "; train your own with 'taxel model train' in a shell";
@@ -163,7 +163,7 @@ fn show_poses(app: &mut App) {
     let page = &mut app.recognition;
     page.show(imprint, source.as_ref());
     let seen = Layers::shown(page.outlines(), &grid);
-    page.show_outlines(!seen);
+    page.outlines = Some(!seen);
     let said = match page.found() {
         _ if seen => Ok("without poses"),
         None if page.is_searching() => Ok("the poses are still being searched for"),
@@ -346,7 +346,7 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let (threshold, source) = (document.sensor.threshold(), document.source.clone());
     let page = &mut app.recognition;
     page.show(imprint, source.as_ref());
-    page.note_threshold(source.map(|_| threshold));
+    page.threshold = source.map(|_| threshold);
     let number = app.works + 1;
     Some(Effect::Work(match page.step_search(number)? {
         SearchStep::Begin(search) => {

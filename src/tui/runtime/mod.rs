@@ -166,7 +166,7 @@ impl World {
     #[must_use]
     pub fn with_model_cache(mut self, cache: Option<ModelCache>) -> Self {
         if let Some(cache) = cache {
-            self.workers.models.store.keep_in(cache);
+            self.workers.models.store.cache = Some(cache);
         }
         self
     }

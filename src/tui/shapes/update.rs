@@ -316,7 +316,7 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
 fn ask_replacement(app: &mut App, shape: Box<StoredShape>, stamp: u64, reason: String) {
     let save = app.saving.pop_front();
     let origin = save.as_ref();
-    let origin = origin.and_then(|save| app.history.origin_at(save.origin));
+    let origin = origin.and_then(|save| app.history.origins.get(save.origin));
     let own = origin.and_then(|origin| origin.name.as_ref());
     let own = own.filter(|own| own.owner == ShapeOrigin::Own && shape.name.same(&own.name));
     let reason = match own.filter(|own| own.stamp != stamp) {

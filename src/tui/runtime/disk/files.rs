@@ -159,7 +159,7 @@ fn paths(start: &str) -> Vec<String> {
 #[derive(Debug, Default)]
 pub(in crate::tui) struct WriteAccess {
     /// The folder that a script is confined to; None for anywhere.
-    folder: Option<PathBuf>,
+    pub(in crate::tui::runtime) folder: Option<PathBuf>,
     written: Mutex<Vec<PathBuf>>,
 }
 
@@ -169,10 +169,6 @@ impl WriteAccess {
             folder: Some(folder),
             written: Mutex::default(),
         }
-    }
-
-    pub(in crate::tui::runtime) fn is_confined(&self) -> bool {
-        self.folder.is_some()
     }
 
     pub(in crate::tui::runtime) fn path(

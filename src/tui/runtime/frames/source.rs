@@ -30,7 +30,7 @@ pub(in crate::tui::runtime) fn readable(
 ) -> Result<FrameSource, String> {
     let source = named(name);
     let refused = |reason: &dyn std::fmt::Display| format!("{}: {reason}", source.name());
-    if access.is_confined() && !is_file(&source) {
+    if access.folder.is_some() && !is_file(&source) {
         return Err(refused(
             &"without --allow-outside, a script reads frames only from files",
         ));

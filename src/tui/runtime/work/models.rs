@@ -37,7 +37,7 @@ use crate::tui::runtime::work::execution::{
 #[derive(Clone, Debug, Default)]
 pub(in crate::tui::runtime) struct ModelStore {
     folder: Option<ModelFolder>,
-    cache: Option<ModelCache>,
+    pub(in crate::tui) cache: Option<ModelCache>,
 }
 
 impl ModelStore {
@@ -46,10 +46,6 @@ impl ModelStore {
             folder: Some(ModelFolder::beside(library.folder())),
             cache: None,
         }
-    }
-
-    pub(in crate::tui::runtime) fn keep_in(&mut self, cache: ModelCache) {
-        self.cache = Some(cache);
     }
 
     /// Returns the names of the user's models; none if the folder cannot be read.
