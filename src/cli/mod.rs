@@ -23,11 +23,6 @@
 //! A closed pipe, as in `taxel batch | head -1`, is not an error: the program stops and returns 0. Escape codes are
 //! written only by the screen, and by the progress bar of a sweep if standard error is a terminal.
 
-#![expect(
-    missing_docs,
-    reason = "this is the program; only its tests call it from outside"
-)]
-
 mod error;
 
 mod signals;
