@@ -12,6 +12,9 @@
 
 #[cfg(unix)]
 pub mod acquire;
+mod error;
 pub mod formats;
 pub mod memory;
 pub mod storage;
+
+pub use error::{ReadError, ReadErrorKind};
