@@ -5,7 +5,7 @@
 use serde::ser::{Error, Serialize, SerializeMap, Serializer};
 
 use crate::description::Value;
-use crate::frame::{Rule, SetRule};
+use crate::frame::{Label, Rule, SetRule};
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
@@ -27,6 +27,16 @@ impl Serialize for Value {
                 map.serialize_entry("bottom", &rect.bottom)?;
                 map.end()
             }
+        }
+    }
+}
+
+impl Serialize for Label {
+    /// Writes a number or a text.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(number) => serializer.serialize_i64(*number),
+            Self::Text(text) => serializer.serialize_str(text),
         }
     }
 }

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
-use taxel_core::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule, View};
+use taxel_core::frame::{Crop, FrameError, FrameSize, Label, Rule, RuleOrigin, SetRule, View};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::{Parameter, number};
 use taxel_core::recognition::Noise;
@@ -30,11 +30,11 @@ use crate::cli::arguments::{program, touch};
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::{LEAST, SensorSettings};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum FrameChoice {
     /// The frame of this number, from 0.
     Number(u64),
-    Label(i64),
+    Label(Label),
     Peak,
     All,
     NoiseReport,
@@ -78,7 +78,7 @@ pub(crate) fn command() -> Command {
         option("frame", "N", "Frame N of the channel, from 0").value_parser(whole::<u64>(0..));
     let label = option("label", "L", "The frame with the label L in the recording")
         .allow_hyphen_values(true)
-        .value_parser(whole::<i64>(..));
+        .value_parser(value_parser!(Label));
     let peak = switch(
         "peak",
         "The frame with the greatest sum, after tare and gain",
@@ -286,7 +286,7 @@ impl FramesArguments {
         let file = required(matches, "file")?;
         let choice = match (matches.get_one("frame"), matches.get_one("label")) {
             (Some(&number), _) => Some(FrameChoice::Number(number)),
-            (_, Some(&label)) => Some(FrameChoice::Label(label)),
+            (_, Some(label)) => Some(FrameChoice::Label(Label::clone(label))),
             _ if matches.get_flag("peak") => Some(FrameChoice::Peak),
             _ if matches.get_flag("all") => Some(FrameChoice::All),
             _ if matches.get_flag("noise-report") => Some(FrameChoice::NoiseReport),

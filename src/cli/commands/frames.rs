@@ -24,7 +24,7 @@ use std::ops::{ControlFlow, Range};
 use std::slice;
 
 use taxel_core::frame::{
-    FlipReport, Frame, Processed, Processing, Rule, RuleOrigin, SetRule, Tare,
+    FlipReport, Frame, Label, Processed, Processing, Rule, RuleOrigin, SetRule, Tare,
 };
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
@@ -98,7 +98,7 @@ pub(crate) fn frames(
     if scan.channels.is_empty() {
         return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
     }
-    let Some(choice) = asked.choice else {
+    let Some(choice) = asked.choice.clone() else {
         list(&scan, &recording, asked, &mut output)?;
         return damage.map_or(Ok(()), Err);
     };
@@ -115,7 +115,7 @@ pub(crate) fn frames(
     if let Some(unknown) = recording::unknown_step(&processing) {
         (output.notes)(&format!("warning: {}: {unknown}", recording.name()));
     }
-    let answered = if choice == FrameChoice::NoiseReport {
+    let answered = if selection.choice == FrameChoice::NoiseReport {
         report_noise(&mut recording, channel, &mut processing, &mut output)?
     } else {
         selection.answer(&mut recording, listed, &mut processing, &mut output)?
@@ -123,7 +123,7 @@ pub(crate) fn frames(
     match damage {
         Some(damage) => Err(damage),
         None if answered => Ok(()),
-        None => Err(recording.refused(&missing(choice, listed))),
+        None => Err(recording.refused(&missing(&selection.choice, listed))),
     }
 }
 
@@ -185,10 +185,10 @@ fn write_noise(
     output.write(output.charset.lines(&text))
 }
 
-fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
+fn missing(choice: &FrameChoice, listed: &ListedChannel) -> String {
     match choice {
         FrameChoice::Label(label) if listed.frames > 0 => {
-            let found = match listed.labels {
+            let found = match &listed.labels {
                 None => {
                     ": the frames have no labels, only numbers; choose one with --frame".to_owned()
                 }
@@ -252,9 +252,9 @@ impl Selection {
             }
             None => processing.tare = listed.info.tare_for(&processing.view).cloned(),
         }
-        let number = match choice {
+        let number = match &choice {
             FrameChoice::Peak => recording::peak(recording, channel, listed, &mut processing)?,
-            FrameChoice::Number(number) => Some(number),
+            FrameChoice::Number(number) => Some(*number),
             FrameChoice::Label(_) | FrameChoice::All | FrameChoice::NoiseReport => None,
         };
         let selection = Self {
@@ -270,9 +270,9 @@ impl Selection {
     }
 
     fn has(&self, frame: &Frame) -> bool {
-        match self.choice {
+        match &self.choice {
             FrameChoice::All | FrameChoice::NoiseReport => true,
-            FrameChoice::Label(label) => frame.label == Some(label),
+            FrameChoice::Label(label) => frame.label.as_ref() == Some(label),
             FrameChoice::Number(_) | FrameChoice::Peak => Some(frame.number) == self.number,
         }
     }
@@ -288,7 +288,7 @@ impl Selection {
         if !kept.is_asked() {
             return Ok(());
         }
-        let numbers = match (self.choice, self.number) {
+        let numbers = match (&self.choice, self.number) {
             (FrameChoice::Label(label), _) => self.numbers_labelled(recording, label)?,
             (_, Some(number)) => number..number + 1,
             _ => 0..listed.frames,
@@ -306,7 +306,7 @@ impl Selection {
     fn numbers_labelled(
         &self,
         recording: &mut RecordingFile,
-        label: i64,
+        label: &Label,
     ) -> Result<Range<u64>, CliError> {
         let mut numbers = Vec::new();
         recording.frames_again(self.channel, |frame| {
@@ -448,7 +448,7 @@ impl Selection {
         } = found;
         let file = name.rsplit('/').next().unwrap_or(name);
         let mut title = format!("{file}, frame {}", frame.number);
-        if let Some(label) = frame.label {
+        if let Some(label) = &frame.label {
             title += &format!(" (label {label})");
         }
         if let Some(time) = frame.time {

@@ -4,7 +4,7 @@
 use std::fmt;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
-use taxel_core::frame::{Frame, FrameSize, Peak, View};
+use taxel_core::frame::{Frame, FrameSize, Label, Peak, View};
 use taxel_core::parameter::number::short;
 use taxel_files::formats::json;
 use taxel_files::formats::recording::{ChannelInfo, RecordingFormat};
@@ -22,7 +22,7 @@ pub(crate) struct ListedChannel {
     pub(crate) values: u64,
     cells: usize,
     /// The least and the greatest label of its frames; None if they have no labels.
-    pub(crate) labels: Option<(i64, i64)>,
+    pub(crate) labels: Option<(Label, Label)>,
     /// The times of its frames; None if they have no times.
     times: Option<FrameTimes>,
     marked: Vec<u64>,
@@ -82,17 +82,20 @@ impl ListedChannel {
             });
             self.times = Some(begun.with(frame.number, time));
         }
-        if let Some(label) = frame.label {
-            let (least, greatest) = self.labels.unwrap_or((label, label));
-            self.labels = Some((least.min(label), greatest.max(label)));
+        if let Some(label) = &frame.label {
+            let first = || (label.clone(), label.clone());
+            let (least, greatest) = self.labels.get_or_insert_with(first);
+            if label < least {
+                least.clone_from(label);
+            }
+            if label > greatest {
+                greatest.clone_from(label);
+            }
         }
-        let label = frame.label.and_then(|label| u64::try_from(label).ok());
-        if self
-            .info
-            .marks
-            .iter()
-            .any(|mark| Some(mark.number) == label)
-        {
+        let number = frame.label.as_ref().and_then(Label::number);
+        let number = number.and_then(|number| u64::try_from(number).ok());
+        let mut marks = self.info.marks.iter().map(|mark| mark.number);
+        if marks.any(|mark| Some(mark) == number) {
             self.marked.push(frame.number);
         }
         self.frames += 1;

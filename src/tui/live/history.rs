@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use taxel_core::frame::Frame;
+use taxel_core::frame::{Frame, Label};
 use taxel_files::acquire::FrameRate;
 use taxel_files::formats::recording::FrameMark;
 
@@ -343,8 +343,12 @@ impl FrameMarks {
     }
 
     pub(super) fn has(&self, number: u64, frame: &Frame) -> bool {
-        let label = frame.label.and_then(|label| u64::try_from(label).ok());
-        let is_recorded = |label: u64| self.recorded.iter().any(|mark| mark.number == label);
+        let label = frame.label.as_ref().and_then(Label::number);
+        let is_recorded = |label: i64| {
+            self.recorded
+                .iter()
+                .any(|mark| i64::try_from(mark.number) == Ok(label))
+        };
         self.index(number).is_ok() || label.is_some_and(is_recorded)
     }
 

@@ -120,7 +120,7 @@ pub(super) fn hold(held: &mut Frame, frame: &Frame) {
             *own = own.max(other);
         }
         held.number = frame.number;
-        held.label = frame.label;
+        held.label.clone_from(&frame.label);
         held.time = frame.time;
     } else {
         held.copy_from(frame);

@@ -534,7 +534,10 @@ fn of_frame(live: &Live) -> Vec<TitlePiece> {
     }
     match live.frame() {
         Some(frame) => {
-            let label = frame.label.map(|label| format!(" (label {label})"));
+            let label = frame
+                .label
+                .as_ref()
+                .map(|label| format!(" (label {label})"));
             let label = label.as_deref().unwrap_or("");
             say(2, format!("frame {}{label}", frame.number), Role::Text);
             if let Some(time) = frame.time {

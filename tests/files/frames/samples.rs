@@ -83,7 +83,7 @@ fn sensors_of_xsensor_are_channels_but_groups_are_not() {
     );
     // From 29 February, 23:59:59.4, to the next day.
     assert_eq!(found.frames[4].time, Some(1.2));
-    assert_eq!(found.frames[4].label, Some(102));
+    assert_eq!(found.frames[4].label, Some(102.into()));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Tables as various programs write them.
 
-use taxel_core::frame::Frame;
+use taxel_core::frame::{Frame, Label};
 
 use super::{Recorded, channel_shape, recorded};
 
@@ -8,7 +8,13 @@ use super::{Recorded, channel_shape, recorded};
 fn frames(text: &str, shape: Option<(u16, u16)>) -> Vec<(Option<i64>, Option<f64>, Vec<f64>)> {
     let found = recorded(text.as_bytes(), shape);
     assert!(found.error.is_none(), "{text}: {:?}", found.error);
-    let parts = |frame: &Frame| (frame.label, frame.time, frame.values().to_vec());
+    let parts = |frame: &Frame| {
+        (
+            frame.label.as_ref().and_then(Label::number),
+            frame.time,
+            frame.values().to_vec(),
+        )
+    };
     found.frames.iter().map(parts).collect()
 }
 
@@ -571,11 +577,11 @@ fn a_label_of_json_lines_is_a_whole_number_and_the_name_of_a_class_is_not_one() 
         )
     };
     for (label, expected) in [
-        ("7", Some(7)),
-        ("-7", Some(-7)),
+        ("7", Some(7.into())),
+        ("-7", Some(Label::Number(-7))),
         ("null", None),
-        ("\"cup\"", None),
-        ("\"7\"", None),
+        ("\"cup\"", Some(Label::Text("cup".to_owned()))),
+        ("\"7\"", Some(Label::Number(7))),
     ] {
         let found = labelled(label);
         assert!(found.error.is_none(), "{label}");

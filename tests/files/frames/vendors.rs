@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use taxel_core::frame::Frame;
+use taxel_core::frame::{Frame, Label};
 
 use super::{Recorded, channel_shape, recorded};
 
@@ -17,7 +17,13 @@ fn notes(found: &Recorded) -> Vec<String> {
 /// Returns the label, time and first value of each frame of a channel.
 fn frames(found: &Recorded, channel: usize) -> Vec<(Option<i64>, Option<f64>, f64)> {
     let own = found.frames.iter().filter(|frame| frame.channel == channel);
-    let parts = |frame: &Frame| (frame.label, frame.time, frame.values()[0]);
+    let parts = |frame: &Frame| {
+        (
+            frame.label.as_ref().and_then(Label::number),
+            frame.time,
+            frame.values()[0],
+        )
+    };
     own.map(parts).collect()
 }
 
@@ -124,7 +130,8 @@ fn frames_that_are_left_out_are_gaps_in_time() {
     let tekscan = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nSECONDS_PER_FRAME 0.02\nASCII_DATA @@\n\
                    Frame 1\n1,2\n\nFrame 3\n1,2\n\nFrame 5\n1,2\n\n@@\n";
     let found = recorded(tekscan.as_bytes(), None);
-    let times = found.frames.iter().map(|frame| (frame.label, frame.time));
+    let times = frames(&found, 0).into_iter();
+    let times = times.map(|(label, time, _)| (label, time));
     let expected = [(1, 0.0), (3, 0.04), (5, 0.08)];
     let expected = expected.map(|(label, time)| (Some(label), Some(time)));
     assert_eq!(times.collect::<Vec<_>>(), expected);

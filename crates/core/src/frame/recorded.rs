@@ -8,9 +8,51 @@ use crate::sensor::MatrixSize;
 /// The largest value that a cell may have; the smallest is its negative. So the sum of a frame is always finite.
 pub const LARGEST_VALUE: f64 = 1e300;
 
+/// The label that a recording gives a frame: its number there, or the name of what was touched.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Label {
+    /// A whole number.
+    Number(i64),
+    /// A text that is no whole number.
+    Text(String),
+}
+
+impl Label {
+    /// The number; None of a text.
+    pub fn number(&self) -> Option<i64> {
+        match *self {
+            Self::Number(number) => Some(number),
+            Self::Text(_) => None,
+        }
+    }
+}
+
+impl From<i64> for Label {
+    fn from(number: i64) -> Self {
+        Self::Number(number)
+    }
+}
+
+/// A text that is a whole number is the same label as that number, so `7` finds both.
+impl From<&str> for Label {
+    fn from(text: &str) -> Self {
+        text.parse()
+            .map_or_else(|_| Self::Text(text.to_owned()), Self::Number)
+    }
+}
+
+impl fmt::Display for Label {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Text(text) => text.fmt(f),
+        }
+    }
+}
+
 /// The values of a sensor's cells at one moment, in the sensor's unit.
 ///
-/// Readers and decoders reuse one frame, so nothing is allocated per frame.
+/// Readers and decoders reuse one frame, so nothing is allocated per frame, except for labels that are texts.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// The number of the frame in its channel, from 0.
@@ -18,7 +60,7 @@ pub struct Frame {
     /// The number of the channel, from 0; each of several sensors has one.
     pub channel: usize,
     /// The label that the recording gives the frame, if any.
-    pub label: Option<i64>,
+    pub label: Option<Label>,
     /// The time in seconds since the start of the recording, if known. Times may repeat and go back.
     pub time: Option<f64>,
     size: FrameSize,
@@ -85,7 +127,7 @@ impl Frame {
             values,
             number: other.number,
             channel: other.channel,
-            label: other.label,
+            label: other.label.clone(),
             time: other.time,
             size: other.size,
         };
@@ -408,7 +450,7 @@ mod tests {
     fn a_copy_equals_the_frame() {
         let mut frame = Frame::new(FrameSize::of(2, 1));
         frame.values_mut().copy_from_slice(&[1.0, 2.0]);
-        (frame.number, frame.channel, frame.label) = (3, 4, Some(5));
+        (frame.number, frame.channel, frame.label) = (3, 4, Some("washer M8".into()));
         frame.time = Some(0.5);
         let mut copy = Frame::new(FrameSize::of(5, 5));
         copy.copy_from(&frame);

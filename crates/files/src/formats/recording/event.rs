@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use taxel_core::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
+use taxel_core::frame::{Frame, FrameSize, Label, Rule, RuleOrigin, SetRule, Tare, View};
 use taxel_core::parameter::number::{counted, short, time_in_words, to_decimals};
 
 use crate::formats::recording::error::RecordingError;
@@ -161,7 +161,7 @@ pub enum RecordingNote {
         /// The number of the frame, from 0.
         frame: u64,
         /// The label of the frame in its file.
-        label: Option<i64>,
+        label: Option<Label>,
         /// The name of the sum.
         what: &'static str,
         /// The sum according to the file.
@@ -231,7 +231,8 @@ impl fmt::Display for RecordingNote {
                 stated,
                 found,
             } => {
-                let label = label.map_or(String::new(), |label| format!(" (label {label})"));
+                let label = label.as_ref().map(|label| format!(" (label {label})"));
+                let label = label.unwrap_or_default();
                 // A sum of decimals has a rounding error in its last digits.
                 let [stated, found] = [*stated, to_decimals(*found, 9)].map(short);
                 write!(

@@ -8,7 +8,7 @@
 //! A frame is a list of rows, or a list of cells if rows and columns are given by the caller. `t` or `time` is in
 //! seconds and counts from the first one. Without either, another key may be the time, such as `timestamp` or `t_ms`,
 //! or two keys of which one has the rest of the second, such as `sec` and `nanosec`; the first line with a time decides
-//! the key and its unit. `label` is a whole number; text, as for the name of a class, is ignored. `channel` is the name
+//! the key and its unit. `label` is a whole number or a text. `channel` is the name
 //! or the number of one of several sensors; other keys are ignored. All frames of a channel have the same size.
 //! These are errors, with line and column: rows of different lengths, lists within cells, infinite values, and two
 //! frames, times or labels in one line. If wrong lines may be left out, so is a frame of another size, unless three
@@ -22,7 +22,7 @@ use serde::de::{
     DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor,
 };
 use serde_json::Value;
-use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE, MAX_FRAME_CELLS};
+use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE, Label, MAX_FRAME_CELLS};
 use taxel_core::parameter::number::counted;
 
 use crate::formats::job::too_large;
@@ -103,7 +103,7 @@ impl JsonFrames {
         frame.reset(line.size);
         frame.values_mut().copy_from_slice(&line.values);
         self.channels.number(channel, frame);
-        frame.label = line.label;
+        frame.label.clone_from(&line.label);
         frame.time = line.time.map(|time| self.clock.clock.since_first(time));
         Ok(())
     }
@@ -126,7 +126,7 @@ struct FrameLine {
     /// The cells, row by row; NaN for null.
     values: Vec<f64>,
     time: Option<Time>,
-    label: Option<i64>,
+    label: Option<Label>,
     channel: Option<String>,
 }
 
@@ -311,38 +311,39 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
     }
 }
 
-/// Reads the label of a frame, a whole number; None for null, and for text, which is the name of a class in data sets.
+/// Reads the label of a frame, a whole number or a text; None for null.
 struct LabelSeed;
 
 impl<'de> DeserializeSeed<'de> for LabelSeed {
-    type Value = Option<i64>;
+    type Value = Option<Label>;
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Option<i64>, D::Error> {
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Option<Label>, D::Error> {
         deserializer.deserialize_any(self)
     }
 }
 
 impl Visitor<'_> for LabelSeed {
-    type Value = Option<i64>;
+    type Value = Option<Label>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("i64")
     }
 
-    fn visit_i64<E: Error>(self, label: i64) -> Result<Option<i64>, E> {
-        Ok(Some(label))
+    fn visit_i64<E: Error>(self, label: i64) -> Result<Option<Label>, E> {
+        Ok(Some(label.into()))
     }
 
-    fn visit_u64<E: Error>(self, label: u64) -> Result<Option<i64>, E> {
+    fn visit_u64<E: Error>(self, label: u64) -> Result<Option<Label>, E> {
         let wrong = |_| E::invalid_value(Unexpected::Unsigned(label), &self);
-        i64::try_from(label).map(Some).map_err(wrong)
+        let label = i64::try_from(label).map_err(wrong)?;
+        Ok(Some(label.into()))
     }
 
-    fn visit_str<E: Error>(self, _: &str) -> Result<Option<i64>, E> {
-        Ok(None)
+    fn visit_str<E: Error>(self, label: &str) -> Result<Option<Label>, E> {
+        Ok(Some(label.into()))
     }
 
-    fn visit_unit<E: Error>(self) -> Result<Option<i64>, E> {
+    fn visit_unit<E: Error>(self) -> Result<Option<Label>, E> {
         Ok(None)
     }
 }

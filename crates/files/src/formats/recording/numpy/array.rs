@@ -313,7 +313,7 @@ pub(super) fn frames(
             .and_then(|number| time(times, number));
         if let Some(record) = &layout.record {
             let (time, label) = moment(record, &bytes, &mut start);
-            (frame.time, frame.label) = (time, label);
+            (frame.time, frame.label) = (time, label.map(Into::into));
         }
         give(&frame, sink)?;
         frame.number += 1;

@@ -236,7 +236,7 @@ impl FrameFields {
         if found != self.count {
             return Err(text::wrong_count(number, found, self.count));
         }
-        frame.label = label;
+        frame.label = label.map(Into::into);
         Ok(time)
     }
 }

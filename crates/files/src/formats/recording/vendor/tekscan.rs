@@ -169,7 +169,7 @@ fn frames(
         let title = title(lines.line(), lines.number())?;
         frame.reset(size);
         frame.number = number;
-        frame.label = Some(title.label);
+        frame.label = Some(title.label.into());
         let by_label = of_label(title.label, &mut first, info.seconds_per_frame);
         // If earlier titles have no time, the first one that has counts from the first frame by its label.
         let stated = title.time.map(|time| {
@@ -214,7 +214,7 @@ fn odd_sum(frame: &Frame, stated: f64) -> Option<RecordingNote> {
     let found: f64 = values.sum();
     ((found - stated).abs() > ROUNDING).then_some(RecordingNote::Checksum {
         frame: frame.number,
-        label: frame.label,
+        label: frame.label.clone(),
         what: "Raw Sum",
         stated,
         found,

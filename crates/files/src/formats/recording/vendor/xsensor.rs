@@ -332,7 +332,7 @@ impl XsensorState {
             sink(RecordingEvent::Channel(info))?;
         }
         channels.number(channel, frame);
-        frame.label = self.label;
+        frame.label = self.label.map(Into::into);
         frame.time = time;
         self.sensors += 1;
         sink(RecordingEvent::Frame(frame))
