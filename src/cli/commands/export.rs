@@ -11,7 +11,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
 use taxel_core::source::Source;
 use taxel_files::formats::{Content, Drawing, Name, StoredShape};
-use taxel_files::storage::{Existing, FinishedFile, check_writable};
+use taxel_files::storage::{self, Existing, NewFile, check_writable};
 
 use crate::cli::arguments::touch::{Export, ExportFormat, Kept, Saving};
 use crate::cli::error::CliError;
@@ -99,7 +99,7 @@ impl Export {
         };
         match &self.path {
             None => Ok(Begun::Content(content)),
-            Some(path) => Ok(Begun::File(FinishedFile::new(
+            Some(path) => Ok(Begun::File(NewFile::with_content(
                 path,
                 &content,
                 self.existing,
@@ -139,7 +139,7 @@ impl Kept {
 pub(crate) enum Begun {
     /// The bytes for standard output.
     Content(Vec<u8>),
-    File(FinishedFile),
+    File(NewFile),
 }
 
 impl Begun {
@@ -179,7 +179,7 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
 }
 
 pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
-    Ok(FinishedFile::new(path, content, existing)?.persist()?)
+    Ok(storage::write(path, content, existing)?)
 }
 
 pub(crate) fn export(

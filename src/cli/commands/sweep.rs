@@ -25,7 +25,7 @@ use taxel_files::formats::value::{counted, grouped};
 use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
-    ArchiveFileError, AtlasFile, FinishedFile, PoseFile, load_atlas, load_model, open_archive,
+    ArchiveFileError, AtlasFile, NewFile, PoseFile, load_atlas, load_model, open_archive,
     save_model,
 };
 
@@ -135,7 +135,7 @@ pub(super) fn leave(
     result: &SweepResult,
     start: Instant,
     wanted: &Wanted,
-    poses: Result<Option<FinishedFile>, ArchiveFileError>,
+    poses: Result<Option<NewFile>, ArchiveFileError>,
     charset: Charset,
     signals: &Signals,
 ) -> Result<Summary, CliError> {
@@ -150,7 +150,7 @@ pub(super) fn leave(
 fn write(
     result: &SweepResult,
     wanted: &Wanted,
-    poses: Option<FinishedFile>,
+    poses: Option<NewFile>,
     signals: &Signals,
 ) -> Result<(), CliError> {
     let atlas = match &wanted.atlas {

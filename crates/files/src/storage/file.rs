@@ -1,20 +1,26 @@
 //! Writes files so that none is ever half-written: under a temporary name `.taxel-XXXXXXXX` in the same folder, synced,
 //! renamed into place, and the folder synced.
 //!
-//! Whenever the program dies or the power fails, either the complete old file or the complete new one exists. The stages
-//! are types: content goes into an [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one
-//! removes its temporary file when it is dropped. A program that is killed leaves it.
+//! Whenever the program dies or the power fails, either the complete old file or the complete new one exists. A program
+//! that is killed leaves its temporary file; a program that writes into the folder a day later removes it.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File, FileType, Metadata};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::Duration;
 
+use taxel_core::lock::locked;
 use tempfile::{Builder, TempPath};
 
 use crate::storage::error::FileError;
 
 /// The beginning of the name of a temporary file.
 pub(crate) const PREFIX: &str = ".taxel-";
+
+/// The age from which a temporary file belongs to a program that has died.
+const ABANDONED: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// The handling of an existing file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -25,32 +31,53 @@ pub enum Existing {
     Kept,
 }
 
-/// A file under a temporary name, still being written.
+/// Writes a file, with the mode of the one that it replaces.
+///
+/// # Errors
+/// Those of [`NewFile`]; then the old file is as it was.
+pub fn write(path: &Path, content: &[u8], existing: Existing) -> Result<(), FileError> {
+    NewFile::with_content(path, content, existing)?.persist()?;
+    Ok(())
+}
+
+/// Checks whether a file can be begun at a path, so that an error comes before the work rather than after it. Leaves
+/// nothing behind.
+///
+/// # Errors
+/// Those of [`NewFile::begin`].
+pub fn check_writable(path: &Path, existing: Existing) -> Result<(), FileError> {
+    NewFile::begin(path, existing).map(drop)
+}
+
+/// A file under a temporary name, still being written. Dropped instead of persisted, it leaves nothing.
 #[derive(Debug)]
-#[must_use = "only `finish` and `persist` make a file of it"]
-pub struct UnfinishedFile {
+#[must_use = "only `persist` gives the file its name"]
+pub struct NewFile {
     path: PathBuf,
     existing: Existing,
-    pub(super) output: BufWriter<File>,
+    /// What is written here is the content.
+    pub output: BufWriter<File>,
     temporary: TempPath,
 }
 
-impl UnfinishedFile {
+impl NewFile {
     /// Begins the file at `path`. It will have the mode of the file that it replaces.
     ///
     /// # Errors
     /// [`ErrorKind::AlreadyExists`] if a file exists and must be kept, [`ErrorKind::Other`] if it is not a regular
     /// file, or the system's error.
-    pub fn new(path: &Path, existing: Existing) -> Result<Self, FileError> {
-        let refuse = |error| FileError::new("write into its folder", path, error);
+    pub fn begin(path: &Path, existing: Existing) -> Result<Self, FileError> {
+        let folder = folder_of(path);
         // Reported before the work, not after it.
         let old = replaced(path, existing)?;
+        remove_abandoned(folder);
         let options = options(old.is_some());
         let mut builder = Builder::new();
         builder.prefix(PREFIX).rand_bytes(8);
         // Not with the builder's own method: its error names the temporary file.
-        let made = builder.make_in(folder_of(path), |path| options.open(path));
-        let (file, temporary) = made.map_err(refuse)?.into_parts();
+        let made = builder.make_in(folder, |path| options.open(path));
+        let made = made.map_err(|error| FileError::new("write into its folder", path, error))?;
+        let (file, temporary) = made.into_parts();
         if let Some(old) = old {
             keep_mode(&file, &old);
         }
@@ -62,100 +89,82 @@ impl UnfinishedFile {
         })
     }
 
+    /// Writes and syncs a whole file that does not have its name yet.
+    ///
+    /// # Errors
+    /// Those of [`Self::begin`] and [`Self::finish`].
+    pub fn with_content(
+        path: &Path,
+        content: &[u8],
+        existing: Existing,
+    ) -> Result<Self, FileError> {
+        let mut file = Self::begin(path, existing)?;
+        let written = file.output.write_all(content);
+        written.map_err(|error| FileError::new("write it", path, error))?;
+        file.finish()?;
+        Ok(file)
+    }
+
     /// The path that the file will have.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Another handle of the open file, for changes after the file has its name.
+    /// Writes out and syncs the content, so that naming the file hardly ever fails.
     ///
     /// # Errors
     /// The system's error.
-    pub fn handle(&self) -> Result<File, FileError> {
-        let handle = self.output.get_ref().try_clone();
-        handle.map_err(|error| FileError::new("open", &self.path, error))
-    }
-
-    /// Writes a part of the content.
-    ///
-    /// # Errors
-    /// The system's error.
-    pub fn write(&mut self, content: &[u8]) -> Result<(), FileError> {
-        let written = self.output.write_all(content);
-        written.map_err(|error| FileError::new("write it", &self.path, error))
-    }
-
-    /// Writes out and syncs the content.
-    ///
-    /// # Errors
-    /// The system's error.
-    pub fn finish(self) -> Result<FinishedFile, FileError> {
+    pub fn finish(&mut self) -> Result<(), FileError> {
         let refuse = |doing| {
             let path = &self.path;
             move |error| FileError::new(doing, path, error)
         };
-        let file = self.output.into_inner();
-        let file = file.map_err(|error| refuse("write it")(error.into_error()))?;
-        file.sync_all().map_err(refuse("sync it"))?;
-        Ok(FinishedFile {
-            path: self.path,
-            existing: self.existing,
-            temporary: self.temporary,
-        })
-    }
-}
-
-/// A file that is on disk and lacks only its name.
-#[derive(Debug)]
-#[must_use = "only `persist` gives the file its name"]
-pub struct FinishedFile {
-    path: PathBuf,
-    existing: Existing,
-    temporary: TempPath,
-}
-
-impl FinishedFile {
-    /// The path that the file will have.
-    pub fn path(&self) -> &Path {
-        &self.path
+        self.output.flush().map_err(refuse("write it"))?;
+        self.output.get_ref().sync_all().map_err(refuse("sync it"))
     }
 
-    /// Writes the content of a file, which does not have its name yet.
-    ///
-    /// # Errors
-    /// Those of [`UnfinishedFile::new`] and [`UnfinishedFile::finish`].
-    pub fn new(path: &Path, content: &[u8], existing: Existing) -> Result<Self, FileError> {
-        let mut file = UnfinishedFile::new(path, existing)?;
-        file.write(content)?;
-        file.finish()
-    }
-
-    /// Gives the file its name and syncs the folder.
+    /// Finishes the file, gives it its name and syncs the folder. Returns the open file.
     ///
     /// # Errors
     /// [`ErrorKind::AlreadyExists`] if a file that must be kept has appeared meanwhile, or the system's error. The old
     /// file is unchanged, unless only syncing the folder failed.
-    pub fn persist(self) -> Result<(), FileError> {
-        let named = match self.existing {
-            Existing::Replaced => self.temporary.persist(&self.path),
-            Existing::Kept => self.temporary.persist_noclobber(&self.path),
+    pub fn persist(mut self) -> Result<File, FileError> {
+        self.finish()?;
+        let Self {
+            path,
+            existing,
+            output,
+            temporary,
+        } = self;
+        let named = match existing {
+            Existing::Replaced => temporary.persist(&path),
+            Existing::Kept => temporary.persist_noclobber(&path),
         };
-        named.map_err(|failed| FileError::new("move it into place", &self.path, failed.error))?;
-        sync_folder(folder_of(&self.path))
+        named.map_err(|failed| FileError::new("move it into place", &path, failed.error))?;
+        sync_folder(folder_of(&path))?;
+        let file = output.into_inner();
+        file.map_err(|error| FileError::new("write it", &path, error.into_error()))
     }
 }
 
-/// Checks whether a file can be begun at a path, so that an error comes before the work rather than after it. Leaves
-/// nothing behind.
-///
-/// # Errors
-/// Those of [`UnfinishedFile::new`].
-pub fn check_writable(path: &Path, existing: Existing) -> Result<(), FileError> {
-    UnfinishedFile::new(path, existing).map(drop)
-}
-
-pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), FileError> {
-    FinishedFile::new(path, content, Existing::Replaced)?.persist()
+/// Removes temporary files that programs which were killed have left in a folder more than a day ago. Looks once in
+/// each folder: thousands of files may be written there.
+fn remove_abandoned(folder: &Path) {
+    static SEEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    if !locked(&SEEN).insert(folder.to_owned()) {
+        return;
+    }
+    for file in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_temporary = file
+            .file_name()
+            .as_encoded_bytes()
+            .starts_with(PREFIX.as_bytes());
+        let age = || file.metadata().ok()?.modified().ok()?.elapsed().ok();
+        if is_temporary && age().is_some_and(|age| age > ABANDONED) {
+            // What cannot be removed does no harm.
+            let _ = fs::remove_file(file.path());
+        }
+    }
 }
 
 /// The options to create a temporary file; a private one cannot be opened by others until it has its mode.
@@ -252,36 +261,43 @@ pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
 /// The identity of a file, which it keeps when it is renamed: whether a name still belongs to it. It stays unique as
 /// long as the file is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FileId {
-    #[cfg(unix)]
-    device: u64,
-    #[cfg(unix)]
-    number: u64,
-}
+pub struct FileId(u64, u64);
 
-#[cfg(unix)]
 impl FileId {
     /// The identity of the file that this metadata describes.
+    #[cfg(unix)]
     pub fn in_metadata(found: &Metadata) -> Self {
         use std::os::unix::fs::MetadataExt;
-        Self {
-            device: found.dev(),
-            number: found.ino(),
-        }
+        Self(found.dev(), found.ino())
+    }
+
+    /// The same for every file: an open file keeps its name on these systems.
+    #[cfg(not(unix))]
+    pub fn in_metadata(_: &Metadata) -> Self {
+        Self(0, 0)
     }
 
     /// The identity of an open file.
+    ///
+    /// # Errors
+    /// The system's error.
     pub fn of(file: &File) -> io::Result<Self> {
         file.metadata().map(|found| Self::in_metadata(&found))
     }
 
     /// The identity of the file that a stream, such as standard input, reads or writes.
+    ///
+    /// # Errors
+    /// The system's error.
+    #[cfg(unix)]
     pub fn of_stream(stream: impl std::os::fd::AsFd) -> io::Result<Self> {
-        let stream = stream.as_fd().try_clone_to_owned()?;
-        Self::of(&File::from(stream))
+        Self::of(&File::from(stream.as_fd().try_clone_to_owned()?))
     }
 
     /// The identity of the file at a path; of a link, that of the file that it leads to.
+    ///
+    /// # Errors
+    /// The system's error.
     pub fn behind(path: &Path) -> io::Result<Self> {
         path.metadata().map(|found| Self::in_metadata(&found))
     }
@@ -290,18 +306,6 @@ impl FileId {
     pub fn is_at(self, path: &Path) -> bool {
         let found = path.symlink_metadata();
         found.is_ok_and(|found| Self::in_metadata(&found) == self)
-    }
-}
-
-#[cfg(not(unix))]
-impl FileId {
-    /// The same for every file: on these systems an open file cannot be removed.
-    pub fn of(_: &File) -> io::Result<Self> {
-        Ok(Self {})
-    }
-
-    pub fn is_at(self, _: &Path) -> bool {
-        true
     }
 }
 
@@ -333,11 +337,9 @@ mod tests {
     fn a_file_is_kept_or_replaced_with_its_mode() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("file");
-        let write = |content: &str, existing| {
-            FinishedFile::new(&path, content.as_bytes(), existing).and_then(FinishedFile::persist)
-        };
+        let write = |content: &str, existing| write(&path, content.as_bytes(), existing);
         // One that came meanwhile is kept, too.
-        let late = FinishedFile::new(&path, b"late", Existing::Kept).expect("written");
+        let late = NewFile::with_content(&path, b"late", Existing::Kept).expect("written");
         write("one", Existing::Kept).expect("a new name");
         assert!(write("two", Existing::Kept).expect_err("there").exists());
         assert!(late.persist().expect_err("there").exists());
@@ -354,5 +356,23 @@ mod tests {
         }
         assert!(check_writable(folder.path(), Existing::Replaced).is_err());
         assert_eq!(files(folder.path()), 1, "nothing else is left");
+    }
+
+    #[test]
+    fn the_next_writer_removes_what_a_killed_one_left_a_day_ago() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (old, new) = (
+            folder.path().join(".taxel-old"),
+            folder.path().join(".taxel-new"),
+        );
+        for path in [&old, &new] {
+            fs::write(path, "half").expect("written");
+        }
+        let file = File::options().write(true).open(&old).expect("there");
+        let before = std::time::SystemTime::now() - ABANDONED - Duration::from_secs(1);
+        file.set_modified(before).expect("set");
+        write(&folder.path().join("a"), b"whole", Existing::Kept).expect("written");
+        assert!(!old.exists() && new.exists());
+        assert_eq!(files(folder.path()), 2);
     }
 }

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use crate::formats::shape::StoredShape;
 use crate::storage::error::{FileError, LibraryError};
-use crate::storage::file;
+use crate::storage::file::{self, Existing};
 use crate::storage::folder;
 use crate::storage::library::Library;
 
@@ -52,7 +52,8 @@ impl Journal {
             Some(open) => open,
             None => self.begin()?,
         });
-        Ok(file::write(path, shape.write().as_bytes())?)
+        let content = shape.write();
+        Ok(file::write(path, content.as_bytes(), Existing::Replaced)?)
     }
 
     /// Whether the shape that was kept last is still there: someone may have removed it, or the whole folder.

@@ -15,7 +15,7 @@ use crate::formats::file::is_missing;
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
 use crate::storage::error::{FileError, LibraryError};
-use crate::storage::file::{self, PREFIX, sync_folder};
+use crate::storage::file::{self, Existing, PREFIX, sync_folder};
 use crate::storage::folder::{self, stamp};
 use crate::storage::{journal, shipped};
 
@@ -234,7 +234,7 @@ impl Library {
         let name = own.map_or_else(|| Ok(name.clone()), |own| Name::new(&own))?;
         let path = self.path(name.as_str());
         let content = shape.clone().renamed(name).write();
-        file::write(&path, content.as_bytes())?;
+        file::write(&path, content.as_bytes(), Existing::Replaced)?;
         Ok(stamp(content.as_bytes()))
     }
 
@@ -311,7 +311,8 @@ impl Library {
         let name = numbered.find(free);
         let name = name.unwrap_or_else(|| shape.name.clone());
         let thrown = shape.clone().renamed(name.clone());
-        file::write(&trash.next_path(name.as_str()), thrown.write().as_bytes())?;
+        let path = trash.next_path(name.as_str());
+        file::write(&path, thrown.write().as_bytes(), Existing::Kept)?;
         trash.forget_oldest();
         Ok(name.to_string())
     }
@@ -549,7 +550,7 @@ impl RememberedFile {
         let kept = &lines[lines.len().saturating_sub(self.most)..];
         let text: String = kept.iter().map(|line| format!("{line}\n")).collect();
         // On a full disk, it is not worth a message.
-        let _ = file::write(&self.path, text.as_bytes());
+        let _ = file::write(&self.path, text.as_bytes(), Existing::Replaced);
     }
 }
 

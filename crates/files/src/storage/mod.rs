@@ -30,8 +30,7 @@ pub mod shipped;
 mod sweep_file;
 
 pub use error::{ArchiveFileError, FileError, LibraryError};
-pub use file::{Existing, FinishedFile, UnfinishedFile, check_writable};
-pub use file::{FileId, folder_of};
+pub use file::{Existing, FileId, NewFile, check_writable, folder_of, write};
 pub use journal::{Journal, Orphan, UNNAMED};
 pub use library::RememberedFile;
 pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin, TRASH_KEPT};

@@ -26,7 +26,7 @@ use crate::formats::file::without_mark;
 use crate::formats::name::folded;
 use crate::formats::{ArchiveError, Name, StoredShape, model_header, read_model, write_model};
 use crate::storage::error::{ArchiveFileError, LibraryError};
-use crate::storage::file::{self, Existing, UnfinishedFile, sync_folder};
+use crate::storage::file::{self, Existing, NewFile, sync_folder};
 use crate::storage::sweep_file::{FirstErrorWriter, open_archive};
 use crate::storage::{folder, shipped};
 
@@ -109,12 +109,13 @@ pub fn save_model(
     existing: Existing,
     stopped: &AtomicBool,
 ) -> Result<(), ArchiveFileError> {
-    let mut file = UnfinishedFile::new(path, existing)?;
+    let mut file = NewFile::begin(path, existing)?;
     let mut output = FirstErrorWriter::new(&mut file.output, stopped);
     let written = write_model(model, &mut output);
     let written = output.finish(written);
     written.map_err(|error| ArchiveFileError::new(path, error))?;
-    Ok(file.finish()?.persist()?)
+    file.persist()?;
+    Ok(())
 }
 
 /// The folder of the user's models.
@@ -257,7 +258,7 @@ impl ModelCache {
     fn keep(&self, path: &Path, model: &Model) {
         let bytes = file_content(model);
         if bytes.len() <= MAX_CACHED && folder::make(&self.0).is_ok() {
-            let _ = file::write(path, &bytes);
+            let _ = file::write(path, &bytes, Existing::Replaced);
         }
     }
 }

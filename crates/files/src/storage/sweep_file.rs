@@ -17,8 +17,8 @@ use crate::formats::ArchiveError;
 use crate::formats::atlas::{self, write_csv, write_jsonl};
 use crate::formats::file::has_ending;
 use crate::formats::npy::{self, Dtype};
-use crate::storage::error::ArchiveFileError;
-use crate::storage::file::{Existing, FinishedFile, UnfinishedFile, check_writable};
+use crate::storage::error::{ArchiveFileError, FileError};
+use crate::storage::file::{Existing, NewFile, check_writable};
 
 /// The file for an atlas: its path and its format.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -80,7 +80,8 @@ impl AtlasFile {
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<(), ArchiveFileError> {
-        Ok(self.prepare(result, existing, stopped)?.persist()?)
+        self.prepare(result, existing, stopped)?.persist()?;
+        Ok(())
     }
 
     /// Writes the atlas without giving the file its name yet, so that several files can appear together.
@@ -92,8 +93,8 @@ impl AtlasFile {
         result: &SweepResult,
         existing: Existing,
         stopped: &AtomicBool,
-    ) -> Result<FinishedFile, ArchiveFileError> {
-        let mut file = UnfinishedFile::new(&self.path, existing)?;
+    ) -> Result<NewFile, ArchiveFileError> {
+        let mut file = NewFile::begin(&self.path, existing)?;
         let mut output = FirstErrorWriter::new(&mut file.output, stopped);
         let written = match self.format {
             AtlasFormat::Csv => write_csv(result, &mut output).map_err(ArchiveError::from),
@@ -102,7 +103,8 @@ impl AtlasFile {
         };
         let written = output.finish(written);
         written.map_err(|error| ArchiveFileError::new(&self.path, error))?;
-        Ok(file.finish()?)
+        file.finish()?;
+        Ok(file)
     }
 }
 
@@ -161,7 +163,7 @@ pub fn is_poses(name: impl AsRef<Path>) -> bool {
 /// ```
 #[derive(Debug)]
 pub struct PoseFile {
-    file: UnfinishedFile,
+    file: NewFile,
     start: u64,
     rows: u64,
     row_length: u64,
@@ -180,14 +182,15 @@ impl PoseFile {
         grid: &PoseGrid,
         existing: Existing,
     ) -> Result<Self, ArchiveFileError> {
-        let mut file = UnfinishedFile::new(&path.into(), existing)?;
+        let mut file = NewFile::begin(&path.into(), existing)?;
         let mut shape = grid.counts().into_array();
         shape.reverse();
         let header = match shape {
             [1, 1, angles, rows, columns] => npy::header(Dtype::U32, &[angles, rows, columns]),
             _ => npy::header(Dtype::U32, &shape),
         };
-        file.write(&header)?;
+        let begun = file.output.write_all(&header);
+        begun.map_err(|error| FileError::new("write it", file.path(), error))?;
         Ok(Self {
             file,
             start: header.len() as u64,
@@ -235,11 +238,14 @@ impl PoseFile {
     ///
     /// # Errors
     /// The first error, with the file's name.
-    pub fn finish(self) -> Result<Option<FinishedFile>, ArchiveFileError> {
+    pub fn finish(mut self) -> Result<Option<NewFile>, ArchiveFileError> {
         match self.error {
             Some(error) => Err(ArchiveFileError::new(self.file.path(), error)),
             None if self.missing > 0 => Ok(None),
-            None => Ok(Some(self.file.finish()?)),
+            None => {
+                self.file.finish()?;
+                Ok(Some(self.file))
+            }
         }
     }
 }
@@ -332,7 +338,7 @@ mod tests {
         Sweep::new(&grid.expect("in range")).run()
     }
 
-    fn whole(path: &Path, grid: &PoseGrid, existing: Existing) -> FinishedFile {
+    fn whole(path: &Path, grid: &PoseGrid, existing: Existing) -> NewFile {
         let mut file = PoseFile::new(path, grid, existing).expect("begun");
         let ids = vec![7; index(grid.row_length())];
         let taken = (0..grid.rows()).try_for_each(|row| file.take(row, &ids));

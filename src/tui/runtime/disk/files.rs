@@ -11,7 +11,7 @@ use taxel_files::acquire::FrameSource;
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, imprint_file, read_content};
-use taxel_files::storage::{Existing, FinishedFile, ModelChoice, location};
+use taxel_files::storage::{self, Existing, ModelChoice, location};
 
 use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::live::message::WatchRequest;
@@ -113,8 +113,7 @@ fn refuse_imprint(source: &FrameSource, request: &WatchRequest) -> Result<(), St
 }
 
 fn write(path: &Path, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
-    let written = FinishedFile::new(path, &content, existing).and_then(FinishedFile::persist);
-    match written {
+    match storage::write(path, &content, existing) {
         Ok(()) => FileEvent::Written(absolute(path)),
         Err(error) if error.exists() && existing == Existing::Kept => {
             FileEvent::Exists(name, content)

@@ -12,7 +12,7 @@ use crate::acquire::recorder::RecorderError;
 use crate::acquire::recorder::record_array::{HEADER, is_own};
 use crate::formats::file::{has_ending, system_reason};
 use crate::formats::recording::{MetadataError, RecordedView, RecordingMetadata};
-use crate::storage::{Existing, FileId, FinishedFile};
+use crate::storage::{self, Existing, FileId};
 
 const LARGEST_METADATA: u64 = 1 << 22;
 
@@ -49,8 +49,8 @@ impl MetadataDraft {
             return Err(RecorderError::Replaced { path });
         }
         let beside = path.with_extension("json");
-        let file = FinishedFile::new(&beside, &metadata.text(), Existing::Replaced)?;
-        Ok(file.persist()?)
+        let text = metadata.text();
+        Ok(storage::write(&beside, &text, Existing::Replaced)?)
     }
 }
 

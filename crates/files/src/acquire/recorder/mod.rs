@@ -20,7 +20,7 @@ use taxel_core::frame::{Frame, FrameSize};
 
 use crate::formats::file::write_reason;
 use crate::formats::recording::{RecordedView, RecordingMetadata};
-use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile, check_writable};
+use crate::storage::{Existing, FileError, NewFile, check_writable};
 use metadata::{MetadataDraft, MetadataNotes, is_array, read_beside};
 use record_array::{RecordArray, header};
 
@@ -178,17 +178,15 @@ impl FrameRecorder {
     }
 
     fn begin(&self, size: FrameSize) -> Result<RecordArray, RecorderError> {
-        let mut array = UnfinishedFile::new(&self.path, self.existing)?;
-        array.write(&header(size, 0))?;
-        let file = array.handle()?;
-        let array = array.finish()?;
+        let array = NewFile::with_content(&self.path, &header(size, 0), self.existing)?;
         let beside = self.path.with_extension("json");
-        let metadata = FinishedFile::new(&beside, &self.notes.metadata().text(), self.existing)?;
+        let text = self.notes.metadata().text();
+        let metadata = NewFile::with_content(&beside, &text, self.existing)?;
         if self.existing == Existing::Replaced {
             // It belongs to the old array. What cannot be removed is replaced.
             let _ = fs::remove_file(&beside);
         }
-        array.persist()?;
+        let file = array.persist()?;
         if let Err(error) = metadata.persist() {
             // Another program has taken the name: the array would be beside its file.
             if self.existing == Existing::Kept {
