@@ -17,10 +17,11 @@ use taxel_core::sweep::MergeError;
 use taxel_files::acquire::RecorderError;
 use taxel_files::formats::Name;
 use taxel_files::formats::file::{system_reason, write_reason};
-use taxel_files::formats::recording::{RecordingError, RecordingNote};
+use taxel_files::formats::recording::RecordingNote;
 use taxel_files::formats::stream::StreamRefusal;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::{ArchiveFileError, FileError, LibraryError};
+use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
@@ -132,7 +133,7 @@ pub(crate) enum CliError {
     #[error("{}", with_flag(.0))]
     Grid(#[from] GridError),
     #[error("{name}: {}{}", shortened_message(&.error.to_string()), size_advice(.error))]
-    Recording { name: String, error: RecordingError },
+    Recording { name: String, error: ReadError },
     #[error("{error}{help}", error = .0, help = advice(.0))]
     Recorder(RecorderError),
     #[error("{name}: {}", shortened_message(.message))]
@@ -202,8 +203,8 @@ fn place_advice(error: &LibraryError) -> &'static str {
 
 /// Returns the end of a message that says what to do if a recording does not state the size of its frames; empty for
 /// other errors.
-fn size_advice(error: &RecordingError) -> &'static str {
-    if error.is_of_size() {
+fn size_advice(error: &ReadError) -> &'static str {
+    if error.kind == ReadErrorKind::Unsized {
         "; give --rows and --columns"
     } else {
         ""

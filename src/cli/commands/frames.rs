@@ -30,7 +30,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::short;
 use taxel_core::sensor::Sensor;
-use taxel_files::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, RecordingError};
+use taxel_files::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, unshaped};
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{Name, StoredShape, json};
 
@@ -239,7 +239,7 @@ impl Selection {
     ) -> Result<(Self, Processing), CliError> {
         if listed.info.size.is_none() {
             let given = asked.processing.size;
-            return Err(recording.damaged(RecordingError::unshaped(listed.values, given)));
+            return Err(recording.damaged(unshaped(listed.values, given)));
         }
         let rule = recording::rule(recording, &asked.processing, &listed.info)?;
         processing.rule = Some(rule.rule);

@@ -10,10 +10,9 @@ use serde::Serialize;
 use taxel_core::frame::{FlipCounter, FlipReport, FrameError, FrameSize, Processing, View};
 use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
+use taxel_files::ReadError;
 use taxel_files::formats::json;
-use taxel_files::formats::recording::{
-    RecordingError, RecordingEvent, RecordingFormat, RecordingNote, no_channel,
-};
+use taxel_files::formats::recording::{Format, RecordingEvent, RecordingNote, no_channel};
 use taxel_files::formats::value::{counted, grouped};
 
 use crate::cli::error::{CliError, note_advice};
@@ -25,11 +24,11 @@ const MOST_WARNINGS: usize = 20;
 #[derive(Debug, Default)]
 pub(crate) struct Scan {
     /// The format; None if a damage comes before the format is certain.
-    pub(super) format: Option<RecordingFormat>,
+    pub(super) format: Option<&'static Format>,
     pub(super) channels: Vec<ListedChannel>,
     notes: Vec<RecordingNote>,
     more_notes: u64,
-    pub(super) error: Option<RecordingError>,
+    pub(super) error: Option<ReadError>,
     pub(super) misfit: Option<FrameError>,
 }
 
@@ -63,7 +62,9 @@ impl Scan {
                         scan.more_notes += 1;
                     }
                 }
-                RecordingEvent::Damage { .. } => {}
+                RecordingEvent::Damage { .. }
+                | RecordingEvent::Provisional(_)
+                | RecordingEvent::Withdrawn => {}
             }
             ControlFlow::Continue(())
         });

@@ -16,10 +16,10 @@ use taxel_core::sensor::MatrixSize;
 use taxel_files::acquire::metadata_beside;
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::recording::{
-    ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata,
-    format_of, read, read_rows,
+    ChannelInfo, Format, ReadOptions, RecordingEvent, RecordingMetadata, format_of, read, read_rows,
 };
 use taxel_files::storage::FileId;
+use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::arguments::frames::ProcessingArguments;
 use crate::cli::error::{CliError, frame_advice};
@@ -122,9 +122,9 @@ impl RecordingFile {
     pub(crate) fn read(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()>,
-    ) -> Result<RecordingFormat, RecordingError> {
+    ) -> Result<&'static Format, ReadError> {
         let metadata = self.metadata.as_ref();
-        read(&mut self.file, self.options, &mut |event| match event {
+        read(&mut self.file, &self.options, &mut |event| match event {
             RecordingEvent::Channel(info) => {
                 sink(RecordingEvent::Channel(&info.completed(metadata)))
             }
@@ -135,7 +135,7 @@ impl RecordingFile {
     pub(crate) fn read_table(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()>,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<(), ReadError> {
         self.file.seek(SeekFrom::Start(0))?;
         let mut bytes = Vec::new();
         Read::by_ref(&mut self.file)
@@ -185,12 +185,12 @@ impl RecordingFile {
         (names, read.is_ok())
     }
 
-    pub(crate) fn format(&mut self) -> Option<RecordingFormat> {
+    pub(crate) fn format(&mut self) -> Option<&'static Format> {
         self.file.seek(SeekFrom::Start(0)).ok()?;
-        format_of(&mut self.file, self.options).ok()
+        format_of(&mut self.file, &self.options).ok()
     }
 
-    pub(crate) fn damaged(&self, error: RecordingError) -> CliError {
+    pub(crate) fn damaged(&self, error: ReadError) -> CliError {
         CliError::Recording {
             name: self.name.clone(),
             error,
@@ -372,16 +372,23 @@ fn gain(path: &Path) -> Result<Matrix<f64>, CliError> {
     let read = match file.read(&mut take) {
         // Either each line was read as a frame; or the file did not look like a table, because a single column has no
         // separators. In both cases it is one table of factors.
-        Err(error) if error.is_of_size() || matches!(error, RecordingError::Unknown) => {
+        Err(error)
+            if matches!(
+                error.kind,
+                ReadErrorKind::Unsized | ReadErrorKind::UnknownFormat
+            ) =>
+        {
             match file.read_table(&mut take) {
-                Err(RecordingError::Unknown) => Err(error),
+                Err(table) if table.kind == ReadErrorKind::UnknownFormat => Err(error),
                 read => read,
             }
         }
         read => read.map(drop),
     };
     read.map_err(|error| match error {
-        error if error.is_of_size() => file.refused(&"expected a table: a line for each row"),
+        error if error.kind == ReadErrorKind::Unsized => {
+            file.refused(&"expected a table: a line for each row")
+        }
         error => file.damaged(error),
     })?;
     if is_recording {

@@ -7,7 +7,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use taxel_core::frame::{Frame, FrameSize, Label, Peak, View};
 use taxel_core::parameter::number::short;
 use taxel_files::formats::json;
-use taxel_files::formats::recording::{ChannelInfo, RecordingFormat};
+use taxel_files::formats::recording::{ChannelInfo, Format};
 use taxel_files::formats::value::{counted, decimal};
 
 use crate::cli::output::charset::Charset;
@@ -126,27 +126,27 @@ impl Serialize for ListedChannel {
 }
 
 /// The recording as a JSON object; `format` is null if a damage comes before the format is certain.
-struct ListedRecording<'a>(Option<RecordingFormat>, &'a [ListedChannel]);
+struct ListedRecording<'a>(Option<&'static Format>, &'a [ListedChannel]);
 
 impl Serialize for ListedRecording<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(2))?;
-        map.serialize_entry("format", &self.0.map(RecordingFormat::name))?;
+        map.serialize_entry("format", &self.0.map(|format| format.name))?;
         map.serialize_entry("channels", self.1)?;
         map.end()
     }
 }
 
-pub(crate) fn json(format: Option<RecordingFormat>, channels: &[ListedChannel]) -> String {
+pub(crate) fn json(format: Option<&'static Format>, channels: &[ListedChannel]) -> String {
     json::ascii(&ListedRecording(format, channels)) + "\n"
 }
 
 pub(crate) fn text(
-    format: Option<RecordingFormat>,
+    format: Option<&'static Format>,
     channels: &[ListedChannel],
     charset: Charset,
 ) -> String {
-    let format = format.map_or("damaged", RecordingFormat::name);
+    let format = format.map_or("damaged", |format| format.name);
     let count = counted(channels.len() as u64, "channel");
     let mut lines = vec![format!("{format}, {count}")];
     for channel in channels {

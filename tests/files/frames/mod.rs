@@ -19,8 +19,9 @@ use std::io::Cursor;
 use std::ops::ControlFlow;
 
 use taxel_core::frame::{Frame, FrameSize};
+use taxel_files::ReadError;
 use taxel_files::formats::recording::{
-    ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingNote, read,
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, read,
 };
 
 /// Everything that was read from a recording.
@@ -30,7 +31,7 @@ pub(crate) struct Recorded {
     pub(crate) channels: Vec<ChannelInfo>,
     pub(crate) frames: Vec<Frame>,
     pub(crate) notes: Vec<RecordingNote>,
-    pub(crate) error: Option<RecordingError>,
+    pub(crate) error: Option<ReadError>,
 }
 
 /// Returns the size of a frame, with rows first, as recordings state it.
@@ -50,17 +51,17 @@ pub(crate) fn recorded(bytes: &[u8], shape: Option<(u16, u16)>) -> Recorded {
         options = options.with_size(frame_size(rows, columns));
     }
     let mut found = Recorded::default();
-    let read = read(Cursor::new(bytes), options, &mut |event| {
+    let read = read(Cursor::new(bytes), &options, &mut |event| {
         match event {
             RecordingEvent::Channel(info) => found.channels.push(info.clone()),
             RecordingEvent::Frame(frame) => found.frames.push(frame.clone()),
             RecordingEvent::Note(note) => found.notes.push(note.clone()),
-            RecordingEvent::Damage { .. } => {}
+            _ => {}
         }
         ControlFlow::Continue(())
     });
     match read {
-        Ok(format) => found.format = Some(format.name()),
+        Ok(format) => found.format = Some(format.name),
         Err(error) => found.error = Some(error),
     }
     found
@@ -72,7 +73,7 @@ fn a_caller_decides_whether_a_wrong_frame_is_left_out() {
         "{\"frame\":[[1,2]]}\n{\"frame\":[[3\n{\"frame\":[[5,6]]}\n",
         "r0c0,r0c1\n1,2\n3,x\n5,6\n",
     ] {
-        let read_with = |options: ReadOptions, flow: ControlFlow<()>| {
+        let read_with = |options: &ReadOptions, flow: ControlFlow<()>| {
             let (mut firsts, mut damage) = (Vec::new(), Vec::new());
             let read = read(Cursor::new(text), options, &mut |event| match event {
                 RecordingEvent::Frame(frame) => {
@@ -88,17 +89,17 @@ fn a_caller_decides_whether_a_wrong_frame_is_left_out() {
             (firsts, damage, read.err().map(|error| error.to_string()))
         };
         let (go_on, stop) = (ControlFlow::Continue(()), ControlFlow::Break(()));
-        let (firsts, damage, error) = read_with(ReadOptions::default(), go_on);
+        let (firsts, damage, error) = read_with(&ReadOptions::default(), go_on);
         assert_eq!((&firsts[..], damage.len()), (&[1.0][..], 0), "{text}");
         let error = error.expect("the second frame is wrong");
         let expected = (vec![1.0, 5.0], vec![error.clone()], None);
         assert_eq!(
-            read_with(ReadOptions::default().leaving_out(), go_on),
+            read_with(&ReadOptions::default().leaving_out(), go_on),
             expected
         );
         let expected = (vec![1.0], vec![error.clone()], Some(error));
         assert_eq!(
-            read_with(ReadOptions::default().leaving_out(), stop),
+            read_with(&ReadOptions::default().leaving_out(), stop),
             expected
         );
     }
@@ -109,7 +110,7 @@ fn times_count_from_the_first_frame_even_if_a_wrong_one_before_it_is_left_out() 
     let text = "00:00:01 5 6\n\n00:00:02 1 2\n00:00:02 3 4\n\n00:00:03.5 1 2\n00:00:03.5 3 4\n";
     let options = ReadOptions::default().with_size(frame_size(2, 2));
     let mut times = Vec::new();
-    let read = read(Cursor::new(text), options.leaving_out(), &mut |event| {
+    let read = read(Cursor::new(text), &options.leaving_out(), &mut |event| {
         if let RecordingEvent::Frame(frame) = event {
             times.push(frame.time);
         }

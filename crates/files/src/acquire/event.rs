@@ -7,8 +7,9 @@ use std::time::Duration;
 use taxel_core::frame::{Frame, FrameSize};
 
 use crate::acquire::followed_file::ReadAnew;
+use crate::error::ReadError;
 use crate::formats::file::system_reason;
-use crate::formats::recording::{ChannelInfo, RecordingError, RecordingFormat, RecordingNote};
+use crate::formats::recording::{ChannelInfo, RecordingFormat, RecordingNote};
 use crate::formats::stream::{Silence, StreamCounts, StreamFormat, StreamOptions};
 use crate::formats::value::decimal;
 
@@ -184,7 +185,7 @@ pub enum AcquireError {
     },
     /// The recording is damaged.
     #[error(transparent)]
-    Recording(#[from] RecordingError),
+    Recording(#[from] ReadError),
     /// The source of a stream begins like a recording that only a file can be.
     #[error("a recording ({}), not a stream", format.name())]
     NotStream {

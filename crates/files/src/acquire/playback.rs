@@ -1,6 +1,7 @@
 //! Plays a recording back at its own rate, at another rate, or as fast as possible; or follows it while it is
 //! written.
 
+use crate::error::ReadError;
 use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::ops::ControlFlow;
@@ -16,14 +17,14 @@ use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::recorder::metadata_beside;
 use crate::acquire::source::{OpenRecording, has_no_file};
 use crate::formats::recording::{
-    ChannelChoice, ChannelInfo, EarlierLayout, ReadOptions, RecordingError, RecordingEvent,
-    RecordingFormat, RecordingInput, RecordingMetadata, RecordingNote, format_after, read_as,
+    ChannelChoice, ChannelInfo, EarlierLayout, ReadOptions, RecordingEvent, RecordingFormat,
+    RecordingInput, RecordingMetadata, RecordingNote, format_after, read_as, unshaped,
 };
 use crate::formats::stream::{Silence, StreamCounts};
 
 /// Creates the error for a followed file that was replaced by a recording of another kind.
-fn replaced_by(format: RecordingFormat) -> RecordingError {
-    RecordingError::damaged(format!(
+fn replaced_by(format: RecordingFormat) -> ReadError {
+    ReadError::new(format!(
         "replaced by a recording in the format {}, whose end cannot be followed",
         format.name()
     ))
@@ -71,7 +72,7 @@ struct Player<'a, 'b> {
     follows: Cell<bool>,
     counts: RefCell<StreamCounts>,
     silence: RefCell<SilenceWatch>,
-    damage: RefCell<Option<RecordingError>>,
+    damage: RefCell<Option<ReadError>>,
 }
 
 struct KnownChannel {
@@ -252,12 +253,7 @@ impl Player<'_, '_> {
     /// Drops and counts a wrong frame of a followed file if there were frames before it and more may come: a program
     /// that was interrupted continues after a torn line. Whether more comes may be known only later. Returns `Break` if
     /// the error ends the reading.
-    fn leave_out(
-        &self,
-        error: &RecordingError,
-        bytes: &[u8],
-        round: &Round<'_>,
-    ) -> ControlFlow<()> {
+    fn leave_out(&self, error: &ReadError, bytes: &[u8], round: &Round<'_>) -> ControlFlow<()> {
         if !round.growth.is_some_and(Growth::may_go_on) || !round.has_frames() {
             return ControlFlow::Break(());
         }
@@ -289,16 +285,17 @@ impl Player<'_, '_> {
         format: RecordingFormat,
         input: &mut dyn RecordingInput,
         round: &mut Round<'r>,
-    ) -> (Pace<'r>, Result<ControlFlow<()>, RecordingError>) {
+    ) -> (Pace<'r>, Result<ControlFlow<()>, ReadError>) {
         let reading = ReadOptions {
             size: self.options.size,
             leaves_out: round.growth.is_some(),
+            ..ReadOptions::default()
         };
         let mut pace = Pace::new(self.options, round.growth);
         let mut flow = ControlFlow::Continue(());
         let mut renumbered = Frame::default();
         let mut table = std::mem::take(&mut round.table);
-        let read = read_as(format, input, reading, &mut table, &mut |event| {
+        let read = read_as(format, input, &reading, &mut table, &mut |event| {
             flow = match event {
                 RecordingEvent::Channel(info) => {
                     let info = info.completed(self.metadata.as_ref());
@@ -325,6 +322,8 @@ impl Player<'_, '_> {
                     }
                 }
                 RecordingEvent::Note(note) => self.report(AcquireEvent::Note(note)),
+                RecordingEvent::Provisional(frame) => self.report(AcquireEvent::Provisional(frame)),
+                RecordingEvent::Withdrawn => self.report(AcquireEvent::Withdrawn),
                 // Not the flow: if this breaks, the error ends the reading.
                 RecordingEvent::Damage { error, bytes } => {
                     return self.leave_out(error, bytes, round);
@@ -334,9 +333,7 @@ impl Player<'_, '_> {
         });
         round.table = table;
         let read = match pace.unshaped() {
-            Some(values) if read.is_ok() => {
-                Err(RecordingError::unshaped(values, self.options.size))
-            }
+            Some(values) if read.is_ok() => Err(unshaped(values, self.options.size)),
             _ => read.map(|()| flow),
         };
         (pace, read)

@@ -1,5 +1,6 @@
 //! The name of a source, and its kind.
 
+use crate::error::{ReadError, ReadErrorKind};
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs::{self, File};
@@ -9,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 use crate::acquire::event::{AcquireError, AcquireOptions, Playback};
 use crate::acquire::recorder::RecorderError;
-use crate::formats::file::{system_reason, unshared};
-use crate::formats::recording::{ReadOptions, RecordingError, RecordingFormat, format_of};
+use crate::formats::file::system_reason;
+use crate::formats::recording::{ReadOptions, RecordingFormat, old_format_of};
 use crate::storage::FileId;
 
 #[derive(Debug)]
@@ -19,7 +20,7 @@ pub(super) struct OpenRecording<'a> {
     /// The file in which the format was found, at any position: another one may have its name by now.
     pub(super) file: File,
     /// The format, or the reason why the file is refused.
-    pub(super) format: Result<RecordingFormat, RecordingError>,
+    pub(super) format: Result<RecordingFormat, ReadError>,
 }
 
 /// A source of frames.
@@ -79,12 +80,17 @@ impl FrameSource {
             return Ok(None);
         };
         let file = File::open(path)?;
-        match format_of(&file, ReadOptions::default()) {
-            Err(RecordingError::Io(error)) => Err(unshared(error)),
-            format @ (Ok(_) | Err(RecordingError::Foreign { .. })) => {
-                Ok(Some(OpenRecording { path, file, format }))
-            }
-            Err(_) => Ok(None),
+        match old_format_of(&file, &ReadOptions::default()) {
+            Err(error) => match error.kind {
+                ReadErrorKind::Io(kind) => Err(kind.into()),
+                ReadErrorKind::Invalid => Ok(Some(OpenRecording {
+                    path,
+                    file,
+                    format: Err(error),
+                })),
+                ReadErrorKind::UnknownFormat | ReadErrorKind::Unsized => Ok(None),
+            },
+            format @ Ok(_) => Ok(Some(OpenRecording { path, file, format })),
         }
     }
 

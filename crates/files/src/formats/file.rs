@@ -2,7 +2,6 @@
 
 use std::io::{Error, ErrorKind};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Returns the reason of the system for refusing something, without the number of the error. Files and folders are
 /// called so, not directories.
@@ -20,11 +19,6 @@ pub fn system_reason(error: &Error) -> String {
             text.strip_suffix(&number).unwrap_or(&text).to_owned()
         }
     }
-}
-
-/// Returns an error of the system that nobody else holds; otherwise one of its kind with its reason.
-pub(crate) fn unshared(error: Arc<Error>) -> Error {
-    Arc::try_unwrap(error).unwrap_or_else(|held| Error::new(held.kind(), system_reason(&held)))
 }
 
 /// Returns true if a file does not exist, also because a file is where its folder is expected.
@@ -68,15 +62,6 @@ mod tests {
         assert_eq!(reasons(28), ["No space left on device"; 2]);
         let own = Error::other("the disk does not answer");
         assert_eq!(system_reason(&own), "the disk does not answer");
-    }
-
-    #[test]
-    fn an_error_that_is_held_elsewhere_keeps_its_kind_and_reason() {
-        let error = Arc::new(Error::from_raw_os_error(21));
-        let other = unshared(Arc::clone(&error));
-        assert_eq!(other.kind(), ErrorKind::IsADirectory);
-        assert_eq!(system_reason(&other), "it is a folder");
-        assert_eq!(unshared(error).raw_os_error(), Some(21));
     }
 
     #[test]

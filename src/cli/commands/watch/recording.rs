@@ -4,10 +4,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use taxel_core::frame::Frame;
+use taxel_files::ReadError;
 use taxel_files::acquire::{
     AcquireError, AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, RecorderError,
 };
-use taxel_files::formats::recording::{RecordingError, RecordingMetadata};
+use taxel_files::formats::recording::{RecordingMetadata, unknown_format};
 use taxel_files::formats::stream::{NoFrameReason, StreamCounts, StreamFormat, StreamRefusal};
 use taxel_files::formats::value::counted;
 
@@ -178,7 +179,7 @@ impl<'a> SourceReports<'a> {
         }
     }
 
-    fn damaged(&self, error: RecordingError) -> CliError {
+    fn damaged(&self, error: ReadError) -> CliError {
         CliError::Recording {
             name: self.source.name(),
             error,
@@ -222,7 +223,7 @@ impl<'a> SourceReports<'a> {
     /// format is an error of recordings for a file, and of streams for any other source.
     fn undecoded(&self, refusal: StreamRefusal) -> CliError {
         match (refusal, self.source) {
-            (StreamRefusal::Unknown, FrameSource::File(_)) => self.damaged(RecordingError::Unknown),
+            (StreamRefusal::Unknown, FrameSource::File(_)) => self.damaged(unknown_format()),
             _ => self.refused(&format!(
                 "{refusal}{}{}",
                 stream_advice(refusal),

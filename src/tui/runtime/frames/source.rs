@@ -6,8 +6,9 @@ use std::os::fd::AsFd;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
+use taxel_files::ReadErrorKind;
 use taxel_files::acquire::{AcquireError, FrameSource, SourceName};
-use taxel_files::formats::recording::RecordingError;
+use taxel_files::formats::recording::unknown_format;
 use taxel_files::formats::stream::{NoFrameReason, StreamCounts, StreamRefusal};
 use taxel_files::formats::value::counted;
 use taxel_files::storage::location;
@@ -88,7 +89,7 @@ const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --colum
 /// Returns the reason why a source cannot be read.
 pub(super) fn reason(source: &FrameSource, error: &AcquireError) -> String {
     let hint = match (error, source) {
-        (AcquireError::Recording(error), _) if error.is_of_size() => SIZE_HINT,
+        (AcquireError::Recording(error), _) if error.kind == ReadErrorKind::Unsized => SIZE_HINT,
         (AcquireError::NotStream { .. }, FrameSource::File(_)) => {
             "; watch it again when it is complete"
         }
@@ -116,7 +117,7 @@ pub(super) fn reason_at_end(source: &FrameSource, counts: &StreamCounts) -> Opti
     let reason = counts.no_frame_reason()?;
     let hint = match (reason, source) {
         (NoFrameReason::Refused(StreamRefusal::Unknown), FrameSource::File(_)) => {
-            return Some(RecordingError::Unknown.to_string());
+            return Some(unknown_format().to_string());
         }
         (NoFrameReason::Refused(refusal), source) => hint(source, refusal),
         (NoFrameReason::Undecoded { reason: None, .. }, _) => "; rows, columns or format?",

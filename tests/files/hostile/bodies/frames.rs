@@ -14,11 +14,15 @@ pub(crate) fn recording(bytes: &[u8]) -> bool {
     let size = FrameSize::new(5, 4).expect("1 to 512");
     let with_size = ReadOptions::default().with_size(size);
     let mut is_read = false;
-    for options in [ReadOptions::default(), with_size, with_size.leaving_out()] {
+    for options in [
+        ReadOptions::default(),
+        with_size.clone(),
+        with_size.leaving_out(),
+    ] {
         let mut processing = Processing::default();
         processing.rule = Rule::percent(50.0).ok();
         let mut channels = 0;
-        let read = read(Cursor::new(bytes), options, &mut |event| {
+        let read = read(Cursor::new(bytes), &options, &mut |event| {
             match event {
                 RecordingEvent::Channel(_) => channels += 1,
                 RecordingEvent::Frame(frame) => {
@@ -32,7 +36,7 @@ pub(crate) fn recording(bytes: &[u8]) -> bool {
                     }
                 }
                 RecordingEvent::Note(note) => is_short(&note.to_string()),
-                RecordingEvent::Damage { .. } => {}
+                _ => {}
             }
             ControlFlow::Continue(())
         });

@@ -6,10 +6,11 @@
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
+use crate::error::ReadError;
 use crate::formats::file::without_mark;
 use crate::formats::npy;
-use crate::formats::recording::error::{RecordingError, RecordingFormat, known_formats};
-use crate::formats::recording::event::{ReadOptions, RecordingSink, until_enough};
+use crate::formats::recording::error::{foreign, in_line, known_formats, unknown_format, unshaped};
+use crate::formats::recording::event::{ReadOptions, ReadState, RecordingSink, Sink, Stop};
 use crate::formats::recording::numpy::{archive, array};
 use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
 use crate::formats::recording::table::delimited;
@@ -19,6 +20,7 @@ use crate::formats::recording::text::{Separator, is_blank, is_comment, is_parted
 use crate::formats::recording::vendor::{flexitac, tekscan, xsensor};
 use crate::formats::recording::{json as json_lines, time};
 use crate::formats::stream::FLEXITAC_MARKER;
+use taxel_core::parameter::named;
 
 pub(super) const LOOKED_AT: usize = 1 << 16;
 
@@ -27,12 +29,12 @@ const CHUNK: usize = 1 << 16;
 /// Returns the format of a recording, from its first 64 KiB; None if it is not a recording. A text of numbers counts
 /// as a table, except a single column without the name of a cell, since many other files are one.
 pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
-    recognised_with(start, ReadOptions::default())
+    recognised_with(start, &ReadOptions::default())
 }
 
 /// Detects the format like [`recognised`]; if rows and columns are given, a single column of numbers counts as a
 /// table, too.
-fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat> {
+fn recognised_with(start: &[u8], options: &ReadOptions) -> Option<RecordingFormat> {
     let start = &start[..start.len().min(LOOKED_AT)];
     let text = without_mark(start);
     let trimmed = text.trim_ascii_start();
@@ -71,21 +73,17 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
 }
 
 /// Returns the error for a file that is not a recording.
-fn refused(start: &[u8]) -> RecordingError {
+fn refused(start: &[u8]) -> ReadError {
     match numbers_below_text(start) {
-        _ if is_parted_by_cr(start) => RecordingError::Foreign {
-            kind: "text whose lines end in CR alone (save it with LF or CR LF)",
-        },
-        _ if is_bitmap(start) => RecordingError::Foreign {
-            kind: "a PBM image (taxel describe reads it)",
-        },
-        _ if start.is_empty() => RecordingError::damaged("empty, expected a recording"),
-        _ if is_imprint(start) => RecordingError::Foreign {
-            kind: "an imprint as text (taxel describe reads it)",
-        },
-        _ if is_column(start) => RecordingError::Shape { values: 1 },
-        Some(_) if begins_with_time(start) => RecordingError::in_line(1, time::ABOVE_ROWS),
-        Some(line) => RecordingError::in_line(
+        _ if is_parted_by_cr(start) => {
+            foreign("text whose lines end in CR alone (save it with LF or CR LF)")
+        }
+        _ if is_bitmap(start) => foreign("a PBM image (taxel describe reads it)"),
+        _ if start.is_empty() => ReadError::new("empty, expected a recording"),
+        _ if is_imprint(start) => foreign("an imprint as text (taxel describe reads it)"),
+        _ if is_column(start) => unshaped(1, None),
+        Some(_) if begins_with_time(start) => in_line(1, time::ABOVE_ROWS),
+        Some(line) => in_line(
             1,
             format!(
                 "found text, expected a table or one of {}; numbers begin in line {line}: delete the lines above, or \
@@ -93,7 +91,7 @@ fn refused(start: &[u8]) -> RecordingError {
                 known_formats()
             ),
         ),
-        None => RecordingError::Unknown,
+        None => unknown_format(),
     }
 }
 
@@ -185,29 +183,13 @@ fn is_table(line: &[u8]) -> bool {
     is_text && has_mark && (has_digit || line.contains(&b',') || line.contains(&b';'))
 }
 
-/// Returns true if bytes that are neither an imprint nor a shape look like a recording, for the message about them.
-/// JSON must contain a frame for this: most JSON is a stored shape with a mistake.
-pub fn may_be_recording(bytes: &[u8]) -> bool {
-    // PBM files have messages of their own.
-    if matches!(bytes, [b'P', b'1' | b'4', ..]) {
-        return false;
-    }
-    match recognised(bytes) {
-        Some(RecordingFormat::JsonLines) => names_frame(bytes),
-        found => found.is_some(),
-    }
-}
-
 /// Returns the format of a recording, reading the input from its current position.
 ///
 /// # Errors
-/// Returns [`RecordingError::Foreign`] for a file of another kind, [`RecordingError::Shape`] for a column of numbers
-/// that may be a recording, [`RecordingError::Unknown`] for anything else that is not one, and the system's error if
+/// Returns [`ReadError::Foreign`] for a file of another kind, [`ReadError::Shape`] for a column of numbers
+/// that may be a recording, [`unknown_format()`] for anything else that is not one, and the system's error if
 /// the input cannot be read.
-pub fn format_of(
-    input: impl Read,
-    options: ReadOptions,
-) -> Result<RecordingFormat, RecordingError> {
+pub fn format_of(input: impl Read, options: &ReadOptions) -> Result<RecordingFormat, ReadError> {
     let start = start_of(input)?;
     recognised_with(&start, options).ok_or_else(|| refused(&start))
 }
@@ -255,23 +237,6 @@ fn start_of(input: impl Read) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
-/// Reads a recording from beginning to end, and reports its events to `consumer`, which may end the reading.
-///
-/// # Errors
-/// Returns an error if the input cannot be read, is not a recording, is damaged, or does not say how its values are
-/// arranged. Whole frames before the damage have been reported.
-pub fn read(
-    mut input: impl Read + Seek,
-    options: ReadOptions,
-    consumer: &mut RecordingSink<'_>,
-) -> Result<RecordingFormat, RecordingError> {
-    input.seek(SeekFrom::Start(0))?;
-    let format = format_of(&mut input, options)?;
-    let mut earlier = EarlierLayout::default();
-    read_as(format, &mut input, options, &mut earlier, consumer)?;
-    Ok(format)
-}
-
 /// The input of a recording. It is read in large pieces through a `dyn` reference, so the readers are compiled only
 /// once.
 pub trait RecordingInput: Read + Seek {}
@@ -283,13 +248,15 @@ impl<T: Read + Seek> RecordingInput for T {}
 pub fn read_as(
     format: RecordingFormat,
     input: &mut dyn RecordingInput,
-    options: ReadOptions,
+    options: &ReadOptions,
     earlier: &mut EarlierLayout,
     consumer: &mut RecordingSink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), ReadError> {
     input.seek(SeekFrom::Start(0))?;
     let mut input = BufReader::with_capacity(CHUNK, input);
-    until_enough(consumer, |sink| match format {
+    let mut state = ReadState::default();
+    let sink = &mut Sink::new(consumer, &mut state);
+    let read = match format {
         RecordingFormat::Tekscan => tekscan::read(input, sink),
         RecordingFormat::Xsensor => xsensor::read(input, sink),
         RecordingFormat::Npy => array::read(&mut input, options, sink),
@@ -299,7 +266,11 @@ pub fn read_as(
         RecordingFormat::Csv => delimited::read(input, options, earlier, sink),
         RecordingFormat::Flexitac => flexitac::read(&mut input, options, sink),
         RecordingFormat::Mcap => mcap::read(&mut input, options, sink),
-    })
+    };
+    match read {
+        Ok(()) | Err(Stop::Enough) => Ok(()),
+        Err(Stop::Failed(error)) => Err(error),
+    }
 }
 
 /// The first bytes of the formats that have such bytes. An archive without a file begins with its end.
@@ -318,14 +289,6 @@ pub(super) const LONGEST_MAGIC: usize = MCAP_MAGIC.len();
 pub(super) fn by_magic(start: &[u8]) -> Option<RecordingFormat> {
     let mut formats = MAGIC.into_iter();
     formats.find_map(|(magic, format)| start.starts_with(magic).then_some(format))
-}
-
-pub(super) fn names_frame(text: &[u8]) -> bool {
-    has(text, b"\"frame\"")
-}
-
-fn has(text: &[u8], word: &[u8]) -> bool {
-    text.windows(word.len()).any(|window| window == word)
 }
 
 /// The words of vendors in the lines so far. The format whose words are complete first counts.
@@ -456,33 +419,85 @@ impl StartSearch {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// A format of recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RecordingFormat {
+    /// Tekscan's ASCII export.
+    Tekscan,
+    /// XSENSOR's CSV export.
+    Xsensor,
+    /// Numbers separated by commas, semicolons, tabs or spaces: one frame per line, or one row per line.
+    Csv,
+    /// A numpy array.
+    Npy,
+    /// An archive of numpy arrays.
+    Npz,
+    /// JSON lines: one object per line.
+    JsonLines,
+    /// The output of `ros2 topic echo`.
+    Ros2,
+    /// An MCAP file.
+    Mcap,
+    /// The bytes of a `FlexiTac` board.
+    Flexitac,
+}
 
-    #[test]
-    fn a_single_value_or_words_alone_are_no_table() {
-        let format = |text: &str| recognised(text.as_bytes());
-        assert_eq!(format("words\n1 2\nwords\n"), None);
-        assert_eq!(format("2024-05-01 12:00:00.25\n1 2\n3 4\n"), None);
-        assert_eq!(
-            format("2024-05-01 12:00:00.25 7\n"),
-            Some(RecordingFormat::Csv)
-        );
-        // A growing file may have been read up to the CR of a line.
-        assert_eq!(format("1,2\r"), Some(RecordingFormat::Csv));
-    }
+impl RecordingFormat {
+    /// All formats.
+    pub const ALL: &'static [Self] = &[
+        Self::Tekscan,
+        Self::Xsensor,
+        Self::Csv,
+        Self::Npy,
+        Self::Npz,
+        Self::JsonLines,
+        Self::Ros2,
+        Self::Mcap,
+        Self::Flexitac,
+    ];
 
-    #[test]
-    fn an_ordinary_word_is_a_sign_only_where_the_vendor_writes_it() {
-        let tekscan = Some(RecordingFormat::Tekscan);
-        for (text, expected) in [
-            ("DATA_TYPE MOVIE\nROWS 2\n", tekscan),
-            ("\r\nDATA_TYPE MOVIE\r\n", tekscan),
-            ("boot v1\nDATA_TYPE ready\n1 2\n", None),
-            ("boot v1\nASCII_DATA @@\n", tekscan),
-        ] {
-            assert_eq!(VendorSigns::of(text.as_bytes()), expected, "{text:?}");
+    /// Returns the name of the format, as it is in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tekscan => "tekscan",
+            Self::Xsensor => "xsensor",
+            Self::Csv => "csv",
+            Self::Npy => "npy",
+            Self::Npz => "npz",
+            Self::JsonLines => "jsonl",
+            Self::Ros2 => "ros2",
+            Self::Mcap => "mcap",
+            Self::Flexitac => "flexitac",
         }
     }
+
+    #[expect(dead_code)]
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::Tekscan => "Tekscan ASCII",
+            Self::Xsensor => "XSENSOR CSV",
+            Self::Csv => "CSV",
+            Self::Npy => "NPY",
+            Self::Npz => "NPZ",
+            Self::JsonLines => "JSON lines",
+            Self::Ros2 => "ros2 topic echo",
+            Self::Mcap => "MCAP",
+            Self::Flexitac => "FlexiTac",
+        }
+    }
+
+    /// Returns true if frames in this format can be a stream, too: they are written one after the other as they are
+    /// measured, and can be read as they arrive. A file that they are appended to can be followed.
+    pub(crate) fn can_be_streamed(self) -> bool {
+        match self {
+            Self::Csv | Self::JsonLines | Self::Ros2 | Self::Flexitac => true,
+            Self::Tekscan | Self::Xsensor | Self::Npy | Self::Npz | Self::Mcap => false,
+        }
+    }
+
+    pub(crate) fn is_text_stream(self) -> bool {
+        self.can_be_streamed() && self != Self::Flexitac
+    }
 }
+
+named!(RecordingFormat, "format", RecordingFormat::ALL);

@@ -2,21 +2,88 @@
 
 use std::fmt;
 use std::ops::ControlFlow;
+use std::str::FromStr;
 
 use taxel_core::frame::{Frame, FrameSize, Label, Rule, RuleOrigin, SetRule, Tare, View};
 use taxel_core::parameter::number::{counted, short, time_in_words, to_decimals};
 
-use crate::formats::recording::error::RecordingError;
+use crate::error::ReadError;
+use crate::formats::recording::format::Format;
 use crate::formats::recording::metadata::{FrameMark, RecordingMetadata};
+use crate::formats::recording::time::{FrameClock, TimeUnit};
 
-/// Options for reading a recording.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+/// Options for reading a recording or a stream.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// The size of a frame, for files that do not state it.
+    /// The size of a frame, for what does not state it.
     pub size: Option<FrameSize>,
-    /// Whether wrong frames in lines may be left out, as in a file that is still being written. Each is reported as
-    /// [`RecordingEvent::Damage`]; otherwise the first one ends the reading.
+    /// The size of the frames of a stream of bytes or lines, if [`Self::size`] is not given and nothing else tells it.
+    pub stream_size: Option<FrameSize>,
+    /// The format; None to look at the content.
+    pub format: Option<&'static Format>,
+    /// The column of a table with the time.
+    pub time_column: Option<TimeColumn>,
+    /// The column of a table with the label.
+    pub label_column: Option<Column>,
+    /// Whether a wrong frame is reported as [`RecordingEvent::Damage`] and left out, as in a stream or in a file that is
+    /// still being written; otherwise the first one ends the reading with its error.
     pub leaves_out: bool,
+    /// Whether the first byte begins a frame, as that of a file does; a stream may have been joined anywhere. What
+    /// precedes its first boundary between frames is dropped.
+    pub is_joined: bool,
+}
+
+/// A column of a table: its name, or its number from 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// The number of the column, from 1.
+    Number(usize),
+    /// Its name in the header.
+    Name(String),
+}
+
+/// The column with the time, and the unit of its numbers; None to take that of its name, else seconds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TimeColumn {
+    /// The column.
+    pub column: Column,
+    /// The unit of its numbers.
+    pub unit: Option<TimeUnit>,
+}
+
+impl FromStr for Column {
+    type Err = String;
+
+    /// Reads a name, or a number from 1.
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse() {
+            Ok(0) => Err("columns count from 1".to_owned()),
+            Ok(number) => Ok(Self::Number(number)),
+            Err(_) if text.trim().is_empty() => {
+                Err("expected the name of a column, or its number from 1".to_owned())
+            }
+            Err(_) => Ok(Self::Name(text.to_owned())),
+        }
+    }
+}
+
+impl FromStr for TimeColumn {
+    type Err = String;
+
+    /// Reads `X` or `X:UNIT`, with the unit s, ms, us or ns.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.rsplit_once(':');
+        let unit = parts.and_then(|(_, unit)| TimeUnit::named(unit));
+        let column = match (parts, unit) {
+            (Some((column, _)), Some(_)) => column,
+            (Some((column, unit)), None) if column.parse::<usize>().is_ok() => {
+                return Err(format!("unit {unit:?}: expected s, ms, us or ns"));
+            }
+            _ => text,
+        };
+        let column = column.parse()?;
+        Ok(Self { column, unit })
+    }
 }
 
 impl ReadOptions {
@@ -27,28 +94,11 @@ impl ReadOptions {
         self
     }
 
-    /// Lets wrong frames in lines be left out.
+    /// Lets wrong frames be left out.
     #[must_use]
     pub fn leaving_out(mut self) -> Self {
         self.leaves_out = true;
         self
-    }
-
-    pub(super) fn damage(
-        self,
-        error: RecordingError,
-        bytes: &[u8],
-        sink: &mut Sink<'_>,
-    ) -> Result<(), EarlyEnd> {
-        let damage = RecordingEvent::Damage {
-            error: &error,
-            bytes,
-        };
-        if self.leaves_out && sink(damage).is_ok() {
-            Ok(())
-        } else {
-            Err(error.into())
-        }
     }
 }
 
@@ -286,14 +336,18 @@ impl fmt::Display for RecordingNote {
 pub enum RecordingEvent<'a> {
     /// A channel, before its first frame. Channels are numbered from 0.
     Channel(&'a ChannelInfo),
-    /// A frame.
+    /// A frame; in a stream of bytes, confirmed by the bytes after it.
     Frame(&'a Frame),
+    /// A frame of a stream whose last byte has arrived, but not the bytes that confirm it: to be shown, not to be kept.
+    Provisional(&'a Frame),
+    /// The provisional frame has turned out to be none.
+    Withdrawn,
     /// An oddity.
     Note(&'a RecordingNote),
     /// A wrong frame, if [`ReadOptions::leaves_out`] is set: `Break` ends the reading with this error.
     Damage {
         /// The error, with its place.
-        error: &'a RecordingError,
+        error: &'a ReadError,
         /// Some bytes of the frame.
         bytes: &'a [u8],
     },
@@ -302,33 +356,125 @@ pub enum RecordingEvent<'a> {
 /// A function that takes the events of a recording; `Break` ends the reading without an error.
 pub type RecordingSink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
 
-pub(super) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> Result<(), EarlyEnd> + 'a;
-
-/// The reason why a reader ends before the end of its file.
+/// The reason why a reader ends before the end of its input.
 #[derive(Debug)]
-pub(super) enum EarlyEnd {
+pub(in crate::formats) enum Stop {
+    /// No more is wanted.
     Enough,
-    Failed(RecordingError),
+    Failed(ReadError),
 }
 
-impl<E: Into<RecordingError>> From<E> for EarlyEnd {
+impl<E: Into<ReadError>> From<E> for Stop {
     fn from(error: E) -> Self {
         Self::Failed(error.into())
     }
 }
 
-/// Runs the reader of a format until the consumer wants no more.
-pub(super) fn until_enough(
-    consumer: &mut RecordingSink<'_>,
-    read: impl FnOnce(&mut Sink<'_>) -> Result<(), EarlyEnd>,
-) -> Result<(), RecordingError> {
-    let read = read(&mut |event| match consumer(event) {
-        ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(EarlyEnd::Enough),
-    });
-    match read {
-        Ok(()) | Err(EarlyEnd::Enough) => Ok(()),
-        Err(EarlyEnd::Failed(error)) => Err(error),
+/// What goes on when a stream is read again after an interruption: its channels, the number of the next frame of each,
+/// and its clock.
+#[derive(Debug, Default)]
+#[expect(dead_code, reason = "the readers that use it follow")]
+pub(in crate::formats) struct ReadState {
+    channels: Vec<(ChannelInfo, u64)>,
+    pub(in crate::formats::recording) clock: FrameClock,
+}
+
+/// Where a reader puts what it finds.
+pub(in crate::formats) struct Sink<'a> {
+    consumer: &'a mut RecordingSink<'a>,
+    pub(in crate::formats::recording) state: &'a mut ReadState,
+}
+
+#[expect(dead_code, reason = "the readers that use it follow")]
+impl<'a> Sink<'a> {
+    pub(in crate::formats) fn new(
+        consumer: &'a mut RecordingSink<'a>,
+        state: &'a mut ReadState,
+    ) -> Self {
+        Self { consumer, state }
+    }
+
+    /// Reports an event as it is.
+    pub(in crate::formats) fn event(&mut self, event: RecordingEvent<'_>) -> Result<(), Stop> {
+        match (self.consumer)(event) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Stop::Enough),
+        }
+    }
+
+    /// Returns the index of the channel with that name; reports it if it is new. A limit keeps names that change with
+    /// every frame from filling the memory.
+    pub(in crate::formats) fn channel(
+        &mut self,
+        name: Option<&str>,
+        info: impl FnOnce() -> ChannelInfo,
+    ) -> Result<usize, Stop> {
+        let known = self
+            .state
+            .channels
+            .iter()
+            .position(|(known, _)| known.name.as_deref() == name);
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        if self.state.channels.len() == MOST_CHANNELS {
+            return Err(ReadError::new(format!("more than {MOST_CHANNELS} channels")).into());
+        }
+        let info = ChannelInfo {
+            name: name.map(str::to_owned),
+            ..info()
+        };
+        self.event(RecordingEvent::Channel(&info))?;
+        self.state.channels.push((info, 0));
+        Ok(self.state.channels.len() - 1)
+    }
+
+    /// Reports a frame of this channel, with its number.
+    pub(in crate::formats) fn frame(
+        &mut self,
+        channel: usize,
+        frame: &mut Frame,
+    ) -> Result<(), Stop> {
+        self.place(channel, frame);
+        self.state.channels[channel].1 += 1;
+        self.event(RecordingEvent::Frame(frame))
+    }
+
+    /// Reports a frame that is not confirmed yet.
+    pub(in crate::formats) fn provisional(
+        &mut self,
+        channel: usize,
+        frame: &mut Frame,
+    ) -> Result<(), Stop> {
+        self.place(channel, frame);
+        self.event(RecordingEvent::Provisional(frame))
+    }
+
+    fn place(&self, channel: usize, frame: &mut Frame) {
+        frame.channel = channel;
+        frame.number = self.state.channels[channel].1;
+    }
+
+    pub(in crate::formats) fn note(&mut self, note: &RecordingNote) -> Result<(), Stop> {
+        self.event(RecordingEvent::Note(note))
+    }
+
+    /// Reports a wrong frame that is left out, if it may be; otherwise it ends the reading.
+    pub(in crate::formats) fn damage(
+        &mut self,
+        options: &ReadOptions,
+        error: ReadError,
+        bytes: &[u8],
+    ) -> Result<(), Stop> {
+        let damage = RecordingEvent::Damage {
+            error: &error,
+            bytes,
+        };
+        if options.leaves_out && self.event(damage).is_ok() {
+            Ok(())
+        } else {
+            Err(error.into())
+        }
     }
 }
 

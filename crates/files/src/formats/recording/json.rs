@@ -14,6 +14,8 @@
 //! frames, times or labels in one line. If wrong lines may be left out, so is a frame of another size, unless three
 //! in succession have it.
 
+use crate::formats::recording::error::in_line;
+use crate::formats::recording::error::{in_field, unshaped};
 use std::borrow::Cow;
 use std::fmt;
 use std::io::BufRead;
@@ -25,12 +27,12 @@ use serde_json::Value;
 use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE, Label, MAX_FRAME_CELLS};
 use taxel_core::parameter::number::counted;
 
+use crate::error::ReadError;
 use crate::formats::job::too_large;
 use crate::formats::json;
 use crate::formats::recording::channels::ChannelTable;
-use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
+    ChannelInfo, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink, Stop,
 };
 use crate::formats::recording::size::{StreamSize, frame_size};
 use crate::formats::recording::text::TextLines;
@@ -39,23 +41,23 @@ use crate::formats::recording::time::{self, FrameClock, Time, TimeUnit};
 
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
-    options: ReadOptions,
+    options: &ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     let mut frames = JsonFrames::new(options.size);
     while lines.advance_to_content()? {
         if let Err(error) = frames.read(lines.line()) {
-            options.damage(error.in_line(lines.number()), lines.line(), sink)?;
+            sink.damage(options, error.at(lines.number()), lines.line())?;
             continue;
         }
         for info in frames.channels.take_new() {
-            sink(RecordingEvent::Channel(info))?;
+            sink.event(RecordingEvent::Channel(info))?;
         }
         if let Some(note) = frames.clock.clock.take_note() {
-            sink(RecordingEvent::Note(&note))?;
+            sink.event(RecordingEvent::Note(&note))?;
         }
-        sink(RecordingEvent::Frame(frames.frame()))?;
+        sink.event(RecordingEvent::Frame(frames.frame()))?;
     }
     Ok(())
 }
@@ -148,13 +150,13 @@ impl FrameLineError {
         Self::Wrong { column, message }
     }
 
-    fn in_line(self, number: u64) -> RecordingError {
+    fn at(self, number: u64) -> ReadError {
         match self {
             Self::Wrong { column, message } => match column {
-                Some(column) => RecordingError::in_field(number, column, message),
-                None => RecordingError::in_line(number, message),
+                Some(column) => in_field(number, column, message),
+                None => in_line(number, message),
             },
-            Self::Shape(values) => RecordingError::Shape { values },
+            Self::Shape(values) => unshaped(values, None),
         }
     }
 }

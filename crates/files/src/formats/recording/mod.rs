@@ -8,18 +8,18 @@
 //! ```
 //! use std::io::Cursor;
 //! use std::ops::ControlFlow;
-//! use taxel_files::formats::recording::{ReadOptions, RecordingEvent, RecordingFormat, read};
+//! use taxel_files::formats::recording::{ReadOptions, RecordingEvent, read};
 //! let file = b"time,r0c0,r0c1,r1c0,r1c1\n0.0,1,2,3,4\n0.1,5,6,7,8\n";
 //! let mut sums = Vec::new();
-//! let format = read(Cursor::new(file), ReadOptions::default(), &mut |event| {
+//! let format = read(Cursor::new(file), &ReadOptions::default(), &mut |event| {
 //!     if let RecordingEvent::Frame(frame) = event {
 //!         sums.push((frame.time, frame.values().iter().sum::<f64>()));
 //!     }
 //!     ControlFlow::Continue(())
 //! })?;
-//! assert_eq!(format, RecordingFormat::Csv);
+//! assert_eq!(format.name, "csv");
 //! assert_eq!(sums, [(Some(0.0), 10.0), (Some(0.1), 26.0)]);
-//! # Ok::<(), taxel_files::formats::recording::RecordingError>(())
+//! # Ok::<(), taxel_files::formats::recording::ReadError>(())
 //! ```
 //!
 //! ```text
@@ -36,7 +36,7 @@
 //! numpy            NPY and NPZ
 //! ros              MCAP, and ros2 topic echo
 //! vendor           Tekscan, XSENSOR and FlexiTac
-//! detect           which of these a file is
+//! format           which of these a file is
 //! ```
 //! Each format uses the modules above it; formats do not use each other.
 
@@ -66,19 +66,25 @@ pub(super) mod ros;
 
 mod vendor;
 
+mod stream;
+
+mod format;
+
 mod detect;
 
 pub use answer::FrameAnswer;
 pub use channels::{ChannelChoice, no_channel};
-pub use detect::may_be_recording;
-#[cfg(unix)]
-pub use detect::{RecordingInput, format_after, format_of, read_as};
-#[cfg(unix)]
+pub use detect::{
+    RecordingFormat, RecordingInput, format_after, format_of as old_format_of, read_as, recognised,
+};
 pub(crate) use detect::{StartKind, StartSearch};
-pub use detect::{read, recognised};
-pub use error::{RecordingError, RecordingFormat};
-pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, RecordingSink};
+pub use error::{unknown_format, unshaped};
+pub use event::{
+    ChannelInfo, Column, ReadOptions, RecordingEvent, RecordingNote, RecordingSink, TimeColumn,
+};
+pub use format::{FORMATS, Format, format_of, may_be_recording, read};
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
+pub use stream::{StreamCounts, StreamReader};
 pub use table::delimited::read_rows;
-#[cfg(unix)]
 pub(crate) use table::layout::EarlierLayout;
+pub use time::TimeUnit;

@@ -1,12 +1,13 @@
 //! Numbers of rows and columns, and distances between cells, as files give them.
 
+use crate::formats::recording::error::in_line;
 use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE};
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::to_decimals;
 use taxel_core::quote::shortened;
 use taxel_core::sensor::Sensor;
 
-use crate::formats::recording::error::RecordingError;
+use crate::error::ReadError;
 
 /// Returns a number of rows or columns; None if it is 0 or larger than a frame can be.
 pub(in crate::formats) fn side(length: impl TryInto<u16>) -> Option<u16> {
@@ -55,12 +56,12 @@ pub(super) fn other_than(size: FrameSize, expected: FrameSize) -> String {
 
 /// Reads the number of rows or columns that a line states for a key, as `ROWS 28` does; `mark` is the character
 /// between them.
-pub(super) fn stated(key: &str, mark: char, value: &str, line: u64) -> Result<u16, RecordingError> {
+pub(super) fn stated(key: &str, mark: char, value: &str, line: u64) -> Result<u16, ReadError> {
     let length: Option<u16> = value.parse().ok();
     length.and_then(side).ok_or_else(|| {
         let found = shortened(value);
         let message = format!("{key}{mark}{found}: expected 1 to {MAX_FRAME_SIDE}");
-        RecordingError::in_line(line, message)
+        in_line(line, message)
     })
 }
 

@@ -9,15 +9,16 @@
 //! ```
 //! Numbers are read fast, since most are whole and short; the results are bit for bit those of the standard library.
 
+use crate::formats::recording::error::{in_field, in_line};
 use std::io::{self, BufRead};
 
 use taxel_core::frame::LARGEST_VALUE;
 use taxel_core::parameter::number::counted;
 use taxel_core::quote::shortened;
 
+use crate::error::ReadError;
 use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::job::too_large;
-use crate::formats::recording::error::RecordingError;
 use crate::formats::table::named_separator;
 
 /// Powers of ten that are exact in f64.
@@ -115,7 +116,7 @@ impl<R: BufRead> TextLines<R> {
     }
 
     /// Reads the next line; returns false at the end.
-    pub(in crate::formats::recording) fn advance(&mut self) -> Result<bool, RecordingError> {
+    pub(in crate::formats::recording) fn advance(&mut self) -> Result<bool, ReadError> {
         self.line.clear();
         loop {
             let bytes = match self.input.fill_buf() {
@@ -138,7 +139,7 @@ impl<R: BufRead> TextLines<R> {
             let part = &bytes[..end.unwrap_or(bytes.len())];
             if part.len() > LONGEST_LINE - self.line.len() {
                 let message = "longer than 8 MiB, the limit for a line of a recording";
-                return Err(RecordingError::in_line(self.number + 1, message));
+                return Err(in_line(self.number + 1, message));
             }
             self.line.extend_from_slice(part);
             let used = end.map_or(bytes.len(), |end| end + 1);
@@ -158,9 +159,7 @@ impl<R: BufRead> TextLines<R> {
     }
 
     /// Reads the next line that is not blank; returns false at the end. A line of commas is blank.
-    pub(in crate::formats::recording) fn advance_to_content(
-        &mut self,
-    ) -> Result<bool, RecordingError> {
+    pub(in crate::formats::recording) fn advance_to_content(&mut self) -> Result<bool, ReadError> {
         while self.advance()? {
             if !is_blank(&self.line) {
                 return Ok(true);
@@ -220,7 +219,7 @@ pub(in crate::formats::recording) fn fill_row<'a>(
     fields: impl Iterator<Item = &'a [u8]>,
     number: u64,
     read: impl Fn(&[u8]) -> Field,
-) -> Result<(), RecordingError> {
+) -> Result<(), ReadError> {
     let expected = values.len();
     let mut fields = fields.zip(1..);
     for (slot, found) in values.iter_mut().zip(0..) {
@@ -242,9 +241,9 @@ pub(in crate::formats::recording) fn wrong_count(
     line: u64,
     found: usize,
     expected: usize,
-) -> RecordingError {
+) -> ReadError {
     let found = counted(found as u64, "value");
-    RecordingError::in_line(line, format!("found {found}, expected {expected}"))
+    in_line(line, format!("found {found}, expected {expected}"))
 }
 
 /// Returns the error for a field that is not a value.
@@ -252,14 +251,14 @@ pub(in crate::formats::recording) fn wrong_field(
     line: u64,
     column: usize,
     field: &[u8],
-) -> RecordingError {
+) -> ReadError {
     if let Some(read_value) =
         read_number(field).filter(|read_value| read_value.abs() > LARGEST_VALUE)
     {
-        return RecordingError::in_field(line, column, too_large(read_value));
+        return in_field(line, column, too_large(read_value));
     }
     let found = shortened(&text(field));
-    RecordingError::in_field(line, column, format!("found {found:?}, expected a number"))
+    in_field(line, column, format!("found {found:?}, expected a number"))
 }
 
 /// Returns true if the lines of a text end in CR alone, as on the first Macintosh computers.

@@ -3,9 +3,9 @@
 //! Unlike a recording, a stream continues after a line or a message that is wrong, or of another size than earlier
 //! ones: it is dropped and counted.
 
+use crate::error::{ReadError, ReadErrorKind};
 use taxel_core::frame::{Frame, FrameSize};
 
-use crate::formats::recording::RecordingError;
 use crate::formats::recording::json::{FrameLineError, JsonFrames};
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::size::StreamSize;
@@ -130,7 +130,7 @@ impl RosDecoder {
                 None => echo::size(&self.message, &mut self.size, self.named, 1),
                 Some(mistake) => {
                     self.size.pass_torn();
-                    Err(RecordingError::damaged(mistake))
+                    Err(ReadError::new(mistake))
                 }
             };
             match size {
@@ -142,14 +142,12 @@ impl RosDecoder {
                     output.frame(&mut self.frame);
                 }
                 Err(error) => {
-                    let reason = match error {
-                        RecordingError::Shape { values } => {
-                            output.counts.unshaped = Some(values);
-                            None
-                        }
+                    let reason = if error.kind == ReadErrorKind::Unsized {
+                        output.counts.unshaped = Some(self.message.cells().len() as u64);
+                        None
+                    } else {
                         // A stream has no line numbers.
-                        RecordingError::Damaged { message, .. } => Some(message),
-                        error => Some(error.to_string()),
+                        Some(error.message)
                     };
                     output.lose(1, line, reason);
                 }

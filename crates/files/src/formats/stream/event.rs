@@ -1,9 +1,10 @@
 //! The formats and options of streams, and the events and counts that a decoder reports.
 
+use crate::formats::recording::unshaped;
 use taxel_core::frame::{Frame, FrameSize};
 use taxel_core::parameter::named;
 
-use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
+use crate::formats::recording::{ChannelInfo, RecordingNote};
 use crate::formats::value::{counted, grouped};
 
 /// A format of streams.
@@ -182,7 +183,7 @@ pub enum StreamRefusal {
     #[error("the stream does not state the rows and columns of a frame")]
     Size,
     /// Lists of values, in rows of any length.
-    #[error("{}", RecordingError::Shape { values: *values })]
+    #[error("{}", unshaped(*values, None))]
     Shape {
         /// The number of values in a frame.
         values: u64,

@@ -10,15 +10,16 @@
 //! as they are read, then the error: to check it first would take twice the time and lose all frames that are right.
 //! An archive that is cut short has no directory, so nothing of it is read.
 
+use crate::formats::recording::error::foreign;
 use std::io::{ErrorKind, Read, Seek};
 
 use zip::ZipArchive;
 use zip::result::ZipError;
 
+use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::npy::{Header, NumberType};
-use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink, Stop,
 };
 use crate::formats::recording::numpy::array::{self, ArrayLayout};
 use crate::formats::recording::time::field_role::{FieldRole, role};
@@ -32,32 +33,25 @@ const MOST_ARRAYS: usize = 256;
 
 const CUT: &str = "an archive that is cut short or damaged";
 
-fn damaged(error: ZipError) -> RecordingError {
+fn damaged(error: ZipError) -> ReadError {
     match error {
         ZipError::Io(error) => error.into(),
-        ZipError::UnsupportedArchive(what) => {
-            RecordingError::damaged(format!("an archive: {what}"))
-        }
-        _ => RecordingError::damaged(CUT),
+        ZipError::UnsupportedArchive(what) => ReadError::new(format!("an archive: {what}")),
+        _ => ReadError::new(CUT),
     }
 }
 
 /// Returns the error for the array of that name: bytes that cannot be decompressed or that have a wrong checksum are
 /// damage to the array, not to the disk.
-fn in_array(name: &str, error: RecordingError) -> RecordingError {
-    let message = match error {
-        RecordingError::Damaged { message, .. } => message,
-        RecordingError::Io(error)
-            if matches!(
-                error.kind(),
-                ErrorKind::InvalidData | ErrorKind::InvalidInput | ErrorKind::UnexpectedEof
-            ) =>
-        {
-            "the array is damaged, so some of its values may be wrong".to_owned()
-        }
-        error => return error,
+fn in_array(name: &str, error: ReadError) -> ReadError {
+    let message = match error.kind {
+        ReadErrorKind::Invalid => error.message,
+        ReadErrorKind::Io(
+            ErrorKind::InvalidData | ErrorKind::InvalidInput | ErrorKind::UnexpectedEof,
+        ) => "the array is damaged, so some of its values may be wrong".to_owned(),
+        _ => return error,
     };
-    RecordingError::damaged(format!("{name}: {message}"))
+    ReadError::new(format!("{name}: {message}"))
 }
 
 struct ArchiveArray {
@@ -69,9 +63,9 @@ struct ArchiveArray {
 
 pub(in crate::formats::recording) fn read(
     input: impl Read + Seek,
-    options: ReadOptions,
+    options: &ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let archive = &mut ZipArchive::new(input).map_err(damaged)?;
     // A spreadsheet is a zip archive, too.
     let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
@@ -80,7 +74,7 @@ pub(in crate::formats::recording) fn read(
         .any(|name| name.is_ok_and(|name| is_office(&name)))
     {
         let kind = "a spreadsheet or another office document (save the sheet as CSV)";
-        return Err(RecordingError::Foreign { kind }.into());
+        return Err(foreign(kind).into());
     }
     let arrays = arrays(archive)?;
     let channels = channels(&arrays, options)?;
@@ -90,9 +84,9 @@ pub(in crate::formats::recording) fn read(
             size: Some(layout.size()),
             ..ChannelInfo::default()
         };
-        sink(RecordingEvent::Channel(&info))?;
+        sink.event(RecordingEvent::Channel(&info))?;
         if let Some(note) = layout.note() {
-            sink(RecordingEvent::Note(note))?;
+            sink.event(RecordingEvent::Note(note))?;
         }
     }
     let (mut noted, mut counted, mut times) = (None, None, Vec::new());
@@ -102,7 +96,7 @@ pub(in crate::formats::recording) fn read(
         if counted != Some(frames) {
             let (found, note) = self::times(archive, &arrays, frames)?;
             if let Some(note) = note.as_ref().filter(|_| note != noted) {
-                sink(RecordingEvent::Note(note))?;
+                sink.event(RecordingEvent::Note(note))?;
             }
             noted = note.or(noted);
             (counted, times) = (Some(frames), found);
@@ -111,18 +105,18 @@ pub(in crate::formats::recording) fn read(
         let named = |error| in_array(&array.name, error);
         array::header(&mut file).map_err(named)?;
         array::frames(&mut file, layout, channel, &times, sink).map_err(|end| match end {
-            EarlyEnd::Failed(error) => named(error).into(),
-            EarlyEnd::Enough => end,
+            Stop::Failed(error) => named(error).into(),
+            Stop::Enough => end,
         })?;
         array::end(&mut file, layout).map_err(named)?;
     }
     Ok(())
 }
 
-fn channels(
-    arrays: &[ArchiveArray],
-    options: ReadOptions,
-) -> Result<Vec<(&ArchiveArray, ArrayLayout)>, RecordingError> {
+fn channels<'a>(
+    arrays: &'a [ArchiveArray],
+    options: &ReadOptions,
+) -> Result<Vec<(&'a ArchiveArray, ArrayLayout)>, ReadError> {
     let channels: Vec<&ArchiveArray> = arrays
         .iter()
         .filter(|array| {
@@ -133,7 +127,7 @@ fn channels(
         .collect();
     if channels.is_empty() {
         let message = "no array of two or three axes, expected frames, rows and columns";
-        return Err(RecordingError::damaged(message));
+        return Err(ReadError::new(message));
     }
     with_layouts(channels, options)
 }
@@ -151,12 +145,10 @@ fn is_atlas_or_model(arrays: &[ArchiveArray]) -> bool {
 }
 
 /// Returns all arrays with their headers. An atlas or a model is refused.
-fn arrays<R: Read + Seek>(
-    archive: &mut ZipArchive<R>,
-) -> Result<Vec<ArchiveArray>, RecordingError> {
+fn arrays<R: Read + Seek>(archive: &mut ZipArchive<R>) -> Result<Vec<ArchiveArray>, ReadError> {
     if archive.len() > MOST_ARRAYS {
         let message = format!("more than {MOST_ARRAYS} files in the archive");
-        return Err(RecordingError::damaged(message));
+        return Err(ReadError::new(message));
     }
     let mut arrays = Vec::new();
     for index in 0..archive.len() {
@@ -164,7 +156,7 @@ fn arrays<R: Read + Seek>(
     }
     if is_atlas_or_model(&arrays) {
         let kind = "an atlas or a model of taxel";
-        return Err(RecordingError::Foreign { kind });
+        return Err(foreign(kind));
     }
     Ok(arrays)
 }
@@ -173,7 +165,7 @@ fn arrays<R: Read + Seek>(
 fn array<R: Read + Seek>(
     archive: &mut ZipArchive<R>,
     index: usize,
-) -> Result<Option<ArchiveArray>, RecordingError> {
+) -> Result<Option<ArchiveArray>, ReadError> {
     let mut file = archive.by_index(index).map_err(damaged)?;
     let name = file.name().map_err(damaged)?.into_owned();
     let Some(name) = name.strip_suffix(".npy").map(str::to_owned) else {
@@ -189,17 +181,17 @@ fn array<R: Read + Seek>(
 
 /// Returns the arrays whose numbers can be frames, with their layouts. Others, such as a list of poses, may lie
 /// beside them.
-fn with_layouts(
-    arrays: Vec<&ArchiveArray>,
-    options: ReadOptions,
-) -> Result<Vec<(&ArchiveArray, ArrayLayout)>, RecordingError> {
+fn with_layouts<'a>(
+    arrays: Vec<&'a ArchiveArray>,
+    options: &ReadOptions,
+) -> Result<Vec<(&'a ArchiveArray, ArrayLayout)>, ReadError> {
     let alone = arrays.len() == 1;
     let (mut found, mut first_error) = (Vec::new(), None);
     for array in arrays {
         // Rows and columns that are meant for one of several arrays need not fit the others.
         let layout = match ArrayLayout::of(&array.header, options) {
             Err(_) if !alone && options.size.is_some() => {
-                ArrayLayout::of(&array.header, ReadOptions::default())
+                ArrayLayout::of(&array.header, &ReadOptions::default())
             }
             layout => layout,
         };
@@ -276,7 +268,7 @@ impl<'a> TimeArray<'a> {
         &self,
         file: &mut impl Read,
         frames: u64,
-    ) -> Result<(Vec<f64>, Option<RecordingNote>), RecordingError> {
+    ) -> Result<(Vec<f64>, Option<RecordingNote>), ReadError> {
         array::header(file)?;
         let mut bytes = [0; 8];
         let bytes = &mut bytes[..self.number.size()];
@@ -285,7 +277,7 @@ impl<'a> TimeArray<'a> {
         for _ in 0..frames {
             if array::fill(file, bytes)? < bytes.len() {
                 let message = format!("ends before its {frames} times");
-                return Err(RecordingError::damaged(message));
+                return Err(ReadError::new(message));
             }
             let (value, whole) = (self.number.value(bytes), self.number.whole(bytes));
             let is_none = self.has_none && whole == Some(i128::from(i64::MIN));
@@ -311,7 +303,7 @@ fn times<R: Read + Seek>(
     archive: &mut ZipArchive<R>,
     arrays: &[ArchiveArray],
     frames: u64,
-) -> Result<(Vec<f64>, Option<RecordingNote>), RecordingError> {
+) -> Result<(Vec<f64>, Option<RecordingNote>), ReadError> {
     let found = TimeArray::of_frames(arrays, frames);
     let Some(found) = found.filter(|_| frames <= MOST_TIMES) else {
         return Ok((Vec::new(), None));
@@ -329,6 +321,8 @@ mod tests {
 
     use super::*;
     use crate::formats::npy::header_of;
+    use crate::formats::recording;
+    use std::ops::ControlFlow;
 
     /// Returns times and notes of two frames of two cells from each of two sensors, beside an array `time` of that
     /// type with those numbers.
@@ -350,13 +344,14 @@ mod tests {
         add(name, code, "2,", &times.map(i64::to_le_bytes).concat());
         let archive = archive.finish().expect("finished").into_inner();
         let (mut found, mut notes) = (Vec::new(), Vec::new());
-        let read = read(Cursor::new(archive), ReadOptions::default(), &mut |event| {
+        let options = ReadOptions::default();
+        let read = recording::read(Cursor::new(archive), &options, &mut |event| {
             match event {
                 RecordingEvent::Frame(frame) => found.push(frame.time),
                 RecordingEvent::Note(note) => notes.push(note.to_string()),
-                RecordingEvent::Channel(_) | RecordingEvent::Damage { .. } => {}
+                _ => {}
             }
-            Ok(())
+            ControlFlow::Continue(())
         });
         assert!(read.is_ok(), "{read:?}");
         let (left, right) = found.split_at(2);

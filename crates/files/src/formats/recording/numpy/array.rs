@@ -14,6 +14,7 @@
 //! a note reports when the header counts more. A file of any other array must have exactly the bytes that its header
 //! requires.
 
+use crate::formats::recording::error::unshaped;
 use std::io::{ErrorKind, Read};
 
 use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE};
@@ -21,11 +22,11 @@ use taxel_core::parameter::number::counted;
 use taxel_core::quote::shortened;
 use taxel_core::sensor::MAX_SIDE;
 
+use crate::error::ReadError;
 use crate::formats::job::too_large;
 use crate::formats::npy::{self, Header, NumberType};
-use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink, Stop,
 };
 use crate::formats::recording::size::frame_size;
 use crate::formats::seconds::since;
@@ -37,13 +38,12 @@ const LONGEST_HEADER: usize = 1 << 20;
 /// spread over the file.
 const LARGEST_FORTRAN: u64 = 1 << 28;
 
-pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
-    let wrong =
-        || RecordingError::damaged("not a numpy array: expected a header of version 1 to 3");
+pub(super) fn header(input: &mut impl Read) -> Result<Header, ReadError> {
+    let wrong = || ReadError::new("not a numpy array: expected a header of version 1 to 3");
     let mut start = [0; 8];
     let mut whole = |bytes: &mut [u8]| match input.read_exact(bytes) {
         Err(error) if error.kind() == ErrorKind::UnexpectedEof => Err(wrong()),
-        read => read.map_err(RecordingError::from),
+        read => read.map_err(ReadError::from),
     };
     whole(&mut start)?;
     let mut bytes = start.to_vec();
@@ -78,13 +78,13 @@ pub(super) struct ArrayLayout {
 }
 
 impl ArrayLayout {
-    pub(super) fn of(header: &Header, options: ReadOptions) -> Result<Self, RecordingError> {
+    pub(super) fn of(header: &Header, options: &ReadOptions) -> Result<Self, ReadError> {
         if header.code.starts_with('[') {
             return Self::of_records(header);
         }
         let number = NumberType::of(&header.code).ok_or_else(|| {
             let found = shortened(&header.code);
-            RecordingError::damaged(format!("numbers of type {found:?}, expected real ones"))
+            ReadError::new(format!("numbers of type {found:?}, expected real ones"))
         })?;
         let (frames, size) = frames_of_axes(&header.shape, options)?;
         let (rows, columns) = (size.rows(), size.columns());
@@ -103,11 +103,11 @@ impl ArrayLayout {
         })
     }
 
-    fn of_records(header: &Header) -> Result<Self, RecordingError> {
+    fn of_records(header: &Header) -> Result<Self, ReadError> {
         let (Some(mut record), &[counted]) = (RecordLayout::of(&header.code), &header.shape[..])
         else {
             let message = "records other than taxel writes, expected time, number and values";
-            return Err(RecordingError::damaged(message));
+            return Err(ReadError::new(message));
         };
         record.counted = counted;
         Ok(Self {
@@ -136,7 +136,7 @@ impl ArrayLayout {
     }
 }
 
-fn frames_of_axes(axes: &[u64], options: ReadOptions) -> Result<(u64, FrameSize), RecordingError> {
+fn frames_of_axes(axes: &[u64], options: &ReadOptions) -> Result<(u64, FrameSize), ReadError> {
     let asked = options.size;
     let cells = asked.map(|size| size.cells() as u64);
     let found = match *axes {
@@ -148,11 +148,11 @@ fn frames_of_axes(axes: &[u64], options: ReadOptions) -> Result<(u64, FrameSize)
             (Some(asked), Some(own)) if asked == own => Some((1, own)),
             (Some(asked), _) if cells == Some(columns) => Some((rows, asked)),
             (None, Some(own)) => Some((1, own)),
-            (None, None) => return Err(RecordingError::Shape { values: columns }),
+            (None, None) => return Err(unshaped(columns, None)),
             _ => None,
         },
         [length] if cells == Some(length) => asked.map(|asked| (1, asked)),
-        [length] if cells.is_none() => return Err(RecordingError::Shape { values: length }),
+        [length] if cells.is_none() => return Err(unshaped(length, None)),
         _ => None,
     };
     let found = found.filter(|&(_, size)| asked.is_none_or(|asked| asked == size));
@@ -161,7 +161,7 @@ fn frames_of_axes(axes: &[u64], options: ReadOptions) -> Result<(u64, FrameSize)
         let asked = asked.map_or(String::new(), |asked| {
             format!(", and {} were named", asked.in_words())
         });
-        RecordingError::damaged(format!(
+        ReadError::new(format!(
             "an array of shape ({}), expected frames, rows and columns, at most 512 rows and columns{asked}",
             axes.join(", ")
         ))
@@ -237,17 +237,17 @@ impl RecordLayout {
 
 pub(in crate::formats::recording) fn read(
     input: &mut impl Read,
-    options: ReadOptions,
+    options: &ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let layout = ArrayLayout::of(&header(input)?, options)?;
     let info = ChannelInfo {
         size: Some(layout.size()),
         ..ChannelInfo::default()
     };
-    sink(RecordingEvent::Channel(&info))?;
+    sink.event(RecordingEvent::Channel(&info))?;
     if let Some(note) = layout.note() {
-        sink(RecordingEvent::Note(note))?;
+        sink.event(RecordingEvent::Note(note))?;
     }
     frames(input, &layout, 0, &[], sink)?;
     if layout.record.is_none() {
@@ -257,11 +257,11 @@ pub(in crate::formats::recording) fn read(
 }
 
 /// Reads the end of an array after its frames. For an entry of an archive, only this verifies the checksum.
-pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), RecordingError> {
+pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), ReadError> {
     if fill(input, &mut [0])? > 0 {
         let frames = counted(layout.frames, "frame");
         let message = format!("more bytes than the header states for {frames}");
-        return Err(RecordingError::damaged(message));
+        return Err(ReadError::new(message));
     }
     Ok(())
 }
@@ -278,7 +278,7 @@ pub(super) fn frames(
     channel: usize,
     times: &[f64],
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let mut frame = Frame::new(layout.size);
     frame.channel = channel;
     if layout.fortran {
@@ -298,7 +298,7 @@ pub(super) fn frames(
             let (records, counted) = (frame.number, record.counted);
             if records < counted {
                 let note = RecordingNote::Cut { records, counted };
-                sink(RecordingEvent::Note(&note))?;
+                sink.event(RecordingEvent::Note(&note))?;
             }
             return Ok(());
         }
@@ -338,15 +338,15 @@ fn moment(
     (time, label.and_then(|label| i64::try_from(label).ok()))
 }
 
-fn short(frame: u64, frames: u64) -> RecordingError {
+fn short(frame: u64, frames: u64) -> ReadError {
     let frames = counted(frames, "frame");
-    RecordingError::damaged(format!(
+    ReadError::new(format!(
         "the file ends inside frame {frame}, expected {frames}"
     ))
 }
 
 /// Reports a frame if all its values are finite or NaN.
-fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
+fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let wrong = frame
         .values()
         .iter()
@@ -358,13 +358,13 @@ fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
         let message = format!(
             "frame {number}, row {row}, column {column}: {found}, or NaN where there is no cell"
         );
-        return Err(RecordingError::damaged(message).into());
+        return Err(ReadError::new(message).into());
     }
-    sink(RecordingEvent::Frame(frame))
+    sink.event(RecordingEvent::Frame(frame))
 }
 
 /// Fills the bytes as far as the input reaches; returns the number of bytes read.
-pub(super) fn fill(input: &mut impl Read, bytes: &mut [u8]) -> Result<usize, RecordingError> {
+pub(super) fn fill(input: &mut impl Read, bytes: &mut [u8]) -> Result<usize, ReadError> {
     let mut length = 0;
     while length < bytes.len() {
         match input.read(&mut bytes[length..]) {
@@ -384,14 +384,14 @@ fn fortran(
     mut frame: Frame,
     times: &[f64],
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let size = layout.number.size();
     let frame_bytes = layout.size.cells() * size;
     let expected = (frame_bytes as u64).checked_mul(layout.frames);
     let Some(expected) = expected.filter(|&bytes| bytes <= LARGEST_FORTRAN) else {
         let message =
             "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it";
-        return Err(RecordingError::damaged(message).into());
+        return Err(ReadError::new(message).into());
     };
     let mut bytes = Vec::new();
     input.by_ref().take(expected).read_to_end(&mut bytes)?;

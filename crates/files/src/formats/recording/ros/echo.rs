@@ -17,12 +17,13 @@
 //! offset of a layout (`data_offset`) are not cells. Rows and columns are the first two sizes of the layout, if all
 //! others are 1; otherwise they must be given. Source: the output of the program.
 
+use crate::formats::recording::error::{in_field, in_line, unshaped};
 use std::io::BufRead;
 
 use taxel_core::frame::{Frame, FrameSize, MAX_FRAME_CELLS};
 
-use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, Sink};
+use crate::error::ReadError;
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink, Stop};
 use crate::formats::recording::size::{StreamSize, arranged, matrix_size};
 use crate::formats::recording::text::{self, Field, TextLines};
 
@@ -239,28 +240,28 @@ pub(in crate::formats) fn size(
     expected: &mut StreamSize,
     named: Option<FrameSize>,
     line: u64,
-) -> Result<FrameSize, RecordingError> {
+) -> Result<FrameSize, ReadError> {
     let values = message.cells().len();
     let Some(size) = message.size_with(named) else {
         expected.pass_torn();
         let values = values as u64;
-        return Err(RecordingError::Shape { values });
+        return Err(unshaped(values, None));
     };
     if values != size.cells() {
         expected.pass_torn();
         return Err(text::wrong_count(line, values, size.cells()));
     }
     let admitted = expected.admit(size);
-    admitted.map_err(|message| RecordingError::in_line(line, message))?;
+    admitted.map_err(|message| in_line(line, message))?;
     Ok(size)
 }
 
 /// Reads a recording. A message that is wrong anywhere is read up to its end: the next one may be right.
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
-    options: ReadOptions,
+    options: &ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     let mut message = RosMessage::default();
     let mut frame = Frame::default();
@@ -277,20 +278,18 @@ pub(in crate::formats::recording) fn read(
         let error = match state {
             RosLine::More => continue,
             RosLine::Whole if ended && !message.begun() => return Ok(()),
-            RosLine::Whole if message.is_open() && ended => {
-                Some(RecordingError::in_line(number + 1, UNENDED))
-            }
+            RosLine::Whole if message.is_open() && ended => Some(in_line(number + 1, UNENDED)),
             RosLine::Cut => {
                 let text = "the echo leaves out values ('...'): record it with --full-length";
-                Some(RecordingError::in_line(number, text))
+                Some(in_line(number, text))
             }
             RosLine::Wrong(column) => {
                 let mistake = state.mistake();
-                mistake.map(|text| RecordingError::in_field(number, column, text))
+                mistake.map(|text| in_field(number, column, text))
             }
             RosLine::Whole | RosLine::Unended => {
                 let mistake = state.mistake();
-                mistake.map(|text| RecordingError::in_line(number, text))
+                mistake.map(|text| in_line(number, text))
             }
         };
         wrong = wrong.or(error);
@@ -303,7 +302,7 @@ pub(in crate::formats::recording) fn read(
         };
         match read {
             Ok(size) => give(&message, size, &mut frame, sink)?,
-            Err(error) => options.damage(error, lines.line(), sink)?,
+            Err(error) => sink.damage(options, error, lines.line())?,
         }
         message.clear();
         if ended {
@@ -317,17 +316,17 @@ fn give(
     size: FrameSize,
     frame: &mut Frame,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     if frame.number == 0 {
         let info = ChannelInfo {
             size: Some(size),
             ..ChannelInfo::default()
         };
-        sink(RecordingEvent::Channel(&info))?;
+        sink.event(RecordingEvent::Channel(&info))?;
     }
     frame.reset(size);
     frame.values_mut().copy_from_slice(message.cells());
-    sink(RecordingEvent::Frame(frame))?;
+    sink.event(RecordingEvent::Frame(frame))?;
     frame.number += 1;
     Ok(())
 }

@@ -27,12 +27,12 @@ use std::rc::Rc;
 use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE};
 use taxel_core::parameter::number::counted;
 
+use crate::error::ReadError;
 use crate::formats::job::too_large;
 use crate::formats::npy::{Dtype, NumberType};
 use crate::formats::recording::channels::ChannelTable;
-use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
+    ChannelInfo, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink, Stop,
 };
 use crate::formats::recording::ros::records::{McapRecord, each_record};
 use crate::formats::recording::size::{arranged, changed, frame_size, matrix_size};
@@ -43,7 +43,7 @@ const MOST_TOPICS: usize = 4096;
 
 /// The state of the reader: the names in the records so far, and the frame that is being filled.
 struct McapState<'a, 'b> {
-    options: ReadOptions,
+    options: &'a ReadOptions,
     /// The schemas so far, by number; None for a schema whose messages have no frames.
     schemas: HashMap<u16, Option<MessageKind>>,
     /// The topics whose messages have frames, by number: the name, and the kind of message.
@@ -58,9 +58,9 @@ struct McapState<'a, 'b> {
 
 pub(in crate::formats::recording) fn read(
     input: &mut impl Read,
-    options: ReadOptions,
+    options: &ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let mut state = McapState {
         options,
         schemas: HashMap::new(),
@@ -76,20 +76,20 @@ pub(in crate::formats::recording) fn read(
     if state.start.is_none() {
         let message = "no messages with frames, expected std_msgs/*MultiArray, sensor_msgs/Image or \
                        tactile_msgs/TactileState";
-        return Err(RecordingError::damaged(message).into());
+        return Err(ReadError::new(message).into());
     }
     Ok(())
 }
 
 /// Refuses a name that is too long: compressed, thousands of names of many megabytes each take little space in a
 /// file.
-fn check_name(name: &str) -> Result<(), RecordingError> {
+fn check_name(name: &str) -> Result<(), ReadError> {
     if name.len() > LONGEST_NAME {
         let message = format!(
             "a name of {} bytes, expected {LONGEST_NAME} at most",
             name.len()
         );
-        return Err(RecordingError::damaged(message));
+        return Err(ReadError::new(message));
     }
     Ok(())
 }
@@ -97,7 +97,7 @@ fn check_name(name: &str) -> Result<(), RecordingError> {
 impl McapState<'_, '_> {
     /// Takes a record. A number that was named before keeps its meaning: the summary at the end repeats schemas and
     /// channels.
-    fn record(&mut self, record: &McapRecord<'_>) -> Result<(), EarlyEnd> {
+    fn record(&mut self, record: &McapRecord<'_>) -> Result<(), Stop> {
         match *record {
             McapRecord::Schema { id, name } => {
                 let kind = || MessageKind::of(name);
@@ -115,7 +115,7 @@ impl McapState<'_, '_> {
                     check_name(topic)?;
                     if self.topics.len() == MOST_TOPICS {
                         let message = format!("more than {MOST_TOPICS} topics");
-                        return Err(RecordingError::damaged(message).into());
+                        return Err(ReadError::new(message).into());
                     }
                     self.topics.insert(id, (topic.into(), kind));
                 }
@@ -135,15 +135,15 @@ impl McapState<'_, '_> {
                 None | Some((_, MessageKind::Image)) => {}
                 Some((topic, _)) => {
                     let message = format!("{topic}: a message of more than 16 MiB");
-                    return Err(RecordingError::damaged(message).into());
+                    return Err(ReadError::new(message).into());
                 }
             },
         }
         Ok(())
     }
 
-    fn message(&mut self, topic: &str, kind: MessageKind, data: &[u8]) -> Result<(), EarlyEnd> {
-        let broken = || RecordingError::damaged(format!("{topic}: a message is broken"));
+    fn message(&mut self, topic: &str, kind: MessageKind, data: &[u8]) -> Result<(), Stop> {
+        let broken = || ReadError::new(format!("{topic}: a message is broken"));
         let mut cdr = CdrReader::new(data).ok_or_else(broken)?;
         match kind {
             MessageKind::Array(dtype) => {
@@ -170,7 +170,7 @@ impl McapState<'_, '_> {
         }
     }
 
-    fn give(&mut self, name: &str, size: Option<FrameSize>) -> Result<(), EarlyEnd> {
+    fn give(&mut self, name: &str, size: Option<FrameSize>) -> Result<(), Stop> {
         let found = self.values.len();
         // Rows and columns that are given for one channel need not fit the others.
         let named = self.options.size.filter(|asked| asked.cells() == found);
@@ -184,9 +184,9 @@ impl McapState<'_, '_> {
             ..ChannelInfo::default()
         };
         let channel = self.channels.index_of(Some(name), info);
-        let channel = channel.map_err(RecordingError::damaged)?;
+        let channel = channel.map_err(ReadError::new)?;
         for info in self.channels.take_new() {
-            (self.sink)(RecordingEvent::Channel(info))?;
+            self.sink.event(RecordingEvent::Channel(info))?;
         }
         #[expect(clippy::cast_precision_loss, reason = "a difference in nanoseconds")]
         let seconds = (i128::from(self.time) - i128::from(start)) as f64 / 1e9;
@@ -196,9 +196,9 @@ impl McapState<'_, '_> {
         let mut values = self.values.iter();
         if let Some(value) = values.find(|value| value.abs() > LARGEST_VALUE) {
             let message = format!("{name}: a value is {}", too_large(*value));
-            return Err(RecordingError::damaged(message).into());
+            return Err(ReadError::new(message).into());
         }
-        (self.sink)(RecordingEvent::Frame(&self.frame))
+        self.sink.event(RecordingEvent::Frame(&self.frame))
     }
 
     /// Fills the frame with the values; `before` is the size of the channel's first frame.
@@ -207,13 +207,13 @@ impl McapState<'_, '_> {
         name: &str,
         size: Option<FrameSize>,
         before: Option<FrameSize>,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<(), ReadError> {
         let found = self.values.len();
         match size {
             Some(size) if size.cells() == found => {
                 if let Some(before) = before.filter(|&before| before != size) {
                     let message = format!("{name}: {}", changed(size, before));
-                    return Err(RecordingError::damaged(message));
+                    return Err(ReadError::new(message));
                 }
                 self.frame.reset(size);
                 self.frame.values_mut().copy_from_slice(&self.values);
@@ -224,7 +224,7 @@ impl McapState<'_, '_> {
                     counted(found as u64, "value"),
                     size.cells()
                 );
-                return Err(RecordingError::damaged(message));
+                return Err(ReadError::new(message));
             }
             // The values can only be counted: rows and columns must be given.
             None => self.frame.reset(FrameSize::SMALLEST),

@@ -14,8 +14,8 @@ use flate2::CrcReader;
 use taxel_core::index::wide;
 use taxel_core::quote::shortened_message;
 
-use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::EarlyEnd;
+use crate::error::ReadError;
+use crate::formats::recording::event::Stop;
 use crate::formats::recording::ros::MCAP_MAGIC;
 
 const LARGEST_RECORD: u64 = 1 << 24;
@@ -97,8 +97,8 @@ impl<'a> McapRecord<'a> {
 /// Reads a file, and reports its schemas, channels and messages to `each`.
 pub(super) fn each_record(
     input: &mut dyn Read,
-    each: &mut dyn FnMut(McapRecord<'_>) -> Result<(), EarlyEnd>,
-) -> Result<(), EarlyEnd> {
+    each: &mut dyn FnMut(McapRecord<'_>) -> Result<(), Stop>,
+) -> Result<(), Stop> {
     let mut input = SummedInput::new(input);
     let mut reader = RecordReader {
         record: Vec::new(),
@@ -108,7 +108,7 @@ pub(super) fn each_record(
         .and_then(|()| reader.records(&mut input, Container::File));
     read.map_err(|error| match error {
         RecordsError::Torn => {
-            RecordingError::damaged("the file ends without a footer: it was not closed").into()
+            ReadError::new("the file ends without a footer: it was not closed").into()
         }
         RecordsError::Other(end) => end,
     })
@@ -116,7 +116,7 @@ pub(super) fn each_record(
 
 struct RecordReader<'a> {
     record: Vec<u8>,
-    each: &'a mut dyn FnMut(McapRecord<'_>) -> Result<(), EarlyEnd>,
+    each: &'a mut dyn FnMut(McapRecord<'_>) -> Result<(), Stop>,
 }
 
 type SummedInput<'a> = CrcReader<&'a mut dyn Read>;
@@ -131,18 +131,18 @@ enum Container {
 enum RecordsError {
     /// The bytes end within a record, or the file ends before its footer.
     Torn,
-    Other(EarlyEnd),
+    Other(Stop),
 }
 
-impl From<EarlyEnd> for RecordsError {
-    fn from(end: EarlyEnd) -> Self {
+impl From<Stop> for RecordsError {
+    fn from(end: Stop) -> Self {
         Self::Other(end)
     }
 }
 
 impl RecordsError {
     fn damaged(message: impl Into<String>) -> Self {
-        Self::Other(RecordingError::damaged(message).into())
+        Self::Other(ReadError::new(message).into())
     }
 
     /// Converts an error among the records of a chunk: if all bytes of the chunk were there, the file is not torn.

@@ -25,20 +25,20 @@
 //! padded, since a missing value in the middle would shift all later ones. If wrong frames may be left out, that is a
 //! line, or all rows up to an empty line; without empty lines between frames, the next one cannot be found.
 
+use crate::formats::recording::error::{in_line, unknown_format};
 use std::io::{BufRead, Seek};
 
 use taxel_core::frame::{Frame, FrameSize};
 use taxel_core::parameter::number::counted;
 use taxel_core::quote::shortened;
 
-use crate::formats::recording::error::RecordingError;
+use crate::error::ReadError;
 use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, RecordingSink, Sink,
-    until_enough,
+    ChannelInfo, ReadOptions, ReadState, RecordingEvent, RecordingNote, RecordingSink, Sink, Stop,
 };
 use crate::formats::recording::size::side;
 use crate::formats::recording::table::layout::{
-    EarlierLayout, FrameFields, LineLayout, TableLayout, layout, layout_with_header,
+    EarlierLayout, FrameFields, LineLayout, TableLayout, layout,
 };
 use crate::formats::recording::text::{
     self, Field, Separator, TextLines, is_blank, is_comment, whole,
@@ -48,14 +48,11 @@ use crate::formats::recording::time::{self, FrameClock, Time, TimeUnit};
 /// Reads a recording. Its arrangement is kept in `earlier`, for the next content of a followed file.
 pub(in crate::formats::recording) fn read(
     mut input: impl BufRead + Seek,
-    options: ReadOptions,
+    options: &ReadOptions,
     earlier: &mut EarlierLayout,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
-    let layout = match &earlier.0 {
-        Some(earlier) => layout_after(&mut input, options, earlier.continued())?,
-        None => layout(&mut input, options)?,
-    };
+) -> Result<(), Stop> {
+    let layout = layout(&mut input, options)?;
     let layout = &*earlier.0.insert(layout);
     input.rewind()?;
     let info = ChannelInfo {
@@ -64,9 +61,9 @@ pub(in crate::formats::recording) fn read(
         start: layout.start.clone(),
         ..ChannelInfo::default()
     };
-    sink(RecordingEvent::Channel(&info))?;
+    sink.event(RecordingEvent::Channel(&info))?;
     if let Some(note) = &layout.note {
-        sink(RecordingEvent::Note(note))?;
+        sink.event(RecordingEvent::Note(note))?;
     }
     read_arranged(input, layout, options, sink)
 }
@@ -74,9 +71,9 @@ pub(in crate::formats::recording) fn read(
 fn read_arranged(
     input: impl BufRead,
     layout: &TableLayout,
-    options: ReadOptions,
+    options: &ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     match &layout.lines {
         LineLayout::Row { parted } => {
@@ -87,58 +84,13 @@ fn read_arranged(
     }
 }
 
-/// Finds the arrangement of a table in a file that held another one, arranged like `earlier`, before. What cannot be
-/// arranged otherwise continues the earlier table.
-fn layout_after(
-    input: &mut (impl BufRead + Seek),
-    options: ReadOptions,
-    earlier: TableLayout,
-) -> Result<TableLayout, RecordingError> {
-    let fitting = first_fitting(input, &earlier)?;
-    input.rewind()?;
-    let own = match fitting {
-        Some(0) => return Ok(earlier),
-        // The line above is a header, or torn.
-        Some(_) => layout_with_header(input, options),
-        None => layout(input, options),
-    };
-    match own {
-        Err(error @ RecordingError::Io(_)) => Err(error),
-        own => Ok(own.unwrap_or(earlier)),
-    }
-}
-
-/// Returns the index of the first frame that is arranged like this, if it is one of the first two.
-fn first_fitting(
-    input: &mut impl BufRead,
-    layout: &TableLayout,
-) -> Result<Option<usize>, RecordingError> {
-    let options = ReadOptions::default().leaving_out();
-    let (mut wrong, mut fitting) = (0, None);
-    let read = read_arranged(input, layout, options, &mut |event| {
-        match event {
-            RecordingEvent::Frame(_) => fitting = Some(wrong),
-            RecordingEvent::Damage { .. } => wrong += 1,
-            _ => {}
-        }
-        if fitting.is_some() || wrong == 2 {
-            return Err(EarlyEnd::Enough);
-        }
-        Ok(())
-    });
-    match read {
-        Err(EarlyEnd::Failed(error @ RecordingError::Io(_))) => Err(error),
-        _ => Ok(fitting),
-    }
-}
-
 /// Reads a text that is known to be a single frame, one line per row, up to its end or an empty line. As a recording,
 /// a single row would be a frame of unknown shape, and a single column not even a table.
 ///
 /// # Errors
-/// Returns [`RecordingError::Unknown`] if the text does not begin with a number or is larger than a frame,
+/// Returns [`unknown_format()`] if the text does not begin with a number or is larger than a frame,
 /// and an error if a row has another number of values than the first, or anything other than numbers.
-pub fn read_rows(text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<(), RecordingError> {
+pub fn read_rows(text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<(), ReadError> {
     let mut lines = TextLines::new(text);
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let first = lines.line();
@@ -154,21 +106,24 @@ pub fn read_rows(text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<(), Re
     while lines.advance()? && !is_blank(lines.line()) {
         rows += usize::from(!is_comment(lines.line()));
     }
-    let size = FrameSize::of_sides(columns, side(rows)).ok_or(RecordingError::Unknown)?;
+    let size = FrameSize::of_sides(columns, side(rows)).ok_or(unknown_format())?;
     let frame = FrameInRows::new(separator, size, false);
     let options = ReadOptions::default();
-    until_enough(consumer, |sink| {
-        frame.read(&mut TextLines::new(text), options, sink)
-    })
+    let mut state = ReadState::default();
+    let sink = &mut Sink::new(consumer, &mut state);
+    match frame.read(&mut TextLines::new(text), &options, sink) {
+        Ok(()) | Err(Stop::Enough) => Ok(()),
+        Err(Stop::Failed(error)) => Err(error),
+    }
 }
 
 fn frames(
     lines: &mut TextLines<impl BufRead>,
     layout: &TableLayout,
     fields: &FrameFields,
-    options: ReadOptions,
+    options: &ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     // The index of the cell in each field; None if the field is not a cell.
     let mut slots = vec![None; fields.count];
     for (slot, &field) in fields.cells.iter().enumerate() {
@@ -185,15 +140,15 @@ fn frames(
         let time = match fields.fill(&slots, &mut frame, layout.separator, (line, number)) {
             Ok(time) => time,
             Err(error) => {
-                options.damage(error, line, sink)?;
+                sink.damage(options, error, line)?;
                 continue;
             }
         };
         frame.time = clock.seconds(time);
         if let Some(note) = clock.take_note(frame.number) {
-            sink(RecordingEvent::Note(&note))?;
+            sink.event(RecordingEvent::Note(&note))?;
         }
-        sink(RecordingEvent::Frame(&frame))?;
+        sink.event(RecordingEvent::Frame(&frame))?;
         frame.number += 1;
     }
     Ok(())
@@ -209,7 +164,7 @@ impl FrameFields {
         frame: &mut Frame,
         separator: Separator,
         (line, number): (&'a [u8], u64),
-    ) -> Result<TimeText<'a>, RecordingError> {
+    ) -> Result<TimeText<'a>, ReadError> {
         let (mut found, mut label, mut time) = (0, None, TimeText::default());
         let own = self.time.map(|time| time.field);
         let rest = self.time.and_then(|time| time.rest).map(|(rest, _)| rest);
@@ -269,9 +224,9 @@ impl FrameInRows {
     fn read(
         mut self,
         lines: &mut TextLines<impl BufRead>,
-        options: ReadOptions,
+        options: &ReadOptions,
         sink: &mut Sink<'_>,
-    ) -> Result<(), EarlyEnd> {
+    ) -> Result<(), Stop> {
         loop {
             let ended = !lines.advance()?;
             let (line, number) = (lines.line(), lines.number());
@@ -281,13 +236,13 @@ impl FrameInRows {
                 continue;
             } else {
                 self.row(line, number)
-                    .map_err(EarlyEnd::from)
+                    .map_err(Stop::from)
                     // Without empty lines, frames are separated by their number of rows alone.
                     .and_then(|()| if self.parted { Ok(()) } else { self.give(sink) })
             };
             match read {
-                Err(EarlyEnd::Failed(error)) if self.parted => {
-                    options.damage(error, line, sink)?;
+                Err(Stop::Failed(error)) if self.parted => {
+                    sink.damage(options, error, line)?;
                     self.found = 0;
                     self.skipping = !is_blank(line);
                 }
@@ -301,7 +256,7 @@ impl FrameInRows {
 
     /// Ends the frame at an empty line or at the end of the file. There may be any number of empty lines between
     /// frames.
-    fn end(&mut self, number: u64, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
+    fn end(&mut self, number: u64, sink: &mut Sink<'_>) -> Result<(), Stop> {
         self.skipping = false;
         self.give(sink)?;
         if self.found == 0 {
@@ -310,24 +265,24 @@ impl FrameInRows {
         let (found, rows) = (self.found, self.frame.rows());
         let found = counted(found, "row");
         let message = format!("the frame ends after {found}, expected {rows}");
-        Err(RecordingError::in_line(number, message).into())
+        Err(in_line(number, message).into())
     }
 
-    fn give(&mut self, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
+    fn give(&mut self, sink: &mut Sink<'_>) -> Result<(), Stop> {
         if self.found == self.frame.rows() {
             self.frame.time = self.time.map(|time| self.clock.since_first(time));
-            sink(RecordingEvent::Frame(&self.frame))?;
+            sink.event(RecordingEvent::Frame(&self.frame))?;
             self.frame.number += 1;
             self.found = 0;
         }
         Ok(())
     }
 
-    fn row(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
+    fn row(&mut self, line: &[u8], number: u64) -> Result<(), ReadError> {
         let (rows, columns) = (self.frame.rows(), usize::from(self.frame.columns()));
         if self.found == rows {
             let message = format!("another row, expected an empty line after {rows} of them");
-            return Err(RecordingError::in_line(number, message));
+            return Err(in_line(number, message));
         }
         // Each row may have its timestamp; that of the first row counts.
         let (moment, line) = match time::leading(line) {

@@ -10,11 +10,12 @@
 //! Numbers of rows and columns may start anywhere, but none may be missing: otherwise the names do not describe
 //! cells.
 
+use crate::formats::recording::error::unknown_format;
 use std::io::BufRead;
 
 use taxel_core::frame::FrameSize;
 
-use crate::formats::recording::error::RecordingError;
+use crate::error::ReadError;
 use crate::formats::recording::table::delimited::TimeFields;
 use crate::formats::recording::text::{Separator, TextLines, is_blank, is_comment, is_none};
 use crate::formats::recording::time;
@@ -25,11 +26,11 @@ use crate::formats::recording::time::field_role::{
 /// The most fields beside the cells.
 pub(super) const MOST_BESIDE: usize = 16;
 
-pub(super) fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>, RecordingError> {
+pub(super) fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>, ReadError> {
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let first = lines.line();
     if is_blank(first) || is_comment(first) {
-        return Err(RecordingError::Unknown);
+        return Err(unknown_format());
     }
     Ok(first.to_owned())
 }

@@ -11,12 +11,13 @@
 //! would shift all cells by one. A timestamp is the time of its frame, unless a column of numbers gives the time; other
 //! texts are ignored.
 
+use crate::formats::recording::error::{in_line, unknown_format, unshaped, unsized_line};
 use std::io::BufRead;
 
 use taxel_core::frame::{FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 use taxel_core::parameter::number::{counted, grouped};
 
-use crate::formats::recording::error::RecordingError;
+use crate::error::ReadError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::size::side;
 use crate::formats::recording::table::delimited::TimeFields;
@@ -32,31 +33,24 @@ use crate::formats::recording::time::{self, TimeUnit};
 
 pub(super) fn layout(
     input: &mut impl BufRead,
-    options: ReadOptions,
-) -> Result<TableLayout, RecordingError> {
+    options: &ReadOptions,
+) -> Result<TableLayout, ReadError> {
     layout_or(input, options, |lines, separator, read| {
         of_numbers(lines, separator, read, options)
     })
-}
-
-pub(super) fn layout_with_header(
-    input: &mut impl BufRead,
-    options: ReadOptions,
-) -> Result<TableLayout, RecordingError> {
-    layout_or(input, options, |_, _, _| Err(RecordingError::Unknown))
 }
 
 /// Finds the arrangement of a table from its header, or with `unnamed` if it has none: it gets the lines behind those
 /// that were read, the separator, and the number of the first line with the lines that were read.
 fn layout_or<R: BufRead>(
     input: &mut R,
-    options: ReadOptions,
+    options: &ReadOptions,
     unnamed: impl FnOnce(
         &mut TextLines<&mut R>,
         Separator,
         (u64, &[&[u8]]),
-    ) -> Result<TableLayout, RecordingError>,
-) -> Result<TableLayout, RecordingError> {
+    ) -> Result<TableLayout, ReadError>,
+) -> Result<TableLayout, ReadError> {
     let mut lines = TextLines::new(input);
     let first = first_line(&mut lines)?;
     let separator = Separator::of(&first);
@@ -84,7 +78,7 @@ fn layout_or<R: BufRead>(
     header.units = units_below(&mut lines, &header, separator)?;
     // If words stand below words, it is not a table.
     if !is_mostly_numeric(separator, lines.line()) {
-        return Err(RecordingError::Unknown);
+        return Err(unknown_format());
     }
     if has_words && header.units.is_none() && is_like_next(&header, separator, lines.line()) {
         let next = lines.line().to_owned();
@@ -101,7 +95,7 @@ fn layout_or<R: BufRead>(
 }
 
 /// Refuses a line with too many fields before they take memory.
-fn check_width(separator: Separator, line: &[u8], number: u64) -> Result<(), RecordingError> {
+fn check_width(separator: Separator, line: &[u8], number: u64) -> Result<(), ReadError> {
     let most = MAX_FRAME_CELLS + MOST_BESIDE;
     if separator.fields(line).nth(most).is_none() {
         return Ok(());
@@ -110,7 +104,7 @@ fn check_width(separator: Separator, line: &[u8], number: u64) -> Result<(), Rec
         "more than {} fields, expected at most {MAX_FRAME_SIDE} × {MAX_FRAME_SIDE} cells and {MOST_BESIDE} beside them",
         grouped(most as u64)
     );
-    Err(RecordingError::in_line(number, message))
+    Err(in_line(number, message))
 }
 
 /// Reads up to the first line of values below the names of cells. If the line between them holds words, one field for
@@ -119,7 +113,7 @@ fn units_below(
     lines: &mut TextLines<impl BufRead>,
     header: &TableHeader<'_>,
     separator: Separator,
-) -> Result<Option<(u64, Vec<String>)>, RecordingError> {
+) -> Result<Option<(u64, Vec<String>)>, ReadError> {
     let names = &header.names;
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let fields = separator.fields_of(lines.line(), names.len());
@@ -146,8 +140,8 @@ fn with_header(
     mut header: TableHeader<'_>,
     separator: Separator,
     first: &[u8],
-    options: ReadOptions,
-) -> Result<TableLayout, RecordingError> {
+    options: &ReadOptions,
+) -> Result<TableLayout, ReadError> {
     let (named, number) = (header.cells.take(), header.number);
     let roles = roles(&header.names);
     let (size, cells, note) = named_cells(named, &roles, number, options)?;
@@ -200,15 +194,15 @@ fn named_cells(
     named: Option<NamedCells>,
     roles: &[Option<FieldRole>],
     number: u64,
-    options: ReadOptions,
-) -> Result<CellFields, RecordingError> {
+    options: &ReadOptions,
+) -> Result<CellFields, ReadError> {
     match named {
         Some(NamedCells::Grid(size, fields)) => match options.size {
             Some(asked) if asked != size => {
                 let (rows, columns) = (asked.rows(), asked.columns());
                 let named = size.in_words();
                 let message = format!("the header names {named} cells, not {rows} of {columns}");
-                Err(RecordingError::in_line(number, message))
+                Err(in_line(number, message))
             }
             _ => Ok((size, fields, None)),
         },
@@ -219,7 +213,7 @@ fn named_cells(
             }
             let side = (1..=MAX_FRAME_SIDE).find(|side| usize::from(*side).pow(2) == length);
             let values = length as u64;
-            let size = FrameSize::of_sides(side, side).ok_or(RecordingError::Shape { values })?;
+            let size = FrameSize::of_sides(side, side).ok_or(unshaped(values, None))?;
             let side = size.rows();
             Ok((size, fields, Some(RecordingNote::Square { side })))
         }
@@ -227,14 +221,14 @@ fn named_cells(
             let found = counted(found as u64, "cell");
             let (size, cells) = (size.in_words(), size.cells());
             let message = format!("the header names {found}, but {size} have {cells}");
-            Err(RecordingError::in_line(number, message))
+            Err(in_line(number, message))
         }
         None => {
             let leading = roles.iter().take_while(|role| role.is_some()).count();
             let trailing = roles.iter().rev().take_while(|role| role.is_some()).count();
             let end = roles.len().saturating_sub(trailing).max(leading);
             let values = (end - leading) as u64;
-            let size = options.size.ok_or(RecordingError::Shape { values })?;
+            let size = options.size.ok_or(unshaped(values, None))?;
             Ok((size, (leading..end).collect(), None))
         }
     }
@@ -272,18 +266,6 @@ pub(super) struct FrameFields {
 /// program that writes it may continue without a header, in the middle of a line.
 #[derive(Debug, Default)]
 pub struct EarlierLayout(pub(super) Option<TableLayout>);
-
-impl TableLayout {
-    /// Returns the arrangement of the lines that continue the table without a header.
-    pub(super) fn continued(&self) -> Self {
-        let mut continued = self.clone();
-        continued.note = None;
-        if let LineLayout::Frame(fields) = &mut continued.lines {
-            fields.header = None;
-        }
-        continued
-    }
-}
 
 impl LineLayout {
     /// Returns the timestamp in the fields of the first frame, as it is written.
@@ -331,8 +313,8 @@ pub(super) fn of_numbers(
     lines: &mut TextLines<impl BufRead>,
     separator: Separator,
     (number, read): (u64, &[&[u8]]),
-    options: ReadOptions,
-) -> Result<TableLayout, RecordingError> {
+    options: &ReadOptions,
+) -> Result<TableLayout, ReadError> {
     let size = options.size;
     let first = UnnamedFirst::new(separator, read[0], size);
     let mut compared: Vec<Vec<u8>> = read.iter().map(|line| line.to_vec()).collect();
@@ -397,7 +379,7 @@ impl<'a> UnnamedFirst<'a> {
         lines: &[Vec<u8>],
         (block, parted): (u16, bool),
         size: Option<FrameSize>,
-    ) -> Result<TableLayout, RecordingError> {
+    ) -> Result<TableLayout, ReadError> {
         let own = self.width.filter(|_| parted && block > 1);
         let own = FrameSize::of_sides(own, Some(block));
         let (size, lines) = match (size, own) {
@@ -410,7 +392,7 @@ impl<'a> UnnamedFirst<'a> {
             (None, Some(own)) => (own, LineLayout::Row { parted }),
             (None, None) => {
                 let numbers = self.numeric.len() as u64;
-                return Err(RecordingError::Columns { numbers });
+                return Err(unsized_line(numbers));
             }
         };
         let start = match lines {
@@ -432,7 +414,7 @@ impl<'a> UnnamedFirst<'a> {
         cells: usize,
         number: u64,
         lines: &[Vec<u8>],
-    ) -> Result<FrameFields, RecordingError> {
+    ) -> Result<FrameFields, ReadError> {
         let found = self.numeric.len();
         let beside = found.checked_sub(cells);
         let beside = beside.ok_or_else(|| text::wrong_count(number, found, cells))?;
@@ -502,12 +484,12 @@ fn counts_up(lines: &[Vec<f64>], label: usize, time: usize) -> bool {
     whole(first[label]).is_some() && rises && lines.windows(2).all(is_next)
 }
 
-fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
+fn unclear(number: u64, cells: usize, beside: usize) -> ReadError {
     let beside = counted(beside as u64, "number");
     let message = format!(
         "found {beside} besides the {cells} cells, and cannot tell which: add a header line, such as frame,time,r0c0"
     );
-    RecordingError::in_line(number, message)
+    in_line(number, message)
 }
 
 /// Returns the fields of the first line of a table without names: with an empty one at the end if the line is a row or
@@ -528,7 +510,7 @@ fn first_block(
     lines: &mut TextLines<impl BufRead>,
     (read, enough): (usize, u16),
     mut take: impl FnMut(&[u8]),
-) -> Result<(u16, bool), RecordingError> {
+) -> Result<(u16, bool), ReadError> {
     let mut block = if read > 1 { 2_u16 } else { 1 };
     while block < enough && lines.advance()? {
         if is_blank(lines.line()) {

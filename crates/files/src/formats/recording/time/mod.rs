@@ -22,15 +22,31 @@ const LONGEST_STEP: f64 = 1e9;
 
 /// A unit of time; smaller units come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::formats::recording) enum TimeUnit {
+pub enum TimeUnit {
+    /// ns
     Nanoseconds,
+    /// us
     Microseconds,
+    /// ms
     Milliseconds,
+    /// s
     Seconds,
+    /// min
     Minutes,
 }
 
 impl TimeUnit {
+    /// Returns the unit of this name: s, ms, us or ns.
+    pub(in crate::formats::recording) fn named(name: &str) -> Option<Self> {
+        match name {
+            "s" => Some(Self::Seconds),
+            "ms" => Some(Self::Milliseconds),
+            "us" => Some(Self::Microseconds),
+            "ns" => Some(Self::Nanoseconds),
+            _ => None,
+        }
+    }
+
     pub(in crate::formats::recording) fn name(self) -> &'static str {
         match self {
             Self::Nanoseconds => "nanoseconds",

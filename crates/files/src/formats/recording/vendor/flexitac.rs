@@ -4,11 +4,11 @@
 //! and columns; if the caller does not either, the error says how many cells the first frame has. Torn frames are
 //! dropped and counted in a note, as no checksum could show what is wrong with them.
 
+use crate::formats::recording::error::unshaped;
 use std::io::{ErrorKind, Read};
 
-use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink, Stop,
 };
 use crate::formats::stream::{
     FLEXITAC_MARKER, StreamDecoder, StreamEvent, StreamFormat, StreamOptions,
@@ -18,23 +18,23 @@ use crate::formats::stream::{
 const CHUNK: usize = 1 << 16;
 
 pub(in crate::formats::recording) fn read(
-    input: &mut impl Read,
-    options: ReadOptions,
+    mut input: impl Read,
+    options: &ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let Some(size) = options.size else {
         let mut start = Vec::new();
-        input.take(CHUNK as u64).read_to_end(&mut start)?;
+        input.by_ref().take(CHUNK as u64).read_to_end(&mut start)?;
         let marker = |at: &usize| start[*at..].starts_with(&FLEXITAC_MARKER);
         let next = (3..start.len()).find(marker).unwrap_or(start.len());
         let values = next.saturating_sub(2) as u64;
-        return Err(RecordingError::Shape { values }.into());
+        return Err(unshaped(values, None).into());
     };
     let info = ChannelInfo {
         size: options.size,
         ..ChannelInfo::default()
     };
-    sink(RecordingEvent::Channel(&info))?;
+    sink.event(RecordingEvent::Channel(&info))?;
     let stream = StreamOptions::default()
         .with_format(StreamFormat::Flexitac)
         .with_size(size)
@@ -60,14 +60,14 @@ pub(in crate::formats::recording) fn read(
     ended?;
     let frames = decoder.counts().dropped;
     if frames > 0 {
-        sink(RecordingEvent::Note(&RecordingNote::Garbled { frames }))?;
+        sink.event(RecordingEvent::Note(&RecordingNote::Garbled { frames }))?;
     }
     Ok(())
 }
 
 /// Passes on a frame of the stream, unless the reading has ended already.
-fn pass_on(event: StreamEvent<'_>, ended: &mut Result<(), EarlyEnd>, sink: &mut Sink<'_>) {
+fn pass_on(event: StreamEvent<'_>, ended: &mut Result<(), Stop>, sink: &mut Sink<'_>) {
     if let (StreamEvent::Frame(frame), Ok(())) = (event, &*ended) {
-        *ended = sink(RecordingEvent::Frame(frame));
+        *ended = sink.event(RecordingEvent::Frame(frame));
     }
 }

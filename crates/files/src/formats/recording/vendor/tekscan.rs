@@ -23,16 +23,15 @@
 //! keys are ignored; `NOISE_THRESHOLD` is one of them, since it says what was cut off while recording, not what counts
 //! as touched. Source: exports of I-Scan and F-Scan.
 
+use crate::formats::recording::error::in_line;
 use std::io::BufRead;
 
 use taxel_core::frame::{Frame, FrameSize};
 use taxel_core::parameter::number::counted;
 use taxel_core::quote::shortened;
 
-use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{
-    ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
-};
+use crate::error::ReadError;
+use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink, Stop};
 use crate::formats::recording::size::{LengthUnit, stated};
 use crate::formats::recording::text::{
     self, Field, Separator, TextLines, decimal, is_blank, text, unpadded,
@@ -62,7 +61,7 @@ struct TekscanHeader {
 
 impl TekscanHeader {
     /// Reads a line `KEY value`. The key ends at a blank, or at a comma that a spreadsheet program put there.
-    fn line(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
+    fn line(&mut self, line: &[u8], number: u64) -> Result<(), ReadError> {
         let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
         let end = line.iter().position(is_end);
         let (key, value) = line.split_at(end.unwrap_or(line.len()));
@@ -118,13 +117,13 @@ fn spacing(value: &[u8]) -> Option<f64> {
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     let mut header = TekscanHeader::default();
     loop {
         if !lines.advance()? {
             let message = "the header has no end, expected a line 'ASCII_DATA @@'";
-            return Err(RecordingError::damaged(message).into());
+            return Err(ReadError::new(message).into());
         }
         let line = unpadded(lines.line());
         let rest = line.strip_prefix(b"ASCII_DATA");
@@ -135,7 +134,7 @@ pub(in crate::formats::recording) fn read(
     }
     let Some(size) = FrameSize::of_sides(header.columns, header.rows) else {
         let message = "the header has no ROWS or no COLS";
-        return Err(RecordingError::in_line(lines.number(), message).into());
+        return Err(in_line(lines.number(), message).into());
     };
     let mut info = header.info;
     info.size = Some(size);
@@ -143,7 +142,7 @@ pub(in crate::formats::recording) fn read(
         .column_spacing
         .zip(header.row_spacing)
         .map(|(x, y)| [x, y]);
-    sink(RecordingEvent::Channel(&info))?;
+    sink.event(RecordingEvent::Channel(&info))?;
     frames(&mut lines, size, &info, sink)
 }
 
@@ -153,7 +152,7 @@ fn frames(
     size: FrameSize,
     info: &ChannelInfo,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let mut frame = Frame::new(size);
     let is_raw = |unit: &String| unit.eq_ignore_ascii_case("raw");
     let is_raw = info.unit.as_ref().is_some_and(is_raw);
@@ -161,7 +160,7 @@ fn frames(
     for number in 0.. {
         if !lines.advance_to_content()? {
             let message = "ends here, expected another frame or '@@'";
-            return Err(RecordingError::in_line(lines.number() + 1, message).into());
+            return Err(in_line(lines.number() + 1, message).into());
         }
         if lines.line().trim_ascii_start().starts_with(b"@@") {
             break;
@@ -180,22 +179,22 @@ fn frames(
         values(lines, &mut frame)?;
         let sum = title.sum.filter(|_| is_raw);
         if let Some(note) = sum.and_then(|sum| odd_sum(&frame, sum)) {
-            sink(RecordingEvent::Note(&note))?;
+            sink.event(RecordingEvent::Note(&note))?;
         }
-        sink(RecordingEvent::Frame(&frame))?;
+        sink.event(RecordingEvent::Frame(&frame))?;
     }
     Ok(())
 }
 
 /// Reads the rows of a frame, which follow its title without an empty line. `B` and `b` mean that there is no cell.
-fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), RecordingError> {
+fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), ReadError> {
     let (rows, columns) = (frame.rows(), frame.columns());
     for row in frame.values_mut().chunks_mut(columns.into()) {
         let is_end = !lines.advance()?;
         if is_end || is_blank(lines.line()) {
             let message = format!("the frame ends here, expected {}", counted(rows, "row"));
             let number = lines.number() + u64::from(is_end);
-            return Err(RecordingError::in_line(number, message));
+            return Err(in_line(number, message));
         }
         let (line, number) = (lines.line(), lines.number());
         let fields = Separator::Byte(b',').split(line);
@@ -231,7 +230,7 @@ struct FrameTitle {
 }
 
 /// Reads `Frame 2` or `Frame 2, 0.1,, date time,,,Raw Sum=,,307`.
-fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
+fn title(line: &[u8], number: u64) -> Result<FrameTitle, ReadError> {
     let line = unpadded(line);
     let mut fields = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);
     let first = fields.next().unwrap_or(b"");
@@ -239,7 +238,7 @@ fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
     let label = label.and_then(|label| str::from_utf8(label).ok()?.parse().ok());
     let label = label.ok_or_else(|| {
         let found = shortened(&text(first));
-        RecordingError::in_line(
+        in_line(
             number,
             format!("found {found:?}, expected 'Frame' and its number, or '@@'"),
         )

@@ -25,14 +25,15 @@
 //! software counts as touched, so it is the threshold of the recording. Averages and areas are ignored: they follow
 //! from the values. Source: an export of XSENSOR's software of 2022.
 
+use crate::formats::recording::error::in_line;
 use std::io::BufRead;
 
 use taxel_core::frame::{Frame, FrameSize};
 use taxel_core::parameter::number::counted;
 
+use crate::error::ReadError;
 use crate::formats::recording::channels::ChannelTable;
-use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, EarlyEnd, RecordingEvent, Sink};
+use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink, Stop};
 use crate::formats::recording::size::{LengthUnit, stated};
 use crate::formats::recording::text::{self, Field, Separator, TextLines, decimal, text, whole};
 use crate::formats::recording::time::{self, Midnights, Moment};
@@ -100,7 +101,7 @@ struct XsensorState {
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
-) -> Result<(), EarlyEnd> {
+) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     let mut state = XsensorState::default();
     let mut channels = ChannelTable::new(MOST_SENSORS, "sensors");
@@ -116,7 +117,7 @@ pub(in crate::formats::recording) fn read(
             if matches!(next, Ok(true)) && is_value(&pair(lines.line()).0) {
                 let rows = counted(rows, "row");
                 let message = format!("more values, expected {rows} of them as Rows says");
-                return Err(RecordingError::in_line(lines.number(), message).into());
+                return Err(in_line(lines.number(), message).into());
             }
             let name = state.end_sensor();
             state.give(name.as_deref(), &mut channels, &mut frame, sink, end)?;
@@ -131,7 +132,7 @@ pub(in crate::formats::recording) fn read(
         }
     }
     match state.missing() {
-        Some(message) => Err(RecordingError::in_line(lines.number() + 1, message).into()),
+        Some(message) => Err(in_line(lines.number() + 1, message).into()),
         None => Ok(()),
     }
 }
@@ -169,7 +170,7 @@ fn length_unit(key: &str) -> Option<LengthUnit> {
 
 impl XsensorState {
     /// Reads a line `key,value`.
-    fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), RecordingError> {
+    fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), ReadError> {
         let number_of = || match decimal(value.as_bytes()) {
             Field::Value(value) => Some(value),
             _ => None,
@@ -291,17 +292,17 @@ impl XsensorState {
         &self,
         lines: &mut TextLines<impl BufRead>,
         frame: &mut Frame,
-    ) -> Result<u16, RecordingError> {
+    ) -> Result<u16, ReadError> {
         let Some(size) = self.size() else {
             let message = "SENSELS of a sensor without Rows and Columns";
-            return Err(RecordingError::in_line(lines.number(), message));
+            return Err(in_line(lines.number(), message));
         };
         frame.reset(size);
         for row in frame.values_mut().chunks_mut(size.columns().into()) {
             if !lines.advance_to_content()? {
                 let rows = counted(size.rows(), "row");
                 let message = format!("ends inside a frame, expected {rows}");
-                return Err(RecordingError::in_line(lines.number() + 1, message));
+                return Err(in_line(lines.number() + 1, message));
             }
             let fields = Separator::Byte(b',').split(lines.line());
             text::fill_row(row, fields, lines.number(), decimal)?;
@@ -316,7 +317,7 @@ impl XsensorState {
         frame: &mut Frame,
         sink: &mut Sink<'_>,
         line: u64,
-    ) -> Result<(), EarlyEnd> {
+    ) -> Result<(), Stop> {
         let time = self.time();
         let info = || ChannelInfo {
             size: self.size(),
@@ -327,15 +328,15 @@ impl XsensorState {
             ..ChannelInfo::default()
         };
         let channel = channels.index_of(name, info);
-        let channel = channel.map_err(|message| RecordingError::in_line(line, message))?;
+        let channel = channel.map_err(|message| in_line(line, message))?;
         for info in channels.take_new() {
-            sink(RecordingEvent::Channel(info))?;
+            sink.event(RecordingEvent::Channel(info))?;
         }
         channels.number(channel, frame);
         frame.label = self.label.map(Into::into);
         frame.time = time;
         self.sensors += 1;
-        sink(RecordingEvent::Frame(frame))
+        sink.event(RecordingEvent::Frame(frame))
     }
 
     /// Returns the time of the frame as it is written; only the day, if the time is in seconds.
