@@ -10,7 +10,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::picture::Picture;
 use taxel_core::sensor::Sensor;
 use taxel_core::touch::Plane;
-use taxel_files::formats::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
+use taxel_files::formats::{ConfusionMap, Drawing, Plot, PoseMap};
 
 use crate::common::size;
 
@@ -127,21 +127,17 @@ fn a_confusion_matrix_has_its_numbers_and_shades() {
 
 #[test]
 fn curves_have_axes_and_a_legend() {
-    let plot = LinePlot::new("scale", "error")
+    let plot = Plot::from_zero("scale", "error")
         .with_curve("threshold 0.5", &[(0.5, 0.7), (1.0, 0.33), (2.0, 0.02)])
         .with_curve(
             "threshold 0.3",
-            &[(0.5, 0.8), (f64::NAN, 1.0), (2.0, -1.0), (2.0, 0.1)],
+            &[(0.5, 0.8), (1.0, 0.7), (f64::NAN, 1.0), (2.0, 0.1)],
         );
     golden("curves", &plot.svg());
     assert_eq!(plot.svg().matches("class=\"curve\"").count(), 2);
-    // There is a page even without points, and never more than 32 curves.
-    let empty = LinePlot::new(&"x".repeat(500), "y").with_curve("", &[]);
+    // There is a page even without points.
+    let empty = Plot::from_zero(&"x".repeat(500), "y").with_curve("", &[]);
     assert!(empty.svg().contains("viewBox") && !empty.svg().contains("NaN"));
-    let many = (0..99).fold(LinePlot::new("x", "y"), |plot, _| {
-        plot.with_curve("c", &[(1.0, 1.0)])
-    });
-    assert_eq!(many.svg().matches("class=\"curve\"").count(), 32);
 }
 
 /// The axes begin at the points; curves have gaps at missing values, and each has its name.
@@ -160,11 +156,11 @@ fn the_axes_of_points_need_not_begin_at_0() {
         (42.0, 11.5),
         (43.0, 11.25),
     ];
-    let plot = PointPlot::new("na", "f <&>")
+    let plot = Plot::new("na", "f <&>")
         .with_title("5 imprints")
         .with_points(&points)
-        .with_curve("mean", &curve)
-        .with_dashed_curve("largest", &curve)
+        .with_line("mean", &curve, false)
+        .with_line("largest", &curve, true)
         .with_chosen(42.0, 12.0);
     let svg = plot.svg();
     golden("points", &svg);
@@ -193,7 +189,7 @@ fn the_axes_of_points_need_not_begin_at_0() {
     );
     // There is a page even without points, or with only one.
     for points in [&[][..], &[(5.0, 5.0)], &[(1e300, -1e300), (-1e300, 1e300)]] {
-        let svg = PointPlot::new("x", "y")
+        let svg = Plot::new("x", "y")
             .with_points(points)
             .with_chosen(f64::NAN, 0.0)
             .svg();
@@ -236,4 +232,57 @@ fn a_map_of_poses_has_areas_with_borders() {
         assert!(PoseMap::new((0.0, 1.0), (0.0, 1.0), columns, &ids).is_none());
     }
     assert!(PoseMap::new((0.0, f64::NAN), (0.0, 1.0), 1, &[None]).is_none());
+}
+
+/// The place of a text and what surrounds it on the page are in points; its width follows from the font.
+#[test]
+fn the_page_holds_all_texts() {
+    let long = "long ".repeat(30);
+    let mut pages = vec![
+        Plot::new(&long, &long).with_points(&[(1e12, 0.0)]).svg(),
+        Plot::from_zero("x", "y")
+            .with_curve(&long, &[(1.0, 0.0)])
+            .svg(),
+        Drawing::new(&Imprint::empty(size(1, 64)))
+            .with_pitch(0.001)
+            .svg(),
+    ];
+    for (columns, rows) in [(1, 1), (1, 100), (100, 1), (3, 200), (1024, 1)] {
+        let ids = vec![Some(1); columns * rows];
+        for title in ["", "a title"] {
+            let map = PoseMap::new((5.0, 5.99), (5.0, 5.99), columns, &ids);
+            pages.push(map.expect("few cells").with_title(title).svg());
+        }
+    }
+    for page in pages {
+        let numbers = |text: &str, key: &str| -> Vec<f64> {
+            let value = text.split_once(key).expect(key).1;
+            let value = value.split(['"', ')']).next().expect("a value");
+            value
+                .split(' ')
+                .map(|number| number.parse().expect(value))
+                .collect()
+        };
+        let (size, moved) = (numbers(&page, "viewBox=\"0 0 "), numbers(&page, "translate("));
+        for line in page.lines().filter(|line| line.starts_with("<text")) {
+            let text = line.split(['<', '>']).nth(2).expect("a text");
+            let length = u16::try_from(text.chars().count()).expect("short");
+            let length = f64::from(length) * 8.0 * 0.6;
+            let [x, y] = [
+                numbers(line, "x=\"")[0] + moved[0],
+                numbers(line, "y=\"")[0] + moved[1],
+            ];
+            let before = match line {
+                _ if line.contains("\"start") => 0.0,
+                _ if line.contains("\"middle") => length / 2.0,
+                _ => length,
+            };
+            let (low, high, size) = if line.contains("rotate") {
+                (y + before - length, y + before, size[1])
+            } else {
+                (x - before, x - before + length, size[0])
+            };
+            assert!(low >= 0.0 && high <= size + 0.01, "{line}");
+        }
+    }
 }

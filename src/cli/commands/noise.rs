@@ -26,7 +26,7 @@ use taxel_core::recognition::{
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::file::has_ending;
 use taxel_files::formats::value::{counted, grouped, percent};
-use taxel_files::formats::{LinePlot, json};
+use taxel_files::formats::{Plot, json};
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::{ConfusionArguments, NoiseArguments, TouchesArguments};
@@ -184,8 +184,8 @@ fn noise_points(table: &[NoiseRow]) -> Vec<(u32, Vec<(f64, f64)>)> {
     groups.map(points).collect()
 }
 
-fn noise_plot(table: &[NoiseRow]) -> LinePlot {
-    let plot = LinePlot::new("noise", "right");
+fn noise_plot(table: &[NoiseRow]) -> Plot {
+    let plot = Plot::from_zero("noise", "right");
     let curves = noise_points(table).into_iter();
     curves.fold(plot, |plot, (dead, points)| {
         plot.with_curve(&counted(dead, "dead taxel"), &points)

@@ -12,7 +12,7 @@ use serde_json::Value;
 use taxel_core::pose::DecimalRange;
 use taxel_core::recognition::{SeparationPoint, SizeAxis, SmallestSize};
 use taxel_files::formats::value::{decimal, grouped, percent};
-use taxel_files::formats::{LinePlot, json};
+use taxel_files::formats::{Plot, json};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::number;
@@ -306,7 +306,7 @@ pub(crate) fn csv(axis: SizeAxis, curves: &[SeparationCurve]) -> String {
 }
 
 /// Draws the curves over the sizes, or over the thresholds if there is only one size; and the wanted error.
-pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option<f64>) -> LinePlot {
+pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option<f64>) -> Plot {
     let one_size = curves.iter().all(|curve| curve.points.len() == 1);
     if one_size && curves.len() > 1 {
         let points = curves.iter().flat_map(|curve| &curve.points);
@@ -314,14 +314,15 @@ pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option
             .map(|point| (point.threshold, point.error()))
             .collect();
         let size = curves[0].points[0].value;
-        let plot = LinePlot::new("threshold", "error").with_curve(&size_label(axis, size), &points);
+        let plot =
+            Plot::from_zero("threshold", "error").with_curve(&size_label(axis, size), &points);
         return with_wanted(plot, wanted, &points);
     }
     let label = match axis {
         SizeAxis::Pitch => "pitch / mm",
         SizeAxis::Scale => "scale",
     };
-    let mut plot = LinePlot::new(label, "error");
+    let mut plot = Plot::from_zero(label, "error");
     let mut all = Vec::new();
     for curve in curves {
         let points = curve.points.iter();
@@ -333,7 +334,7 @@ pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option
 }
 
 /// Adds a line at the wanted error, as long as the curves.
-fn with_wanted(plot: LinePlot, wanted: Option<f64>, points: &[(f64, f64)]) -> LinePlot {
+fn with_wanted(plot: Plot, wanted: Option<f64>, points: &[(f64, f64)]) -> Plot {
     let Some(wanted) = wanted else { return plot };
     let values = || points.iter().map(|point| point.0);
     let first = values().fold(f64::INFINITY, f64::min);

@@ -20,7 +20,7 @@ use taxel_core::index::{index, wide};
 use taxel_core::pose::{Axis, PoseIndex};
 use taxel_core::sweep::SweepResult;
 use taxel_files::formats::value::fitting;
-use taxel_files::formats::{PointPlot, axis_ends};
+use taxel_files::formats::{Plot, axis_ends};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
@@ -220,19 +220,16 @@ fn drawing(results: &Results) -> Result<String, String> {
         return Err(NOTHING_TO_DRAW.to_owned());
     }
     let feature = results.feature();
-    let mut plot =
-        PointPlot::new("angle / °", &feature.label()).with_title(&results.summary(false));
+    let mut plot = Plot::new("angle / °", &feature.label()).with_title(&results.summary(false));
     let names = ["smallest", "largest", "mean"];
     for ((of, dashed), name) in CURVES.into_iter().zip(names) {
         let points: Vec<(f64, f64)> = spread
             .iter()
             .filter_map(|at| Some((at.degrees, of(at)?)))
             .collect();
-        plot = match (points.is_empty(), dashed) {
-            (true, _) => plot,
-            (false, true) => plot.with_dashed_curve(name, &points),
-            (false, false) => plot.with_curve(name, &points),
-        };
+        if !points.is_empty() {
+            plot = plot.with_line(name, &points, dashed);
+        }
     }
     Ok(plot.svg())
 }

@@ -15,7 +15,7 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::atlas::{AtlasEntry, features};
 use taxel_core::index::wide;
 use taxel_files::formats::value::counted;
-use taxel_files::formats::{PointPlot, axis_ends};
+use taxel_files::formats::{Plot, axis_ends};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
@@ -164,7 +164,7 @@ fn drawing(results: &Results) -> Result<String, String> {
         return Err(NOTHING_TO_DRAW.to_owned());
     }
     let (x, y) = (&features()[results.x_feature()], results.feature());
-    let mut plot = PointPlot::new(&x.label(), &y.label())
+    let mut plot = Plot::new(&x.label(), &y.label())
         .with_title(&results.summary(true))
         .with_points(&points);
     let selected = results.rows_from(results.list.selected()).next();

@@ -32,7 +32,7 @@ pub mod value;
 pub use drawing::{axis_ends, axis_marks};
 pub use json::DescribedImprint;
 
-pub use drawing::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
+pub use drawing::{ConfusionMap, Drawing, Plot, PoseMap};
 pub use imprint_file::{
     Content, ContentError, ImprintFormat, ImprintFormatError, read as read_imprint, read_content,
 };

@@ -6,8 +6,7 @@
 use taxel_core::parameter::number::share;
 
 use crate::formats::drawing::svg::{
-    self, CELLS, DrawingPage, Element, MARGIN, Position, Stroke, TEXT, TextAnchor, cut, label,
-    path_of, rectangle, upright_title, width,
+    Axis, AxisMarks, CELLS, Stroke, Svg, TEXT, TextAnchor, cut, rectangle, width,
 };
 use crate::formats::value::percent;
 
@@ -32,7 +31,7 @@ pub struct ConfusionMap {
     labels: Vec<String>,
     /// The touches by true shape and by the name given.
     counts: Vec<Vec<u128>>,
-    title: Option<String>,
+    title: String,
 }
 
 impl ConfusionMap {
@@ -43,180 +42,87 @@ impl ConfusionMap {
             return None;
         }
         let cut = |label: &String| label.chars().take(LONGEST).collect();
+        let mut counts: Vec<Vec<u128>> = counts.into_iter().collect();
+        counts.resize(labels.len(), Vec::new());
+        for row in &mut counts {
+            row.resize(labels.len(), 0);
+        }
         Some(Self {
             labels: labels.iter().map(cut).collect(),
-            counts: counts.into_iter().collect(),
-            title: None,
+            counts,
+            title: String::new(),
         })
     }
 
     /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
-        self.title = Some(cut(title));
+        self.title = cut(title);
         self
     }
 
-    fn count(&self, row: usize, column: usize) -> u128 {
-        let cell = self.counts.get(row).and_then(|row| row.get(column));
-        cell.copied().unwrap_or_default()
-    }
-
     /// The matrix as SVG 1.1.
-    pub fn svg(&self) -> String {
-        svg::write(&self.page())
-    }
-
-    fn page(&self) -> DrawingPage {
-        let longest = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or_default();
-        let names = longest(&mut self.labels.iter().map(|label| label.chars().count()));
-        let shapes = 0..self.labels.len();
-        let digits = shapes
-            .clone()
-            .flat_map(|row| shapes.clone().map(move |column| (row, column)));
-        let digits = longest(&mut digits.map(|(row, column)| {
-            let count = self.count(row, column);
-            count.to_string().len()
-        }));
-        let cell = (width(digits.max(7)) + 8.0, TEXT * 2.0 + 8.0);
-        // Names wider than a cell are written upwards.
-        let upright = width(names) + 4.0 > cell.0;
-        let heading = if upright { width(names) } else { TEXT };
-        let title = self.title.as_ref().map_or(0.0, |_| TEXT + 6.0);
-        let corner = (
-            MARGIN + TEXT + 6.0 + width(names) + 6.0,
-            MARGIN + title + TEXT + 6.0 + heading + 6.0,
-        );
-        let mut layout = MapLayout {
-            map: self,
-            marks: Vec::new(),
-            corner,
-            cell,
-        };
-        layout.cells();
-        layout.names(upright);
-        let end = layout.position(self.labels.len(), self.labels.len());
-        let note = "touches, and their share of the true shape's";
-        let note_end = corner.0 + width(note.chars().count());
-        layout.text(note, (corner.0, end.1 + TEXT + 6.0), TextAnchor::Start);
-        let mut right = end.0.max(note_end);
-        if let Some(title) = &self.title {
-            layout.text(title, (corner.0, MARGIN + TEXT), TextAnchor::Start);
-            right = right.max(corner.0 + width(title.chars().count()));
-        }
-        DrawingPage {
-            size: (right + MARGIN, end.1 + TEXT * 1.3 + 6.0 + MARGIN),
-            plane: (corner, end),
-            title: self
-                .title
-                .clone()
-                .unwrap_or_else(|| "confusion matrix".to_owned()),
-            marks: layout.marks,
-        }
-    }
-}
-
-struct MapLayout<'a> {
-    map: &'a ConfusionMap,
-    marks: Vec<Element>,
-    corner: Position,
-    cell: Position,
-}
-
-impl MapLayout<'_> {
     #[expect(clippy::cast_precision_loss, reason = "at most 64 cells")]
-    fn position(&self, row: usize, column: usize) -> Position {
-        (
-            self.corner.0 + self.cell.0 * column as f64,
-            self.corner.1 + self.cell.1 * row as f64,
-        )
-    }
-
-    fn text(&mut self, text: &str, place: Position, anchor: TextAnchor) {
-        self.marks.push(label(text, place, anchor));
-    }
-
-    /// Draws the cells: shades first, then lines, then numbers.
-    fn cells(&mut self) {
-        let shapes = self.map.labels.len();
-        let (mut lines, mut numbers) = (Vec::new(), Vec::new());
-        for row in 0..shapes {
-            let counts = (0..shapes).map(|column| self.map.count(row, column));
-            let sum = counts.fold(0, u128::saturating_add);
-            for column in 0..shapes {
-                let count = self.map.count(row, column);
-                let (low, high) = (
-                    self.position(row, column),
-                    self.position(row + 1, column + 1),
-                );
+    pub fn svg(&self) -> String {
+        let shapes = self.labels.len();
+        let most = self.counts.iter().flatten().max();
+        let digits = most.map_or(0.0, |most| width(&most.to_string()));
+        let cell = (digits.max(width("<0.1 % ")) + 8.0, TEXT * 2.0 + 8.0);
+        let place = |row: usize, column: usize| (cell.0 * column as f64, cell.1 * row as f64);
+        let mut svg = Svg::new(place(shapes, shapes));
+        let (mut cells, mut diagonal, mut numbers) = (String::new(), String::new(), Vec::new());
+        for (row, counts) in self.counts.iter().enumerate() {
+            let sum = counts
+                .iter()
+                .fold(0, |sum: u128, &own| sum.saturating_add(own));
+            for (column, &count) in counts.iter().enumerate() {
+                let (low, high) = (place(row, column), place(row + 1, column + 1));
+                let outline = rectangle(low, high);
                 let share = share(count, sum);
-                if count > 0 {
-                    self.marks.push(Element::Fill {
-                        what: "cell",
-                        rectangles: vec![(low, high)],
-                        grey: grey(share),
-                    });
-                }
-                lines.extend(rectangle(low, high));
                 let x = f64::midpoint(low.0, high.0);
-                let said = match count {
-                    0 => vec![("·".to_owned(), (x, low.1 + TEXT * 1.5))],
-                    _ => vec![
-                        (count.to_string(), (x, low.1 + TEXT + 3.0)),
-                        (
-                            percent(share).replace(".0 %", " %"),
-                            (x, low.1 + TEXT * 2.0 + 4.0),
-                        ),
-                    ],
-                };
-                numbers.extend(said);
+                if count > 0 {
+                    svg.fill("cell", &outline, grey(share));
+                    let percent = percent(share).replace(".0 %", " %");
+                    numbers.push((count.to_string(), (x, low.1 + TEXT + 3.0)));
+                    numbers.push((percent, (x, low.1 + TEXT * 2.0 + 4.0)));
+                } else {
+                    numbers.push(("·".to_owned(), (x, low.1 + TEXT * 1.5)));
+                }
+                if row == column {
+                    diagonal += &outline;
+                }
+                cells += &outline;
             }
         }
-        self.marks.push(path_of("cells", lines, CELLS));
+        svg.line("cells", &cells, CELLS);
         // The diagonal, where touches are named correctly, has a frame.
-        let right = (0..shapes).flat_map(|shape| {
-            rectangle(
-                self.position(shape, shape),
-                self.position(shape + 1, shape + 1),
-            )
-        });
-        let stroke = Stroke::black(1.1);
-        self.marks
-            .push(path_of("diagonal", right.collect(), stroke));
+        svg.line("diagonal", &diagonal, Stroke::black(1.1));
         for (text, place) in numbers {
-            self.text(&text, place, TextAnchor::Middle);
+            svg.text(&text, place, TextAnchor::Middle);
         }
-    }
-
-    fn names(&mut self, upright: bool) {
-        let (shapes, map) = (self.map.labels.len(), self.map);
-        for (index, label) in map.labels.iter().enumerate() {
-            let (left, top) = self.position(index, 0);
-            let y = top + self.cell.1 / 2.0 + TEXT * 0.35;
-            self.text(label, (left - 6.0, y), TextAnchor::End);
-            let (left, top) = self.position(0, index);
-            let x = left + self.cell.0 / 2.0;
-            if upright {
-                self.marks.push(Element::Text {
-                    text: label.clone(),
-                    place: (x + TEXT * 0.35, top - 6.0),
-                    anchor: TextAnchor::Start,
-                    upright: true,
-                });
-            } else {
-                self.text(label, (x, top - 6.0), TextAnchor::Middle);
-            }
-        }
-        let end = self.position(shapes, shapes);
-        let title = map.title.as_ref().map_or(0.0, |_| TEXT + 6.0);
-        let middle = f64::midpoint(self.corner.0, end.0);
-        self.text("named", (middle, MARGIN + title + TEXT), TextAnchor::Middle);
-        let middle = f64::midpoint(self.corner.1, end.1);
-        self.marks.push(upright_title("true shape", middle));
+        let axis = |title: &str, side: f64| Axis {
+            title: title.to_owned(),
+            ends: (0.0, 1.0),
+            span: (side / 2.0, side * 1.5),
+            marks: (0..)
+                .map(f64::from)
+                .zip(self.labels.iter().cloned())
+                .collect(),
+        };
+        let (across, along) = (axis("named", cell.0), axis("true shape", cell.1));
+        svg.axes(AxisMarks::Outside, &across, &along);
+        let below = (0.0, svg.below());
+        let note = "touches, and their share of the true shape's";
+        svg.text(note, below, TextAnchor::Start);
+        let name = match self.title.as_str() {
+            "" => "confusion matrix",
+            title => title,
+        };
+        svg.finish(name, &self.title)
     }
 }
 
-/// Returns the grey of a share: white for 0, the darkest grey for 1.
+/// The grey of a share: white for 0, the darkest grey for 1.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

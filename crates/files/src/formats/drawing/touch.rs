@@ -1,15 +1,5 @@
-//! The layout of a drawing: the plane with its axes, the descriptors shown on it, and the legend below.
-//! ```text
-//!  title
-//!             x / cells
-//!          0   4   8   12          the plane, its larger side 288 points, cells at most 24:
-//!        0 +---------------+       taxels in two greys, lines between cells, outline,
-//!  y /   4 |   ▒▒▒▒        |       rectangle, CG and CD of the region described
-//!  cells 8 +---------------+
-//!  ▒ active taxels: 36             a row of the legend for each of these that is there
-//! ```
-//! Lengths are points (1/72 inch), y down, from the page's top left corner. The page is as large as its content plus
-//! a margin. Marks are in drawing order.
+//! The drawing of a touch: the taxels of the plane in two greys, the lines between cells, the outline of the shape, and
+//! the rectangle, CG and CD of the region described. A row of the legend tells what each of these means.
 
 use std::collections::VecDeque;
 
@@ -20,10 +10,9 @@ use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
 
-use crate::formats::drawing::plots::{AxisMarks, Ticks, axes, left_of};
+use crate::formats::drawing::plot::marks;
 use crate::formats::drawing::svg::{
-    self, CELLS, DrawingPage, Element, MARGIN, Position, ROW, Segment, Stroke, TEXT, TextAnchor,
-    circle, cut, label, path_of, rectangle, width,
+    Axis, AxisMarks, CELLS, Position, Stroke, Svg, circle, cut, ellipse, line, polyline, rectangle,
 };
 use crate::formats::value::{self, fitting, shade};
 
@@ -31,25 +20,18 @@ use crate::formats::value::{self, fitting, shade};
 const PLANE: f64 = 288.0;
 /// The largest side of a cell, for small matrices.
 const LARGEST_CELL: f64 = 24.0;
-const SWATCH: f64 = 16.0;
 
 const DESCRIBED: u8 = 168;
 const OTHER: u8 = 220;
 /// The hatching of taxels of other regions: a shade alone is lost on a bad printer.
-const HATCH: Stroke = Stroke {
-    width: 0.5,
-    grey: 110,
-    dash: None,
-};
+const HATCH: Stroke = Stroke::grey(0.5, 110);
 const OUTLINE: Stroke = Stroke::black(1.3);
 /// The edge around active taxels when shades show values.
 const EDGE: Stroke = Stroke::black(2.0);
-const RECTANGLE: Stroke = Stroke {
-    width: 0.9,
-    grey: 0,
-    dash: Some([4.0, 2.5]),
-};
+const RECTANGLE: Stroke = Stroke::black(0.9).dashed("4 2.5");
 const POINT: Stroke = Stroke::black(1.1);
+/// The radius of the circle at CD, and the arm of the cross at CG.
+const ARM: f64 = 3.5;
 
 /// The least pitch in mm: smaller than any atom.
 const LEAST_PITCH: f64 = 1e-9;
@@ -60,10 +42,10 @@ pub struct Drawing {
     imprint: Imprint,
     regions: Vec<Region<'static>>,
     chosen: Option<usize>,
-    /// The outline of the shape, in cell sides.
-    outline: Vec<Segment>,
+    /// The path of the shape's outline.
+    outline: String,
     pitch_mm: Option<f64>,
-    title: Option<String>,
+    title: String,
     heat: Option<Matrix<f64>>,
 }
 
@@ -75,9 +57,9 @@ impl Drawing {
             imprint: *imprint,
             chosen: main_region(&regions),
             regions,
-            outline: Vec::new(),
+            outline: String::new(),
             pitch_mm: None,
-            title: None,
+            title: String::new(),
             heat: None,
         }
     }
@@ -86,7 +68,7 @@ impl Drawing {
     /// ones that differ from the true ellipse by less than a hundred-thousandth of its size.
     #[must_use]
     pub fn with_outline(mut self, solid: &impl Solid) -> Self {
-        self.outline = steps(solid);
+        self.outline = outline(solid, self.cell());
         self
     }
 
@@ -115,7 +97,7 @@ impl Drawing {
     /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
-        self.title = Some(cut(title));
+        self.title = cut(title);
         self
     }
 
@@ -128,227 +110,101 @@ impl Drawing {
         self
     }
 
+    /// The side of a cell in points.
+    fn cell(&self) -> f64 {
+        let longer = self.imprint.columns().max(self.imprint.rows());
+        LARGEST_CELL.min(PLANE / f64::from(longer))
+    }
+
     /// The drawing as SVG 1.1. Equal drawings are equal texts.
     pub fn svg(&self) -> String {
-        svg::write(&self.page())
-    }
-
-    fn described(&self) -> Option<&Region<'static>> {
-        self.chosen.and_then(|index| self.regions.get(index))
-    }
-
-    fn page(&self) -> DrawingPage {
-        let (columns, rows) = (self.imprint.columns(), self.imprint.rows());
-        let pitch = self.pitch_mm.unwrap_or(1.0);
-        // In cells, marks stand at whole numbers only.
-        let least = self.pitch_mm.map_or(1.0, |_| 0.0);
-        let marks = |side: u8| Ticks::new((0.0, f64::from(side) * pitch), least);
-        let (across, along) = (marks(columns), marks(rows));
-        let title = self.title.as_ref().map_or(0.0, |_| ROW);
-        let corner = (left_of(&along), MARGIN + title + TEXT * 3.0 + 4.0);
-        let mut layout = PageLayout {
-            drawing: self,
-            description: self.described().map(Description::of),
-            marks: Vec::new(),
-            corner,
-            cell: LARGEST_CELL.min(PLANE / f64::from(columns.max(rows))),
-            end: corner,
+        let cell = self.cell();
+        let sides = [self.imprint.columns(), self.imprint.rows()].map(f64::from);
+        let [width, height] = sides.map(|cells| cells * cell);
+        let described = self.chosen.and_then(|index| self.regions.get(index));
+        let description = described.map(Description::of);
+        let (unit, pitch, least) = match self.pitch_mm {
+            Some(pitch) => ("mm", pitch, 0.0),
+            // Marks in cells stand at whole numbers only.
+            None => ("cells", 1.0, 1.0),
         };
-        let plane = (corner, layout.position((columns.into(), rows.into())));
-        layout.end = plane.1;
-        if let Some(title) = &self.title {
-            layout.text(title, (corner.0, MARGIN + TEXT), TextAnchor::Start);
+        let mut svg = Svg::new((width, height));
+        match &self.heat {
+            Some(values) => self.heat(&mut svg, values),
+            None => self.taxels(&mut svg, described),
         }
-        layout.taxels();
-        layout.cells();
-        layout.axes(&across, &along, plane);
-        layout.outline();
-        layout.described();
-        layout.legend();
-        DrawingPage {
-            size: (layout.end.0 + MARGIN, layout.end.1 + MARGIN),
-            plane,
-            title: self.title.as_deref().unwrap_or("imprint").to_owned(),
-            marks: layout.marks,
+        let columns = (0..=self.imprint.columns()).map(|column| f64::from(column) * cell);
+        let rows = (0..=self.imprint.rows()).map(|row| f64::from(row) * cell);
+        let columns = columns.map(|x| line((x, 0.0), (x, height)));
+        let rows = rows.map(|y| line((0.0, y), (width, y)));
+        svg.line("cells", &columns.chain(rows).collect::<String>(), CELLS);
+        let axis = |name: &str, cells: f64| Axis {
+            title: format!("{name} / {unit}"),
+            ends: (0.0, cells * pitch),
+            span: (0.0, cells * cell),
+            marks: marks((0.0, cells * pitch), least, 8),
+        };
+        let [across, along] = [axis("x", sides[0]), axis("y", sides[1])];
+        svg.axes(AxisMarks::Outside, &across, &along);
+        if !self.outline.is_empty() {
+            svg.clipped_line("outline", &self.outline, OUTLINE);
         }
-    }
-}
-
-struct PageLayout<'a> {
-    drawing: &'a Drawing,
-    description: Option<Description>,
-    marks: Vec<Element>,
-    corner: Position,
-    cell: f64,
-    /// The right and the lower end of everything so far.
-    end: Position,
-}
-
-impl PageLayout<'_> {
-    fn position(&self, (x, y): Position) -> Position {
-        (self.corner.0 + x * self.cell, self.corner.1 + y * self.cell)
-    }
-
-    /// Adds a horizontal text; if it starts at `place`, its end may widen the page.
-    fn text(&mut self, text: &str, place: Position, anchor: TextAnchor) {
-        if anchor == TextAnchor::Start {
-            let end = place.0 + width(text.chars().count());
-            self.end.0 = self.end.0.max(end);
+        if let Some(description) = &description {
+            let (rect, cg, cd) = (description.rect, description.cg(), description.cd());
+            let place = |x: f64, y: f64| (x * cell, y * cell);
+            let low = place(rect.left.into(), rect.top.into());
+            let high = place(rect.right.into(), rect.bottom.into());
+            svg.line("rectangle", &rectangle(low, high), RECTANGLE);
+            svg.line("cd", &circle(place(cd.x, cd.y), ARM), POINT);
+            svg.line("cg", &cross(place(cg.x, cg.y)), POINT);
         }
-        self.marks.push(label(text, place, anchor));
-    }
-
-    fn filled(&mut self, what: &'static str, rectangles: Vec<(Position, Position)>, grey: u8) {
-        self.marks.push(Element::Fill {
-            what,
-            rectangles,
-            grey,
-        });
-    }
-
-    fn line(&mut self, what: &'static str, steps: Vec<Segment>, line: Stroke) {
-        self.marks.push(path_of(what, steps, line));
-    }
-
-    /// Draws the active taxels, darker in the described region; or the values of all cells and the edge of the active
-    /// ones.
-    fn taxels(&mut self) {
-        let drawing = self.drawing;
-        let imprint = &drawing.imprint;
-        if let Some(values) = &drawing.heat {
-            for (grey, cells) in shades(values) {
-                let cell =
-                    |(x, y): Position| (self.position((x, y)), self.position((x + 1.0, y + 1.0)));
-                let cells = cells.into_iter().map(cell).collect();
-                self.filled("heat", cells, grey);
-            }
-            let edges = edges(imprint).into_iter();
-            let edges = edges.map(|step| step.map(|place| self.position(place)));
-            self.line("imprint", edges.collect(), EDGE);
-            return;
+        match &self.heat {
+            Some(values) => self.legend_of_heat(&mut svg, values),
+            None => self.legend_of_taxels(&mut svg, description.as_ref()),
         }
-        let none = Imprint::empty(imprint.size());
-        let described = drawing.described().map_or(&none, Region::taxels);
-        let mut others = *imprint;
-        for (row, taxels) in described.words().iter().enumerate() {
-            others.set_word(row, imprint.words()[row] & !taxels);
+        if !self.outline.is_empty() {
+            svg.legend_of_line("outline", OUTLINE);
         }
-        for (what, taxels, grey) in [
-            ("other-taxels", &others, OTHER),
-            ("described-taxels", described, DESCRIBED),
-        ] {
-            let cell = |(column, row): (u8, u8)| {
-                let (x, y) = (f64::from(column), f64::from(row));
-                (self.position((x, y)), self.position((x + 1.0, y + 1.0)))
+        if let Some(description) = &description {
+            let text = |name: &str, value: Value| {
+                let value = value::times(value, pitch, 4).unwrap_or_else(|| "–".to_owned());
+                format!("{name} {value} {unit}")
             };
-            let cells: Vec<_> = taxels.active().map(cell).collect();
-            if !cells.is_empty() {
-                let hatch = hatch(&cells);
-                self.filled(what, cells, grey);
-                if grey == OTHER {
-                    self.line(what, hatch, HATCH);
-                }
-            }
+            let rect = Value::Rect(description.rect);
+            svg.legend_of_line(&text("rectangle", rect), RECTANGLE);
+            let sign = svg.legend(&text("CG", Value::Point(description.cg())));
+            svg.line("legend", &cross(sign), POINT);
+            let sign = svg.legend(&text("CD", Value::Point(description.cd())));
+            svg.line("legend", &circle(sign, ARM), POINT);
         }
-    }
-
-    fn cells(&mut self) {
-        let imprint = &self.drawing.imprint;
-        let (columns, rows) = (f64::from(imprint.columns()), f64::from(imprint.rows()));
-        let mut lines = Vec::new();
-        for column in 0..=imprint.columns() {
-            let x = f64::from(column);
-            lines.push(Segment::Move(self.position((x, 0.0))));
-            lines.push(Segment::Line(self.position((x, rows))));
-        }
-        for row in 0..=imprint.rows() {
-            let y = f64::from(row);
-            lines.push(Segment::Move(self.position((0.0, y))));
-            lines.push(Segment::Line(self.position((columns, y))));
-        }
-        self.line("cells", lines, CELLS);
-    }
-
-    fn axes(&mut self, across: &Ticks, along: &Ticks, plane: (Position, Position)) {
-        let scale = self.cell / self.drawing.pitch_mm.unwrap_or(1.0);
-        let place = |(x, y): Position| (plane.0.0 + x * scale, plane.0.1 + y * scale);
-        let titles = ["x", "y"].map(|axis| format!("{axis} / {}", self.unit()));
-        let titles = titles.each_ref().map(String::as_str);
-        let marks = axes(AxisMarks::Outside, titles, (across, along), plane, place);
-        self.marks.extend(marks);
-    }
-
-    /// Draws the outline of the shape, cut off at the edge of the plane; nothing if the shape is not known.
-    fn outline(&mut self) {
-        let place = |place| self.position(place);
-        let steps = self.drawing.outline.iter().map(|step| step.map(place));
-        let steps: Vec<Segment> = steps.collect();
-        if !steps.is_empty() {
-            self.marks.push(Element::Line {
-                what: "outline",
-                steps,
-                line: OUTLINE,
-                clipped: true,
-            });
-        }
-    }
-
-    /// Draws the rectangle of the described region, a circle at its CD and a cross at its CG.
-    fn described(&mut self) {
-        let Some(description) = &self.description else {
-            return;
+        let name = match self.title.as_str() {
+            "" => "imprint",
+            title => title,
         };
-        let rect = description.rect;
-        let low = self.position((rect.left.into(), rect.top.into()));
-        let high = self.position((rect.right.into(), rect.bottom.into()));
-        let (cg, cd) = (description.cg(), description.cd());
-        self.line("rectangle", rectangle(low, high), RECTANGLE);
-        let (cg, cd) = (self.position((cg.x, cg.y)), self.position((cd.x, cd.y)));
-        self.line("cd", circle(cd, 3.5), POINT);
-        self.line("cg", cross(cg, 3.5), POINT);
+        svg.finish(name, &self.title)
     }
 
-    fn unit(&self) -> &'static str {
-        self.drawing.pitch_mm.map_or("cells", |_| "mm")
-    }
-
-    /// Draws the legend below the plane: the meaning of each sign, with the values of the described region.
-    fn legend(&mut self) {
-        let mut y = self.end.1 + ROW * 1.4;
-        self.legend_of_taxels(&mut y);
-        if !self.drawing.outline.is_empty() {
-            self.legend_row(&mut y, "outline", |layout, place| {
-                layout.line("legend", stretch(place), OUTLINE);
-            });
-        }
-        let Some(description) = self.description else {
-            return;
+    /// Draws the active taxels, darker in the described region.
+    fn taxels(&self, svg: &mut Svg, described: Option<&Region<'_>>) {
+        let none = Imprint::empty(self.imprint.size());
+        let described = described.map_or(&none, Region::taxels);
+        let others = self.imprint.without(described);
+        let cells = |taxels: &Imprint, of: fn(Position, Position) -> String| -> String {
+            let cell = self.cell();
+            let place = |column: u8, row: u8| (f64::from(column) * cell, f64::from(row) * cell);
+            let taxels = taxels.active();
+            taxels
+                .map(|(x, y)| of(place(x, y), place(x + 1, y + 1)))
+                .collect()
         };
-        let (pitch, unit) = (self.drawing.pitch_mm.unwrap_or(1.0), self.unit());
-        let formatted =
-            |value: Value| value::times(value, pitch, 4).unwrap_or_else(|| "–".to_owned());
-        let rect = formatted(Value::Rect(description.rect));
-        self.legend_row(
-            &mut y,
-            &format!("rectangle {rect} {unit}"),
-            |layout, place| {
-                layout.line("legend", stretch(place), RECTANGLE);
-            },
-        );
-        let cg = formatted(Value::Point(description.cg()));
-        self.legend_row(&mut y, &format!("CG {cg} {unit}"), |layout, place| {
-            layout.line("legend", cross(place, 3.5), POINT);
-        });
-        let cd = formatted(Value::Point(description.cd()));
-        self.legend_row(&mut y, &format!("CD {cd} {unit}"), |layout, place| {
-            layout.line("legend", circle(place, 3.5), POINT);
-        });
+        svg.fill("other-taxels", &cells(&others, rectangle), OTHER);
+        svg.line("other-taxels", &cells(&others, hatch), HATCH);
+        svg.fill("described-taxels", &cells(described, rectangle), DESCRIBED);
     }
 
-    fn legend_of_taxels(&mut self, y: &mut f64) {
-        let all = self.drawing.imprint.count();
-        let described = self.description.as_ref().map(|it| (it.kind, it.na));
-        let (what, na, others) = match described {
+    fn legend_of_taxels(&self, svg: &mut Svg, description: Option<&Description>) {
+        let all = self.imprint.count();
+        let (what, na, others) = match description.map(|own| (own.kind, own.na)) {
             Some((RegionKind::Hole, na)) => {
                 (format!("taxels of the hole described: {na}"), na, all)
             }
@@ -362,188 +218,144 @@ impl PageLayout<'_> {
             ),
             None => ("no active taxels".to_owned(), 0, all),
         };
-        if let Some(values) = &self.drawing.heat {
-            self.legend_row(y, &legend_of_shades(values), |layout, place| {
-                let (low, high) = box_of(place);
-                let middle = f64::midpoint(low.0, high.0);
-                layout.filled("legend", vec![((middle, low.1), high)], 0);
-                layout.line("legend", rectangle(low, high), CELLS);
-            });
-            self.legend_row(y, &format!("active taxels: {all}"), |layout, place| {
-                let (low, high) = box_of(place);
-                layout.line("legend", rectangle(low, high), EDGE);
-            });
-            return;
+        let (low, high) = sign_box(svg.legend(&what));
+        if na > 0 {
+            svg.fill("legend", &rectangle(low, high), DESCRIBED);
         }
-        self.legend_row(y, &what, |layout, place| {
-            if na > 0 {
-                layout.filled("legend", vec![box_of(place)], DESCRIBED);
-            }
-            let (low, high) = box_of(place);
-            layout.line("legend", rectangle(low, high), CELLS);
-        });
+        svg.line("legend", &rectangle(low, high), CELLS);
         if others > 0 {
-            self.legend_row(
-                y,
-                &format!("other active taxels: {others}"),
-                |layout, place| {
-                    let (low, high) = box_of(place);
-                    layout.filled("legend", vec![(low, high)], OTHER);
-                    layout.line("legend", hatch(&[(low, high)]), HATCH);
-                    layout.line("legend", rectangle(low, high), CELLS);
-                },
-            );
+            let (low, high) = sign_box(svg.legend(&format!("other active taxels: {others}")));
+            svg.fill("legend", &rectangle(low, high), OTHER);
+            svg.line("legend", &hatch(low, high), HATCH);
+            svg.line("legend", &rectangle(low, high), CELLS);
         }
     }
 
-    /// Draws a row of the legend: `sign` draws at the given place, the text stands to its right. `y` moves to the
-    /// next row.
-    fn legend_row(&mut self, y: &mut f64, text: &str, sign: impl FnOnce(&mut Self, Position)) {
-        sign(self, (self.corner.0 + SWATCH / 2.0, *y - TEXT * 0.35));
-        let place = (self.corner.0 + SWATCH + 6.0, *y);
-        self.text(text, place, TextAnchor::Start);
-        self.end.1 = *y + TEXT * 0.3;
-        *y += ROW;
+    /// Draws the values of all cells in shades, and the edge of the active ones.
+    fn heat(&self, svg: &mut Svg, values: &Matrix<f64>) {
+        const SHADES: u8 = 16;
+        let cell = self.cell();
+        let place = |column: u8, row: u8| (f64::from(column) * cell, f64::from(row) * cell);
+        let mut shades = vec![String::new(); SHADES.into()];
+        let largest = largest(values).unwrap_or(f64::INFINITY);
+        for row in 0..values.rows() {
+            for (column, &value) in (0..values.columns()).zip(values.row(row)) {
+                let shade = shade(value / largest, SHADES.into());
+                shades[shade] += &rectangle(place(column, row), place(column + 1, row + 1));
+            }
+        }
+        for (shade, cells) in (0..SHADES).zip(shades).skip(1) {
+            svg.fill("heat", &cells, 255 - shade * (255 / (SHADES - 1)));
+        }
+        let imprint = &self.imprint;
+        let mut edges = String::new();
+        for (x, y) in imprint.active() {
+            let (low, high) = (place(x, y), place(x + 1, y + 1));
+            if y == 0 || !imprint.get(x, y - 1) {
+                edges += &line(low, (high.0, low.1));
+            }
+            if x == 0 || !imprint.get(x - 1, y) {
+                edges += &line(low, (low.0, high.1));
+            }
+            if !imprint.get(x, y + 1) {
+                edges += &line((low.0, high.1), high);
+            }
+            if !imprint.get(x + 1, y) {
+                edges += &line((high.0, low.1), high);
+            }
+        }
+        svg.line("imprint", &edges, EDGE);
+    }
+
+    fn legend_of_heat(&self, svg: &mut Svg, values: &Matrix<f64>) {
+        let text = match largest(values) {
+            Some(largest) => format!("values from 0 (white) to {} (black)", fitting(largest, 9)),
+            None => "no value above 0".to_owned(),
+        };
+        let sign = svg.legend(&text);
+        let (low, high) = sign_box(sign);
+        svg.fill("legend", &rectangle((sign.0, low.1), high), 0);
+        svg.line("legend", &rectangle(low, high), CELLS);
+        let all = self.imprint.count();
+        let (low, high) = sign_box(svg.legend(&format!("active taxels: {all}")));
+        svg.line("legend", &rectangle(low, high), EDGE);
     }
 }
 
-fn box_of((x, y): Position) -> (Position, Position) {
+/// The corners of a cell as a sign of the legend.
+fn sign_box((x, y): Position) -> (Position, Position) {
     ((x - 6.0, y - 4.0), (x + 6.0, y + 4.0))
 }
 
-fn stretch((x, y): Position) -> Vec<Segment> {
-    let half = SWATCH / 2.0;
-    vec![Segment::Move((x - half, y)), Segment::Line((x + half, y))]
+/// A stroke through a cell, from its lower left corner to its upper right one.
+fn hatch((left, top): Position, (right, bottom): Position) -> String {
+    line((left, bottom), (right, top))
 }
 
-/// Returns a stroke through each cell, from its lower left corner to its upper right one.
-fn hatch(cells: &[(Position, Position)]) -> Vec<Segment> {
-    let stroke = |&((left, top), (right, bottom)): &(Position, Position)| {
-        [Segment::Move((left, bottom)), Segment::Line((right, top))]
-    };
-    cells.iter().flat_map(stroke).collect()
+fn cross((x, y): Position) -> String {
+    line((x - ARM, y), (x + ARM, y)) + &line((x, y - ARM), (x, y + ARM))
 }
 
-fn cross((x, y): Position, arm: f64) -> Vec<Segment> {
-    vec![
-        Segment::Move((x - arm, y)),
-        Segment::Line((x + arm, y)),
-        Segment::Move((x, y - arm)),
-        Segment::Line((x, y + arm)),
-    ]
-}
-
-const SHADES: u8 = 16;
-
-/// Returns the largest value; None if no value is above 0.
+/// The largest value; None if no value is above 0.
 fn largest(values: &Matrix<f64>) -> Option<f64> {
     let largest = values.values().iter().copied().fold(0.0, f64::max);
     (largest > 0.0).then_some(largest)
 }
 
-/// Returns each grey except white with its cells, given by their top left corners.
-fn shades(values: &Matrix<f64>) -> Vec<(u8, Vec<Position>)> {
-    let Some(largest) = largest(values) else {
-        return Vec::new();
-    };
-    let mut shades = vec![Vec::new(); usize::from(SHADES)];
-    for row in 0..values.rows() {
-        for (column, &value) in (0..values.columns()).zip(values.row(row)) {
-            let shade = shade(value / largest, shades.len());
-            if shade > 0 {
-                shades[shade].push((f64::from(column), f64::from(row)));
-            }
-        }
-    }
-    let grey = |shade: u8| 255 - shade * (255 / (SHADES - 1));
-    let all = (0..SHADES).map(grey).zip(shades);
-    all.filter(|(_, cells)| !cells.is_empty()).collect()
-}
-
-/// Returns the lines between active and inactive taxels, in cell sides.
-fn edges(imprint: &Imprint) -> Vec<Segment> {
-    let mut edges = Vec::new();
-    let mut line = |from: (u8, u8), to: (u8, u8)| {
-        let place = |(x, y): (u8, u8)| (f64::from(x), f64::from(y));
-        edges.extend([Segment::Move(place(from)), Segment::Line(place(to))]);
-    };
-    for (x, y) in imprint.active() {
-        if y == 0 || !imprint.get(x, y - 1) {
-            line((x, y), (x + 1, y));
-        }
-        if x == 0 || !imprint.get(x - 1, y) {
-            line((x, y), (x, y + 1));
-        }
-        if !imprint.get(x, y + 1) {
-            line((x, y + 1), (x + 1, y + 1));
-        }
-        if !imprint.get(x + 1, y) {
-            line((x + 1, y), (x + 1, y + 1));
-        }
-    }
-    edges
-}
-
-fn legend_of_shades(values: &Matrix<f64>) -> String {
-    match largest(values) {
-        Some(largest) => format!("values from 0 (white) to {} (black)", fitting(largest, 9)),
-        None => "no value above 0".to_owned(),
-    }
-}
-
-/// Returns the whole boundary. Edges that follow each other form one piece, so that the corners between them are
+/// The path of the whole boundary. Edges that follow each other form one piece, so that the corners between them are
 /// drawn whole.
-fn steps(solid: &impl Solid) -> Vec<Segment> {
-    let mut tracer = Tracer::default();
+fn outline(solid: &impl Solid, cell: f64) -> String {
+    let mut tracer = Tracer {
+        cell,
+        path: String::new(),
+        piece: VecDeque::new(),
+    };
     solid.draw(&mut tracer);
-    tracer.end(false);
-    tracer.steps
+    tracer.end("");
+    tracer.path
 }
 
-#[derive(Debug, Default)]
 struct Tracer {
-    steps: Vec<Segment>,
+    cell: f64,
+    path: String,
     /// The corners of the current piece. It grows at its end, or at its start if a ring is drawn backwards.
     piece: VecDeque<Position>,
 }
 
 impl Tracer {
-    fn end(&mut self, closed: bool) {
-        let mut corners = self.piece.drain(..);
-        self.steps.extend(corners.next().map(Segment::Move));
-        self.steps.extend(corners.map(Segment::Line));
-        if closed {
-            self.steps.push(Segment::Close);
+    fn place(&self, point: Point<f64>) -> Position {
+        (point.x * self.cell, point.y * self.cell)
+    }
+
+    fn end(&mut self, how: &str) {
+        if !self.piece.is_empty() {
+            self.path += &polyline(self.piece.drain(..));
+            self.path += how;
         }
     }
 }
 
 impl Pen<f64> for Tracer {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
-        let (from, to) = ((from.x, from.y), (to.x, to.y));
+        let (from, to) = (self.place(from), self.place(to));
         let follows = self.piece.back() == Some(&from);
         let leads = self.piece.front() == Some(&to);
         match (follows, leads) {
-            (true, true) => self.end(true),
+            (true, true) => self.end("Z"),
             (true, false) => self.piece.push_back(to),
             (false, true) => self.piece.push_front(from),
             (false, false) => {
-                self.end(false);
+                self.end("");
                 self.piece.extend([from, to]);
             }
         }
     }
 
-    /// Adds the curves of an ellipse. As a single cubic curve, a quarter of an ellipse would be off by 0.03 %; an
-    /// eighth is off by far less than a printer can show.
-    fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
-        let pair = |point: Point<f64>| (point.x, point.y);
-        self.end(false);
-        self.steps.extend(svg::ellipse(
-            pair(ellipse.centre),
-            pair(ellipse.across),
-            pair(ellipse.along),
-        ));
+    fn ellipse(&mut self, own: &Ellipse<f64>, _material: Side) {
+        self.end("");
+        let [centre, across, along] =
+            [own.centre, own.across, own.along].map(|point| self.place(point));
+        self.path += &ellipse(centre, across, along);
     }
 }
 
@@ -560,49 +372,8 @@ mod tests {
             .thickness(1.0)
             .on(&Sensor::default())
             .expect("in range");
-        let steps = steps(&frame);
-        let count = |wanted: fn(&Segment) -> bool| steps.iter().filter(|step| wanted(step)).count();
-        assert_eq!(
-            count(|step| matches!(step, Segment::Move(_))),
-            2,
-            "{steps:?}"
-        );
-        assert_eq!(
-            count(|step| matches!(step, Segment::Line(_))),
-            6,
-            "{steps:?}"
-        );
-        assert_eq!(count(|step| matches!(step, Segment::Close)), 2, "{steps:?}");
-    }
-
-    #[test]
-    fn the_curves_of_an_ellipse_stay_close_to_it() {
-        let circle = svg::ellipse((1.0, 2.0), (3.0, 0.0), (0.0, 3.0));
-        let mut from = (4.0, 2.0);
-        for step in circle {
-            let Segment::Curve(a, b, to) = step else {
-                continue;
-            };
-            for part in 0..=10 {
-                let ahead = f64::from(part) / 10.0;
-                let mix = |p: f64, q: f64| p + (q - p) * ahead;
-                // De Casteljau's algorithm: interpolate between the corners, then between these points, then again.
-                let bend = |corners: [f64; 4]| {
-                    let [start, first, second, end] = corners;
-                    let middle = mix(first, second);
-                    mix(
-                        mix(mix(start, first), middle),
-                        mix(middle, mix(second, end)),
-                    )
-                };
-                let (x, y) = (
-                    bend([from.0, a.0, b.0, to.0]),
-                    bend([from.1, a.1, b.1, to.1]),
-                );
-                let strays = (libm::hypot(x - 1.0, y - 2.0) - 3.0).abs();
-                assert!(strays < 3.0 * 1e-5, "{strays}");
-            }
-            from = to;
-        }
+        let path = outline(&frame, 1.0);
+        let count = ['M', 'L', 'Z'].map(|command| path.matches(command).count());
+        assert_eq!(count, [2, 6, 2], "{path}");
     }
 }
