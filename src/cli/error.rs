@@ -236,9 +236,7 @@ pub(crate) fn frame_advice(error: &FrameError) -> &'static str {
 
 fn with_flag(error: &GridError) -> String {
     match error {
-        GridError::Parameter(
-            error @ (ParameterError::Range { value, .. } | ParameterError::Fraction { value, .. }),
-        ) => {
+        GridError::Parameter(error @ ParameterError::Range { value, .. }) => {
             let flag = error.parameter().flag();
             format!("--{flag} {} {}", short(*value), error.complaint())
         }

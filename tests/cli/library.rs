@@ -246,7 +246,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     assert_eq!(
         lines,
         [
-            "bad\u{e9}           broken   FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is unknown to this version, which reads \"taxel-shape/1\"",
+            "bad\u{e9}           broken   FOLDER/bad\u{e9}.json: line 1, column 25: unknown value `taxel-shape/9`, expected `taxel-shape/1`",
             "dir            broken   FOLDER/dir.json: is a folder, expected a regular file",
             "good           own        4 × 3    6       1      1",
         ]
@@ -256,7 +256,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     let all = taxel_files::storage::shipped::names().count() + 3;
     assert_eq!(
         run.stdout.replace(&folder, "FOLDER"),
-        "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is unknown to this version, which reads \"taxel-shape/1\"\n\
+        "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 25: unknown value `taxel-shape/9`, expected `taxel-shape/1`\n\
          broken: dir: FOLDER/dir.json: is a folder, expected a regular file\n\
          other file: FOLDER/a:b.json: not a shape: shapes cannot have this name\n\
          other file: FOLDER/notes.txt: not a shape: its name is not NAME.json\n"
@@ -271,7 +271,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     let run = shelf.run("library|check|--json", "");
     assert_eq!(
         run.stdout.replace(&folder, "FOLDER"),
-        "[{\"finding\":\"broken\",\"name\":\"bad\\u00e9\",\"reason\":\"FOLDER/bad\\u00e9.json: line 1, column 26: format: \\\"taxel-shape/9\\\" is unknown to this version, which reads \\\"taxel-shape/1\\\"\"},\
+        "[{\"finding\":\"broken\",\"name\":\"bad\\u00e9\",\"reason\":\"FOLDER/bad\\u00e9.json: line 1, column 25: unknown value `taxel-shape/9`, expected `taxel-shape/1`\"},\
          {\"finding\":\"broken\",\"name\":\"dir\",\"reason\":\"FOLDER/dir.json: is a folder, expected a regular file\"},\
          {\"finding\":\"other file\",\"path\":\"FOLDER/a:b.json\",\"reason\":\"not a shape: shapes cannot have this name\"},\
          {\"finding\":\"other file\",\"path\":\"FOLDER/notes.txt\",\"reason\":\"not a shape: its name is not NAME.json\"}]\n"

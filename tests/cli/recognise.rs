@@ -289,7 +289,7 @@ fn lines_are_answered_in_their_order() {
     let error: Value = serde_json::from_str(lines[2]).expect("JSON");
     let error = error["error"].as_str().expect("a message");
     assert!(
-        error.contains("imprint: row 1, column 2: found '?', expected '#' or '.'"),
+        error.contains("row 1, column 2: found '?', expected '#' or '.'"),
         "{error}"
     );
     let read = |line: &str| serde_json::from_str::<Value>(line).expect("JSON");
@@ -297,12 +297,11 @@ fn lines_are_answered_in_their_order() {
     let two = read(lines[3])["ranking"][0]["probability"].as_f64();
     assert!(two > one, "two touches tell more than one");
     assert_eq!(read(lines[4])["state"], "unknown");
-    let expected = "expected an object with an imprint, touches or a frame";
-    for (other, found) in [("5", "integer `5`"), ("[[\"#\"]]", "sequence")] {
+    for other in ["5", "[[\"#\"]]"] {
         let lines = format!("{{\"imprint\":[\"#\"]}}\n{other}\n");
         let run = place.run("recognise - --model r --json", &lines);
-        let message = format!("invalid type: {found}, {expected}");
-        assert!(run.stdout.contains(&message), "{}", run.stdout);
+        let message = "{\"error\":\"line 2: not a JSON object\"}";
+        assert!(run.stdout.contains(message), "{}", run.stdout);
     }
     // The answers of a batch are such lines.
     let poses = "{\"figure\":\"rectangle\",\"length\":4.2,\"width\":4.2,\"x0\":5.2,\"y0\":5.3,\"angle\":20}\n";

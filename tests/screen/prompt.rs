@@ -219,7 +219,7 @@ fn commands_do_what_keys_do() {
         ),
         (
             "figure blob",
-            "! figure: \"blob\" is unknown, expected one of ellipse,",
+            "! figure \"blob\" is unknown, expected one of ellipse,",
         ),
         (
             "figure \"hexagon\"",

@@ -294,30 +294,33 @@ impl ImprintRows {
     /// # Errors
     /// Returns the errors of [`Imprint::from_rows`].
     pub fn push(&mut self, text: &str) -> Result<(), ImprintError> {
+        let row = u64::from(self.count) + 1;
+        let wrong = |column, message| ImprintError {
+            row: Some(row),
+            column,
+            message,
+        };
         if self.count == MAX_SIDE {
-            return Err(ImprintError::Rows);
+            return Err(ImprintError::rows());
         }
-        let index = usize::from(self.count);
-        let row = index + 1;
         let foreign = |character: char| !matches!(character, '#' | '.');
         if let Some((column, found)) = text.chars().enumerate().find(|(_, own)| foreign(*own)) {
-            let column = column + 1;
-            return Err(ImprintError::Character { row, column, found });
+            let found = quoted_character(found);
+            let message = format!("found {found}, expected '#' or '.'");
+            return Err(wrong(Some(column as u64 + 1), message));
         }
-        let found = text.len();
-        let size = MatrixSize::of_sides(found, MAX_SIDE);
-        let size = size.ok_or(ImprintError::Columns { row, found })?;
+        let found = || counted(text.len() as u64, "taxel");
+        let size = MatrixSize::of_sides(text.len(), MAX_SIDE)
+            .ok_or_else(|| wrong(None, format!("found {}, expected 1 to 64", found())))?;
         let active = text.bytes().map(|byte| u64::from(byte == b'#'));
         let word = active.rev().fold(0, |word, active| word << 1 | active);
         let imprint = self.imprint.get_or_insert_with(|| Imprint::empty(size));
         if imprint.size != size {
-            return Err(ImprintError::Ragged {
-                row,
-                found,
-                expected: imprint.columns(),
-            });
+            let expected = imprint.columns();
+            let message = format!("found {}, expected {expected} as in the first row", found());
+            return Err(wrong(None, message));
         }
-        imprint.words[index] = word;
+        imprint.words[usize::from(self.count)] = word;
         self.count += 1;
         Ok(())
     }
@@ -328,8 +331,8 @@ impl ImprintRows {
     /// Returns an error if there are none.
     pub fn imprint(self) -> Result<Imprint, ImprintError> {
         let Self { imprint, count } = self;
-        let imprint = imprint.ok_or(ImprintError::Rows)?;
-        let size = MatrixSize::new(imprint.columns(), count).map_err(|_| ImprintError::Rows)?;
+        let imprint = imprint.ok_or_else(ImprintError::rows)?;
+        let size = MatrixSize::new(imprint.columns(), count).map_err(|_| ImprintError::rows())?;
         Ok(Imprint { size, ..imprint })
     }
 }
@@ -342,63 +345,35 @@ impl std::str::FromStr for Imprint {
     }
 }
 
-/// The error for text that is not an imprint. Rows and columns count from 1.
+/// The error for text that is not an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ImprintError {
-    /// No rows, or too many.
-    Rows,
-    /// A row that is empty or too long.
-    Columns {
-        /// The row, from 1.
-        row: usize,
-        /// The number of its characters.
-        found: usize,
-    },
-    /// A row that is not as long as the first.
-    Ragged {
-        /// The row, from 1.
-        row: usize,
-        /// The number of its characters.
-        found: usize,
-        /// The number of characters in the first row.
-        expected: u8,
-    },
-    /// A character other than `#` or `.`.
-    Character {
-        /// The row, from 1.
-        row: usize,
-        /// The column, from 1.
-        column: usize,
-        /// The character found there.
-        found: char,
-    },
+pub struct ImprintError {
+    /// The row, from 1; None if there are too many rows or none.
+    pub row: Option<u64>,
+    /// The column of a wrong character, from 1.
+    pub column: Option<u64>,
+    /// What was found and what was expected.
+    pub message: String,
+}
+
+impl ImprintError {
+    fn rows() -> Self {
+        Self {
+            row: None,
+            column: None,
+            message: "expected 1 to 64 rows of '#' and '.'".to_owned(),
+        }
+    }
 }
 
 impl fmt::Display for ImprintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Rows => f.write_str("expected 1 to 64 rows"),
-            Self::Columns { row, found } => {
-                let found = counted(*found as u64, "character");
-                write!(f, "row {row} has {found}, expected 1 to 64")
-            }
-            Self::Ragged {
-                row,
-                found,
-                expected,
-            } => {
-                let found = counted(*found as u64, "character");
-                write!(
-                    f,
-                    "row {row} has {found}, expected {expected} as in the first row"
-                )
-            }
-            Self::Character { row, column, found } => write!(
-                f,
-                "row {row}, column {column}: found {}, expected '#' or '.'",
-                quoted_character(*found)
-            ),
+        match (self.row, self.column) {
+            (Some(row), Some(column)) => write!(f, "row {row}, column {column}: ")?,
+            (Some(row), None) => write!(f, "row {row}: ")?,
+            _ => {}
         }
+        f.write_str(&self.message)
     }
 }
 

@@ -258,19 +258,12 @@ impl Sensor {
     /// Returns `value` if it is allowed for the parameter; a negative zero becomes 0.
     ///
     /// # Errors
-    /// Returns [`ParameterError::Range`] if the value is out of range, NaN or infinite, and
-    /// [`ParameterError::Fraction`] if it should be whole and is not.
+    /// Returns [`ParameterError::Range`] if the value is out of range, NaN or infinite, or should be whole and is not.
     pub fn check(&self, parameter: Parameter, value: f64) -> Result<f64, ParameterError> {
         let range = self.range(parameter);
-        if !range.contains(value) {
+        let is_whole = parameter.row().unit != Unit::Taxels || value.fract() == 0.0;
+        if !range.contains(value) || !is_whole {
             return Err(ParameterError::Range {
-                parameter,
-                value,
-                range,
-            });
-        }
-        if parameter.row().unit == Unit::Taxels && value.fract() != 0.0 {
-            return Err(ParameterError::Fraction {
                 parameter,
                 value,
                 range,
@@ -284,7 +277,10 @@ impl Sensor {
     /// # Errors
     /// Returns [`ParameterError::Number`] if the text is not a number, and the errors of [`Self::check`].
     pub fn read(&self, parameter: Parameter, text: &str) -> Result<f64, ParameterError> {
-        let value = number::read(text).ok_or_else(|| not_a_number(parameter, text))?;
+        let value = number::read(text).ok_or_else(|| ParameterError::Number {
+            parameter,
+            text: shortened(text),
+        })?;
         self.check(parameter, value)
     }
 
@@ -313,13 +309,6 @@ impl Sensor {
             return stepped.rem_euclid(360.0);
         }
         self.range(parameter).nearest(stepped, 1.0 / scale)
-    }
-}
-
-fn not_a_number(parameter: Parameter, text: &str) -> ParameterError {
-    ParameterError::Number {
-        parameter,
-        text: shortened(text),
     }
 }
 
@@ -370,9 +359,10 @@ mod tests {
     fn a_fraction_is_not_reported_as_out_of_range() {
         let sensor = Sensor::default();
         let refused = |value| sensor.check(Parameter::Rows, value).expect_err("refused");
-        assert!(matches!(refused(2.5), ParameterError::Fraction { .. }));
+        let whole = "is not a whole number (allowed: 1 to 64)";
+        assert_eq!(refused(2.5).complaint(), whole);
         for value in [0.5, 64.5, f64::NAN, f64::INFINITY] {
-            assert!(matches!(refused(value), ParameterError::Range { .. }));
+            assert_ne!(refused(value).complaint(), whole);
         }
     }
 

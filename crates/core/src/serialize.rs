@@ -1,14 +1,17 @@
 //! The values that files and answers contain, as serde writes them. Keys are those of the tables of parameters
-//! and descriptors. None of them can be deserialized by itself: which values are in range depends on the sensor, so
-//! files and lines are read as a whole.
+//! and descriptors. Imprints and the kinds of figures are read, too. Sources, sensors and rules cannot be read by
+//! themselves: which values are in range depends on the sensor, so files and lines are read as a whole.
 
+use std::fmt;
+
+use serde::de::{self, Deserialize, DeserializeSeed, Deserializer, SeqAccess, Visitor};
 use serde::ser::{Error, Serialize, SerializeMap, Serializer};
 
 use crate::description::Value;
+use crate::figure::FigureKind;
 use crate::frame::{Label, Rule, SetRule};
-use crate::imprint::Imprint;
-use crate::parameter::Parameter;
-use crate::sensor::{SENSOR_PARAMETERS, Sensor};
+use crate::imprint::{Imprint, ImprintRows};
+use crate::sensor::Sensor;
 use crate::source::Source;
 
 impl Serialize for Value {
@@ -41,7 +44,6 @@ impl Serialize for Label {
     }
 }
 
-/// There is no `Deserialize`: a source is read with its sensor, as a part of a stored shape or of a line of a batch.
 impl Serialize for Source {
     /// Writes the object that reads back as the same source.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -59,32 +61,17 @@ impl Serialize for Source {
     }
 }
 
-/// The parameters of a sensor in the order of files, which is not that of forms.
-const SENSOR_IN_FILES: [Parameter; SENSOR_PARAMETERS.len()] = [
-    Parameter::Columns,
-    Parameter::Rows,
-    Parameter::Pitch,
-    Parameter::Threshold,
-];
-
-/// There is no `Deserialize`: a sensor is read as a part of a stored shape or of a line of a batch.
 impl Serialize for Sensor {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(SENSOR_IN_FILES.len()))?;
-        for parameter in SENSOR_IN_FILES {
-            let key = parameter.row().key;
-            match parameter {
-                // Whole numbers are written without decimals.
-                Parameter::Columns => map.serialize_entry(key, &self.columns())?,
-                Parameter::Rows => map.serialize_entry(key, &self.rows())?,
-                _ => map.serialize_entry(key, &self.get(parameter))?,
-            }
-        }
+        let mut map = serializer.serialize_map(Some(4))?;
+        map.serialize_entry("columns", &self.columns())?;
+        map.serialize_entry("rows", &self.rows())?;
+        map.serialize_entry("pitch_mm", &self.pitch_mm())?;
+        map.serialize_entry("threshold", &self.threshold())?;
         map.end()
     }
 }
 
-/// There is no `Deserialize`: a rule is read as a part of the metadata beside a recording, or of a line of a batch.
 impl Serialize for SetRule {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -153,5 +140,74 @@ impl Serialize for ImprintRow {
             };
         }
         serializer.serialize_str(str::from_utf8(row).map_err(S::Error::custom)?)
+    }
+}
+
+/// An imprint is read from a list of its rows; an error is reported at its row.
+impl<'de> Deserialize<'de> for Imprint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(RowsVisitor)
+    }
+}
+
+struct RowsVisitor;
+
+/// The form of an imprint, for messages.
+const ROWS: &str = "rows of '#' and '.'";
+
+impl<'de> Visitor<'de> for RowsVisitor {
+    type Value = Imprint;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(ROWS)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Imprint, A::Error> {
+        let mut rows = ImprintRows::default();
+        while list.next_element_seed(NextRow(&mut rows))?.is_some() {}
+        rows.imprint().map_err(de::Error::custom)
+    }
+}
+
+struct NextRow<'a>(&'a mut ImprintRows);
+
+impl<'de> DeserializeSeed<'de> for NextRow<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_str(self)
+    }
+}
+
+impl Visitor<'_> for NextRow<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(ROWS)
+    }
+
+    fn visit_str<E: de::Error>(self, row: &str) -> Result<(), E> {
+        self.0.push(row).map_err(E::custom)
+    }
+}
+
+/// A kind of figure is read from its name.
+impl<'de> Deserialize<'de> for FigureKind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_str(NameVisitor)
+    }
+}
+
+struct NameVisitor;
+
+impl Visitor<'_> for NameVisitor {
+    type Value = FigureKind;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the name of a figure")
+    }
+
+    fn visit_str<E: de::Error>(self, name: &str) -> Result<FigureKind, E> {
+        name.parse().map_err(E::custom)
     }
 }

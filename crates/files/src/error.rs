@@ -3,7 +3,11 @@
 use std::fmt;
 use std::io;
 
+use taxel_core::imprint::ImprintError;
+use taxel_core::parameter::ParameterError;
+
 use crate::formats::file::system_reason;
+use crate::formats::json;
 
 /// Why something cannot be read.
 ///
@@ -52,6 +56,13 @@ impl ReadError {
         self
     }
 
+    /// The same error, in the value of this key.
+    #[must_use]
+    pub fn of_key(mut self, key: &str) -> Self {
+        self.message = format!("{key}: {}", self.message);
+        self
+    }
+
     /// The same error, in this line, counted from 1.
     #[must_use]
     pub fn in_line(mut self, line: u64) -> Self {
@@ -93,15 +104,27 @@ impl From<serde_json::Error> for ReadError {
         if let Some(kind) = error.io_error_kind() {
             return Self::from(io::Error::from(kind));
         }
-        let (line, column) = (error.line() as u64, error.column() as u64);
-        let text = error.to_string();
-        let place = format!(" at line {line} column {column}");
-        let message = text.strip_suffix(&place).unwrap_or(&text);
-        let read = Self::new(message);
-        if line == 0 {
-            return read;
+        let read = Self::new(json::message(&error));
+        match (error.line() as u64, error.column() as u64) {
+            (0, _) => read,
+            (line, column) => read.in_line(line).in_column(column.max(1)),
         }
-        read.in_line(line).in_column(column)
+    }
+}
+
+impl From<ParameterError> for ReadError {
+    fn from(error: ParameterError) -> Self {
+        Self::new(error.to_string())
+    }
+}
+
+impl From<ImprintError> for ReadError {
+    fn from(error: ImprintError) -> Self {
+        Self {
+            line: error.row,
+            column: error.column,
+            ..Self::new(error.message)
+        }
     }
 }
 

@@ -12,12 +12,12 @@ use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 use taxel_core::imprint::Imprint;
 use taxel_core::progress::ToTheEnd;
-use taxel_core::quote::{did_you_mean, shortened_message};
+use taxel_core::quote::did_you_mean;
 use taxel_core::recognition::{Answer, AnswerState, Evidence, Model, NamedShape, Noise};
 use taxel_core::sensor::Sensor;
+use taxel_files::ReadError;
 use taxel_files::formats::file::without_mark;
 use taxel_files::formats::job::{FrameRows, RuleRecord};
-use taxel_files::formats::record::Text;
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{Content, json};
 use taxel_files::memory::MemoryGuard;
@@ -144,7 +144,7 @@ impl Recogniser<'_> {
     fn answer_lines(&self, input: LineInput, output: &mut dyn Write) -> Result<(), CliError> {
         let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
         let answer = |line: &[u8], text: &mut Vec<u8>| {
-            let line = RecogniseLine::read(line)?;
+            let line = RecogniseLine::read(line).map_err(|error| error.to_string())?;
             let answer = self.answer(&line.touches);
             let answer = answer.map_err(|error| error.to_string())?;
             all.fetch_add(1, Ordering::Relaxed);
@@ -323,11 +323,10 @@ const NO_IMPRINT: &str = "imprint: null, as of a frame without a threshold; set 
 
 #[derive(Deserialize)]
 #[serde(expecting = "an object with an imprint, touches or a frame")]
-struct LineKeys<'a> {
-    #[serde(borrow, default, deserialize_with = "given")]
-    imprint: Option<RowsOrNull<'a>>,
-    #[serde(borrow)]
-    touches: Option<Vec<Vec<Text<'a>>>>,
+struct LineKeys {
+    #[serde(default, deserialize_with = "given")]
+    imprint: Option<Option<Imprint>>,
+    touches: Option<Vec<Imprint>>,
     frame: Option<Box<RawValue>>,
     #[serde(default, deserialize_with = "given")]
     label: Option<Box<RawValue>>,
@@ -346,23 +345,19 @@ fn no_touch(line: &[u8]) -> String {
     }
 }
 
-#[derive(Deserialize)]
-#[serde(transparent)]
-struct RowsOrNull<'a>(#[serde(borrow)] Option<Vec<Text<'a>>>);
-
 fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }
 
-fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, String> {
+fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, ReadError> {
     let Some(frame) = frame.filter(|frame| frame.get().starts_with('[')) else {
         return Ok(None);
     };
-    let wrong = |error: serde_json::Error| format!("frame: {}", json::message(&error));
-    let rows: FrameRows = serde_json::from_str(frame.get()).map_err(wrong)?;
-    let rule: RuleRecord = serde_json::from_slice(line).map_err(|error| json::message(&error))?;
+    let rows: FrameRows = serde_json::from_str(frame.get())
+        .map_err(|error| ReadError::new(json::message(&error)).of_key("frame"))?;
+    let rule: RuleRecord = json::of_line(line)?;
     rule.imprint(&rows).map(Some)
 }
 
@@ -373,42 +368,26 @@ struct RecogniseLine {
 
 impl RecogniseLine {
     /// Reads a line. Other keys are ignored, so that answers of `taxel frames` can be given as they are.
-    fn read(line: &[u8]) -> Result<Self, String> {
+    fn read(line: &[u8]) -> Result<Self, ReadError> {
         let without_nan = json::WithoutNan::new(line);
+        let keys: LineKeys = without_nan.object()?;
         let line = &*without_nan.line;
-        let keys: LineKeys<'_> = json::object(line).map_err(|error| {
-            format!(
-                "column {}: {}",
-                without_nan.column(error.column().max(1)),
-                json::message(&error)
-            )
-        })?;
-        let imprint = |key: &str, rows: &[Text<'_>]| {
-            Imprint::from_rows(rows.iter().map(|row| &*row.0))
-                .map_err(|error| shortened_message(&format!("{key}: {error}")))
-        };
         let framed = framed(line, keys.frame.as_deref())?;
-        let touches = match (&keys.imprint, &keys.touches) {
-            (None | Some(RowsOrNull(None)), None) if framed.is_some() => {
-                framed.into_iter().collect()
+        let is_framed = framed.is_some();
+        let touches = match (framed, keys.imprint, keys.touches) {
+            (Some(framed), None | Some(None), None) => vec![framed],
+            (Some(_), ..) => return Err(ReadError::new(ONE_KEY)),
+            (None, Some(Some(imprint)), None) => vec![imprint],
+            (None, Some(None), None) => return Err(ReadError::new(NO_IMPRINT)),
+            (None, None, Some(touches)) if !touches.is_empty() => touches,
+            (None, None, Some(_)) => {
+                return Err(ReadError::new("touches: empty, expected at least one"));
             }
-            _ if framed.is_some() => {
-                return Err(ONE_KEY.to_owned());
-            }
-            (Some(RowsOrNull(Some(rows))), None) => vec![imprint("imprint", rows)?],
-            (Some(RowsOrNull(None)), None) => return Err(NO_IMPRINT.to_owned()),
-            (None, Some(touches)) if !touches.is_empty() => {
-                let numbered = touches.iter().enumerate();
-                numbered
-                    .map(|(index, rows)| imprint(&format!("touches, number {}", index + 1), rows))
-                    .collect::<Result<_, _>>()?
-            }
-            (None, Some(_)) => return Err("touches: empty, expected at least one".to_owned()),
-            _ => return Err(no_touch(line)),
+            _ => return Err(ReadError::new(no_touch(line))),
         };
         // Values of a frame are not copied.
         let copied = [
-            ("frame", keys.frame.filter(|_| framed.is_none())),
+            ("frame", keys.frame.filter(|_| !is_framed)),
             ("label", keys.label),
             ("time", keys.time),
             ("channel", keys.channel),

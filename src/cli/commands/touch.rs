@@ -6,7 +6,6 @@ use std::io::Write;
 
 use taxel_core::imprint::Imprint;
 use taxel_core::picture::Picture;
-use taxel_core::quote::shortened_message;
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::touch::Plane;
@@ -129,8 +128,7 @@ pub(crate) fn answer_lines(
     lines::answer_all(jobs, input, output, "pose", || {
         let (mut plane, mut other) = (Plane::new(sensor), Plane::new(sensor));
         move |line: &[u8], answer: &mut Vec<u8>| {
-            let job = Job::read(line, sensor, lookup);
-            let job = job.map_err(|error| shortened_message(&error.to_string()))?;
+            let job = Job::read(line, sensor, lookup).map_err(|error| error.to_string())?;
             let plane = match &job {
                 // A line with a sensor of its own does not replace the plane of the others.
                 Job::Touch(own, _) if *own != sensor => &mut other,

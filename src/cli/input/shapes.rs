@@ -19,7 +19,7 @@ use taxel_core::recognition::NamedShape;
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::file::{has_ending, system_reason, without_mark};
 use taxel_files::formats::name::folded;
-use taxel_files::formats::{Content, NamedShapeError, ShapeLookup, StoredShape, named_shape};
+use taxel_files::formats::{Content, ShapeLookup, StoredShape, named_shape};
 use taxel_files::storage::{Existing, Expected, Library, LibraryError};
 
 use crate::cli::arguments::model::SetArguments;
@@ -350,16 +350,9 @@ fn set_lines(
         if line.trim_ascii().is_empty() {
             continue;
         }
-        let shape = named_shape(line, lookup);
-        shapes.push(shape.map_err(|error| {
-            let place = format!("{name}: line {}", index + 1);
-            match error {
-                NamedShapeError::Json { column, message } => {
-                    refused(format!("{place}, column {column}"), message)
-                }
-                error => refused(place, error.to_string()),
-            }
-        })?);
+        let shape = named_shape(line, lookup)
+            .map_err(|error| refused(name.to_owned(), error.in_line(index as u64 + 1).to_string()));
+        shapes.push(shape?);
     }
     if shapes.len() == before {
         let error = "no shapes, expected a line of JSON for each";

@@ -358,7 +358,7 @@ impl ParameterField {
         let value = match self.value(sensor) {
             Ok(Some(value)) => sensor.step(self.parameter, value, i32::from(direction)),
             Ok(None) => sensor.default_value(self.parameter),
-            Err(ParameterError::Range { value, .. } | ParameterError::Fraction { value, .. }) => {
+            Err(ParameterError::Range { value, .. }) => {
                 sensor.step(self.parameter, value, i32::from(direction))
             }
             Err(_) => return,

@@ -14,13 +14,12 @@
 
 use taxel_core::figure::{Figure, FigureKind};
 use taxel_core::frame::{FrameError, Rule};
-use taxel_core::parameter::{Parameter, number};
+use taxel_core::parameter::{Parameter, UnknownName, number};
 use taxel_core::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
 use taxel_core::quote::{did_you_mean, joined, shortened};
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_core::source::Source;
 use taxel_files::formats::Name;
-use taxel_files::formats::record::RecordError;
 use taxel_files::storage::ModelChoice;
 
 use crate::tui::app::document::Document;
@@ -209,14 +208,11 @@ fn numbers(
 /// Parameters that are not given have their defaults; one that the figure does not have is an error.
 fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
-    let kind: FigureKind = kind.parse().map_err(|_| {
+    let kind: FigureKind = kind.parse().map_err(|error: UnknownName| {
         let bare = kind.trim_matches(['"', '\'']);
         match bare.parse::<FigureKind>() {
             Ok(_) => format!("leave out the quotes: figure {bare}"),
-            Err(_) => RecordError::FigureKind {
-                found: shortened(kind),
-            }
-            .to_string(),
+            Err(_) => error.to_string(),
         }
     })?;
     let values = numbers(words, kind.parameters(), &sensor)?;

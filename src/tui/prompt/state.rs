@@ -7,8 +7,9 @@ use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use taxel_files::ReadError;
+use taxel_files::formats::Name;
 use taxel_files::formats::name::LONGEST;
-use taxel_files::formats::{Name, NameError};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::LinePrompt;
@@ -42,7 +43,7 @@ impl NameDialog {
         dialog
     }
 
-    pub fn name(&self) -> Result<Name, NameError> {
+    pub fn name(&self) -> Result<Name, ReadError> {
         Name::new(self.field.text())
     }
 }
@@ -198,9 +199,8 @@ impl LinePrompt for NameDialog {
     }
 
     fn wrong(&self) -> Option<String> {
-        let error = self.name().err();
-        let error = error.filter(|error| *error != NameError::Empty)?;
-        Some(error.to_string())
+        let error = self.name().err()?;
+        (!self.field.text().is_empty()).then(|| error.to_string())
     }
 }
 

@@ -82,12 +82,12 @@ fn broken_files_are_listed_and_reported_without_affecting_others() {
         (
             "cut",
             &good[..good.len() / 2],
-            "line 15, column 20: imprint: EOF while parsing a string",
+            "line 15, column 20: EOF while parsing a string",
         ),
         (
             "newer",
             &good.replace("shape/1", "shape/2"),
-            "format: \"taxel-shape/2\" is unknown to this version, which reads \"taxel-shape/1\"",
+            "line 2, column 27: unknown value `taxel-shape/2`, expected `taxel-shape/1`",
         ),
         (
             "huge",

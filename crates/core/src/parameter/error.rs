@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use crate::figure::FigureKind;
 use crate::parameter::number::{complaint, short};
 use crate::parameter::table::{Parameter, Range, Unit};
-use crate::quote::{joined, shortened};
+use crate::quote::{did_you_mean, joined, shortened};
 
 /// The error for a value that is not allowed. The message names the parameter, the value, and what is expected.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,17 +17,8 @@ pub enum ParameterError {
         /// The text, shortened.
         text: String,
     },
-    /// The number is out of range.
+    /// The number is out of range, or in range but not whole, although the parameter counts taxels.
     Range {
-        /// The parameter.
-        parameter: Parameter,
-        /// The number.
-        value: f64,
-        /// The allowed range.
-        range: Range,
-    },
-    /// The number is in range, but the parameter counts taxels and the number is not whole.
-    Fraction {
         /// The parameter.
         parameter: Parameter,
         /// The number.
@@ -66,7 +58,6 @@ impl ParameterError {
         match self {
             Self::Number { parameter, .. }
             | Self::Range { parameter, .. }
-            | Self::Fraction { parameter, .. }
             | Self::Missing { parameter, .. }
             | Self::Foreign { parameter, .. } => *parameter,
         }
@@ -78,20 +69,11 @@ impl ParameterError {
     }
 
     fn about(&self, name: &str) -> String {
+        let complaint = self.complaint();
         match self {
-            Self::Number { text, .. } => format!("{name}: {text:?} is {}", complaint(text)),
-            Self::Range { value, .. } | Self::Fraction { value, .. } => {
-                format!("{name}: {} {}", short(*value), self.complaint())
-            }
-            Self::Missing { range, .. } => {
-                format!("{name}: missing, expected a number (allowed: {range})")
-            }
-            Self::Foreign {
-                owner, expected, ..
-            } => format!(
-                "{name}: a parameter that the {owner} does not have, expected {}",
-                keys(expected)
-            ),
+            Self::Number { text, .. } => format!("{name}: {text:?} {complaint}"),
+            Self::Range { value, .. } => format!("{name}: {} {complaint}", short(*value)),
+            Self::Missing { .. } | Self::Foreign { .. } => format!("{name}: {complaint}"),
         }
     }
 
@@ -99,12 +81,21 @@ impl ParameterError {
     pub fn complaint(&self) -> String {
         match self {
             Self::Number { text, .. } => format!("is {}", complaint(text)),
+            Self::Range { value, range, .. } if range.contains(*value) => {
+                format!("is not a whole number (allowed: {range})")
+            }
             Self::Range { value, range, .. } => {
                 format!("{} (allowed: {range})", range.missed_by(*value))
             }
-            Self::Fraction { range, .. } => format!("is not a whole number (allowed: {range})"),
-            Self::Missing { .. } => "is missing".to_owned(),
-            Self::Foreign { owner, .. } => format!("is a parameter that the {owner} does not have"),
+            Self::Missing { range, .. } => {
+                format!("missing, expected a number (allowed: {range})")
+            }
+            Self::Foreign {
+                owner, expected, ..
+            } => {
+                let keys = joined(expected.iter().map(|own| own.row().key), "or");
+                format!("a parameter that the {owner} does not have, expected {keys}")
+            }
         }
     }
 
@@ -114,75 +105,46 @@ impl ParameterError {
             Self::Number { text, .. } => complaint(text),
             Self::Range {
                 parameter, range, ..
+            } if parameter.row().unit == Unit::Taxels => {
+                format!("expected {range}, a whole number")
             }
-            | Self::Fraction {
-                parameter, range, ..
-            } => format!("expected {range}{}", whole(*parameter)),
+            Self::Range { range, .. } => format!("expected {range}"),
             Self::Missing { range, .. } => format!("missing, expected {range}"),
-            Self::Foreign { expected, .. } => format!("expected {}", keys(expected)),
+            Self::Foreign { .. } => self.complaint(),
         }
     }
 }
 
-fn whole(parameter: Parameter) -> &'static str {
-    if parameter.row().unit == Unit::Taxels {
-        ", a whole number"
-    } else {
-        ""
-    }
-}
-
-fn keys(parameters: &[Parameter]) -> String {
-    joined(parameters.iter().map(|own| own.row().key), "or")
-}
-
-/// The error for text that is not one of the expected names.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownName {
-    /// The kind of thing that was to be named, such as "figure".
-    pub what: &'static str,
-    /// The text, shortened.
-    pub found: String,
-    /// The expected names.
-    pub expected: Vec<&'static str>,
-}
+/// The error for text that is not one of the expected names: which they are, and which one was probably meant.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct UnknownName(String);
 
 impl UnknownName {
-    /// Returns the value with a name.
+    /// Returns the value with a name. `what` is the kind of thing that is named, such as "figure".
     ///
     /// # Errors
     /// Returns an error if no value has this name.
     pub fn unless_found<T: Copy>(
-        what: &'static str,
+        what: &str,
         found: &str,
         all: &[T],
         name: impl Fn(T) -> &'static str,
     ) -> Result<T, Self> {
         let one = all.iter().find(|&&one| name(one) == found);
-        one.copied().ok_or_else(|| Self {
-            what,
-            found: shortened(found),
-            expected: all.iter().map(|&one| name(one)).collect(),
+        one.copied().ok_or_else(|| {
+            let names: Vec<_> = all.iter().map(|&one| name(one)).collect();
+            let meant = match FigureKind::of_other_name(found) {
+                Some(known) => format!("; {known}"),
+                None => did_you_mean(found, names.iter().copied()),
+            };
+            let (found, names) = (shortened(found), names.join(", "));
+            Self(format!(
+                "{what} {found:?} is unknown, expected one of {names}{meant}"
+            ))
         })
     }
 }
-
-impl fmt::Display for UnknownName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            what,
-            found,
-            expected,
-        } = self;
-        write!(
-            f,
-            "{what} {found:?} is unknown, expected one of {}",
-            expected.join(", ")
-        )
-    }
-}
-
-impl std::error::Error for UnknownName {}
 
 /// Implements `Display` and `FromStr` for a type whose values have a `name`: both use that name.
 #[macro_export]
@@ -217,7 +179,7 @@ mod tests {
     use crate::parameter::PARAMETERS;
 
     #[test]
-    fn examples_of_error() {
+    fn a_message_names_parameter_value_and_range() {
         use crate::prelude::*;
         let error = Sensor::default()
             .read(Parameter::ZoomX, "65")
@@ -253,8 +215,7 @@ mod tests {
     {
         for one in all {
             assert!(one.to_string().parse() == Ok(*one), "{one}");
-            let wrong = format!("{one}.").parse::<T>().err();
-            assert!(wrong.is_some_and(|error| error.expected.len() == all.len()));
+            assert!(format!("{one}.").parse::<T>().is_err(), "{one}");
         }
     }
 
@@ -265,5 +226,17 @@ mod tests {
         let parameters = PARAMETERS.iter().map(|row| row.parameter);
         are_read_as_written(&parameters.collect::<Vec<_>>());
         assert_eq!(format!("{:>8}", FigureKind::Hexagon), " hexagon");
+        let meant = |word: &str| {
+            let error = word.parse::<FigureKind>().expect_err("no figure");
+            error.to_string().rsplit("; ").next().map(str::to_owned)
+        };
+        assert_eq!(
+            meant("hexagn"),
+            Some("did you mean \"hexagon\"?".to_owned())
+        );
+        assert_eq!(
+            meant("square"),
+            Some("a square is a rectangle with equal sides".to_owned())
+        );
     }
 }

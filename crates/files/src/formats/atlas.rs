@@ -28,7 +28,7 @@ use crate::formats::npy::Dtype;
 use crate::formats::npz::{
     ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
 };
-use crate::formats::record::{Record, Values, no_names};
+use crate::formats::record::{Record, SensorRecord, no_names};
 
 /// Returns the share of all poses that leave this imprint: above 0, up to 1.
 pub fn pose_share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
@@ -235,9 +235,8 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    let header: ArchiveHeader<Record<'_>, Values> = header_of(&header, FORMAT)?;
+    let header: ArchiveHeader<Record, SensorRecord> = header_of(&header, FORMAT)?;
     let sensor = header.sensor.sensor(Sensor::default())?;
-    header.source.no_sensor("source")?;
     let source = header.source.source(&sensor, &no_names)?;
     let anchor = anchor(&header.anchor)?;
     let ranges = ranges([

@@ -15,13 +15,12 @@
 
 use std::path::Path;
 
-use taxel_core::imprint::{Imprint, ImprintError};
+use taxel_core::imprint::Imprint;
 use taxel_core::parameter::named;
-use taxel_core::parameter::number::counted;
-use taxel_core::quote::quoted_character;
 
+use crate::error::ReadError;
 use crate::formats::file::{has_ending, without_mark};
-use crate::formats::shape::{ShapeError, StoredShape};
+use crate::formats::shape::StoredShape;
 use crate::formats::{array, pbm, table};
 
 /// The size limit of an imprint's file in bytes, 1 MiB; a larger file is refused unread.
@@ -157,34 +156,7 @@ fn of_text(text: &str) -> Result<Imprint, String> {
     while rows.last().is_some_and(|row| row.trim_end().is_empty()) {
         rows.pop();
     }
-    // In a line of another length, the column of the first taxel too many, or after the end of a shorter line.
-    let behind = |found: usize, most: usize| found.min(most) + 1;
-    Imprint::from_rows(rows.iter().copied()).map_err(|error| {
-        let (line, column, message) = match error {
-            ImprintError::Rows => {
-                let lines = counted(rows.len() as u64, "line");
-                return format!("found {lines}, expected 1 to 64");
-            }
-            ImprintError::Character { row, column, found } => {
-                let found = quoted_character(found);
-                (row, column, format!("found {found}, expected '#' or '.'"))
-            }
-            ImprintError::Ragged {
-                row,
-                found,
-                expected,
-            } => {
-                let taxels = counted(found as u64, "taxel");
-                let message = format!("found {taxels}, expected {expected} as in line 1");
-                (row, behind(found, expected.into()), message)
-            }
-            ImprintError::Columns { row, found } => {
-                let message = format!("found {found} taxels, expected 1 to 64");
-                (row, behind(found, 64), message)
-            }
-        };
-        format!("line {line}, column {column}: {message}")
-    })
+    Imprint::from_rows(rows.iter().copied()).map_err(|error| ReadError::from(error).to_string())
 }
 
 /// Decides which of two values is active: masks of other programs consist of 0 and 1, 0 and 255, or 0 and any other
@@ -248,7 +220,7 @@ pub enum ContentError {
     Imprint(#[from] ImprintFormatError),
     /// Text that starts like JSON, but is not a stored shape.
     #[error(transparent)]
-    Shape(#[from] ShapeError),
+    Shape(#[from] ReadError),
 }
 
 /// Reads any bytes: a stored shape if the first character is `{`, otherwise an imprint as text, PBM, CSV or NPY. A

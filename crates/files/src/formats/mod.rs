@@ -4,9 +4,9 @@
 //! what was found, where, and what was expected.
 //!
 //! JSON is written with serde: [`DescribedImprint`], `StoredShape`, `FrameAnswer`, `AtlasLine`, `Sensor`, `Source` and
-//! `SetRule` implement `Serialize`. None of them implements `Deserialize`: which values are in range depends on other
-//! keys, such as the sensor, so files and lines are read as a whole, by `StoredShape::read`, `Job::read` and
-//! `named_shape`. Their errors name the line, the column or the key.
+//! `SetRule` implement `Serialize`. Which values are in range depends on other keys, such as the sensor, so files and
+//! lines are read as a whole, by `StoredShape::read`, `Job::read` and `named_shape`. Their errors name the line, the
+//! column or the key.
 
 mod array;
 pub mod atlas;
@@ -21,7 +21,7 @@ mod named_shape;
 pub mod npy;
 mod npz;
 mod pbm;
-pub mod record;
+mod record;
 pub mod recording;
 pub(crate) mod seconds;
 pub mod shape;
@@ -36,13 +36,11 @@ pub use drawing::{ConfusionMap, Drawing, Plot, PoseMap};
 pub use imprint_file::{
     Content, ContentError, ImprintFormat, ImprintFormatError, read as read_imprint, read_content,
 };
-pub use name::{Name, NameError};
+pub use name::Name;
 
-pub use job::{Job, JobError};
+pub use job::Job;
 
-pub use record::RecordError;
-
-pub use shape::{ShapeError, StoredShape};
+pub use shape::StoredShape;
 
 pub use npz::{ArchiveError, ArchiveKind, kind_of as archive_kind};
 
@@ -50,4 +48,4 @@ pub use model::{
     FORMAT as MODEL_FORMAT, header as model_header, read as read_model, write as write_model,
 };
 
-pub use named_shape::{NamedShapeError, ShapeLookup, named_shape};
+pub use named_shape::{ShapeLookup, named_shape};

@@ -17,7 +17,7 @@ use crate::formats::npy::Dtype;
 use crate::formats::npz::{
     ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
 };
-use crate::formats::record::{Record, Values, no_names};
+use crate::formats::record::{Record, SensorRecord, no_names};
 
 /// The required value of the header's key `format`.
 pub const FORMAT: &str = "taxel-model/1";
@@ -155,11 +155,10 @@ pub fn header(head: &ModelHead) -> Vec<u8> {
 pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    let header: ModelHeader<Record<'_>, Values> = header_of(&header, FORMAT)?;
+    let header: ModelHeader<Record, SensorRecord> = header_of(&header, FORMAT)?;
     let sensor = header.sensor.sensor(Sensor::default())?;
     let mut shapes = Vec::with_capacity(header.shapes.len());
     for shape in &header.shapes {
-        shape.source.no_sensor("shape")?;
         let source = shape.source.source(&Sensor::LARGEST, &no_names)?;
         shapes.push(NamedShape::new(shape.name.clone(), source).weighted(shape.weight));
     }

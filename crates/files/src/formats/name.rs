@@ -3,7 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
 use taxel_core::quote::{is_invisible, quoted_character};
+
+use crate::error::ReadError;
 
 /// The most characters of a name.
 pub const LONGEST: usize = 64;
@@ -13,72 +16,37 @@ const MOST_BYTES: usize = 200;
 
 /// A name that a file can have on every Unix-like system: 1 to 64 visible letters, digits, spaces, `-`, `_`, `.`; not
 /// starting with `.` or a space, not ending with a space.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String")]
 pub struct Name(String);
-
-/// The error for text that is not a name.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum NameError {
-    /// The text is empty.
-    Empty,
-    /// The text has more than [`LONGEST`] characters; their number.
-    Long(usize),
-    /// The text is too long for a file name; the number of its bytes in UTF-8.
-    Bytes(usize),
-    /// A character that some file systems do not allow.
-    Character(char),
-    /// The first character, a dot or a space: a dot would make a hidden file, a space cannot be seen.
-    Start(char),
-    /// The text ends with a space, which cannot be seen.
-    End,
-}
-
-impl fmt::Display for NameError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => f.write_str("a name is missing"),
-            Self::Long(found) => write!(
-                f,
-                "a name has at most {LONGEST} characters, this has {found}"
-            ),
-            Self::Bytes(found) => write!(
-                f,
-                "a name has at most {MOST_BYTES} bytes in UTF-8, this has {found}"
-            ),
-            Self::Character(found) => write!(
-                f,
-                "{} cannot be in a name, only letters, digits, space, - _ .",
-                quoted_character(*found)
-            ),
-            Self::Start(found) => {
-                write!(f, "a name cannot start with {}", quoted_character(*found))
-            }
-            Self::End => f.write_str("a name cannot end with a space"),
-        }
-    }
-}
-
-impl std::error::Error for NameError {}
 
 impl Name {
     /// Makes a name from a text that follows the rules.
     ///
     /// # Errors
     /// Returns the first rule that the text breaks.
-    pub fn new(text: &str) -> Result<Self, NameError> {
-        let first = text.chars().next().ok_or(NameError::Empty)?;
+    pub fn new(text: &str) -> Result<Self, ReadError> {
         let fits =
             |c: char| matches!(c, ' ' | '-' | '_' | '.') || c.is_alphanumeric() && !is_invisible(c);
-        if let Some(character) = text.chars().find(|&character| !fits(character)) {
-            return Err(NameError::Character(character));
-        }
-        match (first, text.chars().count()) {
-            ('.' | ' ', _) => Err(NameError::Start(first)),
-            (_, count) if count > LONGEST => Err(NameError::Long(count)),
-            _ if text.len() > MOST_BYTES => Err(NameError::Bytes(text.len())),
-            _ if text.ends_with(' ') => Err(NameError::End),
-            _ => Ok(Self(text.to_owned())),
-        }
+        let count = text.chars().count();
+        let broken = if text.is_empty() {
+            "a name is missing".to_owned()
+        } else if let Some(found) = text.chars().find(|&character| !fits(character)) {
+            let found = quoted_character(found);
+            format!("{found} cannot be in a name, only letters, digits, space, - _ .")
+        } else if let Some(first) = text.chars().next().filter(|first| " .".contains(*first)) {
+            format!("a name cannot start with {}", quoted_character(first))
+        } else if count > LONGEST {
+            format!("a name has at most {LONGEST} characters, this has {count}")
+        } else if text.len() > MOST_BYTES {
+            let bytes = text.len();
+            format!("a name has at most {MOST_BYTES} bytes in UTF-8, this has {bytes}")
+        } else if text.ends_with(' ') {
+            "a name cannot end with a space".to_owned()
+        } else {
+            return Ok(Self(text.to_owned()));
+        };
+        Err(ReadError::new(broken))
     }
 
     /// Returns the text.
@@ -93,7 +61,7 @@ impl Name {
     /// let name = Name::new("ΟΔΟΣ.2")?;
     /// assert!(name.same("οδοσ.2") && name.same("οδος.2") && !name.same("οδος"));
     /// assert!(Name::new("straße")?.same("STRAẞE"));
-    /// # Ok::<(), taxel_files::formats::NameError>(())
+    /// # Ok::<(), taxel_files::ReadError>(())
     /// ```
     pub fn same(&self, other: &str) -> bool {
         folded(&self.0) == folded(other)
@@ -129,9 +97,17 @@ impl AsRef<str> for Name {
 }
 
 impl FromStr for Name {
-    type Err = NameError;
+    type Err = ReadError;
 
-    fn from_str(text: &str) -> Result<Self, NameError> {
+    fn from_str(text: &str) -> Result<Self, ReadError> {
         Self::new(text)
+    }
+}
+
+impl TryFrom<String> for Name {
+    type Error = ReadError;
+
+    fn try_from(text: String) -> Result<Self, ReadError> {
+        Self::new(&text)
     }
 }

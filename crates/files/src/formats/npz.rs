@@ -12,10 +12,10 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
+use crate::error::ReadError;
 use crate::formats::file::system_reason;
 use crate::formats::json;
 use crate::formats::npy::{self, Dtype};
-use crate::formats::record::RecordError;
 use crate::formats::value::{counted, grouped};
 
 /// The name of the array that describes the archive: JSON as bytes.
@@ -310,7 +310,7 @@ pub enum ArchiveError {
     /// An invalid source or sensor. Like the following three, it is part of the message, so it is not the source of this
     /// error, too.
     #[error("header: {0}")]
-    Record(RecordError),
+    Record(ReadError),
     /// An invalid range.
     #[error("header: {0}")]
     Range(RangeError),
@@ -343,8 +343,8 @@ impl From<io::Error> for ArchiveError {
     }
 }
 
-impl From<RecordError> for ArchiveError {
-    fn from(error: RecordError) -> Self {
+impl From<ReadError> for ArchiveError {
+    fn from(error: ReadError) -> Self {
         Self::Record(error)
     }
 }

@@ -1,465 +1,205 @@
-//! JSON objects whose keys are parameters, sensors and imprints: the building blocks of jobs and stored shapes.
-//!
-//! Keys that are parameters are looked up in the table of parameters; duplicate and unexpected keys are refused.
+//! JSON objects that describe a shape: a line of `taxel batch`, a shape of a set, the source of a stored shape.
 
-use std::borrow::Cow;
 use std::fmt;
-use std::marker::PhantomData;
+use std::num::NonZeroU32;
 
-use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::Deserialize;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use taxel_core::figure::{Figure, FigureKind};
-use taxel_core::imprint::{Imprint, ImprintRows};
-use taxel_core::parameter::{PARAMETERS, Parameter, ParameterError};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::{PARAMETERS, Parameter};
 use taxel_core::picture::{PICTURE_PARAMETERS, Picture};
-use taxel_core::quote::{did_you_mean, shortened};
-use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::quote::joined;
+use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 
-/// The error for an object without a meaning, although it is JSON and its keys are known.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RecordError {
-    /// A value out of range, or missing.
-    #[error(transparent)]
-    Parameter(#[from] ParameterError),
-    /// A key that this kind of object does not have.
-    #[error("{key}: does not belong to {article} {thing}{expected}", article = article(thing))]
-    Foreign {
-        /// The key that does not belong here.
-        key: &'static str,
-        /// The kind of object.
-        thing: &'static str,
-        /// The keys that do belong here, as a clause of a sentence; empty if there are none.
-        expected: String,
-    },
-    /// A name that is not one of the seven figures.
-    #[error(
-        "figure: {found:?} is unknown, expected one of {}{}",
-        FigureKind::names().join(", "),
-        figure_meant(found)
-    )]
-    FigureKind {
-        /// The name that was given.
-        found: String,
-    },
-    /// None, or several, of the keys that say what an object is.
-    #[error("expected exactly one of the keys {0}")]
-    Which(&'static str),
-    /// A picture's name where names cannot be looked up, or one that was not found.
-    #[error("picture: {0}")]
-    Name(String),
+use crate::error::ReadError;
+use crate::formats::job::FrameRows;
+
+/// The keys of all these objects. A reader takes those that are its own, and refuses what does not belong to the rest.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[serde(expecting = "an object with a figure, a picture, an imprint or a frame")]
+pub(crate) struct Record {
+    pub(crate) name: Option<String>,
+    pub(crate) weight: Option<NonZeroU32>,
+    pub(crate) figure: Option<FigureKind>,
+    pub(crate) picture: Option<ImprintOrName>,
+    pub(crate) imprint: Option<Box<Imprint>>,
+    pub(crate) frame: Option<FrameRows>,
+    pub(crate) sensor: Option<SensorRecord>,
+    radius_x: Option<f64>,
+    radius_y: Option<f64>,
+    length: Option<f64>,
+    width: Option<f64>,
+    side: Option<f64>,
+    pub(crate) x0: Option<f64>,
+    pub(crate) y0: Option<f64>,
+    pub(crate) angle: Option<f64>,
+    thickness: Option<f64>,
+    zoom_x: Option<f64>,
+    zoom_y: Option<f64>,
+    pub(crate) at_least: Option<f64>,
+    pub(crate) percent: Option<f64>,
+    pub(crate) low: Option<f64>,
+    pub(crate) high: Option<f64>,
+    pub(crate) least: Option<NonZeroU32>,
 }
 
-/// Returns the end of the message about an unknown figure: which one was probably meant.
-fn figure_meant(found: &str) -> String {
-    match FigureKind::of_other_name(found) {
-        Some(known) => format!("; {known}"),
-        None => did_you_mean(found, FigureKind::names()),
-    }
-}
-
-fn article(noun: &str) -> &'static str {
-    if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
-        "an"
-    } else {
-        "a"
-    }
-}
-
-/// The values of the parameters that were given, in the order of [`PARAMETERS`], which is that of [`Parameter`].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Values([Option<f64>; PARAMETERS.len()]);
-
-impl Values {
+impl Record {
     pub(crate) fn get(&self, parameter: Parameter) -> Option<f64> {
-        self.0[parameter as usize]
-    }
-
-    pub(crate) fn set(&mut self, parameter: Parameter, value: f64) {
-        self.0[parameter as usize] = Some(value);
-    }
-
-    /// Refuses the first value whose parameter is not an expected one.
-    pub(crate) fn only(
-        &self,
-        thing: &'static str,
-        expected: &[Parameter],
-    ) -> Result<(), RecordError> {
-        let foreign = PARAMETERS
-            .iter()
-            .zip(self.0)
-            .find(|(row, value)| value.is_some() && !expected.contains(&row.parameter));
-        foreign.map_or(Ok(()), |(row, _)| {
-            let expected = expected
-                .iter()
-                .map(|parameter| parameter.row().key)
-                .collect::<Vec<_>>()
-                .join(", ");
-            let expected = match expected.as_str() {
-                "" => String::new(),
-                keys => format!(", expected {keys}"),
-            };
-            Err(RecordError::Foreign {
-                key: row.key,
-                thing,
-                expected,
-            })
-        })
-    }
-
-    pub(crate) fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Result<Figure, RecordError> {
-        self.only(kind.name(), kind.parameters())?;
-        Ok(Figure::new(kind, sensor, |parameter| self.get(parameter))?)
-    }
-
-    fn picture(&self, imprint: &Imprint, sensor: &Sensor) -> Result<Picture, RecordError> {
-        self.only("picture", PICTURE_PARAMETERS)?;
-        Ok(Picture::new(*imprint, sensor, |parameter| {
-            self.get(parameter)
-        })?)
-    }
-
-    /// Makes a sensor from these values; the missing ones are those of `base`.
-    pub(crate) fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
-        self.only("sensor", SENSOR_PARAMETERS)?;
-        SENSOR_PARAMETERS
-            .iter()
-            .copied()
-            .try_fold(base, |sensor, parameter| match self.get(parameter) {
-                Some(value) => Ok(sensor.with(parameter, value)?),
-                None => Ok(sensor),
-            })
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(crate) enum ImprintOrName<'a> {
-    /// An imprint, given as rows of `#` and `.`.
-    Imprint(Box<Imprint>),
-    /// The name of a shape.
-    Name(Cow<'a, str>),
-}
-
-impl ImprintOrName<'_> {
-    pub(crate) fn imprint(
-        &self,
-        lookup: &dyn Fn(&str) -> Result<Imprint, String>,
-    ) -> Result<Imprint, RecordError> {
-        match self {
-            Self::Imprint(imprint) => Ok(**imprint),
-            Self::Name(name) => lookup(name).map_err(RecordError::Name),
+        match parameter {
+            Parameter::RadiusX => self.radius_x,
+            Parameter::RadiusY => self.radius_y,
+            Parameter::Length => self.length,
+            Parameter::Width => self.width,
+            Parameter::Side => self.side,
+            Parameter::X0 => self.x0,
+            Parameter::Y0 => self.y0,
+            Parameter::Angle => self.angle,
+            Parameter::Thickness => self.thickness,
+            Parameter::ZoomX => self.zoom_x,
+            Parameter::ZoomY => self.zoom_y,
+            Parameter::Columns | Parameter::Rows | Parameter::Threshold | Parameter::Pitch => None,
         }
     }
-}
 
-/// Looks up no names, for files that are complete in themselves.
-pub(crate) fn no_names(_: &str) -> Result<Imprint, String> {
-    Err(format!("expected {ROWS}"))
-}
+    /// Refuses the first key besides those that say what the object is, and those of its parameters.
+    pub(crate) fn only(&self, thing: &str, parameters: &[Parameter]) -> Result<(), ReadError> {
+        let keys = [
+            ("name", self.name.is_some()),
+            ("weight", self.weight.is_some()),
+            ("imprint", self.imprint.is_some()),
+            ("frame", self.frame.is_some()),
+            ("sensor", self.sensor.is_some()),
+            ("at_least", self.at_least.is_some()),
+            ("percent", self.percent.is_some()),
+            ("low", self.low.is_some()),
+            ("high", self.high.is_some()),
+            ("least", self.least.is_some()),
+        ];
+        let foreign = PARAMETERS.iter().map(|row| {
+            let parameter = row.parameter;
+            let is_foreign = self.get(parameter).is_some() && !parameters.contains(&parameter);
+            (row.key, is_foreign)
+        });
+        let Some((key, _)) = keys.into_iter().chain(foreign).find(|(_, given)| *given) else {
+            return Ok(());
+        };
+        let article = if thing.starts_with(['e', 'i', 'o']) {
+            "an"
+        } else {
+            "a"
+        };
+        let expected = match parameters {
+            [] => String::new(),
+            known => format!(
+                ", expected {}",
+                joined(known.iter().map(|known| known.row().key), "or")
+            ),
+        };
+        Err(ReadError::new(format!(
+            "{key}: does not belong to {article} {thing}{expected}"
+        )))
+    }
 
-/// An object with any of the keys that occur in jobs, sensors and sources.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Record<'a> {
-    pub(crate) figure: Option<Cow<'a, str>>,
-    /// The rows or the name of a picture.
-    pub(crate) picture: Option<ImprintOrName<'a>>,
-    pub(crate) imprint: Option<Imprint>,
-    pub(crate) sensor: Option<Values>,
-    /// The values of all keys that are parameters.
-    pub(crate) values: Values,
-}
-
-impl Record<'_> {
-    /// Returns the figure or the picture of the record. Exactly one of the two keys must be there, and not `imprint`.
+    /// Returns the figure or the picture. No other key may be left. Zooms are 1 if they are not given.
     pub(crate) fn source(
         &self,
         sensor: &Sensor,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
-    ) -> Result<Source, RecordError> {
-        match (&self.figure, &self.picture, &self.imprint) {
-            (Some(name), None, None) => {
-                let kind = name.parse().map_err(|_| RecordError::FigureKind {
-                    found: shortened(name),
+    ) -> Result<Source, ReadError> {
+        match (self.figure, &self.picture) {
+            (Some(kind), None) => {
+                self.only(kind.name(), kind.parameters())?;
+                let figure = Figure::new(kind, sensor, |parameter| self.get(parameter))?;
+                Ok(Source::Figure(figure))
+            }
+            (None, Some(picture)) => {
+                self.only("picture", PICTURE_PARAMETERS)?;
+                let imprint = match picture {
+                    ImprintOrName::Imprint(imprint) => **imprint,
+                    ImprintOrName::Name(name) => {
+                        lookup(name).map_err(|error| ReadError::new(error).of_key("picture"))?
+                    }
+                };
+                let picture = Picture::new(imprint, sensor, |parameter| match parameter {
+                    Parameter::ZoomX | Parameter::ZoomY => self.get(parameter).or(Some(1.0)),
+                    _ => self.get(parameter),
                 })?;
-                Ok(Source::Figure(self.values.figure(kind, sensor)?))
+                Ok(Source::Picture(picture))
             }
-            (None, Some(content), None) => {
-                let imprint = content.imprint(lookup)?;
-                Ok(Source::Picture(self.values.picture(&imprint, sensor)?))
-            }
-            _ => Err(RecordError::Which("figure, picture, imprint")),
+            _ => Err(ReadError::new(ONE_KEY)),
         }
-    }
-
-    /// Refuses a sensor, for objects in which it would change nothing.
-    pub(crate) fn no_sensor(&self, thing: &'static str) -> Result<(), RecordError> {
-        if self.sensor.is_none() {
-            return Ok(());
-        }
-        Err(RecordError::Foreign {
-            key: "sensor",
-            thing,
-            expected: String::new(),
-        })
     }
 }
 
-pub(crate) trait KeyedObject<'de>: Default {
-    /// The kind of object, with its article, for the message about anything else.
-    const EXPECTED: &'static str;
+/// The message about an object that is nothing, or several things at once.
+pub(crate) const ONE_KEY: &str = "expected exactly one of the keys figure, picture, imprint, frame";
 
-    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error>;
+/// Looks up no names, for files that are complete in themselves.
+pub(crate) fn no_names(_: &str) -> Result<Imprint, String> {
+    Err("expected rows of '#' and '.'".to_owned())
 }
 
-pub(crate) fn keyed_object<'de, T: KeyedObject<'de>, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<T, D::Error> {
-    struct ObjectVisitor<T>(PhantomData<T>);
-    impl<'de, T: KeyedObject<'de>> Visitor<'de> for ObjectVisitor<T> {
-        type Value = T;
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str(T::EXPECTED)
-        }
-        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<T, A::Error> {
-            let mut object = T::default();
-            while let Some(Text(key)) = map.next_key()? {
-                object.take_key(&key, &mut map)?;
+/// A sensor; what is not given is as in another one.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "an object")]
+pub(crate) struct SensorRecord {
+    columns: Option<f64>,
+    rows: Option<f64>,
+    threshold: Option<f64>,
+    pitch_mm: Option<f64>,
+}
+
+impl SensorRecord {
+    pub(crate) fn sensor(&self, base: Sensor) -> Result<Sensor, ReadError> {
+        let given = [
+            (Parameter::Columns, self.columns),
+            (Parameter::Rows, self.rows),
+            (Parameter::Threshold, self.threshold),
+            (Parameter::Pitch, self.pitch_mm),
+        ];
+        let mut sensor = base;
+        for (parameter, value) in given {
+            if let Some(value) = value {
+                sensor = sensor.with(parameter, value)?;
             }
-            Ok(object)
         }
+        Ok(sensor)
     }
-    deserializer.deserialize_map(ObjectVisitor(PhantomData))
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for Record<'a> {
+#[derive(Clone, Debug)]
+pub(crate) enum ImprintOrName {
+    /// An imprint, given as rows of `#` and `.`.
+    Imprint(Box<Imprint>),
+    /// The name of a shape.
+    Name(String),
+}
+
+impl<'de> Deserialize<'de> for ImprintOrName {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        keyed_object::<Record<'de>, D>(deserializer)
+        deserializer.deserialize_any(ImprintOrNameVisitor)
     }
 }
 
-impl<'de> KeyedObject<'de> for Record<'de> {
-    const EXPECTED: &'static str = "an object with a figure, a picture or an imprint";
+struct ImprintOrNameVisitor;
 
-    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
-        self.take(key, map, &RECORD_KEYS)
-    }
-}
+impl<'de> Visitor<'de> for ImprintOrNameVisitor {
+    type Value = ImprintOrName;
 
-impl<'a> Record<'a> {
-    pub(crate) fn take<'de: 'a, A: MapAccess<'de>>(
-        &mut self,
-        key: &str,
-        map: &mut A,
-        known: &KnownKeys,
-    ) -> Result<(), A::Error> {
-        match key {
-            "figure" => {
-                let Text(name) = value_of("figure", map)?;
-                once("figure", &mut self.figure, name)
-            }
-            "picture" => once("picture", &mut self.picture, value_of("picture", map)?),
-            "imprint" => {
-                let ImprintRecord(imprint) = value_of("imprint", map)?;
-                once("imprint", &mut self.imprint, imprint)
-            }
-            "sensor" => once("sensor", &mut self.sensor, value_of("sensor", map)?),
-            other => self.values.take(other, map, known),
-        }
-    }
-}
-
-/// The keys that an object may have.
-pub(crate) struct KnownKeys {
-    /// The keys that a message about an unknown key lists.
-    pub(crate) named: &'static [&'static str],
-    /// More keys, listed after those.
-    pub(crate) others: &'static [&'static str],
-    /// Whether the keys of all parameters are known as well.
-    pub(crate) parameters: bool,
-}
-
-const RECORD_KEYS: KnownKeys = KnownKeys {
-    named: &["figure", "picture", "imprint", "sensor"],
-    others: &[],
-    parameters: true,
-};
-const SENSOR_KEYS: KnownKeys = KnownKeys {
-    named: &{
-        let mut keys = [""; SENSOR_PARAMETERS.len()];
-        let mut index = 0;
-        while index < keys.len() {
-            keys[index] = SENSOR_PARAMETERS[index].row().key;
-            index += 1;
-        }
-        keys
-    },
-    others: &[],
-    parameters: false,
-};
-
-impl KnownKeys {
-    pub(crate) fn unknown(&self, key: &str) -> String {
-        let mut named = [self.named, self.others].concat();
-        let parameters = self
-            .parameters
-            .then(|| PARAMETERS.iter().map(|row| row.key));
-        let parameters = parameters.into_iter().flatten();
-        let meant = did_you_mean(key, named.iter().copied().chain(parameters));
-        if self.parameters {
-            named.push("a parameter");
-        }
-        let mut text = format!("unknown key {:?}, expected ", shortened(key));
-        for (index, name) in named.iter().enumerate() {
-            text += match index {
-                0 => "",
-                index if index + 1 == named.len() => " or ",
-                _ => ", ",
-            };
-            text += name;
-        }
-        text + &meant
-    }
-}
-
-/// Reads the value of a key; an error names the key and keeps its position.
-pub(crate) fn value_of<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
-    key: &str,
-    map: &mut A,
-) -> Result<T, A::Error> {
-    map.next_value()
-        .map_err(|error: A::Error| A::Error::custom(format_args!("{key}: {error}")))
-}
-
-/// Stores the value of a key.
-pub(crate) fn once<T, E: Error>(
-    key: &'static str,
-    slot: &mut Option<T>,
-    value: T,
-) -> Result<(), E> {
-    if slot.replace(value).is_some() {
-        Err(E::custom(format_args!("{key}: given twice")))
-    } else {
-        Ok(())
-    }
-}
-
-impl Values {
-    /// Reads the value of a key that must be a parameter.
-    fn take<'de, A: MapAccess<'de>>(
-        &mut self,
-        key: &str,
-        map: &mut A,
-        known: &KnownKeys,
-    ) -> Result<(), A::Error> {
-        let Some(index) = PARAMETERS.iter().position(|row| row.key == key) else {
-            return Err(A::Error::custom(known.unknown(key)));
-        };
-        let key = PARAMETERS[index].key;
-        once(key, &mut self.0[index], value_of(key, map)?)
-    }
-}
-
-impl<'de> Deserialize<'de> for Values {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        keyed_object(deserializer)
-    }
-}
-
-impl<'de> KeyedObject<'de> for Values {
-    const EXPECTED: &'static str = "an object of parameters";
-
-    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
-        self.take(key, map, &SENSOR_KEYS)
-    }
-}
-
-/// A text, borrowed if JSON needs no unescaping.
-#[derive(Debug)]
-pub struct Text<'a>(pub Cow<'a, str>);
-
-impl<'de: 'a, 'a> Deserialize<'de> for Text<'a> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct TextVisitor;
-        impl<'de> Visitor<'de> for TextVisitor {
-            type Value = Text<'de>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a string")
-            }
-            fn visit_borrowed_str<E: Error>(self, text: &'de str) -> Result<Self::Value, E> {
-                Ok(Text(Cow::Borrowed(text)))
-            }
-            fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
-                Ok(Text(Cow::Owned(text.to_owned())))
-            }
-        }
-        deserializer.deserialize_str(TextVisitor)
-    }
-}
-
-impl<'de: 'a, 'a> Deserialize<'de> for ImprintOrName<'a> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ContentVisitor;
-        impl<'de> Visitor<'de> for ContentVisitor {
-            type Value = ImprintOrName<'de>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(ROWS)
-            }
-            fn visit_borrowed_str<E: Error>(self, text: &'de str) -> Result<Self::Value, E> {
-                Ok(ImprintOrName::Name(Cow::Borrowed(text)))
-            }
-            fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
-                Ok(ImprintOrName::Name(Cow::Owned(text.to_owned())))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
-                let ImprintRecord(imprint) = RowsVisitor.visit_seq(list)?;
-                Ok(ImprintOrName::Imprint(Box::new(imprint)))
-            }
-        }
-        deserializer.deserialize_any(ContentVisitor)
-    }
-}
-
-/// An imprint as a list of its rows.
-pub(crate) struct ImprintRecord(pub(crate) Imprint);
-
-impl<'de> Deserialize<'de> for ImprintRecord {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_seq(RowsVisitor)
-    }
-}
-
-struct RowsVisitor;
-
-impl<'de> Visitor<'de> for RowsVisitor {
-    type Value = ImprintRecord;
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(ROWS)
+        f.write_str("rows of '#' and '.', or a name")
     }
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
-        let mut rows = ImprintRows::default();
-        while list.next_element_seed(NextRow(&mut rows))?.is_some() {}
-        rows.imprint().map(ImprintRecord).map_err(A::Error::custom)
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<ImprintOrName, E> {
+        Ok(ImprintOrName::Name(name.to_owned()))
     }
-}
 
-/// The form of an imprint in JSON, for messages.
-const ROWS: &str = "rows of '#' and '.'";
-
-/// Parses the next row of an imprint in place, so that an error is reported at the row.
-struct NextRow<'a>(&'a mut ImprintRows);
-
-impl<'de> DeserializeSeed<'de> for NextRow<'_> {
-    type Value = ();
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        deserializer.deserialize_str(self)
-    }
-}
-
-impl Visitor<'_> for NextRow<'_> {
-    type Value = ();
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(ROWS)
-    }
-    fn visit_str<E: Error>(self, row: &str) -> Result<(), E> {
-        self.0.push(row).map_err(E::custom)
+    fn visit_seq<A: SeqAccess<'de>>(self, rows: A) -> Result<ImprintOrName, A::Error> {
+        let imprint = Box::deserialize(SeqAccessDeserializer::new(rows))?;
+        Ok(ImprintOrName::Imprint(imprint))
     }
 }

@@ -3,11 +3,10 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::error::ReadError;
 use crate::formats::ArchiveError;
 use crate::formats::file::write_reason;
 use crate::formats::file::{is_missing, system_reason};
-use crate::formats::name::NameError;
-use crate::formats::shape::ShapeError;
 
 /// The error for an operation on a file that the system refused.
 #[derive(Debug, thiserror::Error)]
@@ -94,7 +93,7 @@ impl ArchiveFileError {
 pub enum LibraryError {
     /// The text is not a valid name.
     #[error(transparent)]
-    Name(#[from] NameError),
+    Name(#[from] ReadError),
     /// No shape has that name.
     #[error("no shape named {name:?}")]
     Unknown {
@@ -154,7 +153,7 @@ pub enum LibraryError {
         /// The file.
         path: PathBuf,
         /// The problem with the content.
-        error: ShapeError,
+        error: ReadError,
     },
     /// The system refused.
     #[error(transparent)]

@@ -1,13 +1,15 @@
 //! The metadata beside one of taxel's own recordings: `touch.json` says where the frames of `touch.npy` come from,
 //! their unit, and how they were viewed.
 
+use std::num::NonZeroU32;
+
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 use taxel_core::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
 use taxel_core::matrix::Matrix;
 use taxel_core::quote::shortened_message;
 
-use crate::formats::job::{FrameRows, LeastTaxels, RuleRecord, matrix};
+use crate::formats::job::{FrameRows, RuleRecord, matrix};
 use crate::formats::json;
 use crate::formats::recording::size::{LengthUnit, pitches_in_mm};
 use crate::formats::recording::time::TimeUnit;
@@ -102,7 +104,7 @@ enum DescribedRule {
     Set(SetRule),
     Noise {
         noise: f64,
-        least: Option<LeastTaxels>,
+        least: Option<NonZeroU32>,
     },
     Other(RuleRecord),
 }
@@ -200,12 +202,12 @@ impl RecordingMetadata {
             Some(DescribedRule::Set(rule)) => Some(rule),
             Some(DescribedRule::Noise { noise, least }) => Some(SetRule {
                 rule: Rule::noise(noise).map_err(MetadataError::of_key("rule"))?,
-                least: least.map_or(0, LeastTaxels::get),
+                least: least.map_or(0, NonZeroU32::get),
                 from: RuleOrigin::File,
             }),
             Some(DescribedRule::Other(record)) => Some(SetRule {
                 rule: record.rule().map_err(MetadataError::of_key("rule"))?,
-                least: record.least.map_or(0, LeastTaxels::get),
+                least: record.least.map_or(0, NonZeroU32::get),
                 from: RuleOrigin::File,
             }),
         };
@@ -399,7 +401,7 @@ mod tests {
         assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
         assert_eq!(wrong("\"rule\":{\"noise\":4,\"least\":4096}"), "right");
         for rule in ["noise", "percent"] {
-            let rule = format!("\"rule\":{{\"{rule}\":4,\"least\":4097}}");
+            let rule = format!("\"rule\":{{\"{rule}\":4,\"least\":0}}");
             assert_ne!(wrong(&rule), "right", "{rule}");
         }
         assert!(
@@ -417,9 +419,6 @@ mod tests {
         let list = format!("[\"{FORMAT}\",\"a source\"]");
         let read = RecordingMetadata::read(list.as_bytes()).expect("it names the format");
         let error = read.expect_err("a list").to_string();
-        assert_eq!(
-            error,
-            "line 1, column 1: invalid type: sequence, expected an object"
-        );
+        assert_eq!(error, "line 1, column 1: not a JSON object");
     }
 }
