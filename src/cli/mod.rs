@@ -239,7 +239,7 @@ impl Surroundings {
             answers: &mut answers,
             notes: &mut |text| note(text, self.charset),
         };
-        let done = frames::frames(asked, recording, processing, output);
+        let done = frames::frames(asked, recording, &processing, output);
         answers.flush().map_err(CliError::Write)?;
         done
     }

@@ -784,7 +784,7 @@ fn an_answer_says_that_a_gain_was_applied() {
         );
     }
     let text = run("frames --all --gain - --tare 1").stdout;
-    let said = "sum 6, max 5, tare of 1 frame, gain applied\n";
+    let said = "raw sum 6, raw max 5, tare of 1 frame, gain applied\nforce 0\n";
     assert!(text.contains(said), "{text}");
 }
 
@@ -1087,4 +1087,27 @@ fn an_array_that_may_be_many_frames_is_noted_with_the_flags_that_say_so() {
         let run = taxel(&format!("{line} {path}"), "");
         assert!(run.stderr.contains(expected), "{line}: {}", run.stderr);
     }
+}
+
+/// Labels may be texts, force is that of the active cells after the tare, and what does not exist is empty.
+#[test]
+fn a_table_has_force_contact_and_descriptors_of_each_frame() {
+    let lines = "{\"frame\":[[1,1],[1,1]],\"label\":7,\"t\":1}\n\
+                 {\"frame\":[[1,4],[2,10]],\"label\":\"cup,large\",\"t\":1.5,\"channel\":null}\n";
+    let header = "frame,label,time,channel,sum,max,force,contact,cop_x,cop_y,na,nae,ce,num_x,num_y,cg_x,cg_y,p,f,roundness,\
+                  rect_left,rect_top,rect_right,rect_bottom,cd_x,cd_y,area,diagonals_1,diagonals_2,side_ratio,filling,cg_cd,\
+                  cg_cd_direction\n";
+    let rest = format!("0,7,0,,4,1,0,0,,{}\n", ",".repeat(23));
+    let touch = "1,\"cup,large\",0.5,,17,10,12,2,1.5,1.25,2,2,2,3,2,1.5,1,2,2,6.283185307179586,1,0,2,2,1.5,1,2,\
+                 63.43494882292201,116.56505117707799,2,1,0,\n";
+    let run = taxel("frames - --csv --tare 1 --at-least 3", lines);
+    assert_eq!(run.stderr, "");
+    assert_eq!(run.stdout, [header, &rest, touch].concat());
+    let flags = "--csv --tare 1 --at-least 3 --label cup,large";
+    let run = taxel(&format!("frames - {flags}"), lines);
+    assert_eq!(run.stdout, [header, touch].concat());
+    // Without a threshold, all values above 0 count, and there are no descriptors.
+    let run = taxel("frames - --csv --label 7", lines);
+    let all = format!("0,7,0,,4,1,4,4,1,1{}\n", ",".repeat(23));
+    assert_eq!(run.stdout, [header, &all].concat());
 }

@@ -65,6 +65,8 @@ pub(crate) struct FramesArguments {
     pub(crate) choice: Option<FrameChoice>,
     pub(crate) processing: ProcessingArguments,
     pub(crate) heat: bool,
+    /// Whether frames are a table; all frames of all channels without a choice.
+    pub(crate) csv: bool,
     pub(crate) naming: NamingArguments,
 }
 
@@ -95,12 +97,18 @@ pub(crate) fn command() -> Command {
         .arg(file)
         .args([frame, label, peak, every, flips].map(|arg| arg.help_heading("Frames")))
         .group(ArgGroup::new("choice").args(choices))
+        .group(
+            ArgGroup::new("answered")
+                .args(choices)
+                .arg("csv")
+                .multiple(true),
+        )
         .args(processing().map(|arg| match arg.get_id().as_str() {
             // A listing shows values as they are, wherever they lie.
-            "tare" | "gain" | "flip" | "turn" => arg.requires("choice"),
+            "tare" | "gain" | "flip" | "turn" => arg.requires("answered"),
             _ => arg,
         }))
-        .args(rules().map(|arg| arg.requires("choice")))
+        .args(rules().map(|arg| arg.requires("answered")))
         .args(naming().map(|arg| arg.requires("choice").conflicts_with("noise-report")))
         .args(
             of_sensor(&[Parameter::Pitch])
@@ -109,7 +117,14 @@ pub(crate) fn command() -> Command {
         )
         .args(keeping())
         .group(touch::keeping_group())
-        .args([json().conflicts_with("heat"), heat()])
+        .args([json().conflicts_with_all(["heat", "csv"]), csv(), heat()])
+}
+
+/// Defines `--csv`, which has a line for each frame and no place for other answers.
+fn csv() -> Arg {
+    let help = "Print CSV, one line per frame: force, contact,\ncentre of pressure, descriptors";
+    let others = ["noise-report", "heat", "model", "save", "export"];
+    switch("csv", help).conflicts_with_all(others)
 }
 
 /// Defines `--heat`, which shows values. It excludes `--json`, which has no place for values, and a report on many
@@ -297,6 +312,7 @@ impl FramesArguments {
             choice,
             processing: ProcessingArguments::of(matches, settings)?,
             heat: matches.get_flag("heat"),
+            csv: matches.get_flag("csv"),
             naming: NamingArguments::of(matches),
         })
     }

@@ -468,6 +468,7 @@ Examples:
   taxel frames recording.csv
   taxel frames recording.csv --peak --at-least 10
   taxel frames recording.csv --all --percent 25 --tare 2 --json
+  taxel frames recording.csv --csv --tare 2 > force.csv
   taxel frames recording.csv --frame 3 --low 5 --high 20 --heat --ascii
   taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
   taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01

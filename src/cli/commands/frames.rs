@@ -13,7 +13,8 @@
 //! peak      frame 0                                       3  · · · · ·
 //!
 //!                                                        plain.csv, frame 0
-//!                                                        sum 42, max 9
+//!                                                        raw sum 42, raw max 9
+//!                                                        force 34, centre of pressure (2.71, 1.85)
 //!                                                        active: 3 or more (from a flag)
 //! ```
 //! A damage does not stop the command at once: everything before it is listed or answered, then it is reported as the
@@ -24,7 +25,7 @@ use std::ops::{ControlFlow, Range};
 use std::slice;
 
 use taxel_core::frame::{
-    FlipReport, Frame, Label, Processed, Processing, Rule, RuleOrigin, SetRule, Tare,
+    FlipReport, Frame, Label, Processed, Processing, Rule, RuleOrigin, SetRule,
 };
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
@@ -78,7 +79,7 @@ pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
 pub(crate) fn frames(
     asked: &FramesArguments,
     mut recording: RecordingFile,
-    processing: Processing,
+    processing: &Processing,
     mut output: FramesOutput<'_>,
 ) -> Result<(), CliError> {
     let mut scan = Scan::of(&mut recording, &processing.view);
@@ -98,32 +99,48 @@ pub(crate) fn frames(
     if scan.channels.is_empty() {
         return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
     }
-    let Some(choice) = asked.choice.clone() else {
-        list(&scan, &recording, asked, &mut output)?;
-        return damage.map_or(Ok(()), Err);
+    let choice = match &asked.choice {
+        None if !asked.csv => {
+            list(&scan, &recording, asked, &mut output)?;
+            return damage.map_or(Ok(()), Err);
+        }
+        choice => choice.clone().unwrap_or(FrameChoice::All),
     };
-    let channel = scan.channel(&recording, wanted)?;
-    let listed = &scan.channels[channel];
-    let tare = recording::unused_tare(&asked.processing, &listed.info, &processing.view);
-    tare.inspect(|unused| (output.notes)(&format!("warning: {}: {unused}", recording.name())));
-    let selected = Selection::new(asked, choice, processing, &mut recording, (channel, listed));
-    let (selection, mut processing) = match selected {
-        Ok(selected) => selected,
-        // If frames are missing, the damage is the reason.
-        Err(error) => return Err(damage.unwrap_or(error)),
-    };
-    if let Some(unknown) = recording::unknown_step(&processing) {
-        (output.notes)(&format!("warning: {}: {unknown}", recording.name()));
-    }
-    let answered = if selection.choice == FrameChoice::NoiseReport {
-        report_noise(&mut recording, channel, &mut processing, &mut output)?
+    let every = asked.choice.is_none() && wanted.is_none();
+    let channels = if every {
+        0..scan.channels.len()
     } else {
-        selection.answer(&mut recording, listed, &mut processing, &mut output)?
+        let channel = scan.channel(&recording, wanted)?;
+        channel..channel + 1
     };
+    let mut answered = false;
+    for channel in channels.clone() {
+        let listed = &scan.channels[channel];
+        let tare = recording::unused_tare(&asked.processing, &listed.info, &processing.view);
+        tare.inspect(|unused| (output.notes)(&format!("warning: {}: {unused}", recording.name())));
+        let own = (&choice, processing.clone());
+        let selected = Selection::new(asked, own, &mut recording, (channel, listed));
+        let (selection, mut processing) = match selected {
+            Ok(selected) => selected,
+            // If frames are missing, the damage is the reason.
+            Err(error) => return Err(damage.unwrap_or(error)),
+        };
+        if let Some(unknown) = recording::unknown_step(&processing) {
+            (output.notes)(&format!("warning: {}: {unknown}", recording.name()));
+        }
+        if asked.csv && channel == channels.start {
+            output.write(FrameAnswer::csv_header())?;
+        }
+        answered |= if choice == FrameChoice::NoiseReport {
+            report_noise(&mut recording, channel, &mut processing, &mut output)?
+        } else {
+            selection.answer(&mut recording, listed, &mut processing, &mut output)?
+        };
+    }
     match damage {
         Some(damage) => Err(damage),
         None if answered => Ok(()),
-        None => Err(recording.refused(&missing(&selection.choice, listed))),
+        None => Err(recording.refused(&missing(&choice, &scan.channels[channels.start]))),
     }
 }
 
@@ -217,13 +234,30 @@ struct FoundFrame<'a> {
     processed: Processed<'a>,
 }
 
+impl FoundFrame<'_> {
+    fn answer(&self) -> FrameAnswer<'_> {
+        FrameAnswer {
+            frame: self.frame,
+            channel: self.listed.info.name.as_deref(),
+            processed: self.processed,
+        }
+    }
+
+    fn line(&self, imprint: &Imprint, output: &mut FramesOutput<'_>) -> Vec<u8> {
+        let mut line = json::ascii(&self.answer()).into_bytes();
+        match &mut output.namer {
+            Some(namer) => namer.extend(&mut line, Some(imprint)),
+            None => line.push(b'\n'),
+        }
+        line
+    }
+}
+
 struct Selection {
     choice: FrameChoice,
     number: Option<u64>,
     channel: usize,
-    rule: SetRule,
-    tare: u64,
-    gain: bool,
+    csv: bool,
     heat: bool,
 }
 
@@ -232,8 +266,7 @@ impl Selection {
     /// peak, for which the recording is read again.
     fn new(
         asked: &FramesArguments,
-        choice: FrameChoice,
-        mut processing: Processing,
+        (choice, mut processing): (&FrameChoice, Processing),
         recording: &mut RecordingFile,
         (channel, listed): (usize, &ListedChannel),
     ) -> Result<(Self, Processing), CliError> {
@@ -241,9 +274,9 @@ impl Selection {
             let given = asked.processing.size;
             return Err(recording.damaged(unshaped(listed.values, given)));
         }
-        let rule = recording::rule(recording, &asked.processing, &listed.info)?;
-        processing.rule = Some(rule.rule);
-        processing.least = rule.least;
+        let rule = recording::rule(recording, &asked.processing, &listed.info);
+        // Force and contact exist without a threshold, too.
+        processing.apply_rule(if asked.csv { rule.ok() } else { Some(rule?) });
         match asked.processing.tare {
             Some(0) => {}
             Some(wanted) => {
@@ -252,18 +285,16 @@ impl Selection {
             }
             None => processing.tare = listed.info.tare_for(&processing.view).cloned(),
         }
-        let number = match &choice {
+        let number = match choice {
             FrameChoice::Peak => recording::peak(recording, channel, listed, &mut processing)?,
             FrameChoice::Number(number) => Some(*number),
             FrameChoice::Label(_) | FrameChoice::All | FrameChoice::NoiseReport => None,
         };
         let selection = Self {
-            choice,
+            choice: choice.clone(),
             number,
             channel,
-            rule,
-            tare: processing.tare.as_ref().map_or(0, Tare::frames),
-            gain: processing.gain.is_some(),
+            csv: asked.csv,
             heat: asked.heat,
         };
         Ok((selection, processing))
@@ -370,13 +401,16 @@ impl Selection {
         again: bool,
         output: &mut FramesOutput<'_>,
     ) -> Result<(), CliError> {
-        let Some(imprint) = found.processed.imprint else {
+        if self.csv {
+            return output.write(found.answer().csv_line());
+        }
+        let Some((imprint, rule)) = found.processed.imprint.zip(found.processed.rule) else {
             return Ok(());
         };
         let (Form::Json(pitch) | Form::Table(pitch)) = output.form;
         let (pitch, without_pitch) = cell_size(found.name, pitch, &found.listed.info)?;
         let heat = self.heat.then_some(found.processed.tared);
-        let titles = self.titles(found);
+        let titles = titles(found, rule);
         let mut lines = titles.clone();
         if let Form::Table(_) = output.form {
             lines.extend(without_pitch);
@@ -394,7 +428,7 @@ impl Selection {
                 for note in lines.split_off(titles.len()) {
                     (output.notes)(&note);
                 }
-                self.line(found, &imprint, output)
+                found.line(&imprint, output)
             }
             (None, Form::Table(_)) => {
                 let gap = if again { "\n" } else { "" };
@@ -414,88 +448,73 @@ impl Selection {
         };
         output.write(&text)
     }
+}
 
-    fn line(
-        &self,
-        found: &FoundFrame<'_>,
-        imprint: &Imprint,
-        output: &mut FramesOutput<'_>,
-    ) -> Vec<u8> {
-        let answer = FrameAnswer {
-            frame: found.frame,
-            channel: found.listed.info.name.as_deref(),
-            processed: found.processed,
-            rule: Some(self.rule),
-            tare: self.tare,
-            gain: self.gain,
-        };
-        let mut line = json::ascii(&answer).into_bytes();
-        match &mut output.namer {
-            Some(namer) => namer.extend(&mut line, Some(imprint)),
-            None => line.push(b'\n'),
-        }
-        line
+/// Returns lines about the frame: `iscan.csv, frame 65 (label 66), 6.5 s`, then sum and maximum, then
+/// force and centre, then the threshold.
+fn titles(found: &FoundFrame<'_>, rule: SetRule) -> Vec<String> {
+    let &FoundFrame {
+        name,
+        listed,
+        frame,
+        processed,
+    } = found;
+    let file = name.rsplit('/').next().unwrap_or(name);
+    let mut title = format!("{file}, frame {}", frame.number);
+    if let Some(label) = &frame.label {
+        title += &format!(" (label {label})");
     }
+    if let Some(time) = frame.time {
+        title += &format!(", {} s", short(time));
+    }
+    if let Some(channel) = &listed.info.name {
+        title += &format!(", {channel}");
+    }
+    let unit = unit(&listed.info);
+    let max = processed.max.map_or("–".to_owned(), short);
+    let mut values = format!(
+        "raw sum {}{unit}, raw max {max}{unit}",
+        short(processed.sum)
+    );
+    if processed.tare > 0 {
+        values += &format!(", tare of {}", counted(processed.tare, "frame"));
+    }
+    if processed.gain {
+        values += ", gain applied";
+    }
+    let mut contact = format!("force {}{unit}", short(processed.force));
+    if let Some([x, y]) = processed.cop {
+        contact += &format!(", centre of pressure ({x:.2}, {y:.2})");
+    }
+    vec![title, values, contact, rule_text(rule, &unit)]
+}
 
-    /// Returns lines about the frame: `iscan.csv, frame 65 (label 66), 6.5 s`, then sum and maximum, then the
-    /// threshold.
-    fn titles(&self, found: &FoundFrame<'_>) -> Vec<String> {
-        let &FoundFrame {
-            name,
-            listed,
-            frame,
-            processed,
-        } = found;
-        let file = name.rsplit('/').next().unwrap_or(name);
-        let mut title = format!("{file}, frame {}", frame.number);
-        if let Some(label) = &frame.label {
-            title += &format!(" (label {label})");
+/// Returns the threshold in words, with its origin:
+/// `active: 20 kPa or more, in pieces of 3 taxels or more (from a flag)`.
+fn rule_text(set: SetRule, unit: &str) -> String {
+    let mut text = match set.rule {
+        Rule::AtLeast(threshold) => format!("active: {}{unit} or more", short(threshold)),
+        Rule::Percent(percent) => {
+            format!("active: {} % of the largest value or more", short(percent))
         }
-        if let Some(time) = frame.time {
-            title += &format!(", {} s", short(time));
+        Rule::Hysteresis { low, high } => format!(
+            "active: {}{unit} or more, joined to {}{unit} or more",
+            short(low),
+            short(high)
+        ),
+        Rule::Noise(deviations) => {
+            let deviations = short(deviations);
+            format!("active: {deviations} standard deviations above the tare, or more")
         }
-        if let Some(channel) = &listed.info.name {
-            title += &format!(", {channel}");
-        }
-        let unit = unit(&listed.info);
-        let max = processed.max.map_or("–".to_owned(), short);
-        let mut values = format!("sum {}{unit}, max {max}{unit}", short(processed.sum));
-        if self.tare > 0 {
-            values += &format!(", tare of {}", counted(self.tare, "frame"));
-        }
-        if self.gain {
-            values += ", gain applied";
-        }
-        vec![title, values, self.rule_text(&unit)]
+    };
+    if set.least > 1 {
+        text += &format!(", in pieces of {} taxels or more", set.least);
     }
-
-    /// Returns the threshold in words, with its origin:
-    /// `active: 20 kPa or more, in pieces of 3 taxels or more (from a flag)`.
-    fn rule_text(&self, unit: &str) -> String {
-        let mut text = match self.rule.rule {
-            Rule::AtLeast(threshold) => format!("active: {}{unit} or more", short(threshold)),
-            Rule::Percent(percent) => {
-                format!("active: {} % of the largest value or more", short(percent))
-            }
-            Rule::Hysteresis { low, high } => format!(
-                "active: {}{unit} or more, joined to {}{unit} or more",
-                short(low),
-                short(high)
-            ),
-            Rule::Noise(deviations) => {
-                let deviations = short(deviations);
-                format!("active: {deviations} standard deviations above the tare, or more")
-            }
-        };
-        if self.rule.least > 1 {
-            text += &format!(", in pieces of {} taxels or more", self.rule.least);
-        }
-        let article = match self.rule.from {
-            RuleOrigin::File | RuleOrigin::Settings => "the",
-            _ => "a",
-        };
-        text + &format!(" (from {article} {})", self.rule.from.name())
-    }
+    let article = match set.from {
+        RuleOrigin::File | RuleOrigin::Settings => "the",
+        _ => "a",
+    };
+    text + &format!(" (from {article} {})", set.from.name())
 }
 
 fn unit(info: &ChannelInfo) -> String {

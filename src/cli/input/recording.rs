@@ -459,7 +459,7 @@ pub(crate) fn tare(
     let view = &processing.view;
     // Damage after the tare's frames does not matter here.
     let added = recording.frames_again(channel, |frame| {
-        frames.add_frame(frame, view)?;
+        frames.add(frame, view)?;
         Ok::<_, FrameError>(match frames.missing() {
             0 => ControlFlow::Break(()),
             _ => ControlFlow::Continue(()),

@@ -31,7 +31,6 @@ pub struct Live {
     number: u64,
     /// The processing of a frame before it is shown: view, tare, threshold.
     pub(in crate::tui) processing: Processing,
-    rule: Option<SetRule>,
     converted: Option<(Rule, Rule)>,
     /// Whether the threshold or the tare has changed since they were last written into a recording.
     is_viewed_anew: bool,
@@ -59,7 +58,6 @@ impl Live {
     pub fn new(request: Arc<WatchRequest>, number: u64) -> Self {
         let mut live = Self {
             processing: request.processing.clone(),
-            rule: None,
             converted: None,
             is_viewed_anew: false,
             cursor: FrameCursor::new(request.history_bytes),
@@ -122,7 +120,9 @@ impl Live {
 
     pub fn no_imprint(&self) -> LiveRefusal {
         match (&self.error, self.tare.progress()) {
-            _ if self.reading.is_some() && self.rule.is_none() => LiveRefusal::NoThreshold,
+            _ if self.reading.is_some() && self.processing.rule.is_none() => {
+                LiveRefusal::NoThreshold
+            }
             (Some(error), _) => LiveRefusal::NoImprint(error.clone()),
             (None, Some((taken, wanted))) if self.reading.is_some() => {
                 LiveRefusal::TareIsMade { taken, wanted }
@@ -132,7 +132,7 @@ impl Live {
     }
 
     pub fn rule(&self) -> Option<SetRule> {
-        self.rule
+        self.processing.applied_rule()
     }
 
     pub fn not_drawn(&self) -> u64 {
@@ -184,7 +184,7 @@ impl Live {
         self.recording.name()?;
         let is_changed = std::mem::take(&mut self.is_viewed_anew) | self.marks.take_change();
         is_changed.then(|| RecordedView {
-            rule: self.rule,
+            rule: self.rule(),
             tare: self.processing.tare.clone(),
             marks: self.marks.own_from(self.recording.from()),
         })
@@ -273,7 +273,7 @@ impl Live {
     }
 
     fn take_channel(&mut self, channel: &ChannelInfo) {
-        if self.rule.is_none() {
+        if self.processing.rule.is_none() {
             self.set_rule(channel.own_rule(self.processing.least));
         }
         self.marks.recorded.clone_from(&channel.marks);
@@ -318,9 +318,8 @@ impl Live {
     }
 
     fn set_rule(&mut self, rule: Option<SetRule>) {
-        self.is_viewed_anew |= self.rule != rule;
-        self.rule = rule;
-        SetRule::apply(rule, &mut self.processing);
+        self.is_viewed_anew |= self.rule() != rule;
+        self.processing.apply_rule(rule);
     }
 
     /// Returns true if neither a tare nor a gain changes the values.
@@ -337,7 +336,7 @@ impl Live {
     /// Moves the threshold up or down by a step that depends on the largest value so far. Without a threshold, one is
     /// set. A threshold out of range changes nothing.
     pub fn step_threshold(&mut self, direction: i8) {
-        let rule = self.rule.map(|set| set.rule);
+        let rule = self.processing.rule;
         if let Ok(rule) = tare::step(rule, direction, self.range.tared_top()) {
             self.choose(rule);
         }
@@ -348,7 +347,7 @@ impl Live {
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
         let largest = largest.filter(|&largest| largest > 0.0);
         let largest = largest.unwrap_or(self.range.tared_top());
-        let rule = self.rule.map(|set| set.rule);
+        let rule = self.processing.rule;
         let former = self.converted.filter(|(made, _)| rule == Some(*made));
         let other = match former {
             Some((_, former)) => Ok(former),

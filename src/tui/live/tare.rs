@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use taxel_core::frame::{FirstFrames, Frame, FrameError, Processing, Rule, Tare, TareFrames};
+use taxel_core::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
 use taxel_files::formats::recording::ChannelInfo;
 use taxel_files::formats::value::{counted, fitting, measured};
 
@@ -24,7 +24,7 @@ pub struct TareOrigin {
 pub(super) struct LiveTare {
     /// The number of first frames that a tare was requested of, until a key makes or removes a tare; 0 for none.
     wanted: u64,
-    first: Option<FirstFrames>,
+    first: Option<TareFrames>,
     /// The origin of the tare; None if nothing is subtracted.
     origin: Option<TareOrigin>,
     takes_own: bool,
@@ -35,7 +35,7 @@ impl LiveTare {
     pub(super) fn new(request: &WatchRequest) -> Self {
         Self {
             wanted: request.tare,
-            first: (request.tare > 0).then(|| FirstFrames::new(request.tare)),
+            first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
             origin: None,
             takes_own: request.own_tare && request.tare == 0,
             error: None,
@@ -70,7 +70,7 @@ impl LiveTare {
     }
 
     /// Adds one of the first frames, and uses the tare after the last of them. A frame whose size does not fit is left
-    /// out, as [`FirstFrames`] describes; the error says so until one that fits.
+    /// out, as [`TareFrames`] describes; the error says so until one that fits.
     pub(super) fn add(&mut self, frame: &Frame, processing: &mut Processing) {
         let Some(mut first) = self.first.take() else {
             return;
@@ -111,7 +111,7 @@ impl LiveTare {
         };
         let mut tare = TareFrames::new(frames.len() as u64);
         for frame in frames.iter().rev() {
-            tare.add_frame(frame, &processing.view)?;
+            tare.add(frame, &processing.view)?;
         }
         self.end(tare.finish()?, last, processing);
         (self.first, self.error, self.wanted) = (None, None, 0);
@@ -144,7 +144,7 @@ impl LiveTare {
             ..origin
         });
         let begins = self.origin.is_none() && self.wanted > 0;
-        self.first = begins.then(|| FirstFrames::new(self.wanted));
+        self.first = begins.then(|| TareFrames::new(self.wanted));
         self.error = None;
     }
 }

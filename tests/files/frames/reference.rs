@@ -6,7 +6,6 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 use taxel_core::frame::{Crop, FrameError, Label, Peak, Processing, Rule, TareFrames};
-use taxel_core::matrix::Matrix;
 use taxel_files::formats::DescribedImprint;
 use taxel_files::formats::recording::RecordingNote;
 
@@ -70,9 +69,7 @@ fn every_reference_frame_has_the_same_answer() {
         if tare > 0 {
             let mut frames = TareFrames::new(tare);
             for frame in &found.frames {
-                let mut seen = Matrix::default();
-                processing.view.apply_to(frame, &mut seen).expect("it fits");
-                frames.add(&seen).expect("it fits");
+                frames.add(frame, &processing.view).expect("it fits");
             }
             processing.tare = Some(frames.finish().expect("enough frames"));
         }

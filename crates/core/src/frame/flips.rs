@@ -34,6 +34,7 @@ pub struct FlipCounter {
     before: [Option<Imprint>; 2],
     repeated: u64,
     flips: u64,
+    /// One for each of `cells`, row by row.
     taxels: Vec<TaxelCounts>,
 }
 
@@ -69,14 +70,13 @@ impl FlipReport {
 impl FlipCounter {
     /// Creates a counter for imprints in which these taxels exist.
     pub fn new(cells: Imprint) -> Self {
-        let count = cells.size().cells();
         Self {
-            cells,
             frames: 0,
             before: [None; 2],
             repeated: 0,
             flips: 0,
-            taxels: vec![TaxelCounts::default(); count],
+            taxels: cells.active().map(|_| TaxelCounts::default()).collect(),
+            cells,
         }
     }
 
@@ -100,66 +100,49 @@ impl FlipCounter {
     }
 
     fn count_neighbours(&mut self, imprint: &Imprint) {
-        let columns = usize::from(imprint.columns());
-        let is_line = imprint.columns() == 1 || imprint.rows() == 1;
-        let least = if is_line { 2 } else { 3 };
-        for (index, counts) in self.taxels.iter_mut().enumerate() {
-            let (Ok(column), Ok(row)) =
-                (u8::try_from(index % columns), u8::try_from(index / columns))
-            else {
-                continue;
-            };
-            if !self.cells.get(column, row) {
-                continue;
-            }
+        let (columns, rows) = (imprint.columns(), imprint.rows());
+        let least = if columns == 1 || rows == 1 { 2 } else { 3 };
+        for ((column, row), counts) in self.cells.active().zip(&mut self.taxels) {
             let (mut there, mut active) = (0, 0);
-            for y in row.saturating_sub(1)..=(row + 1).min(imprint.rows() - 1) {
-                for x in column.saturating_sub(1)..=(column + 1).min(imprint.columns() - 1) {
+            for y in row.saturating_sub(1)..=(row + 1).min(rows - 1) {
+                for x in column.saturating_sub(1)..=(column + 1).min(columns - 1) {
                     if (x, y) != (column, row) && self.cells.get(x, y) {
                         there += 1;
                         active += u32::from(imprint.get(x, y));
                     }
                 }
             }
-            let own = u64::from(imprint.get(column, row));
-            if active == 0 {
-                counts.alone.0 += 1;
-                counts.alone.1 += own;
+            let counts = if active == 0 {
+                &mut counts.alone
             } else if 4 * active >= 3 * there && there >= least {
-                counts.amid.0 += 1;
-                counts.amid.1 += own;
-            }
+                &mut counts.amid
+            } else {
+                continue;
+            };
+            counts.0 += 1;
+            counts.1 += u64::from(imprint.get(column, row));
         }
     }
 
     /// Returns the estimates from the frames so far.
     pub fn finish(&self) -> FlipReport {
-        let (columns, rows) = (self.cells.columns(), self.cells.rows());
         let mut stuck_on = Imprint::empty(self.cells.size());
         let mut stuck_off = stuck_on;
-        for row in 0..rows {
-            for column in 0..columns {
-                let index = usize::from(row) * usize::from(columns) + usize::from(column);
-                let counts = self.taxels[index];
-                // One frame in a hundred may show a flip.
-                let (alone, on) = counts.alone;
-                if alone >= ENOUGH && alone - on <= alone / 100 {
-                    stuck_on.set(column, row, true);
-                }
-                let (amid, on) = counts.amid;
-                if amid >= ENOUGH && on <= amid / 100 {
-                    stuck_off.set(column, row, true);
-                }
-            }
+        // One frame in a hundred may show a flip.
+        let is_stuck = |frames, flips| frames >= ENOUGH && flips <= frames / 100;
+        for ((column, row), counts) in self.cells.active().zip(&self.taxels) {
+            let TaxelCounts { alone, amid } = *counts;
+            stuck_on.set(column, row, is_stuck(alone.0, alone.0 - alone.1));
+            stuck_off.set(column, row, is_stuck(amid.0, amid.1));
         }
-        let estimate = noise(self.flips, self.repeated);
+        let (noise, standard_error) = noise(self.flips, self.repeated).unzip();
         FlipReport {
             frames: self.frames,
             cells: self.cells.count(),
             repeated: self.repeated,
             flips: self.flips,
-            noise: estimate.map(|(noise, _)| noise),
-            standard_error: estimate.map(|(_, error)| error),
+            noise,
+            standard_error,
             stuck_on,
             stuck_off,
         }
@@ -177,20 +160,15 @@ impl FlipCounter {
 /// a; the variance of the share is p / repeated times `related`.
 #[expect(clippy::cast_precision_loss, reason = "an estimate")]
 fn noise(flips: u64, repeated: u64) -> Option<(f64, f64)> {
-    if repeated == 0 {
-        return None;
-    }
+    // Without repeated states, this and all that follows is NaN.
     let share = flips as f64 / repeated as f64;
-    let related = {
-        let a = share / (1.0 + 2.0 * share);
-        1.0 - share + 2.0 * a * (3.0 - 4.0 * share) + 2.0 * share * share * (1.0 - 4.0 * a)
-    };
-    let of_share = (flips.max(1) as f64 * related).sqrt() / repeated as f64;
     let growth = 1.0 + 2.0 * share;
-    // e (1 - e)
-    let product = share / growth;
-    // (1 - 2e)^2
-    let square = 1.0 - 4.0 * product;
+    let a = share / growth;
+    let related =
+        1.0 - share + 2.0 * a * (3.0 - 4.0 * share) + 2.0 * share * share * (1.0 - 4.0 * a);
+    let of_share = (flips.max(1) as f64 * related).sqrt() / repeated as f64;
+    // (1 - 2e)²
+    let square = 1.0 - 4.0 * a;
     let root = square.sqrt();
     (square > 0.0).then(|| ((1.0 - root) / 2.0, of_share / (growth * growth * root)))
 }

@@ -37,9 +37,8 @@ mod flips;
 pub use flips::{FlipCounter, FlipReport};
 pub use processing::{Peak, Processed, Processing};
 pub use recorded::{
-    Frame, FrameError, FrameSize, FrameSizeError, LARGEST_VALUE, Label, MAX_FRAME_CELLS,
-    MAX_FRAME_SIDE,
+    Frame, FrameError, FrameSize, LARGEST_VALUE, Label, MAX_FRAME_CELLS, MAX_FRAME_SIDE,
 };
 pub use rule::{Rule, RuleOrigin, SetRule};
-pub use tare::{FirstFrames, Tare, TareFrames};
+pub use tare::{Tare, TareFrames};
 pub use view::{Crop, View};

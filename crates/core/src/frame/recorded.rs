@@ -1,12 +1,13 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use crate::matrix::Matrix;
 use crate::parameter::number::{counted, short};
 use crate::sensor::MatrixSize;
 
 /// The largest value that a cell may have; the smallest is its negative. So the sum of a frame is always finite.
 pub const LARGEST_VALUE: f64 = 1e300;
+
+pub(super) const VALUES: RangeInclusive<f64> = -LARGEST_VALUE..=LARGEST_VALUE;
 
 /// The label that a recording gives a frame: its number there, or the name of what was touched.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -103,10 +104,11 @@ impl Frame {
     /// Returns an error if the number of values differs from the number of cells; then nothing is changed.
     pub fn set_values(&mut self, values: &[f64]) -> Result<(), FrameError> {
         if values.len() != self.values.len() {
-            return Err(FrameError::Values {
-                size: self.size,
-                found: values.len(),
-            });
+            let (found, size) = (counted(values.len() as u64, "value"), self.size);
+            return Err(FrameError::Invalid(format!(
+                "found {found}, expected {} for a frame of {size}",
+                size.cells()
+            )));
         }
         self.values.copy_from_slice(values);
         Ok(())
@@ -122,17 +124,13 @@ impl Frame {
 
     /// Copies another frame into this one, reusing its memory.
     pub fn copy_from(&mut self, other: &Self) {
-        let values = std::mem::take(&mut self.values);
+        let mut values = std::mem::take(&mut self.values);
+        values.clone_from(&other.values);
         *self = Self {
             values,
-            number: other.number,
-            channel: other.channel,
             label: other.label.clone(),
-            time: other.time,
-            size: other.size,
+            ..*other
         };
-        self.values.clear();
-        self.values.extend_from_slice(&other.values);
     }
 
     /// Returns the number of columns and rows.
@@ -158,12 +156,6 @@ impl Frame {
     /// Returns the values for writing. A value that is infinite or beyond ±[`LARGEST_VALUE`] counts as no value.
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
-    }
-
-    /// Returns the number of cells that have a value.
-    pub fn cells(&self) -> usize {
-        let is_value = |value: &&f64| value.abs() <= LARGEST_VALUE;
-        self.values.iter().filter(is_value).count()
     }
 }
 
@@ -194,12 +186,14 @@ impl FrameSize {
     ///
     /// # Errors
     /// Returns an error if a number is not from 1 to [`MAX_FRAME_SIDE`].
-    pub fn new(columns: u16, rows: u16) -> Result<Self, FrameSizeError> {
+    pub fn new(columns: u16, rows: u16) -> Result<Self, FrameError> {
+        let size = Self { columns, rows };
         if Self::SIDES.contains(&columns) && Self::SIDES.contains(&rows) {
-            Ok(Self { columns, rows })
-        } else {
-            Err(FrameSizeError { columns, rows })
+            return Ok(size);
         }
+        Err(FrameError::Invalid(format!(
+            "a frame of {size}, expected 1 to {MAX_FRAME_SIDE} columns and rows"
+        )))
     }
 
     /// Returns the size of a frame; None if a side is unknown or not allowed.
@@ -248,58 +242,12 @@ impl fmt::Display for FrameSize {
     }
 }
 
-/// The error for a size that no frame can have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrameSizeError {
-    /// The number of columns.
-    pub columns: u16,
-    /// The number of rows.
-    pub rows: u16,
-}
-
-impl fmt::Display for FrameSizeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { columns, rows } = self;
-        write!(
-            f,
-            "a frame of {columns} × {rows}, expected 1 to {MAX_FRAME_SIDE} columns and rows"
-        )
-    }
-}
-
-impl std::error::Error for FrameSizeError {}
-
 /// The error for a frame that cannot be processed, or for settings that do not fit it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FrameError {
-    /// More cells are left than an imprint can have.
-    Large {
-        /// The size of the visible part.
-        size: FrameSize,
-    },
-    /// A side of a frame is not from 1 to 512.
-    Sides(FrameSizeError),
-    /// The number of values differs from the number of cells.
-    Values {
-        /// The frame's size.
-        size: FrameSize,
-        /// The number of values.
-        found: usize,
-    },
-    /// The crop reaches beyond the frame.
-    Crop {
-        /// The frame's size.
-        size: FrameSize,
-    },
-    /// A mask, a gain or a tare differs in size from the visible part of the frame.
-    Size {
-        /// "mask", "gain" or "tare".
-        what: &'static str,
-        /// The size of the mask, gain or tare.
-        found: MatrixSize,
-        /// The size of the visible part of the frame.
-        expected: MatrixSize,
-    },
+    /// A crop, mask, gain or tare does not fit the size of the frame, or too many cells are left. A frame of another
+    /// size may fit.
+    Size(String),
     /// A threshold or a part of a tare is not a number, or out of range.
     Rule {
         /// The name of the value: its key in JSON.
@@ -316,13 +264,6 @@ pub enum FrameError {
         /// The higher threshold.
         high: f64,
     },
-    /// A value times the gain of its cell is beyond ±[`LARGEST_VALUE`].
-    Product {
-        /// The value, after the tare.
-        value: f64,
-        /// The gain of its cell.
-        gain: f64,
-    },
     /// There are fewer frames than a tare needs.
     Tare {
         /// The number of frames so far.
@@ -330,58 +271,23 @@ pub enum FrameError {
         /// The number of frames that the tare needs.
         wanted: u64,
     },
-    /// The frames of a tare would take too much memory, by their number and size.
-    TareSize {
-        /// The largest possible number of frames of this size.
-        most: u64,
-    },
     /// The noise rule is used without a tare that measures the noise.
     NoTare,
+    /// Anything else, described by the text.
+    Invalid(String),
 }
 
 impl FrameError {
     /// Returns true if a frame of another size could be processed.
     pub fn is_of_size(&self) -> bool {
-        matches!(
-            self,
-            Self::Large { .. } | Self::Crop { .. } | Self::Size { .. }
-        )
+        matches!(self, Self::Size(_))
     }
 }
 
 impl fmt::Display for FrameError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Large { size } => write!(
-                f,
-                "{size} cells are left, expected at most 64 × 64: crop the frame"
-            ),
-            Self::Sides(error) => error.fmt(f),
-            Self::Values { size, found } => {
-                let (found, expected) = (counted(*found as u64, "value"), size.cells());
-                write!(
-                    f,
-                    "found {found}, expected {expected} for a frame of {size}"
-                )
-            }
-            Self::Crop { size } => write!(
-                f,
-                "the crop reaches beyond the frame, which has {} and {}",
-                counted(size.columns(), "column"),
-                counted(size.rows(), "row")
-            ),
-            Self::Size {
-                what,
-                found,
-                expected,
-            } => write!(
-                f,
-                "the {what} has {} and {}, expected {} and {} as the frame has",
-                counted(found.columns(), "column"),
-                counted(found.rows(), "row"),
-                expected.columns(),
-                expected.rows()
-            ),
+            Self::Size(text) | Self::Invalid(text) => f.write_str(text),
             Self::Rule {
                 what,
                 found,
@@ -393,16 +299,10 @@ impl fmt::Display for FrameError {
             Self::Order { low, high } => {
                 write!(f, "low {} is above high {}", short(*low), short(*high))
             }
-            Self::Product { value, gain } => write!(
-                f,
-                "the value {value:e} times its gain {gain:e} is too large, expected at most 1e300"
-            ),
-            Self::Tare { frames, wanted } => f.write_str(&too_few(*frames, *wanted)),
-            Self::TareSize { most } => {
-                write!(
-                    f,
-                    "too many frames for a tare: expected at most {most} of this size"
-                )
+            Self::Tare { frames, wanted } => {
+                let wanted = counted(*wanted, "frame");
+                let verb = if *frames == 1 { "is" } else { "are" };
+                write!(f, "the tare needs {wanted}, but there {verb} only {frames}")
             }
             Self::NoTare => {
                 f.write_str("a threshold from noise needs a tare of at least two frames")
@@ -411,35 +311,38 @@ impl fmt::Display for FrameError {
     }
 }
 
-fn too_few(frames: u64, wanted: u64) -> String {
-    let wanted = counted(wanted, "frame");
-    let verb = if frames == 1 { "is" } else { "are" };
-    format!("the tare needs {wanted}, but there {verb} only {frames}")
-}
-
 impl std::error::Error for FrameError {}
 
-impl From<FrameSizeError> for FrameError {
-    fn from(error: FrameSizeError) -> Self {
-        Self::Sides(error)
-    }
+/// Returns a threshold or a part of a tare if it is in its range.
+pub(super) fn in_range(
+    what: &'static str,
+    found: f64,
+    range: RangeInclusive<f64>,
+    allowed: &'static str,
+) -> Result<f64, FrameError> {
+    let wrong = FrameError::Rule {
+        what,
+        found,
+        allowed,
+    };
+    range.contains(&found).then_some(found).ok_or(wrong)
 }
 
+/// Checks that a mask, a gain or a tare has the size of what is seen of a frame.
 pub(super) fn check_size(
-    what: &'static str,
-    found: &Matrix<f64>,
-    values: &Matrix<f64>,
+    what: &str,
+    found: MatrixSize,
+    expected: MatrixSize,
 ) -> Result<(), FrameError> {
-    let (found, expected) = (found.size(), values.size());
     if found == expected {
-        Ok(())
-    } else {
-        Err(FrameError::Size {
-            what,
-            found,
-            expected,
-        })
+        return Ok(());
     }
+    let columns = counted(found.columns(), "column");
+    let rows = counted(found.rows(), "row");
+    let (right, down) = (expected.columns(), expected.rows());
+    Err(FrameError::Size(format!(
+        "the {what} has {columns} and {rows}, expected {right} and {down} as the frame has"
+    )))
 }
 
 #[cfg(test)]
@@ -458,11 +361,10 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_recorded() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::frame::Frame;
+    fn a_frame_takes_as_many_values_as_it_has_cells() -> Result<(), Box<dyn std::error::Error>> {
         let size = FrameSize::new(3, 2)?;
         let mut frame = Frame::from_values(size, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
-        assert_eq!((frame.columns(), frame.rows(), frame.cells()), (3, 2, 5));
+        assert_eq!((frame.columns(), frame.rows()), (3, 2));
         // The next frame, in the same memory.
         frame.set_values(&[0.0, 11.0, f64::NAN, 4.0, 10.0, 0.0])?;
         assert_eq!(

@@ -1,6 +1,5 @@
 use crate::description::{RegionKind, each_region};
-use crate::frame::processing::Processing;
-use crate::frame::recorded::{FrameError, LARGEST_VALUE, check_size};
+use crate::frame::recorded::{FrameError, VALUES, in_range};
 use crate::frame::tare::Tare;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
@@ -32,23 +31,6 @@ pub enum Rule {
     Noise(f64),
 }
 
-fn pressure(what: &'static str, value: f64) -> Result<f64, FrameError> {
-    checked(what, value, value.abs() <= LARGEST_VALUE, "-1e300 to 1e300")
-}
-
-fn checked(
-    what: &'static str,
-    value: f64,
-    fits: bool,
-    allowed: &'static str,
-) -> Result<f64, FrameError> {
-    fits.then_some(value).ok_or(FrameError::Rule {
-        what,
-        found: value,
-        allowed,
-    })
-}
-
 impl Rule {
     /// Returns a percentage of a value, rounded like `percent / 100 * value` in other programs.
     pub fn percent_of(percent: f64, value: f64) -> f64 {
@@ -60,7 +42,7 @@ impl Rule {
     /// # Errors
     /// Returns an error if the threshold is not finite, or beyond ±1e300.
     pub fn at_least(threshold: f64) -> Result<Self, FrameError> {
-        Ok(Self::AtLeast(pressure("at_least", threshold)?))
+        pressure("at_least", threshold).map(Self::AtLeast)
     }
 
     /// Creates a rule with a threshold in percent of the largest value.
@@ -68,9 +50,8 @@ impl Rule {
     /// # Errors
     /// Returns an error if the percentage is not above 0 and at most 100.
     pub fn percent(percent: f64) -> Result<Self, FrameError> {
-        let fits = percent > 0.0 && percent <= 100.0;
-        let allowed = "above 0, up to 100";
-        Ok(Self::Percent(checked("percent", percent, fits, allowed)?))
+        let range = f64::MIN_POSITIVE..=100.0;
+        in_range("percent", percent, range, "above 0, up to 100").map(Self::Percent)
     }
 
     /// Creates a rule with two thresholds, in the sensor's unit.
@@ -91,68 +72,55 @@ impl Rule {
     /// # Errors
     /// Returns an error if the number is not above 0 and at most 1000.
     pub fn noise(deviations: f64) -> Result<Self, FrameError> {
-        let fits = deviations > 0.0 && deviations <= 1000.0;
-        let allowed = "above 0, up to 1000";
-        Ok(Self::Noise(checked("noise", deviations, fits, allowed)?))
+        let range = f64::MIN_POSITIVE..=1000.0;
+        in_range("noise", deviations, range, "above 0, up to 1000").map(Self::Noise)
     }
 
-    /// Returns the imprint of values after tare and gain. The noise of a cell is measured before the gain, so its
-    /// margin is multiplied by the gain too.
-    ///
-    /// # Errors
-    /// For the noise rule, returns an error if there is no tare of two or more frames, or if the tare or the gain
-    /// differs in size from the values.
-    pub fn imprint(
+    /// Returns the imprint of values after tare and gain, which have the size of the values, without pieces of fewer
+    /// than `least` taxels. The noise of a cell is measured before the gain, so its margin is multiplied by the gain
+    /// too; without a tare of two or more frames it is an error.
+    pub(super) fn imprint(
         &self,
         values: &Matrix<f64>,
         tare: Option<&Tare>,
         gain: Option<&Matrix<f64>>,
+        least: u32,
     ) -> Result<Imprint, FrameError> {
-        Ok(match *self {
-            Self::AtLeast(threshold) => at_or_above(values, threshold),
+        let at_or_above = |threshold| active(values, |_, value| value >= threshold);
+        let imprint = match *self {
+            Self::AtLeast(threshold) => at_or_above(threshold),
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
-                if max > 0.0 {
-                    at_or_above(values, Self::percent_of(percent, max))
-                } else {
-                    Imprint::empty(values.size())
-                }
+                active(values, |_, value| {
+                    max > 0.0 && value >= Self::percent_of(percent, max)
+                })
             }
             Self::Hysteresis { low, high } => {
-                let mut imprint = Imprint::empty(values.size());
-                let (weak, strong) = (at_or_above(values, low), at_or_above(values, high));
-                each_region(&weak, |region| {
-                    let piece = region.taxels();
-                    let has_strong = piece
-                        .words()
-                        .iter()
-                        .zip(strong.words())
-                        .any(|(piece, strong)| piece & strong != 0);
-                    if region.kind() == RegionKind::Exterior && has_strong {
-                        imprint = imprint.union(piece);
-                    }
-                });
-                imprint
+                let strong = at_or_above(high);
+                pieces(&at_or_above(low), |piece| {
+                    !piece.intersection(&strong).is_empty()
+                })
             }
             Self::Noise(deviations) => {
                 let tare = tare.filter(|tare| tare.frames() > 1);
                 let tare = tare.ok_or(FrameError::NoTare)?;
-                check_size("tare", tare.baseline(), values)?;
-                if let Some(gain) = gain {
-                    check_size("gain", gain, values)?;
-                }
                 let factor = |index: usize| gain.map_or(1.0, |gain| gain.values()[index].abs());
                 // A margin is above 0, so a value of 0 is never active, not even in a cell whose gain is 0.
                 active(values, |index, value| {
                     value > 0.0 && value >= factor(index) * tare.margin(index, deviations)
                 })
             }
+        };
+        Ok(match least {
+            0 | 1 => imprint,
+            least => pieces(&imprint, |piece| piece.count() >= least),
         })
     }
 }
 
-fn at_or_above(values: &Matrix<f64>, threshold: f64) -> Imprint {
-    active(values, |_, value| value >= threshold)
+/// Returns a threshold in the sensor's unit if it is one that a value may have.
+fn pressure(what: &'static str, value: f64) -> Result<f64, FrameError> {
+    in_range(what, value, VALUES, "-1e300 to 1e300")
 }
 
 fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Imprint {
@@ -168,16 +136,15 @@ fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Impri
     imprint
 }
 
-/// Returns the imprint without its 8-connected pieces of fewer than `least` taxels.
-pub(crate) fn without_small(imprint: &Imprint, least: u32) -> Imprint {
-    let mut rest = Imprint::empty(imprint.size());
+/// Returns the 8-connected pieces of an imprint that are kept.
+fn pieces(imprint: &Imprint, is_kept: impl Fn(&Imprint) -> bool) -> Imprint {
+    let mut kept = Imprint::empty(imprint.size());
     each_region(imprint, |region| {
-        let piece = region.taxels();
-        if region.kind() == RegionKind::Exterior && piece.count() >= least {
-            rest = rest.union(piece);
+        if region.kind() == RegionKind::Exterior && is_kept(region.taxels()) {
+            kept = kept.union(region.taxels());
         }
     });
-    rest
+    kept
 }
 
 /// A rule and its origin.
@@ -217,21 +184,10 @@ impl RuleOrigin {
     }
 }
 
-impl SetRule {
-    /// Sets or removes the rule by which frames are processed. If it is removed, the smallest size of a piece is kept
-    /// for the next rule.
-    pub fn apply(rule: Option<Self>, processing: &mut Processing) {
-        processing.rule = rule.map(|set| set.rule);
-        if let Some(set) = rule {
-            processing.least = set.least;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::tare::TareFrames;
+    use crate::frame::{Frame, TareFrames, View};
     use crate::sensor::MatrixSize;
 
     fn matrix(rows: &[&[f64]]) -> Matrix<f64> {
@@ -240,8 +196,18 @@ mod tests {
         Matrix::from_values(size, rows.concat()).expect("rows of one length")
     }
 
+    fn tare(frames: &[Matrix<f64>]) -> Tare {
+        let mut tare = TareFrames::new(frames.len() as u64);
+        for values in frames {
+            let frame = Frame::from_values(values.size().into(), values.values());
+            tare.add(&frame.expect("as many"), &View::default())
+                .expect("of one size");
+        }
+        tare.finish().expect("all frames")
+    }
+
     fn imprint(rule: Result<Rule, FrameError>, values: &Matrix<f64>) -> String {
-        let imprint = rule.and_then(|rule| rule.imprint(values, None, None));
+        let imprint = rule.and_then(|rule| rule.imprint(values, None, None, 0));
         imprint.expect("a rule that fits").to_string()
     }
 
@@ -316,27 +282,21 @@ mod tests {
 
     #[test]
     fn each_cell_has_its_own_noise() {
-        let mut tare = TareFrames::new(3);
-        for frame in [[0.0, 0.0], [1.0, 10.0], [2.0, 20.0]] {
-            tare.add(&matrix(&[&frame])).expect("of one size");
-        }
-        let tare = tare.finish().expect("three frames");
+        let tare = tare(&[[0.0, 0.0], [1.0, 10.0], [2.0, 20.0]].map(|frame| matrix(&[&frame])));
         let rule = Rule::noise(3.0).expect("in range");
         let mut values = matrix(&[&[6.0, 6.0]]);
         tare.subtract_from(&mut values).expect("of one size");
-        let imprint = rule.imprint(&values, Some(&tare), None).expect("a tare");
+        let imprint = rule.imprint(&values, Some(&tare), None, 0).expect("a tare");
         assert_eq!(imprint.to_string(), "#.");
-        assert_eq!(rule.imprint(&values, None, None), Err(FrameError::NoTare));
+        assert_eq!(
+            rule.imprint(&values, None, None, 0),
+            Err(FrameError::NoTare)
+        );
     }
 
     #[test]
     fn a_gain_changes_no_decision_about_noise() {
-        let mut tare = TareFrames::new(3);
-        for frame in [10.0, 11.0, 12.0] {
-            let cells = [frame; 5];
-            tare.add(&matrix(&[&cells])).expect("of one size");
-        }
-        let tare = tare.finish().expect("three frames");
+        let tare = tare(&[10.0, 11.0, 12.0].map(|frame| matrix(&[&[frame; 5]])));
         // The deviation is 1.4826 above the median of 11. The gain of the last cell is negative, so its sign is turned.
         let (quiet, loud) = (11.0 + 4.4, 11.0 + 4.5);
         let gain = matrix(&[&[1.0, 10.0, 0.01, 0.0, -10.0]]);
@@ -347,7 +307,7 @@ mod tests {
             for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {
                 *value *= gain;
             }
-            let imprint = rule.imprint(&values, Some(&tare), Some(&gain));
+            let imprint = rule.imprint(&values, Some(&tare), Some(&gain), 0);
             imprint.expect("all of one size").to_string()
         };
         let below = |value: f64| 22.0 - value;
@@ -356,17 +316,24 @@ mod tests {
         // If deviations are smaller than one step, the margin is one step.
         let rule = Rule::noise(0.1).expect("in range");
         let values = matrix(&[&[0.9, 9.0, 0.009, 0.0, 9.0]]);
-        let imprint = rule.imprint(&values, Some(&tare), Some(&gain));
+        let imprint = rule.imprint(&values, Some(&tare), Some(&gain), 0);
         assert_eq!(imprint.map(|imprint| imprint.count()), Ok(0));
-        let other = Matrix::filled(MatrixSize::of(2, 2), 1.0);
-        assert!(rule.imprint(&values, Some(&tare), Some(&other)).is_err());
     }
 
     #[test]
     fn small_pieces_are_dropped() {
-        let imprint: Imprint = "##.#\n#...\n..##".parse().expect("rows");
-        assert_eq!(without_small(&imprint, 2).to_string(), "##..\n#...\n..##");
-        assert_eq!(without_small(&imprint, 3).to_string(), "##..\n#...\n....");
+        let values = matrix(&[
+            &[1.0, 1.0, 0.0, 1.0],
+            &[1.0, 0.0, 0.0, 0.0],
+            &[0.0, 0.0, 1.0, 1.0],
+        ]);
+        let imprint = |least| {
+            let imprint = Rule::AtLeast(1.0).imprint(&values, None, None, least);
+            imprint.expect("no tare is needed").to_string()
+        };
+        assert_eq!(imprint(1), "##.#\n#...\n..##");
+        assert_eq!(imprint(2), "##..\n#...\n..##");
+        assert_eq!(imprint(3), "##..\n#...\n....");
     }
 
     #[test]
@@ -385,34 +352,13 @@ mod tests {
     #[test]
     fn a_tare_of_one_frame_does_not_measure_noise() {
         let rule = Rule::noise(3.0).expect("in range");
-        let of_frames = |count: u64| {
-            let mut tare = TareFrames::new(count);
-            for _ in 0..count {
-                tare.add(&matrix(&[&[1.0, 1.0]])).expect("of one size");
-            }
-            let tare = tare.finish().expect("all frames");
-            let imprint = rule.imprint(&matrix(&[&[0.9, 1.0]]), Some(&tare), None);
+        let of_frames = |count: usize| {
+            let tare = tare(&vec![matrix(&[&[1.0, 1.0]]); count]);
+            let imprint = rule.imprint(&matrix(&[&[0.9, 1.0]]), Some(&tare), None, 0);
             imprint.map(|imprint| imprint.to_string())
         };
         assert_eq!(of_frames(1), Err(FrameError::NoTare));
         // All values are equal, so one step is 1.
         assert_eq!(of_frames(2).as_deref(), Ok(".#"));
-    }
-
-    #[test]
-    fn a_removed_rule_leaves_the_smallest_size_of_a_piece() {
-        let mut processing = Processing::default();
-        let rule = SetRule {
-            rule: Rule::AtLeast(2.0),
-            least: 3,
-            from: RuleOrigin::Flag,
-        };
-        SetRule::apply(Some(rule), &mut processing);
-        assert_eq!(
-            (processing.rule, processing.least),
-            (Some(Rule::AtLeast(2.0)), 3)
-        );
-        SetRule::apply(None, &mut processing);
-        assert_eq!((processing.rule, processing.least), (None, 3));
     }
 }

@@ -1,4 +1,4 @@
-use crate::frame::recorded::{Frame, FrameError, LARGEST_VALUE, check_size};
+use crate::frame::recorded::{Frame, FrameError, VALUES, check_size, in_range};
 use crate::frame::view::View;
 use crate::matrix::Matrix;
 use crate::sensor::MatrixSize;
@@ -8,14 +8,39 @@ const MAX_VALUES: u64 = 1 << 25;
 /// The standard deviation of the normal distribution divided by its median absolute deviation.
 const MAD_TO_DEVIATION: f64 = 1.4826;
 
-/// The frames from which a tare is made.
+/// The frames of which a tare is made. A frame of another size is left out. If successive frames of one other size are
+/// more than those so far, the tare begins again with them: the very first frame was cut, or the sensor was set up
+/// anew. So a tare ends soon after a change of the size, too.
 #[derive(Clone, Debug)]
 pub struct TareFrames {
     wanted: u64,
+    own: FrameSet,
+    /// The last frames, if they are all of one other size.
+    other: FrameSet,
+    visible: Matrix<f64>,
+}
+
+/// Some frames of one size.
+#[derive(Clone, Debug, Default)]
+struct FrameSet {
+    /// The size of a frame; None before the first one.
     size: Option<MatrixSize>,
     values: Vec<f64>,
     frames: u64,
-    visible: Matrix<f64>,
+}
+
+impl FrameSet {
+    fn add(&mut self, frame: &Matrix<f64>) {
+        self.size = Some(frame.size());
+        self.values.extend_from_slice(frame.values());
+        self.frames += 1;
+    }
+
+    /// Checks that a frame has the size of the others.
+    fn check(&self, size: MatrixSize) -> Result<(), FrameError> {
+        self.size
+            .map_or(Ok(()), |own| check_size("tare", own, size))
+    }
 }
 
 impl TareFrames {
@@ -23,9 +48,8 @@ impl TareFrames {
     pub fn new(wanted: u64) -> Self {
         Self {
             wanted: wanted.max(1),
-            size: None,
-            values: Vec::new(),
-            frames: 0,
+            own: FrameSet::default(),
+            other: FrameSet::default(),
             visible: Matrix::default(),
         }
     }
@@ -37,83 +61,66 @@ impl TareFrames {
 
     /// Returns the number of frames that are still missing.
     pub fn missing(&self) -> u64 {
-        self.wanted - self.frames
+        self.wanted - self.own.frames
+    }
+
+    /// Returns how many of the last frames were left out, but are in the tare if it begins again with more of them.
+    pub fn others(&self) -> u64 {
+        self.other.frames
     }
 
     /// Checks that the needed number of frames fits into memory if each has this number of values.
     ///
     /// # Errors
-    /// Returns [`FrameError::TareSize`] if they take too much memory.
+    /// Returns an error if they take too much memory.
     pub fn check_memory(&self, values: usize) -> Result<(), FrameError> {
-        let values = values as u64;
-        if self.wanted.saturating_mul(values) > MAX_VALUES {
-            let most = MAX_VALUES / values.max(1);
-            return Err(FrameError::TareSize { most });
-        }
-        Ok(())
-    }
-
-    /// Adds a frame, in the sensor's unit; does nothing if there are enough. A value that is infinite or beyond
-    /// ±[`LARGEST_VALUE`] counts as missing, like NaN.
-    ///
-    /// # Errors
-    /// Returns an error if the frame differs in size from the first one, or if the needed number of frames of this size
-    /// takes too much memory.
-    pub fn add(&mut self, frame: &Matrix<f64>) -> Result<(), FrameError> {
-        if self.missing() == 0 {
+        let most = MAX_VALUES / (values as u64).max(1);
+        if self.wanted <= most {
             return Ok(());
         }
-        self.check(frame)?;
-        self.size = Some(frame.size());
-        let values = frame.values().iter();
-        let known = values.map(|&value| if is_value(value) { value } else { f64::NAN });
-        self.values.extend(known);
-        self.frames += 1;
-        Ok(())
+        Err(FrameError::Invalid(format!(
+            "too many frames for a tare: expected at most {most} of this size"
+        )))
     }
 
-    /// Checks that a frame can be added, with the errors of [`Self::add`].
-    fn check(&self, frame: &Matrix<f64>) -> Result<(), FrameError> {
-        let size = frame.size();
-        if let Some(found) = self.size.filter(|&found| found != size) {
-            return Err(FrameError::Size {
-                what: "tare",
-                found,
-                expected: size,
-            });
-        }
-        self.check_memory(frame.values().len())
+    /// Returns why a frame is not in the tare, as far as it is made; None if it fits.
+    pub fn refusal(&self, frame: &Frame, view: &View) -> Option<FrameError> {
+        let mut visible = Matrix::default();
+        let seen = view.apply_to(frame, &mut visible);
+        seen.and_then(|()| self.own.check(visible.size())).err()
     }
 
-    /// Adds the part of a frame that a view shows, like [`Self::add`].
+    /// Adds the part of a frame that a view shows; does nothing if there are enough. Returns false if the tare begins
+    /// again with it and the frames of its size just before it: those that were added before are not in the tare.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::add`], and an error if the view does not fit the frame.
-    pub fn add_frame(&mut self, frame: &Frame, view: &View) -> Result<(), FrameError> {
-        self.with_visible(frame, view, Self::add)
-    }
-
-    /// Checks that a frame can be added, with the errors of [`Self::add_frame`].
-    pub(super) fn check_frame(&mut self, frame: &Frame, view: &View) -> Result<(), FrameError> {
-        self.with_visible(frame, view, |tare, visible| tare.check(visible))
-    }
-
-    fn with_visible(
-        &mut self,
-        frame: &Frame,
-        view: &View,
-        does: impl FnOnce(&mut Self, &Matrix<f64>) -> Result<(), FrameError>,
-    ) -> Result<(), FrameError> {
-        let mut visible = std::mem::take(&mut self.visible);
-        let done = view
-            .apply_to(frame, &mut visible)
-            .and_then(|()| does(self, &visible));
-        self.visible = visible;
-        done
-    }
-
-    pub(super) fn frames(&self) -> u64 {
-        self.frames
+    /// Returns an error if the view does not fit the frame, if the frame differs in size from the first one, so that
+    /// it is left out, or if the needed number of frames of this size takes too much memory.
+    pub fn add(&mut self, frame: &Frame, view: &View) -> Result<bool, FrameError> {
+        if self.missing() == 0 {
+            return Ok(true);
+        }
+        let mut other = std::mem::take(&mut self.other);
+        view.apply_to(frame, &mut self.visible)?;
+        let size = self.visible.size();
+        let fits_memory = self.check_memory(size.cells());
+        let Err(misfit) = self.own.check(size) else {
+            fits_memory?;
+            self.own.add(&self.visible);
+            return Ok(true);
+        };
+        if fits_memory.is_ok() {
+            if other.check(size).is_err() {
+                other = FrameSet::default();
+            }
+            other.add(&self.visible);
+            if other.frames > self.own.frames {
+                self.own = other;
+                return Ok(false);
+            }
+            self.other = other;
+        }
+        Err(misfit)
     }
 
     /// Computes the tare.
@@ -121,17 +128,17 @@ impl TareFrames {
     /// # Errors
     /// Returns an error if frames are missing.
     pub fn finish(self) -> Result<Tare, FrameError> {
-        let (frames, wanted) = (self.frames, self.wanted);
-        let (Some(size), true) = (self.size, frames == wanted) else {
+        let (own, wanted) = (self.own, self.wanted);
+        let (Some(size), 0) = (own.size, wanted - own.frames) else {
+            let frames = own.frames;
             return Err(FrameError::Tare { frames, wanted });
         };
         let mut baseline = Matrix::filled(size, f64::NAN);
         let mut deviation = baseline.clone();
-        let cells = baseline.values().len();
         let mut present = Vec::new();
-        for cell in 0..cells {
+        for cell in 0..size.cells() {
+            let values = own.values.iter().skip(cell).step_by(size.cells());
             present.clear();
-            let values = self.values.iter().skip(cell).step_by(cells);
             present.extend(values.filter(|value| !value.is_nan()));
             let middle = median(&mut present);
             for value in &mut present {
@@ -143,15 +150,10 @@ impl TareFrames {
         Ok(Tare {
             baseline,
             deviation,
-            step: step(self.values),
-            frames,
+            step: step(own.values),
+            frames: wanted,
         })
     }
-}
-
-/// Returns true if a number is a value; false for NaN and for what may become infinite.
-fn is_value(value: f64) -> bool {
-    value.abs() <= LARGEST_VALUE
 }
 
 /// Returns the median: the middle value, or the mean of the two middle ones if their number is even; NaN without
@@ -192,12 +194,12 @@ impl Tare {
     }
 
     /// Rebuilds a tare from the median of each cell, the median absolute deviation of each cell, and the step of the
-    /// values, all in the sensor's unit; NaN where a cell never had a value. The deviation defaults to 0 and the step
-    /// to 1. The number of frames is at least 1; 0 counts as 1.
+    /// values, all in the sensor's unit; NaN where a cell never had a value. The deviation defaults to 0. A step that
+    /// is not above 0 and finite is unknown. The number of frames is at least 1; 0 counts as 1.
     ///
     /// # Errors
-    /// Returns an error if the sizes differ, if a median is infinite or beyond ±[`LARGEST_VALUE`], if a deviation is
-    /// below 0 or infinite, or if the step is not above 0 and finite.
+    /// Returns an error if the sizes differ, if a median is infinite or beyond ±1e300, or if a deviation is
+    /// below 0 or infinite.
     pub fn from_parts(
         baseline: Matrix<f64>,
         deviation: Option<Matrix<f64>>,
@@ -205,27 +207,19 @@ impl Tare {
         frames: u64,
     ) -> Result<Self, FrameError> {
         let deviation = deviation.unwrap_or_else(|| Matrix::filled(baseline.size(), 0.0));
-        check_size("tare", &deviation, &baseline)?;
-        let check = |what, values: &[f64], fits: fn(f64) -> bool, allowed| {
-            let wrong = values.iter().find(|&&value| !fits(value));
-            wrong.map_or(Ok(()), |&found| {
-                Err(FrameError::Rule {
-                    what,
-                    found,
-                    allowed,
-                })
-            })
-        };
-        let fits = |value: f64| value.is_nan() || is_value(value);
-        check("tare", baseline.values(), fits, "-1e300 to 1e300")?;
-        let fits = |value: f64| value.is_nan() || (0.0..f64::INFINITY).contains(&value);
-        check("tare_spread", deviation.values(), fits, "0 or more")?;
-        let fits = |value: f64| value > 0.0 && value < f64::INFINITY;
-        check("tare_step", step.as_slice(), fits, "above 0")?;
+        check_size("tare", deviation.size(), baseline.size())?;
+        for (what, part, range, allowed) in [
+            ("tare", &baseline, VALUES, "-1e300 to 1e300"),
+            ("tare_spread", &deviation, 0.0..=f64::MAX, "0 or more"),
+        ] {
+            for &value in part.values().iter().filter(|value| !value.is_nan()) {
+                in_range(what, value, range.clone(), allowed)?;
+            }
+        }
         Ok(Self {
             baseline,
             deviation,
-            step,
+            step: step.filter(|step| *step > 0.0 && step.is_finite()),
             frames: frames.max(1),
         })
     }
@@ -258,95 +252,11 @@ impl Tare {
     /// # Errors
     /// Returns an error if the values are of another size.
     pub fn subtract_from(&self, values: &mut Matrix<f64>) -> Result<(), FrameError> {
-        check_size("tare", &self.baseline, values)?;
+        check_size("tare", self.baseline.size(), values.size())?;
         for (value, baseline) in values.values_mut().iter_mut().zip(self.baseline.values()) {
             *value -= baseline;
         }
         Ok(())
-    }
-}
-
-/// The first frames of a source. A frame of another size is left out. If successive frames of one other size are more
-/// than those so far, the tare begins again with them: the very first frame was cut, or the sensor was set up anew. So
-/// a tare ends soon after a change of the size, too.
-#[derive(Clone, Debug)]
-pub struct FirstFrames {
-    frames: TareFrames,
-    other: Option<TareFrames>,
-}
-
-impl FirstFrames {
-    /// Begins a tare of `wanted` frames, at least one.
-    pub fn new(wanted: u64) -> Self {
-        Self {
-            frames: TareFrames::new(wanted),
-            other: None,
-        }
-    }
-
-    /// Returns the number of frames that the tare needs.
-    pub fn wanted(&self) -> u64 {
-        self.frames.wanted()
-    }
-
-    /// Returns the number of frames that are still missing.
-    pub fn missing(&self) -> u64 {
-        self.frames.missing()
-    }
-
-    /// Checks that the needed number of frames of this size fits into memory.
-    ///
-    /// # Errors
-    /// Returns [`FrameError::TareSize`] if it does not.
-    pub fn check_memory(&self, values: usize) -> Result<(), FrameError> {
-        self.frames.check_memory(values)
-    }
-
-    /// Returns why a frame is not in the tare, as far as it is made; None if it fits.
-    pub fn refusal(&mut self, frame: &Frame, view: &View) -> Option<FrameError> {
-        self.frames.check_frame(frame, view).err()
-    }
-
-    /// Returns how many of the last frames were left out, but are in the tare if it begins again with more of them.
-    pub fn others(&self) -> u64 {
-        self.other.as_ref().map_or(0, TareFrames::frames)
-    }
-
-    /// Adds the part of a frame that a view shows. Returns false if the tare begins again with it and the frames of its
-    /// size just before it: those that were added before are not in the tare. After an error of its size, the frame is
-    /// left out.
-    ///
-    /// # Errors
-    /// Returns the errors of [`TareFrames::add_frame`].
-    pub fn add(&mut self, frame: &Frame, view: &View) -> Result<bool, FrameError> {
-        let added = self.frames.add_frame(frame, view);
-        let other = self.other.take();
-        let Err(error) = added else {
-            return Ok(true);
-        };
-        if !error.is_of_size() {
-            return Err(error);
-        }
-        let wanted = self.wanted();
-        let fresh = || TareFrames::new(wanted);
-        let mut sets = other.into_iter().chain(std::iter::once_with(fresh));
-        self.other = sets.find_map(|mut set| set.add_frame(frame, view).is_ok().then_some(set));
-        let missing = self.missing();
-        match self.other.take_if(|other| other.missing() < missing) {
-            Some(frames) => {
-                self.frames = frames;
-                Ok(false)
-            }
-            None => Err(error),
-        }
-    }
-
-    /// Computes the tare.
-    ///
-    /// # Errors
-    /// Returns an error if frames are missing.
-    pub fn finish(self) -> Result<Tare, FrameError> {
-        self.frames.finish()
     }
 }
 
@@ -358,9 +268,8 @@ mod tests {
     fn tare(frames: &[[f64; 2]]) -> Result<Tare, FrameError> {
         let mut tare = TareFrames::new(frames.len() as u64);
         for frame in frames {
-            let mut matrix = Matrix::filled(MatrixSize::of(2, 1), 0.0);
-            matrix.values_mut().copy_from_slice(frame);
-            tare.add(&matrix)?;
+            let frame = Frame::from_values(FrameSize::of(2, 1), frame)?;
+            tare.add(&frame, &View::default())?;
         }
         tare.finish()
     }
@@ -395,15 +304,12 @@ mod tests {
             few.map_err(|error| error.to_string()),
             Err("the tare needs 3 frames, but there are only 0".to_owned())
         );
-        let many = TareFrames::new(1 << 40).add(&Matrix::filled(MatrixSize::of(64, 64), 0.0));
-        assert_eq!(many, Err(FrameError::TareSize { most: 8192 }));
-    }
-
-    #[test]
-    fn a_tare_may_have_the_largest_number_of_frames_that_the_error_names() {
-        assert_eq!(TareFrames::new(8192).check_memory(64 * 64), Ok(()));
-        let longer = TareFrames::new(8193).check_memory(64 * 64);
-        assert_eq!(longer, Err(FrameError::TareSize { most: 8192 }));
+        // The error names the largest number of frames.
+        let large = Frame::new(FrameSize::of(64, 64));
+        let added = |frames| TareFrames::new(frames).add(&large, &View::default());
+        assert_eq!(added(8192), Ok(true));
+        let error = added(8193).expect_err("too many").to_string();
+        assert!(error.contains("at most 8192 of this size"), "{error}");
     }
 
     #[test]
@@ -415,13 +321,13 @@ mod tests {
             ..View::default()
         };
         let mut tare = TareFrames::new(2);
-        tare.add_frame(&frame, &view).expect("it fits");
+        tare.add(&frame, &view).expect("it fits");
         // A frame of another size is not added.
         view.quarter_turns = 1;
-        let error = tare.add_frame(&frame, &view).expect_err("of another size");
-        assert!(matches!(error, FrameError::Size { .. }), "{error}");
+        let error = tare.add(&frame, &view).expect_err("of another size");
+        assert!(matches!(error, FrameError::Size(_)), "{error}");
         view.quarter_turns = 0;
-        tare.add_frame(&frame, &view).expect("it fits");
+        tare.add(&frame, &view).expect("it fits");
         let tare = tare.finish().expect("two frames");
         assert_eq!(tare.baseline().values(), [3.0, 2.0, 1.0]);
     }
@@ -448,8 +354,8 @@ mod tests {
         assert_eq!(refused(f64::NEG_INFINITY, 0.0, 1.0), message(baseline));
         let deviation = "tare_spread: -5 is out of range (allowed: 0 or more)";
         assert_eq!(refused(0.0, -5.0, 1.0), message(deviation));
-        let step = "tare_step: NaN is out of range (allowed: above 0)";
-        assert_eq!(refused(0.0, 0.0, f64::NAN), message(step));
+        let unknown = Tare::from_parts(part(0.0), None, Some(f64::NAN), 1);
+        assert_eq!(unknown.expect("it fits").step(), None);
     }
 
     #[test]
@@ -461,7 +367,7 @@ mod tests {
             (3, &[2, 2, 6, 6, 6], 6),
             (4, &[2, 6, 4, 6, 4, 2, 2, 2], 2),
         ] {
-            let mut first = FirstFrames::new(wanted);
+            let mut first = TareFrames::new(wanted);
             for &side in sides {
                 assert!(first.missing() > 0, "{sides:?}");
                 let _ = first.add(&Frame::new(FrameSize::of(side, side)), &View::default());

@@ -1,6 +1,6 @@
 //! The answers to the frames of a source, on standard output.
 
-use taxel_core::frame::{FirstFrames, Frame, FrameError, Processing, SetRule, Tare, View};
+use taxel_core::frame::{Frame, FrameError, Processing, Tare, TareFrames, View};
 use taxel_files::formats::json;
 use taxel_files::formats::recording::FrameAnswer;
 use taxel_files::formats::value::counted;
@@ -44,14 +44,11 @@ impl Answers {
         &mut self,
         (frame, channel): (&Frame, Option<&str>),
         processing: &mut Processing,
-        rule: Option<SetRule>,
         reports: &mut SourceReports<'_>,
     ) -> Result<(), CliError> {
         let Output::Open(lines) = &mut self.output else {
             return Ok(());
         };
-        let tare = processing.tare.as_ref().map_or(0, Tare::frames);
-        let gain = processing.gain.is_some();
         let processed = match processing.run(frame) {
             Ok(processed) => processed,
             Err(error) if self.answered > 0 && error.is_of_size() => {
@@ -65,9 +62,6 @@ impl Answers {
             frame,
             channel,
             processed,
-            rule,
-            tare,
-            gain,
         };
         let line = json::ascii(&answer) + "\n";
         if lines.send((line.into_bytes(), processed.imprint), self.may_give_up) {
@@ -144,7 +138,7 @@ impl Answers {
 }
 
 pub(super) struct TareQueue {
-    tare: FirstFrames,
+    tare: TareFrames,
     waiting: Vec<Frame>,
     /// The last frames, of one other size: the tare begins again with them if enough of them come.
     others: Vec<Frame>,
@@ -155,7 +149,7 @@ pub(super) type LeftOut = (u64, FrameError);
 impl TareQueue {
     pub(super) fn new(frames: u64) -> Option<Self> {
         (frames > 0).then(|| Self {
-            tare: FirstFrames::new(frames),
+            tare: TareFrames::new(frames),
             waiting: Vec::new(),
             others: Vec::new(),
         })

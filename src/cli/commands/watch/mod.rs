@@ -31,7 +31,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use taxel_core::frame::{Frame, FrameSize, Processing, SetRule};
+use taxel_core::frame::{Frame, FrameSize, Processing};
 use taxel_core::quote::as_argument;
 use taxel_files::acquire::{
     AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire,
@@ -62,7 +62,6 @@ struct Watcher<'a> {
     gate: ChannelGate<'a>,
     processing: Processing,
     /// The threshold in use; None if neither a flag nor a recording has set one yet.
-    rule: Option<SetRule>,
     /// The frames that wait for the tare; None if none is made any more.
     tare: Option<TareQueue>,
     recording: Option<WatchRecording<'a>>,
@@ -97,7 +96,6 @@ pub(crate) fn watch(
         reports: SourceReports::new(&source, &asked.options, note),
         gate: ChannelGate::new(&source, asked),
         processing,
-        rule: None,
         tare: TareQueue::new(asked.processing.tare.unwrap_or_default()),
         answers: Answers::new(lines, is_live, recording.is_some()),
         recording,
@@ -106,7 +104,8 @@ pub(crate) fn watch(
         size: None,
         failure: None,
     };
-    watcher.set_rule(asked.processing.set_rule());
+    let rule = asked.processing.set_rule();
+    watcher.processing.apply_rule(rule);
     let acquired = acquire(&source, &asked.options, &signals.stopped, &mut |event| {
         watcher.on(event)
     });
@@ -164,11 +163,6 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
 }
 
 impl Watcher<'_> {
-    fn set_rule(&mut self, rule: Option<SetRule>) {
-        self.rule = rule;
-        SetRule::apply(rule, &mut self.processing);
-    }
-
     /// Handles one event of the source. After an error nothing more is read.
     fn on(&mut self, event: AcquireEvent<'_>) -> ControlFlow<()> {
         let done = match event {
@@ -195,8 +189,9 @@ impl Watcher<'_> {
         if !self.gate.add(info, &mut self.reports)? {
             return Ok(());
         }
-        if self.rule.is_none() {
-            self.set_rule(info.own_rule(self.asked.processing.least));
+        if self.processing.rule.is_none() {
+            let own = info.own_rule(self.asked.processing.least);
+            self.processing.apply_rule(own);
         }
         if self.asked.processing.tare.is_none() {
             let view = &self.processing.view;
@@ -205,7 +200,7 @@ impl Watcher<'_> {
                 self.reports.warn(&unused);
             }
         }
-        let (tare, rule) = (self.processing.tare.clone(), self.rule);
+        let (tare, rule) = (self.processing.tare.clone(), self.processing.applied_rule());
         self.record(|recording, _| {
             recording.describe(|metadata| {
                 metadata.tare = tare;
@@ -303,8 +298,7 @@ impl Watcher<'_> {
     fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
         let channel = self.gate.name(frame.channel);
         let (processing, reports) = (&mut self.processing, &mut self.reports);
-        self.answers
-            .add((frame, channel), processing, self.rule, reports)
+        self.answers.add((frame, channel), processing, reports)
     }
 
     fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {

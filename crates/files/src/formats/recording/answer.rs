@@ -1,20 +1,22 @@
-//! A frame with its imprint and descriptors as JSON: a line of `taxel frames --json` and of `taxel watch`.
+//! A frame with its imprint and descriptors as a line: JSON of `taxel frames --json` and of `taxel watch`, or CSV.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
-use taxel_core::description::{Description, regions};
-use taxel_core::frame::{Frame, Processed, SetRule};
+use taxel_core::atlas::{feature_values, features};
+use taxel_core::description::{Description, main_region, regions};
+use taxel_core::frame::{Frame, Processed};
+use taxel_core::imprint::Imprint;
 use taxel_core::serialize::Shortest;
 
 use crate::formats::json::RegionRecord;
 
 /// An answer that serialises as an object:
 /// ```text
-/// {"frame":65,"label":66,"time":6.5,"channel":null,"sum":42,"max":9,
+/// {"frame":65,"label":66,"time":6.5,"channel":null,"sum":42,"max":9,"force":31,"contact":5,"cop":[2.5,1.5],
 ///  "rule":{"at_least":10,"from":"flag"},"imprint":[".###.",…],"na":5,"regions":[{"kind":"exterior",…}]}
 /// ```
 /// `sum` and `max` are those of the recorded values, in the recording's unit, before tare and gain; the imprint is
-/// made after both. Without a rule, `rule`, `imprint` and `na` are null. With a tare, `tare` is the number of frames
-/// of which it was made; with a gain, `gain` is true.
+/// made after both, and so are `force`, `contact` and `cop` ([`Processed`]). Without a rule, `rule`, `imprint` and `na`
+/// are null. With a tare, `tare` is the number of frames of which it was made; with a gain, `gain` is true.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameAnswer<'a> {
     /// The frame, for its number, label and time.
@@ -23,49 +25,36 @@ pub struct FrameAnswer<'a> {
     pub channel: Option<&'a str>,
     /// The frame after processing.
     pub processed: Processed<'a>,
-    /// The rule of the imprint.
-    pub rule: Option<SetRule>,
-    /// The number of frames of which the tare was made; 0 without a tare.
-    pub tare: u64,
-    /// Whether the tared values were multiplied by a gain.
-    pub gain: bool,
-}
-
-impl<'a> FrameAnswer<'a> {
-    /// Makes the answer for a frame and its processed form, without a channel, a rule, a tare or a
-    /// gain.
-    pub fn new(frame: &'a Frame, processed: Processed<'a>) -> Self {
-        Self {
-            frame,
-            channel: None,
-            processed,
-            rule: None,
-            tare: 0,
-            gain: false,
-        }
-    }
 }
 
 /// There is no `Deserialize`: an answer is only written.
 impl Serialize for FrameAnswer<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self {
+            frame,
+            channel,
+            processed,
+        } = self;
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("frame", &self.frame.number)?;
-        map.serialize_entry("label", &self.frame.label)?;
-        map.serialize_entry("time", &self.frame.time.map(Shortest))?;
-        map.serialize_entry("channel", &self.channel)?;
-        map.serialize_entry("sum", &Shortest(self.processed.sum))?;
-        map.serialize_entry("max", &self.processed.max.map(Shortest))?;
-        if self.tare > 0 {
-            map.serialize_entry("tare", &self.tare)?;
+        map.serialize_entry("frame", &frame.number)?;
+        map.serialize_entry("label", &frame.label)?;
+        map.serialize_entry("time", &frame.time.map(Shortest))?;
+        map.serialize_entry("channel", channel)?;
+        map.serialize_entry("sum", &Shortest(processed.sum))?;
+        map.serialize_entry("max", &processed.max.map(Shortest))?;
+        map.serialize_entry("force", &Shortest(processed.force))?;
+        map.serialize_entry("contact", &processed.contact)?;
+        map.serialize_entry("cop", &processed.cop)?;
+        if processed.tare > 0 {
+            map.serialize_entry("tare", &processed.tare)?;
         }
-        if self.gain {
+        if processed.gain {
             map.serialize_entry("gain", &true)?;
         }
-        map.serialize_entry("rule", &self.rule)?;
-        let imprint = self.processed.imprint.as_ref();
+        map.serialize_entry("rule", &processed.rule)?;
+        let imprint = processed.imprint.as_ref();
         map.serialize_entry("imprint", &imprint)?;
-        map.serialize_entry("na", &imprint.map(taxel_core::imprint::Imprint::count))?;
+        map.serialize_entry("na", &imprint.map(Imprint::count))?;
         let regions = imprint.map_or_else(Vec::new, regions);
         let records = regions
             .iter()
@@ -75,9 +64,61 @@ impl Serialize for FrameAnswer<'_> {
     }
 }
 
+/// The columns before those of the descriptors.
+const COLUMNS: [&str; 10] = [
+    "frame", "label", "time", "channel", "sum", "max", "force", "contact", "cop_x", "cop_y",
+];
+
+impl FrameAnswer<'_> {
+    /// Returns the names of the columns of [`Self::csv_line`] as a line of CSV.
+    pub fn csv_header() -> Vec<u8> {
+        let descriptors = features().iter().map(|feature| feature.key.clone());
+        csv_line(COLUMNS.map(str::to_owned).into_iter().chain(descriptors))
+    }
+
+    /// Returns the frame as a line of CSV: the numbers of the JSON form, and the descriptors of the main region. A field
+    /// is empty if the value does not exist; so are all descriptors without an active taxel.
+    pub fn csv_line(&self) -> Vec<u8> {
+        let Self {
+            frame,
+            channel,
+            processed,
+        } = self;
+        let optional = |value: Option<f64>| value.map_or_else(String::new, |own| own.to_string());
+        let label = frame.label.as_ref().map(ToString::to_string);
+        let mut fields = vec![
+            frame.number.to_string(),
+            label.unwrap_or_default(),
+            optional(frame.time),
+            channel.unwrap_or_default().to_owned(),
+            processed.sum.to_string(),
+            optional(processed.max),
+            processed.force.to_string(),
+            processed.contact.to_string(),
+            optional(processed.cop.map(|[x, _]| x)),
+            optional(processed.cop.map(|[_, y]| y)),
+        ];
+        fields.resize(COLUMNS.len() + features().len(), String::new());
+        let regions = processed.imprint.as_ref().map_or_else(Vec::new, regions);
+        if let Some(main) = main_region(&regions) {
+            feature_values(&Description::of(&regions[main]), |index, value| {
+                fields[COLUMNS.len() + index] = value.to_string();
+            });
+        }
+        csv_line(fields)
+    }
+}
+
+fn csv_line(fields: impl IntoIterator<Item = String>) -> Vec<u8> {
+    let mut line = csv::Writer::from_writer(Vec::new());
+    // Cannot fail: the line is kept in memory.
+    let _ = line.write_record(fields.into_iter().map(String::into_bytes));
+    line.into_inner().unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
-    use taxel_core::frame::{FrameSize, Processing, Rule, RuleOrigin};
+    use taxel_core::frame::{FrameSize, Processing, Rule, RuleOrigin, SetRule};
 
     use super::*;
     use crate::formats::json;
@@ -91,13 +132,10 @@ mod tests {
             frame: &frame,
             channel: None,
             processed: processing.run(&frame).expect("it fits"),
-            rule: None,
-            tare: 0,
-            gain: false,
         };
         assert_eq!(
             json::text(&answer),
-            r#"{"frame":0,"label":null,"time":null,"channel":null,"sum":3.5,"max":2.5,"rule":null,"imprint":null,"na":null,"regions":[]}"#
+            r#"{"frame":0,"label":null,"time":null,"channel":null,"sum":3.5,"max":2.5,"force":3.5,"contact":2,"cop":[1.2142857142857142,0.5],"rule":null,"imprint":null,"na":null,"regions":[]}"#
         );
     }
 

@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
-use taxel_core::frame::{FrameError, LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
+use taxel_core::frame::{FrameError, Rule, RuleOrigin, SetRule, Tare};
 use taxel_core::matrix::Matrix;
 use taxel_core::quote::shortened_message;
 
@@ -218,9 +218,8 @@ impl RecordingMetadata {
                 let spread = described.tare_spread.as_ref();
                 let spread = spread.map(|rows| matrix(rows)).transpose();
                 let spread = spread.map_err(MetadataError::of_key("tare_spread"))?;
-                let tare_step = described.tare_step;
-                let tare_step = tare_step.filter(|&step| step > 0.0 && step <= LARGEST_VALUE);
-                let tare = Tare::from_parts(baseline, spread, tare_step, frames.unwrap_or(1));
+                let step = described.tare_step;
+                let tare = Tare::from_parts(baseline, spread, step, frames.unwrap_or(1));
                 Some(tare.map_err(|error| match error {
                     FrameError::Rule {
                         what,
@@ -291,7 +290,7 @@ fn rows(matrix: &Matrix<f64>) -> FrameRows {
 
 #[cfg(test)]
 mod tests {
-    use taxel_core::frame::TareFrames;
+    use taxel_core::frame::{Frame, TareFrames, View};
     use taxel_core::sensor::MatrixSize;
 
     use super::*;
@@ -301,8 +300,10 @@ mod tests {
         let mut values = Matrix::filled(MatrixSize::new(2, 1).expect("an allowed size"), 0.5);
         values.set(1, 0, f64::NAN);
         let mut tare = TareFrames::new(2);
-        tare.add(&values).expect("it fits");
-        tare.add(&values).expect("it fits");
+        let frame = Frame::from_values(values.size().into(), values.values()).expect("as many");
+        for _ in 0..2 {
+            tare.add(&frame, &View::default()).expect("it fits");
+        }
         for rule in [
             Rule::AtLeast(10.0),
             Rule::Percent(12.5),
