@@ -84,8 +84,13 @@ fn a_bad_imprint_is_reported_with_line_and_column() {
         "##\n.\u{e9}".as_bytes(),
         "line 2, column 2: found '\u{e9}', expected '#' or '.'",
     );
-    for other in [b"##\n#\x1b", b"##\n#\0", b"##\n.\xff"] {
-        let known = "not an imprint: expected rows of '#' and '.', a table (CSV), PBM or NPY";
+    bad(
+        b"##\n#\x1b",
+        "line 2, column 2: found U+001B, expected '#' or '.'",
+    );
+    for other in [&b"##\n.\xff"[..], b"\x89PNG"] {
+        let known =
+            "not an imprint: expected rows of '#' and '.', a table of 0 and 1 (CSV), PBM or NPY";
         bad(other, known);
     }
     bad(

@@ -243,7 +243,7 @@ fn bad_targets_are_refused_with_what_is_expected() {
     refused(
         &taxel("export - - --format csv", "P1 2 1 2"),
         1,
-        "standard input: PBM: line 1, column 8: found byte 0x32, expected 0 or 1",
+        "standard input: PBM: expected 2 digits, each 0 or 1",
     );
 }
 
@@ -331,7 +331,7 @@ fn a_byte_order_mark_is_skipped() {
     refused(
         &folder.run("describe w.npz"),
         1,
-        "w.npz: not an imprint: expected rows of '#' and '.', a table (CSV), PBM or NPY; if this is a recording, use taxel frames",
+        "w.npz: not an imprint: expected rows of '#' and '.', a table of 0 and 1 (CSV), PBM or NPY; if this is a recording, use taxel frames",
     );
 }
 

@@ -151,17 +151,20 @@ pub(super) fn format_flag() -> Arg {
         .hide_possible_values(true)
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum ExportFormat {
-    Imprint(ImprintFormat),
+    Imprint(&'static ImprintFormat),
     Svg,
 }
 
 impl ExportFormat {
     fn of(name: &str) -> Option<Self> {
+        let mut formats = ImprintFormat::ALL.iter();
         match name {
             "svg" => Some(Self::Svg),
-            name => name.parse().ok().map(Self::Imprint),
+            name => formats
+                .find(|format| format.name == name)
+                .map(Self::Imprint),
         }
     }
 
@@ -172,7 +175,7 @@ impl ExportFormat {
 }
 
 pub(crate) fn names() -> Vec<&'static str> {
-    let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
+    let imprints = ImprintFormat::ALL.iter().map(|format| format.name);
     imprints.chain(["svg"]).collect()
 }
 
@@ -247,7 +250,7 @@ impl Export {
     }
 
     pub(crate) fn is_drawing(&self) -> bool {
-        self.format == ExportFormat::Svg
+        matches!(self.format, ExportFormat::Svg)
     }
 }
 

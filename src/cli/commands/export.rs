@@ -94,7 +94,7 @@ impl Export {
     /// drawings.
     fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
         let content = match self.format {
-            ExportFormat::Imprint(format) => format.write(imprint),
+            ExportFormat::Imprint(format) => (format.write)(imprint),
             ExportFormat::Svg => draw().svg().into_bytes(),
         };
         match &self.path {

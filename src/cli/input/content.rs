@@ -10,11 +10,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-use taxel_core::quote::shortened_message;
+use taxel_files::ReadError;
 use taxel_files::formats::file::{system_reason, without_mark};
+use taxel_files::formats::imprint_file::MAX_BYTES;
 use taxel_files::formats::recording::may_be_recording;
-use taxel_files::formats::shape::MAX_BYTES;
-use taxel_files::formats::{Content, ContentError, read_content};
+use taxel_files::formats::{Content, read_content};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum InputSource {
@@ -59,10 +59,8 @@ pub(crate) fn standard() -> io::Result<io::Stdin> {
 pub(crate) enum InputError {
     #[error("cannot read: {}", system_reason(.0))]
     Read(#[from] io::Error),
-    #[error("larger than 1 MiB, the limit for an imprint or a shape")]
-    Large,
-    #[error("{}", shortened_message(&.0.to_string()))]
-    Content(#[from] ContentError),
+    #[error("{0}")]
+    Content(#[from] ReadError),
     #[error("{error}; if this is {what}, use taxel {command}")]
     Elsewhere {
         error: Box<InputError>,
@@ -73,7 +71,8 @@ pub(crate) enum InputError {
 
 pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
     let bytes = bytes(source)?;
-    read(&bytes).map_err(|error| {
+    read_content(&bytes).map_err(|error| {
+        let error = error.into();
         let other = may_be_recording(&bytes).then_some(("a recording", "frames"));
         match other.or_else(|| lines_of(&bytes)) {
             Some((what, command)) => InputError::Elsewhere {
@@ -84,13 +83,6 @@ pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
             None => error,
         }
     })
-}
-
-fn read(bytes: &[u8]) -> Result<Content, InputError> {
-    if bytes.len() > MAX_BYTES {
-        return Err(InputError::Large);
-    }
-    Ok(read_content(bytes)?)
 }
 
 /// Returns what JSON lines are if not imprints, a list of poses or a set of shapes, and the command that reads them.

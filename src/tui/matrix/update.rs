@@ -484,7 +484,7 @@ pub(in crate::tui) fn overwrite(name: String, content: Vec<u8>) -> Effect {
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     let reading = app.reading();
     if let Some(format) = ImprintFormat::of_path(name) {
-        return Ok(format.write(&reading.imprint));
+        return Ok((format.write)(&reading.imprint));
     }
     if has_ending(name, "svg") {
         return Ok(drawing(app).svg().into_bytes());

@@ -61,7 +61,7 @@ pub(crate) fn exchange(bytes: &[u8]) -> bool {
     match imprint_file::read(bytes) {
         Ok(imprint) => {
             for form in ImprintFormat::ALL {
-                assert_eq!(imprint_file::read(&form.write(&imprint)), Ok(imprint));
+                assert_eq!(imprint_file::read(&(form.write)(&imprint)), Ok(imprint));
             }
             true
         }
