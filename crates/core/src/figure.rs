@@ -12,6 +12,7 @@ use crate::geometry::{
 };
 use crate::parameter::{Parameter, ParameterError, named};
 use crate::sensor::Sensor;
+use crate::values::Values;
 
 /// The note that is shown if a thickness leaves no room for a hole.
 pub const NO_ROOM: &str = "no room for a hole: solid";
@@ -35,6 +36,44 @@ pub enum FigureKind {
     Octagon,
 }
 
+/// All that tells the kinds apart; forms, files, flags and checks follow from it.
+struct Kind {
+    name: &'static str,
+    /// The sizes, then position, angle and thickness.
+    parameters: &'static [Parameter],
+    /// 0 for an ellipse.
+    corners: u8,
+}
+
+/// The kinds in the order of [`FigureKind`].
+const KINDS: [Kind; 7] = {
+    use Parameter::{Angle, Length, RadiusX, RadiusY, Side, Thickness, Width, X0, Y0};
+    const fn regular(name: &'static str, corners: u8) -> Kind {
+        Kind {
+            name,
+            parameters: &[Side, X0, Y0, Angle, Thickness],
+            corners,
+        }
+    }
+    [
+        Kind {
+            name: "ellipse",
+            parameters: &[RadiusX, RadiusY, X0, Y0, Angle, Thickness],
+            corners: 0,
+        },
+        Kind {
+            name: "rectangle",
+            parameters: &[Length, Width, X0, Y0, Angle, Thickness],
+            corners: 4,
+        },
+        regular("triangle", 3),
+        regular("pentagon", 5),
+        regular("hexagon", 6),
+        regular("heptagon", 7),
+        regular("octagon", 8),
+    ]
+};
+
 impl FigureKind {
     /// All seven kinds, in the paper's order.
     pub const ALL: &'static [Self] = &[
@@ -47,6 +86,10 @@ impl FigureKind {
         Self::Octagon,
     ];
 
+    fn row(self) -> &'static Kind {
+        &KINDS[self as usize]
+    }
+
     /// Returns the names of all kinds, in the same order.
     pub fn names() -> Vec<&'static str> {
         Self::ALL.iter().map(|kind| kind.name()).collect()
@@ -54,15 +97,7 @@ impl FigureKind {
 
     /// Returns the name of the kind, as in files, in flags and on the screen.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Ellipse => "ellipse",
-            Self::Rectangle => "rectangle",
-            Self::Triangle => "triangle",
-            Self::Pentagon => "pentagon",
-            Self::Hexagon => "hexagon",
-            Self::Heptagon => "heptagon",
-            Self::Octagon => "octagon",
-        }
+        self.row().name
     }
 
     /// Returns a hint for a word that means a figure but is not its name: "circle" or "square".
@@ -77,30 +112,13 @@ impl FigureKind {
     /// Returns the parameters of the kind in the order of forms: sizes, position, angle, thickness. A figure may lack
     /// the thickness.
     pub fn parameters(self) -> &'static [Parameter] {
-        use Parameter::{Angle, Length, RadiusX, RadiusY, Side, Thickness, Width, X0, Y0};
-        match self {
-            Self::Ellipse => &[RadiusX, RadiusY, X0, Y0, Angle, Thickness],
-            Self::Rectangle => &[Length, Width, X0, Y0, Angle, Thickness],
-            _ => &[Side, X0, Y0, Angle, Thickness],
-        }
+        self.row().parameters
     }
 
-    /// Returns the parameters that give the figure's size.
+    /// Returns the one or two parameters that give the figure's size.
     pub fn sizes(self) -> &'static [Parameter] {
         let own = self.parameters();
         &own[..own.len() - 4]
-    }
-
-    /// Returns the number of corners of a regular polygon; None for an ellipse or a rectangle.
-    fn corners(self) -> Option<u8> {
-        match self {
-            Self::Ellipse | Self::Rectangle => None,
-            Self::Triangle => Some(3),
-            Self::Pentagon => Some(5),
-            Self::Hexagon => Some(6),
-            Self::Heptagon => Some(7),
-            Self::Octagon => Some(8),
-        }
     }
 }
 
@@ -115,22 +133,15 @@ named!(FigureKind, "figure", FigureKind::ALL);
 /// let sensor = Sensor::default();
 /// let ring = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).thickness(2.0).on(&sensor)?;
 /// assert_eq!(ring.to_string(), "ellipse rx 4.00 ry 4.00 at 1.99, 1.47, 0°, wall 2.00");
-/// let hexagon = Figure::hexagon(3.0).on(&sensor)?;
-/// assert!(format!("{hexagon:?}").contains("sizes: [3.0], x0: 0.0"));
 ///
 /// let error = Figure::hexagon(16.5).on(&sensor).unwrap_err();
 /// assert_eq!(error.to_string(), "side: 16.5 is above 16 (allowed: above 0, up to 16)");
 /// # Ok::<(), ParameterError>(())
 /// ```
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
     kind: FigureKind,
-    /// The values of `kind.sizes()`; the second is unused if there is only one.
-    sizes: [f64; 2],
-    x0: f64,
-    y0: f64,
-    angle: f64,
-    thickness: Option<f64>,
+    pub(crate) values: Values,
 }
 
 /// A figure whose values are not checked yet; [`Self::on`] checks them all.
@@ -143,36 +154,33 @@ pub struct FigureBuilder(Figure);
 
 impl FigureBuilder {
     fn new(kind: FigureKind, sizes: [f64; 2]) -> Self {
-        Self(Figure {
-            kind,
-            sizes,
-            x0: 0.0,
-            y0: 0.0,
-            angle: 0.0,
-            thickness: None,
-        })
+        use Parameter::{Angle, X0, Y0};
+        let mut values = Values::unchecked([(X0, 0.0), (Y0, 0.0), (Angle, 0.0)]);
+        for (&parameter, size) in kind.sizes().iter().zip(sizes) {
+            values.put(parameter, size);
+        }
+        Self(Figure { kind, values })
+    }
+
+    fn with(mut self, parameter: Parameter, value: f64) -> Self {
+        self.0.values.put(parameter, value);
+        self
     }
 
     /// Places the top left corner of the bounding rectangle before rotation; in cell sides.
     pub fn at(self, x0: f64, y0: f64) -> Self {
-        Self(Figure { x0, y0, ..self.0 })
+        self.with(Parameter::X0, x0).with(Parameter::Y0, y0)
     }
 
     /// Turns the figure about its centre, clockwise as seen; in degrees, from 0 to below 360.
     pub fn angle(self, degrees: f64) -> Self {
-        Self(Figure {
-            angle: degrees,
-            ..self.0
-        })
+        self.with(Parameter::Angle, degrees)
     }
 
     /// Gives the figure a wall of this thickness around one concentric hole; in cell sides. The figure stays solid if
     /// there is no room for a hole.
-    pub fn thickness(self, wall: f64) -> Self {
-        Self(Figure {
-            thickness: Some(wall),
-            ..self.0
-        })
+    pub fn thickness(self, thickness: f64) -> Self {
+        self.with(Parameter::Thickness, thickness)
     }
 
     /// Returns the figure, after checking its values against the ranges of a sensor.
@@ -180,13 +188,7 @@ impl FigureBuilder {
     /// # Errors
     /// Returns the error of the first value that is out of range, in the order of [`FigureKind::parameters`].
     pub fn on(self, sensor: &Sensor) -> Result<Figure, ParameterError> {
-        let mut figure = self.0;
-        for &parameter in figure.kind.parameters() {
-            if let Some(value) = figure.get(parameter) {
-                figure = figure.with(parameter, value, sensor)?;
-            }
-        }
-        Ok(figure)
+        Figure::new(self.0.kind, sensor, |parameter| self.0.get(parameter))
     }
 }
 
@@ -204,27 +206,27 @@ impl Figure {
 
     /// Starts an equilateral triangle with this side.
     pub fn triangle(side: f64) -> FigureBuilder {
-        FigureBuilder::new(FigureKind::Triangle, [side, 1.0])
+        FigureBuilder::new(FigureKind::Triangle, [side; 2])
     }
 
     /// Starts a regular pentagon with this side.
     pub fn pentagon(side: f64) -> FigureBuilder {
-        FigureBuilder::new(FigureKind::Pentagon, [side, 1.0])
+        FigureBuilder::new(FigureKind::Pentagon, [side; 2])
     }
 
     /// Starts a regular hexagon with this side.
     pub fn hexagon(side: f64) -> FigureBuilder {
-        FigureBuilder::new(FigureKind::Hexagon, [side, 1.0])
+        FigureBuilder::new(FigureKind::Hexagon, [side; 2])
     }
 
     /// Starts a regular heptagon with this side.
     pub fn heptagon(side: f64) -> FigureBuilder {
-        FigureBuilder::new(FigureKind::Heptagon, [side, 1.0])
+        FigureBuilder::new(FigureKind::Heptagon, [side; 2])
     }
 
     /// Starts a regular octagon with this side.
     pub fn octagon(side: f64) -> FigureBuilder {
-        FigureBuilder::new(FigureKind::Octagon, [side, 1.0])
+        FigureBuilder::new(FigureKind::Octagon, [side; 2])
     }
 }
 
@@ -237,43 +239,27 @@ impl Figure {
     pub fn new(
         kind: FigureKind,
         sensor: &Sensor,
-        mut value: impl FnMut(Parameter) -> Option<f64>,
+        value: impl FnMut(Parameter) -> Option<f64>,
     ) -> Result<Self, ParameterError> {
-        let mut figure = FigureBuilder::new(kind, [1.0; 2]).0;
-        for &parameter in kind.parameters() {
-            match value(parameter) {
-                Some(value) => figure = figure.with(parameter, value, sensor)?,
-                None if parameter == Parameter::Thickness => {}
-                None => {
-                    return Err(ParameterError::Missing {
-                        parameter,
-                        range: sensor.range(parameter),
-                    });
-                }
-            }
-        }
-        Ok(figure)
+        let values = Values::new(kind.parameters(), sensor, value)?;
+        Ok(Self { kind, values })
     }
 
     /// Returns the figure that a new form shows: solid, with every other parameter at its default. On a small sensor
     /// the figure is moved up and to the left by whole cells, so that as much of it as possible is on the sensor.
     pub fn default_of(kind: FigureKind, sensor: &Sensor) -> Self {
-        let mut sizes = [1.0; 2];
-        for (size, &parameter) in sizes.iter_mut().zip(kind.sizes()) {
-            *size = sensor.default_value(parameter);
+        let mut builder = FigureBuilder::new(kind, [1.0; 2]);
+        for &parameter in kind.sizes() {
+            builder = builder.with(parameter, sensor.default_value(parameter));
         }
-        let at_origin = FigureBuilder::new(kind, sizes).0;
-        let room = |side: u8, end: f64| (f64::from(side) - end).floor().max(0.0);
-        let (right, bottom) =
-            Extent::of(&at_origin).map_or((0.0, 0.0), |extent| (extent.right, extent.bottom));
-        let (columns, rows) = (sensor.columns(), sensor.rows());
-        Self {
-            x0: sensor
-                .default_value(Parameter::X0)
-                .min(room(columns, right)),
-            y0: sensor.default_value(Parameter::Y0).min(room(rows, bottom)),
-            ..at_origin
-        }
+        let ends = Extent::of(&builder.0).map_or([0.0; 2], |extent| [extent.right, extent.bottom]);
+        let place = |parameter: Parameter, side: u8, end: f64| {
+            let room = (f64::from(side) - end).floor().max(0.0);
+            sensor.default_value(parameter).min(room)
+        };
+        let x0 = place(Parameter::X0, sensor.columns(), ends[0]);
+        let y0 = place(Parameter::Y0, sensor.rows(), ends[1]);
+        builder.at(x0, y0).0
     }
 
     /// Returns the same figure with one parameter changed to `value`, in the parameter's unit.
@@ -286,38 +272,10 @@ impl Figure {
         value: f64,
         sensor: &Sensor,
     ) -> Result<Self, ParameterError> {
-        self.set(parameter, value, sensor)?;
+        let (owner, own) = (self.kind.name(), self.kind.parameters());
+        let value = sensor.check_own(owner, own, parameter, value)?;
+        self.values.put(parameter, value);
         Ok(self)
-    }
-
-    pub(crate) fn set(
-        &mut self,
-        parameter: Parameter,
-        value: f64,
-        sensor: &Sensor,
-    ) -> Result<(), ParameterError> {
-        let slot = match parameter {
-            Parameter::X0 => Some(&mut self.x0),
-            Parameter::Y0 => Some(&mut self.y0),
-            Parameter::Angle => Some(&mut self.angle),
-            Parameter::Thickness => {
-                self.thickness = Some(sensor.check(parameter, value)?);
-                return Ok(());
-            }
-            _ => {
-                let mut sizes = self.kind.sizes().iter().zip(&mut self.sizes);
-                sizes.find_map(|(&own, size)| (own == parameter).then_some(size))
-            }
-        };
-        let Some(slot) = slot else {
-            return Err(ParameterError::Foreign {
-                parameter,
-                owner: self.kind.name(),
-                expected: self.kind.parameters(),
-            });
-        };
-        *slot = sensor.check(parameter, value)?;
-        Ok(())
     }
 
     /// Returns the kind of the figure.
@@ -328,69 +286,88 @@ impl Figure {
     /// Returns the value of a parameter; None for one that the figure does not have, and for the thickness of a solid
     /// figure.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
-        match parameter {
-            Parameter::X0 => Some(self.x0),
-            Parameter::Y0 => Some(self.y0),
-            Parameter::Angle => Some(self.angle),
-            Parameter::Thickness => self.thickness,
-            _ => {
-                let mut sizes = self.kind.sizes().iter().zip(self.sizes);
-                sizes.find_map(|(&own, size)| (own == parameter).then_some(size))
-            }
+        self.values.get(parameter)
+    }
+
+    /// The values of `kind.sizes()`; the second is that of the first if there is only one.
+    pub(crate) fn sizes(&self) -> [f64; 2] {
+        let sizes = self.kind.sizes();
+        [sizes[0], sizes[sizes.len() - 1]].map(|size| self.values.of(size))
+    }
+
+    /// The number of rotations within a full turn that map the figure onto itself; None if all do.
+    pub(crate) fn rotations(&self) -> Option<u32> {
+        let [one, other] = self.sizes();
+        match self.kind.row().corners {
+            _ if one != other => Some(2),
+            0 => None,
+            corners => Some(corners.into()),
+        }
+    }
+
+    /// The sides of the bounding rectangle before rotation; None for a regular polygon, whose sides are no decimals.
+    pub(crate) fn box_sides(&self) -> Option<[f64; 2]> {
+        match self.kind.row().corners {
+            0 => Some(self.sizes().map(|radius| 2.0 * radius)),
+            4 => Some(self.sizes()),
+            _ => None,
         }
     }
 
     /// Returns true if the figure has a hole, that is, a thickness that leaves room for one.
     pub fn has_hole(&self) -> bool {
-        let mut pen = HolePen(false);
-        self.draw(&mut pen);
-        pen.0
+        self.hole(self.sizes()).is_some()
     }
 
-    /// Draws an ellipse or a rectangle; `half` is half of its width and height. Those of the hole are smaller by the
-    /// wall.
-    fn draw_round_or_square<T: Real>(&self, half: Point<T>, pen: &mut impl Pen<T>) {
-        let centre = Point::new(T::decimal(self.x0), T::decimal(self.y0)).moved(half);
-        let turn = Turn::clockwise(T::decimal(self.angle));
+    /// The thickness of a figure of these sizes, if it leaves room for a hole, and the least thickness that does not.
+    fn hole<T: Real>(&self, [one, other]: [T; 2]) -> Option<(T, T)> {
+        let thickness = T::decimal(self.get(Parameter::Thickness)?);
+        let most = match self.kind.row().corners {
+            0 => one.min(other),
+            4 => one.min(other) * T::HALF,
+            corners => {
+                T::from_double(RegularPolygon::with_corners(corners).inradius) * (one * T::HALF)
+            }
+        };
+        (thickness < most).then_some((thickness, most))
+    }
+
+    /// Draws an ellipse or a rectangle. Half of its width and height are smaller by the thickness in the hole.
+    fn draw_in_box<T: Real>(&self, [x0, y0, angle]: [T; 3], pen: &mut impl Pen<T>) {
+        let sizes = self.sizes().map(T::decimal);
+        let round = self.kind == FigureKind::Ellipse;
+        let [half_width, half_height] = sizes.map(|size| if round { size } else { size * T::HALF });
+        let half = Point::new(half_width, half_height);
+        let centre = Point::new(x0, y0).moved(half);
+        let turn = Turn::clockwise(angle);
         let mut draw = |half: Point<T>, material: Side| {
             let [across, along] = turn.of_axes(half);
-            if self.kind == FigureKind::Ellipse {
-                return pen.ellipse(
-                    &Ellipse {
-                        centre,
-                        across,
-                        along,
-                    },
-                    material,
-                );
+            if round {
+                let ellipse = Ellipse {
+                    centre,
+                    across,
+                    along,
+                };
+                return pen.ellipse(&ellipse, material);
             }
-            let corner = |u: Point<T>, v: Point<T>| centre.moved(u).moved(v);
-            let (back, up) = (
-                Point::new(-across.x, -across.y),
-                Point::new(-along.x, -along.y),
-            );
-            pen.ring(
-                &[
-                    corner(back, up),
-                    corner(across, up),
-                    corner(across, along),
-                    corner(back, along),
-                ],
-                material,
-            );
+            let opposite = |vector: Point<T>| Point::new(-vector.x, -vector.y);
+            let (back, up) = (opposite(across), opposite(along));
+            let corners = [(back, up), (across, up), (across, along), (back, along)];
+            pen.ring(&corners.map(|(u, v)| centre.moved(u).moved(v)), material);
         };
         draw(half, Side::Inside);
-        if let Some(wall) = self.thickness.map(T::decimal)
-            && wall < half.x.min(half.y)
-        {
-            draw(Point::new(half.x - wall, half.y - wall), Side::Outside);
+        if let Some((thickness, _)) = self.hole(sizes) {
+            let inner = Point::new(half.x - thickness, half.y - thickness);
+            draw(inner, Side::Outside);
         }
     }
 
-    /// Draws a regular polygon; a hole is the same polygon about the same centre, its inradius smaller by the wall.
-    fn draw_regular<T: Real>(&self, corners: u8, pen: &mut impl Pen<T>) {
+    /// Draws a regular polygon; a hole is the same polygon about the same centre, its inradius smaller by the
+    /// thickness.
+    fn draw_regular<T: Real>(&self, corners: u8, [x0, y0, angle]: [T; 3], pen: &mut impl Pen<T>) {
         let polygon = RegularPolygon::with_corners(corners);
-        let half_side = T::decimal(self.sizes[0]) * T::HALF;
+        let side = T::decimal(self.sizes()[0]);
+        let half_side = side * T::HALF;
         let scaled = |of: Point<Double>| {
             Point::new(
                 T::from_double(of.x) * half_side,
@@ -398,13 +375,9 @@ impl Figure {
             )
         };
         let top_left = scaled(polygon.top_left);
-        let centre = Point::new(
-            T::decimal(self.x0) - top_left.x,
-            T::decimal(self.y0) - top_left.y,
-        );
-        let inradius = T::from_double(polygon.inradius) * half_side;
-        let turn = Turn::clockwise(T::decimal(self.angle));
-        let mut ring = [Point::new(T::ZERO, T::ZERO); MOST_CORNERS];
+        let centre = Point::new(x0 - top_left.x, y0 - top_left.y);
+        let turn = Turn::clockwise(angle);
+        let mut ring = [centre; MOST_CORNERS];
         let ring = &mut ring[..usize::from(corners)];
         for (slot, &corner) in ring.iter_mut().zip(&polygon.corners) {
             *slot = turn.of(scaled(corner));
@@ -417,88 +390,41 @@ impl Figure {
             pen.ring(&placed[..ring.len()], material);
         };
         draw(T::ONE, Side::Inside);
-        if let Some(wall) = self.thickness.map(T::decimal)
-            && wall < inradius
-        {
-            draw((inradius - wall) / inradius, Side::Outside);
+        if let Some((thickness, inradius)) = self.hole([side; 2]) {
+            draw((inradius - thickness) / inradius, Side::Outside);
         }
     }
-}
 
-impl Solid for Figure {
-    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
-        let [first, second] = self.sizes.map(T::decimal);
-        let half = Point::new(first * T::HALF, second * T::HALF);
-        match (self.kind, self.kind.corners()) {
-            (_, Some(corners)) => self.draw_regular(corners, pen),
-            (FigureKind::Ellipse, None) => {
-                self.draw_round_or_square(Point::new(first, second), pen);
-            }
-            (_, None) => self.draw_round_or_square(half, pen),
-        }
-    }
-}
-
-/// A pen that only notes whether a hole is drawn, so that [`Figure::has_hole`] agrees with the drawing.
-struct HolePen(bool);
-
-impl Pen<f64> for HolePen {
-    fn edge(&mut self, _from: Point<f64>, _to: Point<f64>) {}
-
-    fn ellipse(&mut self, _ellipse: &Ellipse<f64>, material: Side) {
-        self.0 |= material == Side::Outside;
-    }
-
-    fn ring(&mut self, _points: &[Point<f64>], material: Side) {
-        self.0 |= material == Side::Outside;
-    }
-}
-
-impl Figure {
     /// Returns the kind and the sizes, with which the summary begins: `hexagon side 4.00`.
     pub fn kind_and_sizes(&self) -> String {
-        let sizes = self.kind.sizes().iter().zip(self.sizes);
-        let sizes = sizes.map(|(parameter, size)| {
-            format!(" {} {}", parameter.row().short, parameter.format(size))
+        let sizes = self.kind.sizes().iter().map(|&size| {
+            let value = size.format(self.values.of(size));
+            format!(" {} {value}", size.row().short)
         });
         self.kind.name().to_owned() + &sizes.collect::<String>()
     }
 }
 
-impl fmt::Debug for Figure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            kind,
-            sizes,
-            x0,
-            y0,
-            angle,
-            thickness,
-        } = self;
-        f.debug_struct("Figure")
-            .field("kind", kind)
-            .field("sizes", &&sizes[..kind.sizes().len()])
-            .field("x0", x0)
-            .field("y0", y0)
-            .field("angle", angle)
-            .field("thickness", thickness)
-            .finish()
+impl Solid for Figure {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        use Parameter::{Angle, X0, Y0};
+        let place = [X0, Y0, Angle].map(|parameter| T::decimal(self.values.of(parameter)));
+        match self.kind.row().corners {
+            0 | 4 => self.draw_in_box(place, pen),
+            corners => self.draw_regular(corners, place, pen),
+        }
     }
 }
 
 impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.kind_and_sizes())?;
-        let (x0, y0) = (Parameter::X0.format(self.x0), Parameter::Y0.format(self.y0));
-        write!(
-            f,
-            " at {x0}, {y0}, {}°",
-            Parameter::Angle.format(self.angle)
-        )?;
-        let Some(wall) = self.thickness else {
+        use Parameter::{Angle, Thickness, X0, Y0};
+        let [x0, y0, angle] = [X0, Y0, Angle].map(|own| own.format(self.values.of(own)));
+        write!(f, "{} at {x0}, {y0}, {angle}°", self.kind_and_sizes())?;
+        let Some(thickness) = self.get(Thickness) else {
             return Ok(());
         };
-        write!(f, ", wall {}", Parameter::Thickness.format(wall))?;
+        write!(f, ", wall {}", Thickness.format(thickness))?;
         if self.has_hole() {
             Ok(())
         } else {
@@ -543,7 +469,8 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_figure() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_figure_has_the_parameters_of_its_kind_and_a_hole_only_if_there_is_room()
+    -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let sensor = Sensor::default();
         let hexagon = Figure::default_of(FigureKind::Hexagon, &sensor);

@@ -128,50 +128,42 @@ impl Imprint {
         })
     }
 
+    fn combined(mut self, other: &Self, with: impl Fn(u64, u64) -> u64) -> Self {
+        let mask = self.mask();
+        for (word, other) in self.words_mut().iter_mut().zip(other.words) {
+            *word = with(*word, other) & mask;
+        }
+        self
+    }
+
     /// Returns the taxels in which two imprints differ, on the matrix of this one.
     #[must_use]
     pub fn differing(&self, other: &Self) -> Self {
-        let mut differing = *self;
-        for (row, &word) in other.words().iter().enumerate() {
-            differing.set_word(row, self.words.get(row).unwrap_or(&0) ^ word);
-        }
-        differing
+        self.combined(other, |own, other| own ^ other)
     }
 
     /// Returns the taxels that are active in this imprint, in the other, or in both, on the matrix of this one.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
-        let (mut all, mask) = (*self, self.mask());
-        for (word, more) in all.words_mut().iter_mut().zip(other.words()) {
-            *word |= more & mask;
-        }
-        all
+        self.combined(other, |own, other| own | other)
     }
 
     /// Returns the taxels that are active in both imprints, on the matrix of this one.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
-        self.without(&self.without(other))
+        self.combined(other, |own, other| own & other)
     }
 
     /// Returns the taxels that are active in this imprint but not in the other, on the matrix of this one.
     #[must_use]
     pub fn without(&self, other: &Self) -> Self {
-        let mut rest = *self;
-        for (word, taken) in rest.words_mut().iter_mut().zip(other.words()) {
-            *word &= !taken;
-        }
-        rest
+        self.combined(other, |own, other| own & !other)
     }
 
     /// Returns the same imprint on a matrix of another size; active taxels beyond it are dropped.
     #[must_use]
     pub fn resized(&self, size: MatrixSize) -> Self {
-        let mut resized = Self::empty(size);
-        for (row, &word) in self.words().iter().enumerate() {
-            resized.set_word(row, word);
-        }
-        resized
+        Self::empty(size).union(self)
     }
 }
 
@@ -241,13 +233,7 @@ impl Bounds {
 impl fmt::Display for Imprint {
     /// Writes one line per row, `#` for active and `.` for inactive, without a line end after the last row.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (row, line) in self.lines().enumerate() {
-            if row > 0 {
-                writeln!(f)?;
-            }
-            f.write_str(&line)?;
-        }
-        Ok(())
+        f.write_str(&self.lines().collect::<Vec<_>>().join("\n"))
     }
 }
 
@@ -396,8 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_imprint() {
-        use crate::imprint::Imprint;
+    fn two_imprints_are_combined_on_the_matrix_of_the_first() {
         let imprint: Imprint = ".##.\n#..#\n.##.".parse().expect("rows");
         assert_eq!(
             (imprint.columns(), imprint.rows(), imprint.count()),
@@ -407,6 +392,7 @@ mod tests {
         let [one, other] =
             ["##.\n...", ".###\n#..."].map(|text| text.parse::<Imprint>().expect("an imprint"));
         assert_eq!(one.union(&other).to_string(), "###\n#..");
+        assert_eq!(one.differing(&other).to_string(), "#.#\n#..");
         assert_eq!(one.intersection(&other).to_string(), ".#.\n...");
         assert_eq!(one.without(&other).to_string(), "#..\n...");
     }

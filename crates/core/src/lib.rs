@@ -99,3 +99,4 @@ pub mod serialize;
 pub mod source;
 pub mod sweep;
 pub mod touch;
+mod values;

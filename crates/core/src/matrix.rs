@@ -1,7 +1,5 @@
 //! A matrix with one value per taxel, row by row from the top left: for example the measurements of a sensor's cells.
 
-use std::fmt;
-
 use crate::parameter::number::counted;
 use crate::sensor::MatrixSize;
 
@@ -99,26 +97,17 @@ impl<T: Copy> Matrix<T> {
 }
 
 /// The error for a number of values that is not the number of cells.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "found {}, expected {} for a matrix of {size}",
+    counted(*found as u64, "value"), size.cells()
+)]
 pub struct MatrixError {
     /// The size of the matrix.
     pub size: MatrixSize,
     /// The number of values.
     pub found: usize,
 }
-
-impl fmt::Display for MatrixError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { size, found } = *self;
-        let (found, expected) = (counted(found as u64, "value"), size.cells());
-        write!(
-            f,
-            "found {found}, expected {expected} for a matrix of {size}"
-        )
-    }
-}
-
-impl std::error::Error for MatrixError {}
 
 #[cfg(test)]
 mod tests {

@@ -12,9 +12,10 @@ use crate::geometry::{Pen, Point, Real, Solid, Turn};
 use crate::imprint::Imprint;
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
+use crate::values::Values;
 
 /// The parameters of a picture, in the order in which forms show them.
-pub const PICTURE_PARAMETERS: &[Parameter] = &[
+pub const PICTURE_PARAMETERS: &[Parameter; 5] = &[
     Parameter::X0,
     Parameter::Y0,
     Parameter::Angle,
@@ -29,7 +30,7 @@ pub const PICTURE_PARAMETERS: &[Parameter] = &[
 #[derive(Clone, Debug)]
 pub struct Picture {
     imprint: Imprint,
-    values: [f64; PICTURE_PARAMETERS.len()],
+    pub(crate) values: Values,
     /// The name of the stored imprint; shared, so that moving a picture does not allocate.
     name: Option<Arc<str>>,
 }
@@ -47,33 +48,35 @@ impl PartialEq for Picture {
 pub struct PictureBuilder(Picture);
 
 impl PictureBuilder {
-    /// Places the top left corner of the imprint's bounding rectangle, before zoom and rotation; in cell sides.
-    pub fn at(mut self, x0: f64, y0: f64) -> Self {
-        [self.0.values[0], self.0.values[1]] = [x0, y0];
+    fn with(mut self, one: (Parameter, f64), other: (Parameter, f64)) -> Self {
+        self.0.values.put(one.0, one.1);
+        self.0.values.put(other.0, other.1);
         self
+    }
+
+    /// Places the top left corner of the imprint's bounding rectangle, before zoom and rotation; in cell sides.
+    pub fn at(self, x0: f64, y0: f64) -> Self {
+        self.with((Parameter::X0, x0), (Parameter::Y0, y0))
     }
 
     /// Turns the picture about its centre, counter-clockwise as seen; in degrees, from 0 to below 360.
     pub fn angle(mut self, degrees: f64) -> Self {
-        self.0.values[2] = degrees;
+        self.0.values.put(Parameter::Angle, degrees);
         self
     }
 
     /// Scales the picture and its position along x and y.
-    pub fn zoom(mut self, x: f64, y: f64) -> Self {
-        [self.0.values[3], self.0.values[4]] = [x, y];
-        self
+    pub fn zoom(self, x: f64, y: f64) -> Self {
+        self.with((Parameter::ZoomX, x), (Parameter::ZoomY, y))
     }
 
     /// Returns the picture, after checking its values against the ranges of a sensor.
     ///
     /// # Errors
     /// Returns the error of the first value that is out of range, in the order of [`PICTURE_PARAMETERS`].
-    pub fn on(mut self, sensor: &Sensor) -> Result<Picture, ParameterError> {
-        for (parameter, value) in PICTURE_PARAMETERS.iter().copied().zip(&mut self.0.values) {
-            *value = sensor.check(parameter, *value)?;
-        }
-        Ok(self.0)
+    pub fn on(self, sensor: &Sensor) -> Result<Picture, ParameterError> {
+        let values = Values::new(PICTURE_PARAMETERS, sensor, |own| self.0.get(own))?;
+        Ok(Picture { values, ..self.0 })
     }
 }
 
@@ -85,12 +88,13 @@ impl Picture {
 
     /// Creates a picture that leaves the imprint where it is: at its own corner, with angle 0 and zoom 1.
     pub fn at_home(imprint: Imprint) -> Self {
-        let (left, top) = imprint
-            .bounds()
-            .map_or((0, 0), |bounds| (bounds.left, bounds.top));
+        use Parameter::{Angle, X0, Y0, ZoomX, ZoomY};
+        let bounds = imprint.bounds();
+        let (left, top) = bounds.map_or((0, 0), |bounds| (bounds.left, bounds.top));
+        let (x0, y0) = ((X0, left.into()), (Y0, top.into()));
         Self {
             imprint,
-            values: [f64::from(left), f64::from(top), 0.0, 1.0, 1.0],
+            values: Values::unchecked([x0, y0, (Angle, 0.0), (ZoomX, 1.0), (ZoomY, 1.0)]),
             name: None,
         }
     }
@@ -112,17 +116,13 @@ impl Picture {
     pub fn new(
         imprint: Imprint,
         sensor: &Sensor,
-        mut value: impl FnMut(Parameter) -> Option<f64>,
+        value: impl FnMut(Parameter) -> Option<f64>,
     ) -> Result<Self, ParameterError> {
-        let mut picture = Self::at_home(imprint);
-        for (parameter, slot) in PICTURE_PARAMETERS.iter().copied().zip(&mut picture.values) {
-            let missing = ParameterError::Missing {
-                parameter,
-                range: sensor.range(parameter),
-            };
-            *slot = sensor.check(parameter, value(parameter).ok_or(missing)?)?;
-        }
-        Ok(picture)
+        Ok(Self {
+            imprint,
+            values: Values::new(PICTURE_PARAMETERS, sensor, value)?,
+            name: None,
+        })
     }
 
     /// Returns the same picture with one parameter changed to `value`, in the parameter's unit.
@@ -136,33 +136,14 @@ impl Picture {
         value: f64,
         sensor: &Sensor,
     ) -> Result<Self, ParameterError> {
-        self.set(parameter, value, sensor)?;
+        let value = sensor.check_own("picture", PICTURE_PARAMETERS, parameter, value)?;
+        self.values.put(parameter, value);
         Ok(self)
-    }
-
-    pub(crate) fn set(
-        &mut self,
-        parameter: Parameter,
-        value: f64,
-        sensor: &Sensor,
-    ) -> Result<(), ParameterError> {
-        let Some(index) = PICTURE_PARAMETERS.iter().position(|&own| own == parameter) else {
-            return Err(ParameterError::Foreign {
-                parameter,
-                owner: "picture",
-                expected: PICTURE_PARAMETERS,
-            });
-        };
-        self.values[index] = sensor.check(parameter, value)?;
-        Ok(())
     }
 
     /// Returns the value of a parameter; None for one that a picture does not have.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
-        PICTURE_PARAMETERS
-            .iter()
-            .position(|&own| own == parameter)
-            .map(|index| self.values[index])
+        self.values.get(parameter)
     }
 
     /// Returns the name under which the imprint is stored; None if it was not given.
@@ -174,6 +155,48 @@ impl Picture {
     pub fn imprint(&self) -> &Imprint {
         &self.imprint
     }
+
+    /// Returns true if a map of the taxels of the bounding rectangle maps active taxels to active ones. It gets the
+    /// rectangle's last column and row, and a taxel, all counted from the rectangle's corner.
+    fn is_mapped_by(&self, map: impl Fn([u8; 2], [u8; 2]) -> [u8; 2]) -> bool {
+        self.imprint.bounds().is_some_and(|bounds| {
+            let (left, top) = (bounds.left, bounds.top);
+            let last = [bounds.right - left - 1, bounds.bottom - top - 1];
+            self.imprint.active().all(|(column, row)| {
+                let [column, row] = map(last, [column - left, row - top]);
+                self.imprint.get(left + column, top + row)
+            })
+        })
+    }
+
+    /// The number of rotations within a full turn that map the picture onto itself: 4 only with equal zooms.
+    pub(crate) fn rotations(&self, equal_zooms: bool) -> u32 {
+        if equal_zooms && self.is_mapped_by(|[_, bottom], [x, y]| [bottom - y, x]) {
+            4
+        } else if self.is_mapped_by(|[right, bottom], [x, y]| [right - x, bottom - y]) {
+            2
+        } else {
+            1
+        }
+    }
+
+    /// The sum in degrees of two angles at which the picture shows its mirror image, with right and left exchanged;
+    /// None if there are none.
+    pub(crate) fn mirror(&self) -> Option<u32> {
+        if self.is_mapped_by(|[right, _], [x, y]| [right - x, y]) {
+            Some(0)
+        } else {
+            self.is_mapped_by(|[_, bottom], [x, y]| [x, bottom - y])
+                .then_some(180)
+        }
+    }
+
+    /// The sides of the bounding rectangle before zoom and rotation; None for an empty imprint.
+    pub(crate) fn box_sides(&self) -> Option<[f64; 2]> {
+        let bounds = self.imprint.bounds()?;
+        let sides = [bounds.right - bounds.left, bounds.bottom - bounds.top];
+        Some(sides.map(f64::from))
+    }
 }
 
 impl Solid for Picture {
@@ -181,7 +204,8 @@ impl Solid for Picture {
         let Some(bounds) = self.imprint.bounds() else {
             return;
         };
-        let [x0, y0, angle, zoom_x, zoom_y] = self.values.map(T::decimal);
+        let value = |parameter: Parameter| T::decimal(self.values.of(parameter));
+        let [x0, y0, angle, zoom_x, zoom_y] = PICTURE_PARAMETERS.map(value);
         let turn = Turn::clockwise(-angle);
         let size = |from: u8, to: u8| T::whole(i32::from(to - from));
         let half = Point::new(
@@ -241,27 +265,20 @@ fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
 
 impl std::fmt::Display for Picture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let text = |index: usize| PICTURE_PARAMETERS[index].format(self.values[index]);
         f.write_str("picture")?;
         if let Some(name) = &self.name {
             write!(f, " of {name}")?;
         }
-        write!(
-            f,
-            " at {}, {}, {}°, zoom {} × {}",
-            text(0),
-            text(1),
-            text(2),
-            text(3),
-            text(4)
-        )
+        let text = |own: Parameter| own.format(self.values.of(own));
+        let [x0, y0, angle, zoom_x, zoom_y] = PICTURE_PARAMETERS.map(text);
+        write!(f, " at {x0}, {y0}, {angle}°, zoom {zoom_x} × {zoom_y}")
     }
 }
 
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples_of_picture() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_picture_turns_about_the_middle_of_its_imprint() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let sensor = Sensor::default();
         let bar: Imprint = "###".parse().expect("a row of taxels");

@@ -119,15 +119,8 @@ impl Default for Sensor {
 
 impl fmt::Display for Sensor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            size,
-            threshold,
-            pitch_mm,
-        } = self;
-        write!(
-            f,
-            "{size} with threshold {threshold} and pitch {pitch_mm} mm"
-        )
+        let (size, threshold, pitch) = (self.size, self.threshold, self.pitch_mm);
+        write!(f, "{size} with threshold {threshold} and pitch {pitch} mm")
     }
 }
 
@@ -163,19 +156,12 @@ impl Sensor {
         reason = "checked: a whole number, 1 to 64"
     )]
     pub fn with(mut self, parameter: Parameter, value: f64) -> Result<Self, ParameterError> {
-        let value = self.check(parameter, value)?;
+        let value = self.check_own("sensor", SENSOR_PARAMETERS, parameter, value)?;
         match parameter {
             Parameter::Columns => self.size.columns = value as u8,
             Parameter::Rows => self.size.rows = value as u8,
             Parameter::Threshold => self.threshold = value,
-            Parameter::Pitch => self.pitch_mm = value,
-            _ => {
-                return Err(ParameterError::Foreign {
-                    parameter,
-                    owner: "sensor",
-                    expected: SENSOR_PARAMETERS,
-                });
-            }
+            _ => self.pitch_mm = value,
         }
         Ok(self)
     }
@@ -248,10 +234,11 @@ impl Sensor {
     /// is out of range.
     pub fn default_value(&self, parameter: Parameter) -> f64 {
         let default = parameter.row().default;
-        if self.range(parameter).contains(default) {
+        let is_allowed = self.range(parameter).contains(default);
+        if is_allowed {
             default
         } else {
-            f64::from(self.side())
+            self.side().into()
         }
     }
 
@@ -270,6 +257,24 @@ impl Sensor {
             });
         }
         Ok(value + 0.0)
+    }
+
+    /// Returns `value` as [`Self::check`] does, if the parameter is one of those that its owner has.
+    pub(crate) fn check_own(
+        &self,
+        owner: &'static str,
+        expected: &'static [Parameter],
+        parameter: Parameter,
+        value: f64,
+    ) -> Result<f64, ParameterError> {
+        if expected.contains(&parameter) {
+            return self.check(parameter, value);
+        }
+        Err(ParameterError::Foreign {
+            parameter,
+            owner,
+            expected,
+        })
     }
 
     /// Parses a value from the text of a flag, a command or a form's field.

@@ -1,4 +1,6 @@
 //! The source of an imprint: a figure or a picture. An imprint drawn by hand has no source.
+//!
+//! All that tells the kinds of shapes apart is asked here; what uses a shape asks it to draw itself ([`Solid`]).
 
 use std::fmt;
 
@@ -7,6 +9,7 @@ use crate::geometry::{Pen, Real, Solid};
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::Sensor;
+use crate::values::Values;
 
 /// A figure or a picture, including its position, angle and zoom.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,12 +41,24 @@ impl Source {
         }
     }
 
+    fn values(&self) -> &Values {
+        match self {
+            Self::Figure(figure) => &figure.values,
+            Self::Picture(picture) => &picture.values,
+        }
+    }
+
+    /// Changes a value without a check.
+    pub(crate) fn put(&mut self, parameter: Parameter, value: f64) {
+        match self {
+            Self::Figure(figure) => figure.values.put(parameter, value),
+            Self::Picture(picture) => picture.values.put(parameter, value),
+        }
+    }
+
     /// Returns the value of a parameter; None for one that the shape does not have or that has no value.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
-        match self {
-            Self::Figure(figure) => figure.get(parameter),
-            Self::Picture(picture) => picture.get(parameter),
-        }
+        self.values().get(parameter)
     }
 
     /// Returns the same shape with one parameter changed to `value`, in the parameter's unit.
@@ -56,20 +71,10 @@ impl Source {
         value: f64,
         sensor: &Sensor,
     ) -> Result<Self, ParameterError> {
-        self.set(parameter, value, sensor)?;
+        let (owner, own) = (self.kind_name(), self.parameters());
+        let value = sensor.check_own(owner, own, parameter, value)?;
+        self.put(parameter, value);
         Ok(self)
-    }
-
-    pub(crate) fn set(
-        &mut self,
-        parameter: Parameter,
-        value: f64,
-        sensor: &Sensor,
-    ) -> Result<(), ParameterError> {
-        match self {
-            Self::Figure(figure) => figure.set(parameter, value, sensor),
-            Self::Picture(picture) => picture.set(parameter, value, sensor),
-        }
     }
 
     /// Returns the kind of figure; None for a picture.
@@ -82,15 +87,38 @@ impl Source {
 
     /// Returns the name of the kind of figure, or "picture".
     pub fn kind_name(&self) -> &'static str {
-        self.kind().map_or("picture", FigureKind::name)
+        self.kind().map_or(self.noun(), FigureKind::name)
     }
 
     /// Returns the sense in which the shape turns as its angle grows, as seen: +1 for clockwise, −1 for
     /// counter-clockwise.
     pub fn sense(&self) -> f64 {
+        if self.kind().is_some() { 1.0 } else { -1.0 }
+    }
+
+    /// The number of rotations within a full turn that map the shape onto itself; None if all do. `equal_zooms` says
+    /// that both zooms are always the same.
+    pub(crate) fn rotations(&self, equal_zooms: bool) -> Option<u32> {
         match self {
-            Self::Figure(_) => 1.0,
-            Self::Picture(_) => -1.0,
+            Self::Figure(figure) => figure.rotations(),
+            Self::Picture(picture) => Some(picture.rotations(equal_zooms)),
+        }
+    }
+
+    /// The sum in degrees of two angles at which the shape shows its mirror image, with right and left exchanged; None
+    /// if there are no such angles. Every upright figure is its own mirror image.
+    pub(crate) fn mirror(&self) -> Option<u32> {
+        match self {
+            Self::Figure(_) => Some(0),
+            Self::Picture(picture) => picture.mirror(),
+        }
+    }
+
+    /// The sides of the bounding rectangle before zoom and rotation; None if they are no decimals.
+    pub(crate) fn box_sides(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Figure(figure) => figure.box_sides(),
+            Self::Picture(picture) => picture.box_sides(),
         }
     }
 }

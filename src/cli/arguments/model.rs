@@ -227,12 +227,11 @@ impl TrainArguments {
     fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let given = Given::of(matches);
         let sensor = given.sensor(Sensor::default())?;
-        let sides = SensorSides::at_least(LEAST_SIDE).with_sides_of(&sensor, |axis| {
-            given.has(match axis {
-                Axis::Y0 => Parameter::Rows,
-                _ => Parameter::Columns,
-            })
-        });
+        let sides = SensorSides {
+            columns: given.has(Parameter::Columns).then(|| sensor.columns()),
+            rows: given.has(Parameter::Rows).then(|| sensor.rows()),
+            ..SensorSides::at_least(LEAST_SIDE)
+        };
         let to = match matches.get_one::<Name>("name") {
             Some(name) => ModelTarget::Named(name.clone()),
             None => ModelTarget::File(matches.get_one("out").cloned().unwrap_or_default()),

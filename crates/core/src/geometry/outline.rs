@@ -274,33 +274,34 @@ pub struct Extent {
 impl Extent {
     /// Returns the extent of a shape; None if the shape has no boundary.
     pub fn of(solid: &impl Solid) -> Option<Self> {
-        Self::drawn(|pen| solid.draw(pen))
+        let mut pen = ExtentPen(None);
+        solid.draw(&mut pen);
+        pen.0
     }
 
-    pub(crate) fn drawn(draw: impl FnOnce(&mut ExtentPen)) -> Option<Self> {
-        let mut pen = ExtentPen(None);
-        draw(&mut pen);
-        pen.0
+    /// Returns the smallest extent that contains both.
+    pub(crate) fn union(self, other: Self) -> Self {
+        Self {
+            left: self.left.min(other.left),
+            top: self.top.min(other.top),
+            right: self.right.max(other.right),
+            bottom: self.bottom.max(other.bottom),
+        }
     }
 }
 
 /// A pen that draws nothing, but notes how far the boundary reaches.
-pub(crate) struct ExtentPen(Option<Extent>);
+struct ExtentPen(Option<Extent>);
 
 impl ExtentPen {
     fn cover(&mut self, low: Point<f64>, high: Point<f64>) {
-        let old = self.0.unwrap_or(Extent {
+        let own = Extent {
             left: low.x,
             top: low.y,
             right: high.x,
             bottom: high.y,
-        });
-        self.0 = Some(Extent {
-            left: old.left.min(low.x),
-            top: old.top.min(low.y),
-            right: old.right.max(high.x),
-            bottom: old.bottom.max(high.y),
-        });
+        };
+        self.0 = Some(self.0.map_or(own, |old| old.union(own)));
     }
 }
 
@@ -311,10 +312,8 @@ impl Pen<f64> for ExtentPen {
     }
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         let (centre, reach) = (ellipse.centre, ellipse.reach());
-        self.cover(
-            Point::new(centre.x - reach.x, centre.y - reach.y),
-            Point::new(centre.x + reach.x, centre.y + reach.y),
-        );
+        let opposite = Point::new(-reach.x, -reach.y);
+        self.cover(centre.moved(opposite), centre.moved(reach));
     }
 }
 
@@ -366,10 +365,10 @@ impl RegularPolygon {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
 
     #[test]
-    fn examples_of_outline() {
-        use crate::geometry::{Extent, Polygon};
+    fn a_polygon_with_a_coordinate_that_is_not_finite_bounds_nothing() {
         assert_eq!(
             Extent::of(&Polygon::new([(1.0, 1.0), (f64::NAN, 4.0), (5.0, 4.0)])),
             None

@@ -152,16 +152,25 @@ pub struct ParameterRow {
 named!(
     Parameter,
     "parameter",
-    &PARAMETERS
-        .iter()
-        .map(|row| row.parameter)
-        .collect::<Vec<_>>()
+    &PARAMETERS.each_ref().map(|row| row.parameter)
 );
 
 impl ParameterRow {
     /// Returns the range on a sensor with this larger side. It is the same wherever a value comes from.
     pub(crate) fn range(&self, side: u8) -> Range {
-        Range::new(self.low, self.high, side)
+        // The number of a bound, and whether that number itself is allowed.
+        let bound = |bound: Bound| match bound {
+            Bound::At(value) => (value, true),
+            Bound::Beyond(value) => (value, false),
+            Bound::Side(factor) => (factor * f64::from(side), true),
+        };
+        let ((low, with_low), (high, with_high)) = (bound(self.low), bound(self.high));
+        Range {
+            low,
+            high,
+            with_low,
+            with_high,
+        }
     }
 }
 
@@ -205,7 +214,7 @@ const COUNT: ParameterRow = ParameterRow {
 };
 
 /// The table of parameters, in the order of forms and of [`Parameter`].
-pub const PARAMETERS: &[ParameterRow] = &[
+pub const PARAMETERS: &[ParameterRow; 15] = &[
     ParameterRow {
         parameter: Parameter::RadiusX,
         key: "radius_x",
@@ -336,16 +345,6 @@ pub const PARAMETERS: &[ParameterRow] = &[
     },
 ];
 
-/// Checks at compile time that each row stands at the index that [`Parameter::row`] takes for its parameter.
-const _: () = {
-    let mut index = 0;
-    while index < PARAMETERS.len() {
-        assert!(PARAMETERS[index].parameter as usize == index);
-        index += 1;
-    }
-    assert!(PARAMETERS.len() == Parameter::Pitch as usize + 1);
-};
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Bound {
     At(f64),
@@ -358,66 +357,60 @@ pub(super) enum Bound {
 /// The numbers that a parameter allows. Written as "above 0, up to 16".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    low: Bound,
-    high: Bound,
-    side: f64,
+    low: f64,
+    high: f64,
+    with_low: bool,
+    with_high: bool,
 }
 
 impl Range {
-    pub(super) fn new(low: Bound, high: Bound, side: u8) -> Self {
-        let side = f64::from(side);
-        Self { low, high, side }
-    }
-
-    /// Returns the number of a bound, and whether that number itself is allowed.
-    fn bound(&self, bound: Bound) -> (f64, bool) {
-        match bound {
-            Bound::At(value) => (value, true),
-            Bound::Beyond(value) => (value, false),
-            Bound::Side(factor) => (factor * self.side, true),
-        }
-    }
-
     /// Returns true if a number is allowed. NaN and the infinities never are.
     pub fn contains(&self, value: f64) -> bool {
-        let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
-        (value > low || with_low && value == low) && (value < high || with_high && value == high)
+        (value > self.low || self.with_low && value == self.low)
+            && (value < self.high || self.with_high && value == self.high)
     }
 
     /// Returns the message that names the bound that excludes a number: "is below -16", "is not above 0". The number
     /// must not be in the range.
     pub(super) fn missed_by(&self, value: f64) -> String {
-        let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
+        let Self { low, high, .. } = self;
         if value.is_nan() {
             "is not a number".to_owned()
-        } else if with_low && value < low {
+        } else if self.with_low && value < *low {
             format!("is below {low}")
-        } else if !with_low && value <= low {
+        } else if !self.with_low && value <= *low {
             format!("is not above {low}")
-        } else if with_high {
+        } else if self.with_high {
             format!("is above {high}")
         } else {
             format!("is not below {high}")
         }
     }
 
+    /// The number nearest to `value`, at least a step from a bound that is not allowed itself.
     pub(crate) fn nearest(&self, value: f64, step: f64) -> f64 {
-        let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
-        let low = if with_low { low } else { low + step };
-        let high = if with_high { high } else { high - step };
+        let low = if self.with_low {
+            self.low
+        } else {
+            self.low + step
+        };
+        let high = if self.with_high {
+            self.high
+        } else {
+            self.high - step
+        };
         value.min(high).max(low)
     }
 }
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
-        let above = if with_low { "" } else { "above " };
-        let to = match (with_low, with_high) {
-            (true, true) => " to ",
-            (true, false) => " to below ",
-            (false, true) => ", up to ",
-            (false, false) => ", below ",
+        let Self { low, high, .. } = self;
+        let (above, to) = match (self.with_low, self.with_high) {
+            (true, true) => ("", " to "),
+            (true, false) => ("", " to below "),
+            (false, true) => ("above ", ", up to "),
+            (false, false) => ("above ", ", below "),
         };
         write!(f, "{above}{low}{to}{high}")
     }
@@ -428,8 +421,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_parameter_is_found_by_its_own_flag() {
-        for row in PARAMETERS {
+    fn every_parameter_is_found_by_its_own_flag_and_stands_at_its_own_row() {
+        for (index, row) in PARAMETERS.iter().enumerate() {
+            assert_eq!(row.parameter as usize, index, "{}", row.key);
             let flag = row.parameter.flag();
             assert_eq!(Parameter::from_flag(&flag), Some(row.parameter), "{flag}");
         }
@@ -437,8 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_table() {
-        use crate::parameter::{Parameter, Unit};
+    fn a_value_is_written_with_the_decimals_of_forms_or_all_of_its_own() {
         assert_eq!(Parameter::from_flag("radius-x"), Some(Parameter::RadiusX));
         assert_eq!(Parameter::from_flag("radius_x"), None);
         assert_eq!(Parameter::X0.format(1.5), "1.50");

@@ -27,9 +27,9 @@ impl Axis {
 
     /// Iterates over the axes that a shape has: all of them for a picture, all except the zooms for a figure.
     pub fn of(source: &Source) -> impl Iterator<Item = Self> + use<> {
-        let figure = source.kind().is_some();
+        let own = source.parameters();
         let all = Self::ALL.into_iter();
-        all.filter(move |axis| !(figure && axis.is_zoom()))
+        all.filter(move |axis| own.contains(&axis.parameter()))
     }
 
     /// Returns the parameter that this axis sets. It has the unit and the range of the axis.
@@ -159,7 +159,8 @@ named!(Anchor, "anchor", &Anchor::ALL);
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples_of_axis() -> Result<(), Box<dyn std::error::Error>> {
+    fn values_are_found_by_their_axis_and_axes_by_their_name()
+    -> Result<(), Box<dyn std::error::Error>> {
         use crate::pose::{Anchor, Axis, PoseIndex, Ranges};
         use std::collections::HashMap;
         let ranges = Ranges::default().with(Axis::X0, "5:6:0.5".parse()?);

@@ -11,7 +11,7 @@
 use crate::geometry::Extent;
 use crate::parameter::Parameter;
 use crate::pose::axis::{Anchor, Axis, PerAxis, Ranges};
-use crate::pose::grid::{GridError, PoseGrid, centre, union};
+use crate::pose::grid::{GridError, PoseGrid, centre};
 use crate::pose::range::DecimalRange;
 use crate::sensor::{MAX_SIDE, Sensor};
 use crate::source::Source;
@@ -21,10 +21,7 @@ use crate::touch::DOUBTFUL;
 /// ([`default_ranges`]), for the others that of [`Ranges::default`].
 pub type GivenRanges = PerAxis<Option<DecimalRange>>;
 
-/// The side of a cell in hundredths. A step from one position to the next divides it.
-const CELL: u32 = 100;
-
-/// The step of a default range, in hundredths.
+/// The step of a default range, in hundredths of a cell.
 const FINE: u32 = 1;
 
 /// Returns the ranges of a sweep of `source`, with defaults for those that are not given: for x0 and y0, the cell in
@@ -42,31 +39,21 @@ pub fn default_ranges(
     given: &GivenRanges,
 ) -> Result<Ranges, GridError> {
     check_given(given, sensor)?;
-    let given = &GivenRanges::from_fn(|axis| given[axis].or_else(|| own_zoom(source, axis)));
+    let own_zoom = |axis: Axis| {
+        let zoom = source.get(axis.parameter()).filter(|_| axis.is_zoom());
+        DecimalRange::rounded(zoom?, 12)
+    };
+    let given = &GivenRanges::from_fn(|axis| given[axis].or_else(|| own_zoom(axis)));
     let reach = Reach::of(source, anchor, given)?;
-    let (x, y) = own_position(source, anchor);
-    let axes = [
-        (Axis::X0, x, sensor.columns()),
-        (Axis::Y0, y, sensor.rows()),
-    ];
-    let mut asked = axes.into_iter().filter(|(axis, ..)| given[*axis].is_none());
-    let own = asked.all(|(axis, at, side)| {
-        let free = reach.free(axis, side, FINE);
-        let start = hundredths((at + DOUBTFUL).floor() * 100.0);
-        free.contains(&start) && start >= -limit(sensor) && start + beyond(FINE) <= limit(sensor)
-    });
-    let mut ranges = filled(given);
-    for (axis, at, side) in axes {
-        if given[axis].is_none() {
-            let start = if own {
-                hundredths((at + DOUBTFUL).floor() * 100.0)
-            } else {
-                reach.middle(axis, side, FINE)
-            };
-            ranges[axis] = cell_from(start, sensor, FINE);
+    let own = match anchor {
+        Anchor::Corner => [Parameter::X0, Parameter::Y0].map(|own| source.get(own).unwrap_or(0.0)),
+        Anchor::Centre => {
+            let centre = centre::<f64>(source);
+            [centre.x, centre.y]
         }
-    }
-    Ok(ranges)
+    };
+    let cell = own.map(|at| hundredths((at + DOUBTFUL).floor() * 100.0));
+    Ok(reach.ranges(sensor, given, FINE, Some(cell)))
 }
 
 /// Returns the ranges in which a figure without a position is swept. If x0 or y0 is not given, it gets the paper's cell
@@ -80,11 +67,16 @@ pub fn figure_ranges(
     anchor: Anchor,
     given: &GivenRanges,
 ) -> Result<Ranges, GridError> {
-    let ranges = filled(given);
-    match PoseGrid::new(figure.clone(), *sensor, anchor, ranges) {
-        Ok(grid) if grid.poses_beyond_sensor() == 0 => Ok(ranges),
-        _ => common_ranges([figure], sensor, anchor, given),
-    }
+    check_given(given, sensor)?;
+    let reach = Reach::of(figure, anchor, given)?;
+    let is_clear = |axis: Axis, side| {
+        let cut = given[axis].map(|positions| reach.cut(axis, side, positions));
+        cut.is_none_or(|cut| cut == [false; 2])
+    };
+    let is_clear = sides_of(sensor)
+        .iter()
+        .all(|&(axis, side)| is_clear(axis, side));
+    Ok(reach.ranges(sensor, given, FINE, is_clear.then_some([500; 2])))
 }
 
 /// Returns the ranges in which several shapes are swept on the same sensor. If x0 or y0 is not given, it gets the cell
@@ -102,13 +94,12 @@ pub fn common_ranges<'a>(
     given: &GivenRanges,
 ) -> Result<Ranges, GridError> {
     check_given(given, sensor)?;
-    Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given, FINE))
+    Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given, FINE, None))
 }
 
-/// Returns the smallest square sensor of at least `least` × `least` taxels (`least` is moved into 1 to 64) on which no
-/// shape is cut off in any pose, and the ranges of these poses: if x0 or y0 is not given, one cell around the middle
-/// that is the same for all shapes. The sensor has the default threshold and pitch. None if even 64 × 64 taxels are too
-/// few.
+/// Returns the smallest square sensor of at least `least` × `least` taxels, at most 64 × 64, on which no shape is cut
+/// off in any pose, and the ranges of these poses: if x0 or y0 is not given, one cell around the middle that is the same
+/// for all shapes. The sensor has the default threshold and pitch. None if even 64 × 64 taxels are too few.
 ///
 /// Recognition sets `least` to 16, so that a set of small shapes is swept on the same sensor as other sets.
 ///
@@ -127,13 +118,15 @@ pub fn smallest_sensor<'a>(
     Ok(reach.smallest_sensor(&sources, given, sides, FINE))
 }
 
-/// The sides of the sensors to choose from: the given sides, and the smallest length of the others. If no side is
-/// given, the sensors are square.
+/// The sides of the sensors to choose from. If no side is given, the sensors are square.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorSides {
-    columns: Option<u8>,
-    rows: Option<u8>,
-    least: u8,
+    /// The number of columns, if it is given.
+    pub columns: Option<u8>,
+    /// The number of rows, if it is given.
+    pub rows: Option<u8>,
+    /// The smallest length of a side that is not given.
+    pub least: u8,
 }
 
 impl SensorSides {
@@ -142,17 +135,7 @@ impl SensorSides {
         Self {
             columns: None,
             rows: None,
-            least: least.clamp(1, MAX_SIDE),
-        }
-    }
-
-    /// Sets the sides along the given axes to those of `sensor`.
-    #[must_use]
-    pub fn with_sides_of(self, sensor: &Sensor, is_given: impl Fn(Axis) -> bool) -> Self {
-        Self {
-            columns: is_given(Axis::X0).then(|| sensor.columns()),
-            rows: is_given(Axis::Y0).then(|| sensor.rows()),
-            ..self
+            least,
         }
     }
 
@@ -168,34 +151,11 @@ impl SensorSides {
             Sensor::new(self.columns.unwrap_or(side), self.rows.unwrap_or(side)).ok()
         })
     }
-
-    fn given(self, axis: Axis) -> Option<u8> {
-        match axis {
-            Axis::Y0 => self.rows,
-            _ => self.columns,
-        }
-    }
 }
 
 /// Returns the axes of positions, and the sides of a sensor along them.
-fn plane_axes(sensor: &Sensor) -> [(Axis, u8); 2] {
+fn sides_of(sensor: &Sensor) -> [(Axis, u8); 2] {
     [(Axis::X0, sensor.columns()), (Axis::Y0, sensor.rows())]
-}
-
-/// Returns true if a sensor allows the given positions and the sizes of the shapes; they may be too large for a small
-/// one.
-fn allows(sensor: &Sensor, given: &GivenRanges, sources: &[&Source]) -> bool {
-    check_given(given, sensor).is_ok() && sources.iter().all(|source| is_allowed(source, sensor))
-}
-
-/// Returns true if the sizes of a shape are in range on a sensor. They may be too large even if the shape fits on it.
-fn is_allowed(source: &Source, sensor: &Sensor) -> bool {
-    let own = source.parameters();
-    own.iter().all(|parameter| {
-        let placed = Axis::ALL.iter().any(|axis| axis.parameter() == *parameter);
-        let value = source.get(*parameter).filter(|_| !placed);
-        value.is_none_or(|value| sensor.check(*parameter, value).is_ok())
-    })
 }
 
 /// Checks the given ranges.
@@ -212,6 +172,20 @@ pub fn check_given(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError
     Ok(())
 }
 
+/// Returns true if a sensor allows the given positions and the sizes of the shapes; they may be too large for a small
+/// one even if the shapes fit on it.
+fn allows(sensor: &Sensor, given: &GivenRanges, sources: &[&Source]) -> bool {
+    let is_allowed = |source: &Source| {
+        let own = source.parameters().iter();
+        let mut sizes = own.filter(|own| Axis::ALL.iter().all(|axis| axis.parameter() != **own));
+        sizes.all(|&size| {
+            let value = source.get(size);
+            value.is_none_or(|value| sensor.check(size, value).is_ok())
+        })
+    };
+    check_given(given, sensor).is_ok() && sources.iter().all(|source| is_allowed(source))
+}
+
 /// The reach of shapes from their anchor, for each pair of zooms, since positions of a picture are zoomed with it.
 ///
 /// In the methods, `step` is the distance from one position in a cell to the next, in hundredths; it divides 100.
@@ -225,24 +199,20 @@ impl Reach {
         anchor: Anchor,
         given: &GivenRanges,
     ) -> Result<Self, GridError> {
-        let mut ranges = filled(given);
         // The position does not matter, but a given one must be in range.
-        for axis in [Axis::X0, Axis::Y0] {
-            if given[axis].is_none() {
-                ranges[axis] = DecimalRange::whole(0);
-            }
-        }
+        let still = given[Axis::X0].or(Some(DecimalRange::whole(0)));
+        let given = given.with(Axis::X0, still);
+        let still = given[Axis::Y0].or(Some(DecimalRange::whole(0)));
+        let ranges = filled(&given.with(Axis::Y0, still));
         let grid = PoseGrid::new(source.clone(), Sensor::LARGEST, anchor, ranges)?;
         let mut reaches: Vec<(Extent, [f64; 2])> = Vec::new();
-        for (orientation, extent) in (0..).zip(grid.extents()) {
-            let Some(extent) = extent else { continue };
-            let pose = grid.first_pose(orientation);
-            let zooms = match (anchor, source) {
-                (Anchor::Corner, Source::Picture(_)) => [pose[Axis::ZoomX], pose[Axis::ZoomY]],
-                _ => [1.0; 2],
+        for orientation in 0..grid.orientations() {
+            let Some(extent) = grid.extent(orientation) else {
+                continue;
             };
+            let zooms = grid.zooms_of_anchor(orientation);
             match reaches.last_mut() {
-                Some((known, same)) if *same == zooms => *known = union(*known, extent),
+                Some((known, same)) if *same == zooms => *known = known.union(extent),
                 _ => reaches.push((extent, zooms)),
             }
         }
@@ -278,15 +248,10 @@ impl Reach {
         sides: SensorSides,
         step: u32,
     ) -> Option<(Sensor, Ranges)> {
-        let best = self.best_sensor(sources, given, sides, step);
-        let is_held = |(sensor, ranges): &(Sensor, Ranges)| {
-            let mut axes = plane_axes(sensor).into_iter();
-            let holds = axes.all(|(axis, side)| {
-                self.clears_start(axis, ranges[axis]) && self.clears_end(axis, side, ranges[axis])
-            });
-            holds && allows(sensor, given, sources)
-        };
-        Some(best).filter(is_held)
+        let (sensor, ranges) = self.best_sensor(sources, given, sides, step);
+        let is_cut = |&(axis, side): &(Axis, u8)| self.cut(axis, side, ranges[axis]) != [false; 2];
+        let is_held = !sides_of(&sensor).iter().any(is_cut) && allows(&sensor, given, sources);
+        is_held.then_some((sensor, ranges))
     }
 
     /// Returns the smallest sensor with these sides that cuts off no more than any larger one would, and the ranges on
@@ -298,67 +263,77 @@ impl Reach {
         sides: SensorSides,
         step: u32,
     ) -> (Sensor, Ranges) {
-        let at = |sensor: Sensor| (sensor, self.ranges(&sensor, given, step));
+        let at = |sensor: Sensor| (sensor, self.ranges(&sensor, given, step, None));
         let is_enough = |(sensor, ranges): &(Sensor, Ranges)| {
-            let mut axes = plane_axes(sensor).into_iter();
-            let gains_nothing = axes.all(|(axis, side)| {
+            let gains = |(axis, side)| {
                 // Parts cut off at the left or the top are so on every sensor, unless the position is chosen together
                 // with the sensor.
-                sides.given(axis).is_some()
-                    || self.clears_end(axis, side, ranges[axis])
-                        && (given[axis].is_some() || self.clears_start(axis, ranges[axis]))
-            });
-            gains_nothing && allows(sensor, given, sources)
+                let [start, end] = self.cut(axis, side, ranges[axis]);
+                end || start && given[axis].is_none()
+            };
+            let [along_x, along_y] = sides_of(sensor);
+            !(sides.columns.is_none() && gains(along_x))
+                && !(sides.rows.is_none() && gains(along_y))
+                && allows(sensor, given, sources)
         };
         let mut enough = sides.sensors().map(at).filter(is_enough);
         enough.next().unwrap_or_else(|| at(sides.largest()))
     }
 
-    /// Returns the given ranges, which the sensor must allow, with one cell around the middle for a position that is
-    /// not given.
-    pub(crate) fn ranges(&self, sensor: &Sensor, given: &GivenRanges, step: u32) -> Ranges {
+    /// Returns the given ranges, which the sensor must allow, with one cell for a position that is not given: the one
+    /// that starts at `own`, in hundredths, if there is one and nothing is cut off in it; otherwise the one around the
+    /// middle.
+    fn ranges(
+        &self,
+        sensor: &Sensor,
+        given: &GivenRanges,
+        step: u32,
+        own: Option<[i64; 2]>,
+    ) -> Ranges {
+        let sides = sides_of(sensor).into_iter().zip([0, 1]);
+        let asked: Vec<_> = sides
+            .filter(|((axis, _), _)| given[*axis].is_none())
+            .collect();
+        // The first and the last start of a cell that the sensor allows, in hundredths.
+        let end = i64::from(sensor.side()) * 100;
+        let (low, high) = (-end, end - i64::from(100 - step));
+        let is_free = |own: &[i64; 2]| {
+            asked.iter().all(|&((axis, side), index)| {
+                let free = self.free(axis, side, step);
+                free.contains(&own[index]) && (low..=high).contains(&own[index])
+            })
+        };
+        let own = own.filter(is_free);
         let mut ranges = filled(given);
-        for (axis, side) in plane_axes(sensor) {
-            if given[axis].is_none() {
-                ranges[axis] = cell_from(self.middle(axis, side, step), sensor, step);
-            }
+        for &((axis, side), index) in &asked {
+            let start = own.map_or_else(|| self.middle(axis, side, step), |own| own[index]);
+            let start = start.clamp(low, high);
+            ranges[axis] = DecimalRange::from_units(start, step.into(), 2, (100 / step).into());
         }
         ranges
-    }
-
-    /// Iterates over the reach along an axis: its start, its end, and the zoom of the position.
-    fn along(&self, axis: Axis) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
-        self.0
-            .iter()
-            .map(move |(extent, [zoom_x, zoom_y])| match axis {
-                Axis::Y0 => (extent.top, extent.bottom, *zoom_y),
-                _ => (extent.left, extent.right, *zoom_x),
-            })
-    }
-
-    /// Returns true if nothing is cut off at the left (or at the top) with the anchor at any of these positions.
-    fn clears_start(&self, axis: Axis, positions: DecimalRange) -> bool {
-        let mut all = self.along(axis);
-        all.all(|(low, _, zoom)| low + zoom * positions.value(0) >= -DOUBTFUL)
-    }
-
-    /// Returns true if nothing is cut off at the right (or at the bottom) of a sensor with this side, with the anchor
-    /// at any of these positions.
-    fn clears_end(&self, axis: Axis, side: u8, positions: DecimalRange) -> bool {
-        let end = f64::from(side) + DOUBTFUL;
-        let mut all = self.along(axis);
-        all.all(|(_, high, zoom)| high + zoom * positions.last() <= end)
     }
 
     /// Returns the first and the last position at which nothing is cut off. The last is below the first if something is
     /// cut off at every position. Without a shape, only the sensor limits the positions.
     fn limits(&self, axis: Axis, side: u8) -> (f64, f64) {
         let end = f64::from(side);
-        let all = self.along(axis);
-        let limits = all.map(|(low, high, zoom)| (-low / zoom, (end - high) / zoom));
+        let limits = self.0.iter().map(|(extent, [zoom_x, zoom_y])| match axis {
+            Axis::Y0 => (-extent.top / zoom_y, (end - extent.bottom) / zoom_y),
+            _ => (-extent.left / zoom_x, (end - extent.right) / zoom_x),
+        });
         limits
             .reduce(|one, other| (one.0.max(other.0), one.1.min(other.1)))
             .unwrap_or((0.0, end))
+    }
+
+    /// Returns whether something is cut off at the left (or at the top), and at the right (or at the bottom), with the
+    /// anchor at some of these positions.
+    fn cut(&self, axis: Axis, side: u8, positions: DecimalRange) -> [bool; 2] {
+        let (low, high) = self.limits(axis, side);
+        [
+            positions.value(0) < low - DOUBTFUL,
+            positions.last() > high + DOUBTFUL,
+        ]
     }
 
     /// Returns the positions, in hundredths, from which one cell of positions lies within the limits.
@@ -367,7 +342,7 @@ impl Reach {
         // A limit that differs from a hundredth only by rounding counts as that hundredth.
         let from = (low * 100.0 - 1e-9) / f64::from(step);
         let to = (high * 100.0 + 1e-9) / f64::from(step);
-        multiple(from.ceil(), step)..=multiple(to.floor(), step) - beyond(step)
+        multiple(from.ceil(), step)..=multiple(to.floor(), step) - i64::from(100 - step)
     }
 
     /// Returns the position, in hundredths, at which the cell around the middle starts.
@@ -375,7 +350,7 @@ impl Reach {
         let (low, high) = self.limits(axis, side);
         let free = self.free(axis, side, step);
         // If two positions are equally near, the lower one is taken.
-        let middle = ((low + high) * 50.0 - f64::from(CELL) / 2.0 - 1e-9) / f64::from(step);
+        let middle = ((low + high) * 50.0 - 50.0 - 1e-9) / f64::from(step);
         let middle = multiple(middle.ceil(), step);
         if free.is_empty() {
             return middle;
@@ -385,34 +360,9 @@ impl Reach {
         let whole = [down, down + 100]
             .into_iter()
             .filter(|start| free.contains(start));
-        whole
-            .min_by_key(|start| (start - middle).abs())
-            .unwrap_or(near)
+        let nearest = whole.min_by_key(|start| (start - middle).abs());
+        nearest.unwrap_or(near)
     }
-}
-
-/// Returns the position of the anchor of a shape in its own pose.
-fn own_position(source: &Source, anchor: Anchor) -> (f64, f64) {
-    match anchor {
-        Anchor::Corner => {
-            let own = |parameter| source.get(parameter).unwrap_or(0.0);
-            (own(Parameter::X0), own(Parameter::Y0))
-        }
-        Anchor::Centre => {
-            let upright = source.clone().with(Parameter::Angle, 0.0, &Sensor::LARGEST);
-            let centre = centre::<f64>(upright.as_ref().unwrap_or(source));
-            (centre.x, centre.y)
-        }
-    }
-}
-
-/// Returns the zoom of a shape along the axis of that zoom, as a range; None for other axes and other shapes.
-fn own_zoom(source: &Source, axis: Axis) -> Option<DecimalRange> {
-    let zoom = match axis {
-        Axis::ZoomX | Axis::ZoomY => source.get(axis.parameter()),
-        Axis::X0 | Axis::Y0 | Axis::Angle => None,
-    };
-    DecimalRange::rounded(zoom?, 12)
 }
 
 fn filled(given: &GivenRanges) -> Ranges {
@@ -422,23 +372,6 @@ fn filled(given: &GivenRanges) -> Ranges {
 
 fn multiple(count: f64, step: u32) -> i64 {
     hundredths(count).saturating_mul(step.into())
-}
-
-/// Returns how far the last position of a cell lies beyond its first one, in hundredths.
-fn beyond(step: u32) -> i64 {
-    i64::from(CELL - step)
-}
-
-/// Returns one cell of positions from `start` on, in hundredths, moved so that the sensor allows all of them.
-fn cell_from(start: i64, sensor: &Sensor, step: u32) -> DecimalRange {
-    let limit = limit(sensor);
-    let start = start.clamp(-limit, limit - beyond(step));
-    DecimalRange::from_units(start, step.into(), 2, u64::from(CELL / step))
-}
-
-/// Returns the largest position that a sensor allows, in hundredths of a cell.
-fn limit(sensor: &Sensor) -> i64 {
-    i64::from(sensor.side()) * 100
 }
 
 #[expect(
@@ -452,7 +385,8 @@ fn hundredths(value: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples_of_default_ranges() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_shape_stays_in_its_cell_unless_it_is_cut_off_there()
+    -> Result<(), Box<dyn std::error::Error>> {
         use crate::pose::{GivenRanges, default_ranges, figure_ranges, smallest_sensor};
         use crate::prelude::*;
         let sensor = Sensor::default();

@@ -56,16 +56,16 @@ impl PoseGrid {
     ) -> Result<Self, GridError> {
         let (mut source, mut poses) = (source, 1_u128);
         for (axis, &range) in ranges.iter() {
-            if axis.is_zoom() && source.kind().is_some() {
+            let parameter = axis.parameter();
+            if !source.parameters().contains(&parameter) {
                 if range != DecimalRange::whole(1) {
-                    return Err(GridError::Zoom {
-                        noun: source.noun(),
-                    });
+                    let noun = source.noun();
+                    return Err(GridError::Zoom { noun });
                 }
                 continue;
             }
-            sensor.check(axis.parameter(), range.last())?;
-            source = source.with(axis.parameter(), range.value(0), &sensor)?;
+            sensor.check(parameter, range.last())?;
+            source = source.with(parameter, range.value(0), &sensor)?;
             poses *= u128::from(range.count());
         }
         if poses > u128::from(MAX_POSES) {
@@ -180,15 +180,14 @@ impl PoseGrid {
     /// of any size; any other value beyond the range of its parameter is ignored.
     pub fn placed_in(&self, pose: Pose) -> Placed {
         match self.anchor {
-            Anchor::Corner => Placed::at_corner(self.source_in(pose)),
-            Anchor::Centre => {
-                let at_origin = pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0);
-                Placed::at_centre(
-                    self.source_in(at_origin),
-                    self.source_in(at_origin.with(Axis::Angle, 0.0)),
-                    (pose[Axis::X0], pose[Axis::Y0]),
-                )
-            }
+            Anchor::Corner => Placed {
+                source: self.source_in(pose),
+                centre: None,
+            },
+            Anchor::Centre => Placed {
+                source: self.source_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)),
+                centre: Some([pose[Axis::X0], pose[Axis::Y0]]),
+            },
         }
     }
 
@@ -198,7 +197,9 @@ impl PoseGrid {
         let mut source = self.source.clone();
         let pose = pose.with(Axis::Angle, within_a_turn(pose[Axis::Angle]));
         for axis in self.axes() {
-            let _ = source.set(axis.parameter(), pose[axis], &self.sensor);
+            if let Ok(value) = self.sensor.check(axis.parameter(), pose[axis]) {
+                source.put(axis.parameter(), value);
+            }
         }
         source
     }
@@ -213,7 +214,7 @@ impl PoseGrid {
         if self.anchor == Anchor::Centre {
             return [pose[Axis::X0], pose[Axis::Y0]];
         }
-        let centre = centre::<f64>(&self.source_in(pose.with(Axis::Angle, 0.0)));
+        let centre = centre::<f64>(&self.source_in(pose));
         [centre.x, centre.y]
     }
 
@@ -226,54 +227,53 @@ impl PoseGrid {
     /// # Errors
     /// Returns an error if the corner lies outside of the range of x0 or y0, or a value of the pose is out of range.
     pub fn source_at(&self, pose: Pose) -> Result<Source, ParameterError> {
-        let with = |source: Source, axes: &[Axis], pose: Pose| {
-            let mut own = self.axes().filter(|axis| axes.contains(axis));
-            own.try_fold(source, |source, axis| {
-                source.with(axis.parameter(), pose[axis], &self.sensor)
-            })
-        };
-        let zoomed = with(self.source.clone(), &[Axis::ZoomX, Axis::ZoomY], pose)?;
-        let placement = [Axis::X0, Axis::Y0, Axis::Angle];
-        let corner = match self.anchor {
-            Anchor::Corner => pose,
-            Anchor::Centre => {
-                let upright = with(zoomed.clone(), &placement, Pose::new([0.0; 5]))?;
-                let centre = centre::<f64>(&upright);
+        let mut corner = pose;
+        if self.anchor == Anchor::Centre {
+            let at_origin = self.source_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0));
+            let centre = centre::<f64>(&at_origin);
+            for (axis, zoom, from) in [
+                (Axis::X0, Parameter::ZoomX, centre.x),
+                (Axis::Y0, Parameter::ZoomY, centre.y),
+            ] {
                 // Figures have no zoom.
-                let zoom = |parameter| zoomed.get(parameter).unwrap_or(1.0);
-                let x0 = (pose[Axis::X0] - centre.x) / zoom(Parameter::ZoomX);
-                let y0 = (pose[Axis::Y0] - centre.y) / zoom(Parameter::ZoomY);
-                pose.with(Axis::X0, to_decimals(x0, 9))
-                    .with(Axis::Y0, to_decimals(y0, 9))
+                let zoom = at_origin.get(zoom).unwrap_or(1.0);
+                corner[axis] = to_decimals((pose[axis] - from) / zoom, 9);
             }
-        };
-        with(zoomed, &placement, corner)
+        }
+        self.axes().try_fold(self.source.clone(), |source, axis| {
+            source.with(axis.parameter(), corner[axis], &self.sensor)
+        })
     }
 
     /// Returns true if this grid is one of the same shape, in any pose, on the same sensor. The pitch does not matter.
     pub fn is_of(&self, source: &Source, sensor: &Sensor) -> bool {
         let own = &self.sensor;
-        let same_sensor = (own.columns(), own.rows(), own.threshold())
-            == (sensor.columns(), sensor.rows(), sensor.threshold());
         // In the same pose, only the shapes can differ.
-        let posed = |source: &Source| {
-            Axis::of(source).try_fold(source.clone(), |source, axis| {
-                let parameter = axis.parameter();
-                source.with(parameter, own.default_value(parameter), own)
-            })
-        };
-        same_sensor
-            && matches!((posed(&self.source), posed(source)), (Ok(one), Ok(other)) if one == other)
+        let mut posed = source.clone();
+        for axis in self.axes() {
+            posed.put(axis.parameter(), self.ranges[axis].value(0));
+        }
+        (own.size(), own.threshold()) == (sensor.size(), sensor.threshold()) && posed == self.source
     }
 
     pub(super) fn first_pose(&self, orientation: u64) -> Pose {
         self.pose(orientation * self.rows_per_orientation() * self.row_length())
     }
 
+    /// Returns the shape in an orientation, with its anchor at the origin.
+    fn at_origin(&self, orientation: u64) -> Placed {
+        let pose = self.first_pose(orientation);
+        self.placed_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
+    }
+
     /// Returns the boundary of the shape in an orientation, with its anchor at the origin.
     pub(crate) fn boundary<T: Real>(&self, orientation: u64) -> Boundary<T> {
-        let pose = self.first_pose(orientation);
-        Boundary::of(&self.placed_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)))
+        Boundary::of(&self.at_origin(orientation))
+    }
+
+    /// Returns the smallest upright rectangle around the shape in an orientation, with its anchor at the origin.
+    pub(crate) fn extent(&self, orientation: u64) -> Option<Extent> {
+        Extent::of(&self.at_origin(orientation))
     }
 
     /// Returns the point about which the shape turns, in an orientation, with the anchor at the origin.
@@ -282,21 +282,25 @@ impl PoseGrid {
         self.centre_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
     }
 
+    /// Returns the factors by which the position of the anchor is multiplied: the corner of a picture is zoomed with it.
+    pub(super) fn zooms_of_anchor(&self, orientation: u64) -> [f64; 2] {
+        match self.anchor {
+            Anchor::Centre => [1.0; 2],
+            Anchor::Corner => {
+                let pose = self.first_pose(orientation);
+                [pose[Axis::ZoomX], pose[Axis::ZoomY]]
+            }
+        }
+    }
+
     /// Returns the position of the anchor in the plane, for the values of x0 and y0 with indices `x` and `y`.
     pub(crate) fn offset<T: Real>(&self, orientation: u64, x: u64, y: u64) -> Point<T> {
-        let anchor = Point::new(
-            T::decimal(self.ranges[Axis::X0].value(x)),
-            T::decimal(self.ranges[Axis::Y0].value(y)),
-        );
-        if self.anchor == Anchor::Centre || self.source.kind().is_some() {
-            return anchor;
+        let at = |axis, index| T::decimal(self.ranges[axis].value(index));
+        let (x, y) = (at(Axis::X0, x), at(Axis::Y0, y));
+        match self.zooms_of_anchor(orientation) {
+            [1.0, 1.0] => Point::new(x, y),
+            [zoom_x, zoom_y] => Point::new(x * T::decimal(zoom_x), y * T::decimal(zoom_y)),
         }
-        // The corner of a picture is zoomed with it.
-        let pose = self.first_pose(orientation);
-        Point::new(
-            anchor.x * T::decimal(pose[Axis::ZoomX]),
-            anchor.y * T::decimal(pose[Axis::ZoomY]),
-        )
     }
 }
 
@@ -338,46 +342,32 @@ pub enum GridError {
 /// A shape in a pose of a grid, ready for a touch ([`Plane::touch`](crate::touch::Plane::touch)).
 #[derive(Clone, Debug)]
 pub struct Placed {
-    rotated: Source,
-    /// The shape before rotation, and the position of its centre, if the anchor is the centre. Both shapes then have
-    /// their corner at the origin.
-    centred: Option<(Source, f64, f64)>,
-}
-
-impl Placed {
-    pub(crate) fn at_corner(rotated: Source) -> Self {
-        Self {
-            rotated,
-            centred: None,
-        }
-    }
-
-    /// Creates a placed shape with its centre at `centre`. Both given shapes have their corner at the origin.
-    pub(crate) fn at_centre(rotated: Source, upright: Source, centre: (f64, f64)) -> Self {
-        Self {
-            rotated,
-            centred: Some((upright, centre.0, centre.1)),
-        }
-    }
+    source: Source,
+    /// The position of its centre, if the anchor is the centre. The shape then has its corner at the origin.
+    centre: Option<[f64; 2]>,
 }
 
 impl Solid for Placed {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
-        let Some((upright, x, y)) = &self.centred else {
-            return self.rotated.draw(pen);
+        let Some([x, y]) = self.centre else {
+            return self.source.draw(pen);
         };
-        let centre = centre::<T>(upright);
-        let by = Point::new(T::decimal(*x) - centre.x, T::decimal(*y) - centre.y);
-        self.rotated.draw(&mut Moving { by, pen });
+        let centre = centre::<T>(&self.source);
+        let by = Point::new(T::decimal(x) - centre.x, T::decimal(y) - centre.y);
+        self.source.draw(&mut Moving { by, pen });
     }
 }
 
-/// Returns the centre of rotation of a shape that is not rotated, in cells.
-pub(crate) fn centre<T: Real>(upright: &Source) -> Point<T> {
-    let boundary = Boundary::of(upright);
-    match upright {
-        Source::Figure(_) => boundary.mean(),
-        Source::Picture(_) => boundary.middle(),
+/// Returns the centre of rotation of a shape, in cells: the middle of a figure, or that of the bounding rectangle of
+/// another shape.
+pub(crate) fn centre<T: Real>(source: &Source) -> Point<T> {
+    let mut upright = source.clone();
+    upright.put(Parameter::Angle, 0.0);
+    let boundary = Boundary::of(&upright);
+    if source.kind().is_some() {
+        boundary.mean()
+    } else {
+        boundary.middle()
     }
 }
 
@@ -443,12 +433,6 @@ impl<T: Real> Boundary<T> {
     }
 }
 
-impl Boundary<f64> {
-    pub(crate) fn extent(&self) -> Option<Extent> {
-        Extent::drawn(|pen| self.draw(Point::new(0.0, 0.0), pen))
-    }
-}
-
 impl<T: Real> Pen<T> for Boundary<T> {
     fn edge(&mut self, from: Point<T>, to: Point<T>) {
         self.edges.push((from, to));
@@ -473,7 +457,8 @@ impl PoseGrid {
     ///
     /// Takes time in proportion to the number of orientations.
     pub fn reach(&self) -> Option<Extent> {
-        self.extents().flatten().reduce(union)
+        let extents = (0..self.orientations()).filter_map(|orientation| self.extent(orientation));
+        extents.reduce(Extent::union)
     }
 
     /// Returns the number of poses in which the shape reaches beyond the sensor and is cut off. A sweep of the grid
@@ -481,53 +466,34 @@ impl PoseGrid {
     ///
     /// Takes time in proportion to the number of orientations.
     pub fn poses_beyond_sensor(&self) -> u64 {
-        let extents = (0..).zip(self.extents());
-        let inside = extents.map(|(orientation, extent)| match extent {
-            Some(extent) => {
-                let columns = self.columns_inside(orientation, &extent);
-                let rows = self.rows_inside(orientation, &extent);
-                (columns.end - columns.start) * (rows.end - rows.start)
-            }
-            None => self.row_length() * self.rows_per_orientation(),
+        let inside = (0..self.orientations()).map(|orientation| {
+            let [columns, rows] = self.positions_inside(orientation, DOUBTFUL);
+            (columns.end - columns.start) * (rows.end - rows.start)
         });
         self.poses() - inside.sum::<u64>()
     }
 
-    pub(super) fn extents(&self) -> impl Iterator<Item = Option<Extent>> + '_ {
-        (0..self.orientations()).map(|orientation| self.boundary::<f64>(orientation).extent())
+    /// Returns the indices of x0 at which the shape keeps within the left and the right side of the sensor, and those of
+    /// y0 at which it keeps within the upper and the lower one, or reaches beyond by no more than `margin`.
+    pub(crate) fn positions_inside(&self, orientation: u64, margin: f64) -> [Range<u64>; 2] {
+        let counts = [self.row_length(), self.rows_per_orientation()];
+        let Some(extent) = self.extent(orientation) else {
+            return counts.map(|count| 0..count);
+        };
+        // Positions grow with their index.
+        let inside = |count: u64, low: f64, high: f64, side: u8, at: &dyn Fn(u64) -> f64| {
+            let from = first(0..count, |index| low + at(index) >= -margin);
+            let end = f64::from(side) + margin;
+            from..first(from..count, |index| high + at(index) > end)
+        };
+        let x = |index| self.offset::<f64>(orientation, index, 0).x;
+        let y = |index| self.offset::<f64>(orientation, 0, index).y;
+        let (columns, rows) = (self.sensor.columns(), self.sensor.rows());
+        [
+            inside(counts[0], extent.left, extent.right, columns, &x),
+            inside(counts[1], extent.top, extent.bottom, rows, &y),
+        ]
     }
-
-    /// Returns the indices of x0 at which the shape reaches beyond neither the left nor the right side of the sensor.
-    pub(crate) fn columns_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
-        let at = |index| self.offset::<f64>(orientation, index, 0).x;
-        inside(
-            self.row_length(),
-            at,
-            (extent.left, extent.right),
-            self.sensor().columns(),
-        )
-    }
-
-    /// The same for y0, the upper and the lower side.
-    pub(crate) fn rows_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
-        let at = |index| self.offset::<f64>(orientation, 0, index).y;
-        inside(
-            self.rows_per_orientation(),
-            at,
-            (extent.top, extent.bottom),
-            self.sensor().rows(),
-        )
-    }
-}
-
-/// Returns the indices of the positions at which the interval from `low` to `high` lies within `side`. Positions grow
-/// with their index.
-fn inside(count: u64, at: impl Fn(u64) -> f64, (low, high): (f64, f64), side: u8) -> Range<u64> {
-    let from = first(0..count, |index| low + at(index) >= -DOUBTFUL);
-    let to = first(from..count, |index| {
-        high + at(index) > f64::from(side) + DOUBTFUL
-    });
-    from..to
 }
 
 /// Returns the first number of a range for which a condition is true; it stays true from then on. The end of the range
@@ -543,15 +509,6 @@ fn first(range: Range<u64>, is_true: impl Fn(u64) -> bool) -> u64 {
         }
     }
     start
-}
-
-pub(super) fn union(one: Extent, other: Extent) -> Extent {
-    Extent {
-        left: one.left.min(other.left),
-        top: one.top.min(other.top),
-        right: one.right.max(other.right),
-        bottom: one.bottom.max(other.bottom),
-    }
 }
 
 #[cfg(test)]
@@ -661,7 +618,7 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_grid() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_shape_is_placed_by_its_corner_or_its_centre() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         // 6 × 3, with its corner at 5, 5 before it is turned.
         let rectangle = Source::Figure(Figure::default_of(
@@ -695,7 +652,7 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_reach() -> Result<(), Box<dyn std::error::Error>> {
+    fn poses_that_reach_beyond_the_sensor_are_counted() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let sensor = Sensor::default();
         let bar = Figure::rectangle(6.0, 2.0).on(&sensor)?;

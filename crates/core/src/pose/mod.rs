@@ -3,24 +3,18 @@
 //! Each of the five axes (x0, y0, angle, and two zooms for pictures) has an exact range of decimals. Together the
 //! ranges span a grid, whose poses are numbered.
 
-mod range;
-
 mod axis;
-
-mod grid;
-
 mod default_ranges;
-
+mod grid;
+mod range;
 mod symmetry;
 
 pub use axis::{Anchor, Axis, PerAxis, Pose, PoseIndex, Ranges};
-pub use default_ranges::check_given;
 pub use default_ranges::{
-    GivenRanges, common_ranges, default_ranges, figure_ranges, smallest_sensor,
+    GivenRanges, Reach, SensorSides, check_given, common_ranges, default_ranges, figure_ranges,
+    smallest_sensor,
 };
-pub use default_ranges::{Reach, SensorSides};
 pub(crate) use grid::Boundary;
 pub use grid::{GridError, MAX_POSES, Placed, PoseGrid};
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
-pub(crate) use symmetry::exact_period;
-pub(crate) use symmetry::{AngleClasses, period};
+pub(crate) use symmetry::{AngleClasses, exact_period, period};

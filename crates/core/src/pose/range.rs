@@ -5,7 +5,6 @@
 //! exactly, the last value is the largest one below the end. A single number is a range of one value. Units are those
 //! of the parameter. The form is a convention of this project.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
@@ -17,11 +16,11 @@ use crate::quote::shortened;
 pub const MAX_VALUES: u64 = 1_000_000;
 
 /// The largest number of decimals of a number. In units of the last of them, [`MAX_UNITS`] is just below 1000.
-const MAX_PLACES: usize = 12;
+const MAX_PLACES: u32 = 12;
 
 /// The largest number in units of the last decimal. Every decimal of 15 digits has a distinct `f64`, which is written
 /// as the same decimal again.
-const MAX_UNITS: i64 = 999_999_999_999_999;
+const MAX_UNITS: f64 = 999_999_999_999_999.0;
 
 /// Decimals from a start to an end in equal steps; never empty. As text, `start:end:step` with the end included, or a
 /// single number: `5:5.99:0.01` has exactly one hundred values.
@@ -98,15 +97,7 @@ impl DecimalRange {
     /// Creates the range of a single number, rounded to some decimals; None if the number has too many digits to be
     /// exact, or is not finite.
     pub(crate) fn rounded(value: f64, places: u32) -> Option<Self> {
-        #[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
-        let (one, most) = (10_u64.pow(places) as f64, MAX_UNITS as f64);
-        let units = libm::round(value * one);
-        if units.is_nan() || units.abs() > most {
-            return None;
-        }
-        #[expect(clippy::cast_possible_truncation, reason = "a whole number below 2^53")]
-        let start = units as i64;
-        Some(Self::from_units(start, 1, places, 1))
+        units(value, places).map(|start| Self::from_units(start, 1, places, 1))
     }
 
     /// Returns the values with these indices as a range of their own; None if `indices` is empty or leaves the range.
@@ -115,13 +106,8 @@ impl DecimalRange {
             return None;
         }
         let way = i64::try_from(indices.start).ok()?.checked_mul(self.step)?;
-        let count = indices.end - indices.start;
-        Some(Self::from_units(
-            self.start + way,
-            self.step,
-            self.places,
-            count,
-        ))
+        let (start, count) = (self.start + way, indices.end - indices.start);
+        Some(Self::from_units(start, self.step, self.places, count))
     }
 
     /// Iterates over all values in order.
@@ -151,53 +137,63 @@ fn scaled(units: i64, places: u32) -> f64 {
     units as f64 / 10_u64.pow(places) as f64
 }
 
+/// Returns a number in units of `10^-places`, rounded; None if it has more than 15 digits.
+fn units(value: f64, places: u32) -> Option<i64> {
+    // The error of the product is below a quarter, so a decimal of 15 digits becomes its own units.
+    let units = libm::round(value * 10_f64.powi(places.cast_signed()));
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number below 2^53")]
+    (units.abs() <= MAX_UNITS).then_some(units as i64)
+}
+
+/// Returns the number of decimals of the shortest decimal that reads back as a number.
+fn places(value: f64) -> u32 {
+    // An `f64` is never displayed with an exponent.
+    let text = value.to_string();
+    narrow(
+        text.split_once('.')
+            .map_or(0, |(_, fraction)| fraction.len()),
+    )
+}
+
 impl FromStr for DecimalRange {
     type Err = RangeError;
 
     fn from_str(whole: &str) -> Result<Self, RangeError> {
-        let parts = whole.split(':').map(|part| without_exponent(part.trim()));
-        let parts: Vec<Cow<'_, str>> = parts.collect();
-        let (start, end, step) = match &parts[..] {
-            [single] => (&**single, &**single, "1"),
-            [start, end, step] => (&**start, &**end, &**step),
+        let parts: Vec<&str> = whole.split(':').map(str::trim).collect();
+        let texts = match parts[..] {
+            [single] => [single, single, "1"],
+            [start, end, step] => [start, end, step],
             _ => {
-                return Err(RangeError::Form {
-                    text: shortened(whole.trim()),
-                });
+                let text = shortened(whole.trim());
+                return Err(RangeError::Form { text });
             }
         };
-        let places = places(start).max(places(end)).max(places(step));
-        let units = |text: &str| {
-            units(text, places).ok_or_else(|| {
-                if is_decimal(text) {
-                    // The error shows all three numbers: the one with the most decimals decides how many each of them
-                    // needs.
-                    let text = shortened(whole.trim());
-                    RangeError::Digits { text }
-                } else {
-                    let text = shortened(text);
-                    RangeError::Number { text }
-                }
-            })
+        let mut numbers = [0.0; 3];
+        for (number, text) in numbers.iter_mut().zip(texts) {
+            *number = number::read(text).ok_or_else(|| {
+                let text = shortened(text);
+                RangeError::Number { text }
+            })?;
+        }
+        let most = numbers.map(places).into_iter().fold(0, u32::max);
+        let exact = |number: f64| units(number, most).filter(|_| most <= MAX_PLACES);
+        let [Some(first), Some(last), Some(by)] = numbers.map(exact) else {
+            // The number with the most decimals decides how many digits each of them needs.
+            let text = shortened(whole.trim());
+            return Err(RangeError::Digits { text });
         };
-        let (first, last, by) = (units(start)?, units(end)?, units(step)?);
+        let [start, end, step] = texts.map(shortened);
         if by <= 0 {
-            return Err(RangeError::Step {
-                step: shortened(step),
-            });
+            return Err(RangeError::Step { step });
         }
         if last < first {
-            return Err(RangeError::Backwards {
-                start: shortened(start),
-                end: shortened(end),
-                step: shortened(step),
-            });
+            return Err(RangeError::Backwards { start, end });
         }
         let count = (last - first).unsigned_abs() / by.unsigned_abs() + 1;
         if count > MAX_VALUES {
             return Err(RangeError::Many { count });
         }
-        Ok(Self::from_units(first, by, narrow(places), count))
+        Ok(Self::from_units(first, by, most, count))
     }
 }
 
@@ -208,52 +204,6 @@ impl TryFrom<f64> for DecimalRange {
     fn try_from(value: f64) -> Result<Self, RangeError> {
         value.to_string().parse()
     }
-}
-
-/// Writes a number with an exponent as a plain decimal: `1e-3` as `0.001`. Other text stays as it is.
-fn without_exponent(text: &str) -> Cow<'_, str> {
-    let number = text.contains(['e', 'E']).then(|| number::read(text));
-    // An `f64` is never displayed with an exponent.
-    number
-        .flatten()
-        .map_or(Cow::Borrowed(text), |number| Cow::Owned(number.to_string()))
-}
-
-fn places(text: &str) -> usize {
-    let fraction = text.split_once('.').map_or("", |(_, after)| after);
-    fraction.trim_end_matches('0').len()
-}
-
-fn parts(text: &str) -> (&str, &str) {
-    let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
-    digits.split_once('.').unwrap_or((digits, ""))
-}
-
-/// Returns true if text is a plain decimal, of any length.
-fn is_decimal(text: &str) -> bool {
-    let (whole, fraction) = parts(text);
-    let mut digits = whole.bytes().chain(fraction.bytes());
-    let any = digits.clone().next().is_some();
-    any && digits.all(|byte| byte.is_ascii_digit())
-}
-
-/// Converts a decimal to units of `10^-places`; None if the text is not a plain decimal, or too long to be exact.
-fn units(text: &str, places: usize) -> Option<i64> {
-    let negative = text.starts_with('-');
-    if !is_decimal(text) || places > MAX_PLACES {
-        return None;
-    }
-    let (whole, fraction) = parts(text);
-    let kept = fraction.trim_end_matches('0').bytes();
-    let zeros = std::iter::repeat_n(b'0', places - kept.len());
-    let units = whole
-        .bytes()
-        .chain(kept)
-        .chain(zeros)
-        .try_fold(0_i64, |units, digit| {
-            units.checked_mul(10)?.checked_add(i64::from(digit - b'0'))
-        })?;
-    (units <= MAX_UNITS).then_some(if negative { -units } else { units })
 }
 
 impl fmt::Display for DecimalRange {
@@ -313,8 +263,6 @@ pub enum RangeError {
         start: String,
         /// The end as given, shortened.
         end: String,
-        /// The step as given, shortened.
-        step: String,
     },
     /// There are too many values.
     #[error("a range of {} values; at most {} are allowed", grouped(*count), grouped(MAX_VALUES))]
@@ -334,11 +282,8 @@ impl RangeError {
             Self::Step { .. } => "expected a step above 0".to_owned(),
             Self::Backwards { start, .. } => format!("expected an end of {start} or more"),
             Self::Many { count } => {
-                format!(
-                    "{} values, at most {}",
-                    grouped(*count),
-                    grouped(MAX_VALUES)
-                )
+                let (count, most) = (grouped(*count), grouped(MAX_VALUES));
+                format!("{count} values, at most {most}")
             }
         }
     }
@@ -386,8 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_range() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::pose::DecimalRange;
+    fn a_range_has_the_nearest_floats_of_its_decimals() -> Result<(), Box<dyn std::error::Error>> {
         let range: DecimalRange = "5:5.99:0.01".parse()?;
         assert_eq!(
             (range.count(), range.value(0), range.value(37), range.last()),

@@ -10,105 +10,28 @@
 //! about the vertical line through its centre. The same holds for some pictures. Others are top-bottom symmetric: their
 //! mirror image is at 180° minus the angle.
 
-use crate::figure::FigureKind;
-use crate::imprint::{Bounds, Imprint};
-use crate::parameter::Parameter;
 use crate::pose::axis::{Axis, Ranges};
 use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
-/// Returns the order of a shape's rotational symmetry: the number of rotations within a full turn that map it onto
-/// itself; None if all do.
-fn order(source: &Source) -> Option<u32> {
-    let figure = match source {
-        Source::Figure(figure) => figure,
-        Source::Picture(picture) => {
-            let half_turned = |bounds: &Bounds, column, row| {
-                (
-                    bounds.left + bounds.right - 1 - column,
-                    bounds.top + bounds.bottom - 1 - row,
-                )
-            };
-            let turns = maps_onto_itself(picture.imprint(), half_turned);
-            return Some(if turns { 2 } else { 1 });
-        }
-    };
-    let equal = |one: Parameter, other: Parameter| figure.get(one) == figure.get(other);
-    match figure.kind() {
-        FigureKind::Ellipse if equal(Parameter::RadiusX, Parameter::RadiusY) => None,
-        FigureKind::Rectangle if equal(Parameter::Length, Parameter::Width) => Some(4),
-        FigureKind::Ellipse | FigureKind::Rectangle => Some(2),
-        FigureKind::Triangle => Some(3),
-        FigureKind::Pentagon => Some(5),
-        FigureKind::Hexagon => Some(6),
-        FigureKind::Heptagon => Some(7),
-        FigureKind::Octagon => Some(8),
-    }
-}
-
-/// Returns the smallest rotation in whole degrees after which a shape looks the same (360 for a heptagon); None if it
-/// looks the same at every angle.
+/// Returns the smallest rotation in whole degrees after which a shape looks the same under any zooms (360 for a
+/// heptagon); None if it looks the same at every angle.
 pub(crate) fn period(source: &Source) -> Option<u32> {
-    order(source).map(|order| if 360 % order == 0 { 360 / order } else { 360 })
+    let rotations = source.rotations(false)?;
+    Some(if 360 % rotations == 0 {
+        360 / rotations
+    } else {
+        360
+    })
 }
 
 /// Returns the smallest rotation in degrees after which a shape in the poses of a grid looks the same: 360/7 for a
 /// heptagon, and 90 for a picture that a quarter turn maps onto itself, if both zooms have the same single value. None
 /// if it looks the same at every angle.
 pub(crate) fn exact_period(source: &Source, ranges: &Ranges) -> Option<f64> {
-    let order = order(source)?;
     let zooms = [ranges[Axis::ZoomX], ranges[Axis::ZoomY]];
     let one_zoom = zooms[0] == zooms[1] && zooms[0].count() == 1;
-    let order = match source {
-        Source::Picture(picture) if one_zoom && quarter_turned(picture.imprint()) => 4,
-        _ => order,
-    };
-    Some(360.0 / f64::from(order))
-}
-
-fn quarter_turned(imprint: &Imprint) -> bool {
-    let turned = |bounds: &Bounds, column, row| {
-        (
-            bounds.left + (bounds.bottom - 1 - row),
-            bounds.top + (column - bounds.left),
-        )
-    };
-    let is_square = |bounds: Bounds| bounds.right - bounds.left == bounds.bottom - bounds.top;
-    imprint.bounds().is_some_and(is_square) && maps_onto_itself(imprint, turned)
-}
-
-/// Returns the sum in degrees of two angles at which a shape shows its mirror image, with right and left exchanged;
-/// None if there are no such angles.
-fn mirror(source: &Source) -> Option<u32> {
-    let picture = match source {
-        Source::Picture(picture) => picture,
-        Source::Figure(figure) => match figure.kind() {
-            FigureKind::Ellipse
-            | FigureKind::Rectangle
-            | FigureKind::Triangle
-            | FigureKind::Pentagon
-            | FigureKind::Hexagon
-            | FigureKind::Heptagon
-            | FigureKind::Octagon => return Some(0),
-        },
-    };
-    let right_left = |bounds: &Bounds, column, row| (bounds.left + bounds.right - 1 - column, row);
-    let upside_down = |bounds: &Bounds, column, row| (column, bounds.top + bounds.bottom - 1 - row);
-    if maps_onto_itself(picture.imprint(), right_left) {
-        Some(0)
-    } else {
-        maps_onto_itself(picture.imprint(), upside_down).then_some(180)
-    }
-}
-
-/// Returns true if a map of taxels within the bounds maps active taxels to active ones.
-fn maps_onto_itself(imprint: &Imprint, map: impl Fn(&Bounds, u8, u8) -> (u8, u8)) -> bool {
-    imprint.bounds().is_some_and(|bounds| {
-        imprint.active().all(|(column, row)| {
-            let (column, row) = map(&bounds, column, row);
-            imprint.get(column, row)
-        })
-    })
+    Some(360.0 / f64::from(source.rotations(one_zoom)?))
 }
 
 /// The angles of a range, in classes. The angles of a class show the same shape.
@@ -124,7 +47,7 @@ impl AngleClasses {
         Self {
             angles,
             period: period(source),
-            mirror: mirror(source),
+            mirror: source.mirror(),
         }
     }
 
@@ -145,7 +68,7 @@ impl AngleClasses {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::Figure;
+    use crate::figure::{Figure, FigureKind};
     use crate::picture::Picture;
     use crate::sensor::Sensor;
 

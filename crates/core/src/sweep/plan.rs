@@ -11,10 +11,8 @@ use std::ops::Range;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use crate::figure::FigureKind;
 use crate::pose::{Anchor, AngleClasses, Axis, DecimalRange, PoseGrid, period};
 use crate::quote::shortened;
-use crate::source::Source;
 
 /// A shard of a grid: piece `number` of `of` nearly equal pieces, counted from 1; as text, `2/3`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -310,32 +308,12 @@ fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
     if grid.anchor() == Anchor::Centre {
         return Some([0.0; 2]);
     }
-    match grid.source() {
-        Source::Figure(figure) => {
-            let sizes = figure.kind().sizes();
-            let size = |index: usize| figure.get(*sizes.get(index)?);
-            match figure.kind() {
-                FigureKind::Ellipse => Some([2.0 * size(0)?, 2.0 * size(1)?]),
-                FigureKind::Rectangle => Some([size(0)?, size(1)?]),
-                _ => None,
-            }
-        }
-        Source::Picture(picture) => {
-            let ranges = grid.ranges();
-            if [Axis::ZoomX, Axis::ZoomY]
-                .iter()
-                .any(|&axis| ranges[axis] != DecimalRange::whole(1))
-            {
-                return None;
-            }
-            let bounds = picture.imprint().bounds()?;
-            let side = |from: u8, to: u8| f64::from(to - from);
-            Some([
-                side(bounds.left, bounds.right),
-                side(bounds.top, bounds.bottom),
-            ])
-        }
-    }
+    let unzoomed = DecimalRange::whole(1);
+    let ranges = grid.ranges();
+    let is_zoomed = [Axis::ZoomX, Axis::ZoomY]
+        .iter()
+        .any(|&axis| ranges[axis] != unzoomed);
+    grid.source().box_sides().filter(|_| !is_zoomed)
 }
 
 /// A mapping of the values of a range onto each other: value `i` to value `last − i`, or to `last − i + count` if
@@ -353,7 +331,7 @@ impl IndexReflection {
     /// mapped onto each other.
     fn of(range: &DecimalRange, extent: f64) -> Option<Self> {
         // The shortest decimal that reads back as the number is the one that was given.
-        let extent: DecimalRange = extent.to_string().parse().ok()?;
+        let extent = DecimalRange::try_from(extent).ok()?;
         let (mut numbers, mut one) = (range.units(), range.one());
         let (mut extent, extent_one) = (extent.units()[0], extent.one());
         // Both are powers of ten.
@@ -397,10 +375,11 @@ impl IndexReflection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::Figure;
+    use crate::figure::{Figure, FigureKind};
     use crate::picture::Picture;
     use crate::pose::Ranges;
     use crate::sensor::Sensor;
+    use crate::source::Source;
 
     #[test]
     fn examples_of_plan() {

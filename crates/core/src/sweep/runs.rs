@@ -7,9 +7,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::atlas::{ImprintCounter, Layout};
-use crate::geometry::{Extent, Real};
+use crate::geometry::Real;
 use crate::index::{from_first, narrow, wide};
-use crate::pose::{Axis, Boundary, PoseGrid};
+use crate::pose::{Boundary, PoseGrid};
 use crate::progress::Progress;
 use crate::sweep::ellipse::Elliptic;
 use crate::sweep::flips::{Events, Exact, FlipWriter, Spans, Steps, effort};
@@ -124,7 +124,9 @@ impl<'a> Sweeper<'a> {
             grid,
             shape: Shape::new(&boundary),
             report_every: REPORT_EVERY / effort(boundary.edges.len()),
-            height: boundary.extent().map(|extent| [extent.top, extent.bottom]),
+            height: grid
+                .extent(orientation)
+                .map(|extent| [extent.top, extent.bottom]),
             steps: Steps {
                 first,
                 // For a range of one value, any number will do.
@@ -228,23 +230,15 @@ impl<'a> Group<'a> {
         go_on: &'a dyn Fn() -> bool,
     ) -> Self {
         let orientation = orientations[0];
-        let extent = grid.boundary::<f64>(orientation).extent();
-        let half_turn = PointSymmetry::of(grid).filter(|_| {
-            extent
-                .as_ref()
-                .is_some_and(|extent| lies_inside(grid, orientation, extent))
-        });
-        let outside = |extent: &Extent| {
-            let inside = grid.columns_inside(orientation, extent);
-            grid.row_length() - (inside.end - inside.start)
-        };
-        let height = grid.rows_per_orientation();
+        let (width, height) = (grid.row_length(), grid.rows_per_orientation());
+        // What the sensor's rim cuts or touches has no image.
+        let is_inside = || grid.positions_inside(orientation, -DOUBTFUL) == [0..width, 0..height];
+        let half_turn = PointSymmetry::of(grid).filter(|_| is_inside());
+        let [columns_inside, rows_inside] = grid.positions_inside(orientation, DOUBTFUL);
         Self {
             grid,
-            beyond: extent.as_ref().map_or(0, outside),
-            rows_inside: extent
-                .as_ref()
-                .map_or(0..height, |extent| grid.rows_inside(orientation, extent)),
+            beyond: width - (columns_inside.end - columns_inside.start),
+            rows_inside,
             events: Events::new(layout, grid.row_length()),
             due: false,
             exact: Exact::new(grid, orientation, go_on),
@@ -319,23 +313,6 @@ impl<'a> Group<'a> {
             }
         });
     }
-}
-
-/// Returns true if a shape lies inside the sensor in every pose of an orientation, without touching its rim. `extent`
-/// is the shape's extent at the origin.
-fn lies_inside(grid: &PoseGrid, orientation: u64, extent: &Extent) -> bool {
-    let (ranges, sensor) = (grid.ranges(), grid.sensor());
-    let place = |x, y| grid.offset::<f64>(orientation, x, y);
-    let (first, last) = (
-        place(0, 0),
-        place(ranges[Axis::X0].count() - 1, ranges[Axis::Y0].count() - 1),
-    );
-    let beyond = |end: f64, side: u8| end > f64::from(side) - DOUBTFUL;
-    let off = extent.left + first.x < DOUBTFUL
-        || extent.top + first.y < DOUBTFUL
-        || beyond(extent.right + last.x, sensor.columns())
-        || beyond(extent.bottom + last.y, sensor.rows());
-    !off
 }
 
 // The runs of rows that are images of rows swept before, read backwards.

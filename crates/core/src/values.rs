@@ -1,0 +1,69 @@
+//! The values of a shape's parameters: what figures and pictures have in common.
+
+use std::fmt;
+
+use crate::parameter::{PARAMETERS, Parameter, ParameterError};
+use crate::sensor::Sensor;
+
+/// The number of parameters of shapes. They come first among all parameters.
+const COUNT: usize = Parameter::ZoomY as usize + 1;
+
+/// A value for each parameter of shapes; None for one that a shape does not have, or that is not given.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Values([Option<f64>; COUNT]);
+
+impl Values {
+    /// Creates values that are not checked.
+    pub(crate) fn unchecked<const N: usize>(given: [(Parameter, f64); N]) -> Self {
+        let mut values = Self([None; COUNT]);
+        for (parameter, value) in given {
+            values.put(parameter, value);
+        }
+        values
+    }
+
+    /// Creates the values that `value` returns for the parameters `own` of a shape, each in range on the sensor. Only
+    /// the thickness may be missing.
+    pub(crate) fn new(
+        own: &[Parameter],
+        sensor: &Sensor,
+        mut value: impl FnMut(Parameter) -> Option<f64>,
+    ) -> Result<Self, ParameterError> {
+        let mut values = Self([None; COUNT]);
+        for &parameter in own {
+            match value(parameter) {
+                Some(value) => values.put(parameter, sensor.check(parameter, value)?),
+                None if parameter == Parameter::Thickness => {}
+                None => {
+                    let range = sensor.range(parameter);
+                    return Err(ParameterError::Missing { parameter, range });
+                }
+            }
+        }
+        Ok(values)
+    }
+
+    pub(crate) fn get(&self, parameter: Parameter) -> Option<f64> {
+        self.0.get(parameter as usize).copied().flatten()
+    }
+
+    /// The value of a parameter that the shape has; otherwise 0.
+    pub(crate) fn of(&self, parameter: Parameter) -> f64 {
+        self.get(parameter).unwrap_or_default()
+    }
+
+    /// Changes a value without a check.
+    pub(crate) fn put(&mut self, parameter: Parameter, value: f64) {
+        if let Some(slot) = self.0.get_mut(parameter as usize) {
+            *slot = Some(value);
+        }
+    }
+}
+
+impl fmt::Debug for Values {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let given = PARAMETERS.iter().zip(self.0);
+        let given = given.filter_map(|(row, value)| Some((row.parameter, value?)));
+        f.debug_map().entries(given).finish()
+    }
+}
