@@ -263,7 +263,10 @@ fn the_page_holds_all_texts() {
                 .map(|number| number.parse().expect(value))
                 .collect()
         };
-        let (size, moved) = (numbers(&page, "viewBox=\"0 0 "), numbers(&page, "translate("));
+        let (size, moved) = (
+            numbers(&page, "viewBox=\"0 0 "),
+            numbers(&page, "translate("),
+        );
         for line in page.lines().filter(|line| line.starts_with("<text")) {
             let text = line.split(['<', '>']).nth(2).expect("a text");
             let length = u16::try_from(text.chars().count()).expect("short");

@@ -18,6 +18,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::parameter::{Parameter, number};
 use taxel_core::recognition::Noise;
 use taxel_files::acquire::{AcquireOptions, Playback};
+use taxel_files::formats::recording::{Column, ReadOptions, TimeColumn};
 use taxel_files::formats::stream::StreamFormat;
 use taxel_files::storage::Existing;
 
@@ -43,6 +44,8 @@ pub(crate) enum FrameChoice {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ProcessingArguments {
     pub(crate) size: Option<FrameSize>,
+    pub(crate) time_column: Option<TimeColumn>,
+    pub(crate) label_column: Option<Column>,
     pub(crate) channel: Option<String>,
     pub(crate) view: View,
     /// The file with an imprint of the cells without a value, placed as the frame is seen after the turn.
@@ -157,7 +160,7 @@ fn keeping() -> [Arg; 4] {
 
 /// Defines the flags that prepare frames. `--rows` and `--columns` have ids of their own: they are not those of a
 /// sensor, and go further.
-pub(crate) fn processing() -> [Arg; 9] {
+pub(crate) fn processing() -> [Arg; 11] {
     let side = |id: &'static str, flag: &'static str, title: &str| {
         Arg::new(id)
             .long(flag)
@@ -168,6 +171,18 @@ pub(crate) fn processing() -> [Arg; 9] {
     [
         side("frame_columns", "columns", "Columns").requires("frame_rows"),
         side("frame_rows", "rows", "Rows").requires("frame_columns"),
+        option(
+            "time-column",
+            "X[:UNIT]",
+            "Column of a table with the time: its name, or its\nnumber from 1; with s, ms, us or ns",
+        )
+        .value_parser(str::parse::<TimeColumn>),
+        option(
+            "label-column",
+            "X",
+            "Column of a table with the label: its name, or its\nnumber from 1",
+        )
+        .value_parser(str::parse::<Column>),
         option(
             "channel",
             "NAME",
@@ -355,6 +370,8 @@ impl ProcessingArguments {
         let tare = matches.get_one("tare").copied();
         Ok(Self {
             size: FrameSize::of_sides(side("frame_columns"), side("frame_rows")),
+            time_column: matches.get_one("time-column").cloned(),
+            label_column: matches.get_one("label-column").cloned(),
             channel: matches.get_one::<String>("channel").cloned(),
             view: View {
                 crop: matches.get_one("crop").copied(),
@@ -382,6 +399,16 @@ impl ProcessingArguments {
 }
 
 impl ProcessingArguments {
+    /// How the recording is read.
+    pub(crate) fn reading(&self) -> ReadOptions {
+        ReadOptions {
+            size: self.size,
+            time_column: self.time_column.clone(),
+            label_column: self.label_column.clone(),
+            ..ReadOptions::default()
+        }
+    }
+
     pub(crate) fn set_rule(&self) -> Option<SetRule> {
         let (least, from) = (self.least, self.rule_from);
         self.rule.map(|rule| SetRule { rule, least, from })
@@ -525,6 +552,8 @@ impl WatchArguments {
             options.stream_format = None;
         }
         options.size = processing.size;
+        options.time_column.clone_from(&processing.time_column);
+        options.label_column.clone_from(&processing.label_column);
         options.channel.clone_from(&processing.channel);
         options.baud = matches.get_one("baud").copied().unwrap_or(options.baud);
         options.playback = playback(matches);

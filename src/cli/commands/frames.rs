@@ -31,7 +31,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::short;
 use taxel_core::sensor::Sensor;
-use taxel_files::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, unshaped};
+use taxel_files::formats::recording::{ChannelInfo, FrameAnswer, unshaped};
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{Name, StoredShape, json};
 
@@ -69,11 +69,7 @@ impl FramesOutput<'_> {
 }
 
 pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
-    let mut options = ReadOptions::default();
-    if let Some(size) = asked.processing.size {
-        options = options.with_size(size);
-    }
-    RecordingFile::open(&asked.file, options)
+    RecordingFile::open(&asked.file, asked.processing.reading())
 }
 
 pub(crate) fn frames(
@@ -159,8 +155,8 @@ fn list(
         None => &scan.channels[..],
     };
     output.write(match output.form {
-        Form::Json(_) => recording_list::json(scan.format, listed),
-        Form::Table(_) => recording_list::text(scan.format, listed, output.charset),
+        Form::Json(_) => recording_list::json(scan.format, listed, &scan.plain),
+        Form::Table(_) => recording_list::text(scan.format, listed, &scan.plain, output.charset),
     })
 }
 

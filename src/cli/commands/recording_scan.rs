@@ -26,6 +26,8 @@ pub(crate) struct Scan {
     /// The format; None if a damage comes before the format is certain.
     pub(super) format: Option<&'static Format>,
     pub(super) channels: Vec<ListedChannel>,
+    /// How the recording is read: what its times, labels and cells are.
+    pub(super) plain: Vec<String>,
     notes: Vec<RecordingNote>,
     more_notes: u64,
     pub(super) error: Option<ReadError>,
@@ -54,6 +56,9 @@ impl Scan {
                     if let Some(channel) = scan.channels.get_mut(frame.channel) {
                         channel.add(frame, values);
                     }
+                }
+                RecordingEvent::Note(note) if note.is_plain() => {
+                    scan.plain.push(note.to_string());
                 }
                 RecordingEvent::Note(note) => {
                     if scan.notes.len() < MOST_WARNINGS {

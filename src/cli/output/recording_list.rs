@@ -126,29 +126,39 @@ impl Serialize for ListedChannel {
 }
 
 /// The recording as a JSON object; `format` is null if a damage comes before the format is certain.
-struct ListedRecording<'a>(Option<&'static Format>, &'a [ListedChannel]);
+struct ListedRecording<'a>(Option<&'static Format>, &'a [ListedChannel], &'a [String]);
 
 impl Serialize for ListedRecording<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(2))?;
+        let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("format", &self.0.map(|format| format.name))?;
         map.serialize_entry("channels", self.1)?;
+        if !self.2.is_empty() {
+            map.serialize_entry("notes", self.2)?;
+        }
         map.end()
     }
 }
 
-pub(crate) fn json(format: Option<&'static Format>, channels: &[ListedChannel]) -> String {
-    json::ascii(&ListedRecording(format, channels)) + "\n"
+/// `notes` say how the recording is read.
+pub(crate) fn json(
+    format: Option<&'static Format>,
+    channels: &[ListedChannel],
+    notes: &[String],
+) -> String {
+    json::ascii(&ListedRecording(format, channels, notes)) + "\n"
 }
 
 pub(crate) fn text(
     format: Option<&'static Format>,
     channels: &[ListedChannel],
+    notes: &[String],
     charset: Charset,
 ) -> String {
     let format = format.map_or("damaged", |format| format.name);
     let count = counted(channels.len() as u64, "channel");
     let mut lines = vec![format!("{format}, {count}")];
+    lines.extend_from_slice(notes);
     for channel in channels {
         lines.push(String::new());
         lines.extend(channel_lines(channel));

@@ -9,7 +9,7 @@ use taxel_core::frame::{Frame, FrameSize};
 use crate::acquire::followed_file::ReadAnew;
 use crate::error::ReadError;
 use crate::formats::file::system_reason;
-use crate::formats::recording::{ChannelInfo, RecordingFormat, RecordingNote};
+use crate::formats::recording::{ChannelInfo, Column, RecordingFormat, RecordingNote, TimeColumn};
 use crate::formats::stream::{Silence, StreamCounts, StreamFormat, StreamOptions};
 use crate::formats::value::decimal;
 
@@ -24,6 +24,10 @@ pub struct AcquireOptions {
     pub size: Option<FrameSize>,
     /// The size of frames of streams only, if `size` is not given; recordings state their own.
     pub stream_size: Option<FrameSize>,
+    /// The column of a table with the time.
+    pub time_column: Option<TimeColumn>,
+    /// The column of a table with the label.
+    pub label_column: Option<Column>,
     /// The channel of a recording whose frames are played at its rate; by default the first one. Frames of other
     /// channels are reported at once.
     pub channel: Option<String>,
@@ -103,6 +107,8 @@ impl Default for AcquireOptions {
             size: None,
             stream_format: None,
             stream_size: None,
+            time_column: None,
+            label_column: None,
             channel: None,
             baud: 115_200,
             waits: false,

@@ -288,6 +288,8 @@ impl Player<'_, '_> {
     ) -> (Pace<'r>, Result<ControlFlow<()>, ReadError>) {
         let reading = ReadOptions {
             size: self.options.size,
+            time_column: self.options.time_column.clone(),
+            label_column: self.options.label_column.clone(),
             leaves_out: round.growth.is_some(),
             ..ReadOptions::default()
         };

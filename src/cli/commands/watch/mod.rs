@@ -36,9 +36,7 @@ use taxel_core::quote::as_argument;
 use taxel_files::acquire::{
     AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire,
 };
-use taxel_files::formats::recording::{
-    ChannelChoice, ChannelInfo, ReadOptions, RecordingMetadata, no_channel,
-};
+use taxel_files::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata, no_channel};
 use taxel_files::formats::stream::StreamCounts;
 
 use crate::cli::arguments::frames::WatchArguments;
@@ -401,11 +399,7 @@ fn channels(
     asked: &WatchArguments,
     up_to: Option<&str>,
 ) -> Result<(Vec<String>, bool), CliError> {
-    let options = ReadOptions {
-        size: asked.options.size,
-        ..ReadOptions::default()
-    };
-    Ok(RecordingFile::open(path, options)?.channel_names(up_to))
+    Ok(RecordingFile::open(path, asked.processing.reading())?.channel_names(up_to))
 }
 
 /// A gate that lets the frames of one channel pass.

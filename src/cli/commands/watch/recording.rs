@@ -145,6 +145,7 @@ impl<'a> SourceReports<'a> {
             AcquireEvent::Silent(silence) => silence.reason(self.source.unused_baud().is_none()),
             AcquireEvent::Lost(error) => AcquireEvent::lost(error),
             AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
+            AcquireEvent::Note(note) if note.is_plain() => return,
             AcquireEvent::Note(note) => {
                 return self.warn(&format!("{note}{}", note_advice(note)));
             }

@@ -219,6 +219,7 @@ impl FrameFeed {
                 pending.status().state = SourceState::Lost(text);
             }),
             AcquireEvent::Lost(error) => self.change(|pending| pending.lose(error)),
+            AcquireEvent::Note(note) if note.is_plain() => false,
             AcquireEvent::Note(note) => self.change(|pending| {
                 if pending.status().note.is_none() {
                     pending.status().set_note(note.to_string());

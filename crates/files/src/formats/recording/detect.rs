@@ -9,16 +9,14 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use crate::error::ReadError;
 use crate::formats::file::without_mark;
 use crate::formats::npy;
-use crate::formats::recording::error::{foreign, in_line, known_formats, unknown_format, unshaped};
+use crate::formats::recording::error::unknown_format;
 use crate::formats::recording::event::{ReadOptions, ReadState, RecordingSink, Sink, Stop};
+use crate::formats::recording::format;
+use crate::formats::recording::json as json_lines;
 use crate::formats::recording::numpy::{archive, array};
 use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
-use crate::formats::recording::table::delimited;
-use crate::formats::recording::table::header::is_first_cell;
-use crate::formats::recording::table::layout::EarlierLayout;
-use crate::formats::recording::text::{Separator, is_blank, is_comment, is_parted_by_cr};
+use crate::formats::recording::table;
 use crate::formats::recording::vendor::{flexitac, tekscan, xsensor};
-use crate::formats::recording::{json as json_lines, time};
 use crate::formats::stream::FLEXITAC_MARKER;
 use taxel_core::parameter::named;
 
@@ -26,172 +24,23 @@ pub(super) const LOOKED_AT: usize = 1 << 16;
 
 const CHUNK: usize = 1 << 16;
 
-/// Returns the format of a recording, from its first 64 KiB; None if it is not a recording. A text of numbers counts
-/// as a table, except a single column without the name of a cell, since many other files are one.
+/// Returns the format of a recording, from its first 64 KiB.
 pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
-    recognised_with(start, &ReadOptions::default())
+    let format = format::format_of_head(start, &ReadOptions::default(), true)?;
+    format.name.parse().ok()
 }
 
-/// Detects the format like [`recognised`]; if rows and columns are given, a single column of numbers counts as a
-/// table, too.
-fn recognised_with(start: &[u8], options: &ReadOptions) -> Option<RecordingFormat> {
-    let start = &start[..start.len().min(LOOKED_AT)];
-    let text = without_mark(start);
-    let trimmed = text.trim_ascii_start();
-    let mut lines = trimmed.split(|&byte| byte == b'\n');
-    let first = lines.clone().next().unwrap_or(b"");
-    // Comments may stand above a table.
-    let is_row = |line: &&[u8]| !is_blank(line) && !is_comment(line);
-    let row = lines.find(is_row).unwrap_or(first);
-    let known = by_magic(start);
-    if known.is_some() {
-        return known;
-    }
-    if is_blank(trimmed) || start.contains(&0) {
-        return None;
-    }
-    if trimmed.starts_with(b"{") {
-        return Some(RecordingFormat::JsonLines);
-    }
-    if is_parted_by_cr(text) || trimmed.starts_with(b"<") || is_bitmap(text) {
-        return None;
-    }
-    let known = VendorSigns::of(text);
-    if known.is_some() {
-        return known;
-    }
-    if is_ros(echo::without_notices(trimmed)) {
-        return Some(RecordingFormat::Ros2);
-    }
-    // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
-    if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') {
-        return Some(RecordingFormat::JsonLines);
-    }
-    let is_table =
-        is_table(row) || is_named_column(text) || options.size.is_some() && is_number(row);
-    (is_table && !time::is_alone(row)).then_some(RecordingFormat::Csv)
-}
-
-/// Returns the error for a file that is not a recording.
-fn refused(start: &[u8]) -> ReadError {
-    match numbers_below_text(start) {
-        _ if is_parted_by_cr(start) => {
-            foreign("text whose lines end in CR alone (save it with LF or CR LF)")
-        }
-        _ if is_bitmap(start) => foreign("a PBM image (taxel describe reads it)"),
-        _ if start.is_empty() => ReadError::new("empty, expected a recording"),
-        _ if is_imprint(start) => foreign("an imprint as text (taxel describe reads it)"),
-        _ if is_column(start) => unshaped(1, None),
-        Some(_) if begins_with_time(start) => in_line(1, time::ABOVE_ROWS),
-        Some(line) => in_line(
-            1,
-            format!(
-                "found text, expected a table or one of {}; numbers begin in line {line}: delete the lines above, or \
-                 read the file with taxel watch --once",
-                known_formats()
-            ),
-        ),
-        None => unknown_format(),
-    }
-}
-
-/// Returns the number of the first of two successive lines of numbers; the text above them may be what a board sent
-/// at its start.
-fn numbers_below_text(text: &[u8]) -> Option<u64> {
-    let is_row = |line: &[u8]| {
-        let separator = Separator::of(line);
-        let (mut fields, mut numbers) = (0, 0);
-        for field in separator.fields(line) {
-            fields += 1;
-            numbers += usize::from(separator.is_numeric(field));
-        }
-        fields > 1 && fields == numbers
-    };
-    if text.contains(&0) {
-        return None;
-    }
-    let lines = (1..).zip(text.split(|&byte| byte == b'\n'));
-    let mut rows = lines
-        .filter(|(_, line)| !is_blank(line))
-        .map(|(number, line)| (number, is_row(line)));
-    let mut before = rows.next()?;
-    rows.find_map(|own| {
-        let before = std::mem::replace(&mut before, own);
-        (before.1 && own.1).then_some(before.0)
-    })
-}
-
-pub(super) fn is_bitmap(start: &[u8]) -> bool {
-    matches!(start, [b'P', b'1' | b'4', blank, ..] if blank.is_ascii_whitespace())
-}
-
-fn is_imprint(text: &[u8]) -> bool {
-    let text = without_mark(text).trim_ascii();
-    let is_taxel = |byte: &u8| b"#.\r\n".contains(byte);
-    !text.is_empty() && text.iter().all(is_taxel)
-}
-
-fn is_column(text: &[u8]) -> bool {
-    let mut rows = rows_of(text).peekable();
-    rows.peek().is_some() && rows.all(is_number)
-}
-
-fn is_number(line: &[u8]) -> bool {
-    Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
-}
-
-fn is_named_column(text: &[u8]) -> bool {
-    let is_word = |&byte: &u8| byte.is_ascii_alphanumeric() || b"_[]".contains(&byte);
-    let is_cell_name =
-        |name: &[u8]| name.iter().all(is_word) && str::from_utf8(name).is_ok_and(is_first_cell);
-    let mut rows = rows_of(text);
-    rows.next()
-        .is_some_and(|row| is_cell_name(row.trim_ascii()))
-        && rows.next().is_some_and(is_number)
-}
-
-fn rows_of(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let lines = without_mark(text).split(|&byte| byte == b'\n');
-    lines.filter(|line| !is_blank(line) && !is_comment(line))
-}
-
-fn begins_with_time(text: &[u8]) -> bool {
-    let first = without_mark(text).split(|&byte| byte == b'\n').next();
-    first.is_some_and(|first| is_number(first) || time::is_alone(first))
-}
-
-fn is_list_of(text: &[u8], first: u8) -> bool {
-    let inside = text.strip_prefix(b"[").map(<[u8]>::trim_ascii_start);
-    inside.is_some_and(|inside| inside.first() == Some(&first))
-}
-
-/// Returns true if a text is the output of `ros2 topic echo`.
-fn is_ros(text: &[u8]) -> bool {
-    let first = text.split(|&byte| byte == b'\n').next().unwrap_or(b"");
-    echo::begins_message(first)
-        || first.starts_with(b"[") && text.windows(4).any(|word| word == b"\n---")
-}
-
-/// Returns true if a line may be the first of a table: it has several fields and a digit. A line of words alone may
-/// be the names of columns, if they are separated by commas or semicolons.
-fn is_table(line: &[u8]) -> bool {
-    let is_text = line
-        .iter()
-        .all(|&byte| byte >= b' ' || byte == b'\t' || byte == b'\r');
-    let has_digit = line.iter().any(u8::is_ascii_digit);
-    let has_mark = line.trim_ascii().iter().any(|byte| b",;\t ".contains(byte));
-    is_text && has_mark && (has_digit || line.contains(&b',') || line.contains(&b';'))
-}
-
-/// Returns the format of a recording, reading the input from its current position.
+/// The format of a recording.
 ///
 /// # Errors
-/// Returns [`ReadError::Foreign`] for a file of another kind, [`ReadError::Shape`] for a column of numbers
-/// that may be a recording, [`unknown_format()`] for anything else that is not one, and the system's error if
-/// the input cannot be read.
+/// If it has none.
 pub fn format_of(input: impl Read, options: &ReadOptions) -> Result<RecordingFormat, ReadError> {
-    let start = start_of(input)?;
-    recognised_with(&start, options).ok_or_else(|| refused(&start))
+    let format = format::format_of(input, options)?;
+    format.name.parse().map_err(|_| unknown_format())
+}
+
+fn is_bitmap(start: &[u8]) -> bool {
+    matches!(start, [b'P', b'1' | b'4', blank, ..] if blank.is_ascii_whitespace())
 }
 
 /// Returns the format of a followed file after it was truncated or replaced, reading the input from its current
@@ -243,13 +92,16 @@ pub trait RecordingInput: Read + Seek {}
 
 impl<T: Read + Seek> RecordingInput for T {}
 
+#[derive(Debug, Default)]
+pub struct EarlierLayout;
+
 /// Reads a recording whose format is known, like [`read`]. In a followed file, `earlier` is the arrangement of the
 /// table that it held before, and is replaced by the present one.
 pub fn read_as(
     format: RecordingFormat,
     input: &mut dyn RecordingInput,
     options: &ReadOptions,
-    earlier: &mut EarlierLayout,
+    _earlier: &mut EarlierLayout,
     consumer: &mut RecordingSink<'_>,
 ) -> Result<(), ReadError> {
     input.seek(SeekFrom::Start(0))?;
@@ -263,7 +115,7 @@ pub fn read_as(
         RecordingFormat::Npz => archive::read(input, options, sink),
         RecordingFormat::JsonLines => json_lines::read(input, options, sink),
         RecordingFormat::Ros2 => echo::read(input, options, sink),
-        RecordingFormat::Csv => delimited::read(input, options, earlier, sink),
+        RecordingFormat::Csv => table::read(&mut input, options, sink),
         RecordingFormat::Flexitac => flexitac::read(&mut input, options, sink),
         RecordingFormat::Mcap => mcap::read(&mut input, options, sink),
     };
@@ -299,13 +151,6 @@ pub(super) struct VendorSigns {
 }
 
 impl VendorSigns {
-    /// Returns the format whose words are in a text without a byte order mark.
-    pub(super) fn of(text: &[u8]) -> Option<RecordingFormat> {
-        let mut signs = Self::default();
-        text.split(|&byte| byte == b'\n')
-            .find_map(|line| signs.add(line))
-    }
-
     /// Adds the next line, without its end. Returns the format if its words are complete now. `DATA_TYPE` is an ordinary
     /// word, so it counts only at the start of a text, where Tekscan writes it.
     pub(super) fn add(&mut self, line: &[u8]) -> Option<RecordingFormat> {

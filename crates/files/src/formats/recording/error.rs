@@ -1,6 +1,6 @@
 //! Errors of a recording, with their places; and those that ask for more.
 
-use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE};
+use taxel_core::frame::FrameSize;
 use taxel_core::parameter::number::counted;
 
 use crate::error::{ReadError, ReadErrorKind};
@@ -49,20 +49,4 @@ pub fn unshaped(values: u64, given: Option<FrameSize>) -> ReadError {
             size.in_words()
         )),
     }
-}
-
-/// The error for a table without a header, which does not say how its values are arranged: some numbers of a line may
-/// not be values.
-pub(super) fn unsized_line(numbers: u64) -> ReadError {
-    let most = if numbers > MAX_FRAME_SIDE.into() {
-        format!(", each at most {MAX_FRAME_SIDE},")
-    } else {
-        String::new()
-    };
-    ReadError::new(format!(
-        "{} a line, but the rows and columns of a frame{most} are not stated (a frame number and a time may be among \
-         the numbers)",
-        counted(numbers, "number")
-    ))
-    .of_kind(ReadErrorKind::Unsized)
 }

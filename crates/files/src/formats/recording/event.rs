@@ -10,6 +10,7 @@ use taxel_core::parameter::number::{counted, short, time_in_words, to_decimals};
 use crate::error::ReadError;
 use crate::formats::recording::format::Format;
 use crate::formats::recording::metadata::{FrameMark, RecordingMetadata};
+use crate::formats::recording::table::TableLayout;
 use crate::formats::recording::time::{FrameClock, TimeUnit};
 
 /// Options for reading a recording or a stream.
@@ -231,6 +232,11 @@ pub enum RecordingNote {
         /// The number of columns.
         columns: u16,
     },
+    /// How a table is read: what its times, labels and cells are.
+    Table {
+        /// The sentence.
+        text: String,
+    },
     /// Times whose unit was derived from their size alone.
     TimeUnit {
         /// The unit: `nanoseconds`.
@@ -271,6 +277,13 @@ pub enum RecordingNote {
     },
 }
 
+impl RecordingNote {
+    /// Whether it only says how the recording is read, and is no reason to doubt it.
+    pub fn is_plain(&self) -> bool {
+        matches!(self, Self::Table { .. })
+    }
+}
+
 impl fmt::Display for RecordingNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -292,13 +305,14 @@ impl fmt::Display for RecordingNote {
             }
             Self::Square { side } => write!(
                 f,
-                "the header counts {} values, taken as {side} rows of {side} columns",
+                "{} numbers a frame, taken as {side} rows of {side} columns",
                 u32::from(*side) * u32::from(*side)
             ),
             Self::Flat { rows, columns } => write!(
                 f,
                 "an array of {rows} × {columns}, taken as one frame, though each of its {rows} rows may be a frame of {columns} values"
             ),
+            Self::Table { text } => f.write_str(text),
             Self::TimeUnit { unit } => {
                 write!(
                     f,
@@ -373,9 +387,11 @@ impl<E: Into<ReadError>> From<E> for Stop {
 /// What goes on when a stream is read again after an interruption: its channels, the number of the next frame of each,
 /// and its clock.
 #[derive(Debug, Default)]
-#[expect(dead_code, reason = "the readers that use it follow")]
 pub(in crate::formats) struct ReadState {
     channels: Vec<(ChannelInfo, u64)>,
+    /// The layout of the table, whose header is not repeated.
+    pub(in crate::formats::recording) layout: Option<TableLayout>,
+    lacks_time: bool,
     pub(in crate::formats::recording) clock: FrameClock,
 }
 
@@ -385,7 +401,6 @@ pub(in crate::formats) struct Sink<'a> {
     pub(in crate::formats::recording) state: &'a mut ReadState,
 }
 
-#[expect(dead_code, reason = "the readers that use it follow")]
 impl<'a> Sink<'a> {
     pub(in crate::formats) fn new(
         consumer: &'a mut RecordingSink<'a>,
@@ -441,6 +456,7 @@ impl<'a> Sink<'a> {
     }
 
     /// Reports a frame that is not confirmed yet.
+    #[expect(dead_code, reason = "the boards follow")]
     pub(in crate::formats) fn provisional(
         &mut self,
         channel: usize,
@@ -453,6 +469,19 @@ impl<'a> Sink<'a> {
     fn place(&self, channel: usize, frame: &mut Frame) {
         frame.channel = channel;
         frame.number = self.state.channels[channel].1;
+    }
+
+    /// Notes the first time of a channel that cannot be read: the text in its place.
+    pub(in crate::formats) fn unread_time(
+        &mut self,
+        channel: usize,
+        text: String,
+    ) -> Result<(), Stop> {
+        if std::mem::replace(&mut self.state.lacks_time, true) {
+            return Ok(());
+        }
+        let frame = self.state.channels[channel].1;
+        self.note(&RecordingNote::Time { frame, text })
     }
 
     pub(in crate::formats) fn note(&mut self, note: &RecordingNote) -> Result<(), Stop> {

@@ -13,10 +13,8 @@ use crate::formats::recording::event::{ReadOptions, ReadState, RecordingSink, Si
 use crate::formats::recording::json as json_lines;
 use crate::formats::recording::numpy::{archive, array};
 use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
-use crate::formats::recording::table::delimited;
-use crate::formats::recording::table::header::is_first_cell;
-use crate::formats::recording::table::layout::EarlierLayout;
-use crate::formats::recording::text::{Separator, is_blank, is_comment, is_parted_by_cr};
+use crate::formats::recording::table;
+use crate::formats::recording::text::is_parted_by_cr;
 use crate::formats::recording::vendor::{flexitac, tekscan, xsensor};
 
 /// The most bytes at the beginning that decide the format.
@@ -121,10 +119,10 @@ pub static FORMATS: [Format; 10] = [
         name: "csv",
         title: "CSV",
         stream: Some("lines"),
-        sniff: |head, options, is_all| is_text(head) && is_table(head, options, is_all),
-        read: Reader::File(|input, options, sink| {
-            delimited::read(input, options, &mut EarlierLayout::default(), sink)
-        }),
+        sniff: |head, options, is_all| {
+            is_text(head) && table::sniff(without_mark(head), options, is_all)
+        },
+        read: Reader::Bytes(table::read),
     },
 ];
 
@@ -233,7 +231,7 @@ fn refused(head: &[u8]) -> ReadError {
         ReadError::new("empty, expected a recording").of_kind(ReadErrorKind::UnknownFormat)
     } else if !text.is_empty() && text.iter().all(|byte| b"#.\r\n".contains(byte)) {
         foreign("an imprint as text (taxel describe reads it)")
-    } else if is_column(head) {
+    } else if table::is_column(without_mark(head)) {
         unshaped(1, None)
     } else {
         unknown_format()
@@ -282,45 +280,4 @@ fn is_echo(head: &[u8]) -> bool {
     let text = echo::without_notices(without_mark(head).trim_ascii_start());
     let first = lines(text).next().unwrap_or(b"");
     echo::begins_message(first) || first.starts_with(b"[") && has(text, b"\n---")
-}
-
-/// The lines that are neither blank nor a comment.
-fn content(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    lines(text).filter(|line| !is_blank(line) && !is_comment(line))
-}
-
-fn is_number(line: &[u8]) -> bool {
-    let line = line.trim_ascii();
-    Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line)
-}
-
-fn is_column(head: &[u8]) -> bool {
-    content(head).next().is_some() && content(head).all(is_number)
-}
-
-/// Whether a table has begun: a line of two numbers or more, and not fewer than texts; or a single number a line, if
-/// the rows and columns are given or it has the name of a cell above it.
-fn is_table(head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
-    let whole = if is_all {
-        head
-    } else {
-        &head[..head.iter().rposition(|&byte| byte == b'\n').unwrap_or(0)]
-    };
-    let is_row = |line: &[u8]| {
-        let separator = Separator::of(line);
-        let (mut fields, mut numbers) = (0, 0);
-        for field in separator.fields(line) {
-            fields += 1;
-            numbers += usize::from(separator.is_numeric(field));
-        }
-        numbers > 1 && 2 * numbers >= fields
-            || fields == 1 && numbers == 1 && options.size.is_some()
-    };
-    content(whole).any(is_row) || is_named_column(whole)
-}
-
-fn is_named_column(text: &[u8]) -> bool {
-    let mut rows = content(text);
-    let name = rows.next().map_or(&b""[..], <[u8]>::trim_ascii);
-    str::from_utf8(name).is_ok_and(is_first_cell) && rows.next().is_some_and(is_number)
 }

@@ -74,6 +74,7 @@ mod detect;
 
 pub use answer::FrameAnswer;
 pub use channels::{ChannelChoice, no_channel};
+pub(crate) use detect::EarlierLayout;
 pub use detect::{
     RecordingFormat, RecordingInput, format_after, format_of as old_format_of, read_as, recognised,
 };
@@ -85,6 +86,5 @@ pub use event::{
 pub use format::{FORMATS, Format, format_of, may_be_recording, read};
 pub use metadata::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 pub use stream::{StreamCounts, StreamReader};
-pub use table::delimited::read_rows;
-pub(crate) use table::layout::EarlierLayout;
+pub use table::read_rows;
 pub use time::TimeUnit;

@@ -95,6 +95,12 @@ pub(in crate::formats::recording) struct TextLines<R> {
     line: Vec<u8>,
     /// The number of that line; 0 before the first.
     number: u64,
+    /// The number of the last line that was read from the input.
+    read: u64,
+    /// Lines that are read again, the next one last.
+    ahead: Vec<(u64, Vec<u8>)>,
+    /// Whether the input ended by [`io::ErrorKind::UnexpectedEof`], perhaps within a line.
+    is_cut: bool,
 }
 
 impl<R: BufRead> TextLines<R> {
@@ -104,6 +110,9 @@ impl<R: BufRead> TextLines<R> {
             input,
             line: Vec::new(),
             number: 0,
+            read: 0,
+            ahead: Vec::new(),
+            is_cut: false,
         }
     }
 
@@ -115,40 +124,68 @@ impl<R: BufRead> TextLines<R> {
         &self.line
     }
 
+    /// Lets a line be read again. The last one that is given back is the next one.
+    pub(in crate::formats::recording) fn unread(&mut self, number: u64, line: Vec<u8>) {
+        self.ahead.push((number, line));
+    }
+
+    /// The rest of a line at which the input was cut off; empty unless it has ended so.
+    pub(in crate::formats::recording) fn torn(&self) -> &[u8] {
+        if self.is_cut { &self.line } else { b"" }
+    }
+
     /// Reads the next line; returns false at the end.
     pub(in crate::formats::recording) fn advance(&mut self) -> Result<bool, ReadError> {
+        if let Some((number, line)) = self.ahead.pop() {
+            (self.number, self.line) = (number, line);
+            return Ok(true);
+        }
+        if self.is_cut {
+            return Ok(false);
+        }
         self.line.clear();
+        self.number = self.read;
+        // A longer line is read to its end, so that the next one can be read.
+        let (mut length, mut has_begun) = (0_usize, false);
         loop {
             let bytes = match self.input.fill_buf() {
                 Ok(bytes) => bytes,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+                    self.is_cut = true;
+                    return Ok(false);
+                }
                 Err(error) => return Err(error.into()),
             };
             if bytes.is_empty() {
-                if self.line.is_empty() {
+                if !has_begun {
                     return Ok(false);
                 }
                 break;
             }
-            if self.number == 0 && self.line.is_empty() && bytes[0] == 0 {
+            if self.read == 0 && self.line.is_empty() && bytes[0] == 0 {
                 let zeros = bytes.iter().take_while(|&&byte| byte == 0).count();
                 self.input.consume(zeros);
                 continue;
             }
             let end = bytes.iter().position(|&byte| byte == b'\n');
             let part = &bytes[..end.unwrap_or(bytes.len())];
-            if part.len() > LONGEST_LINE - self.line.len() {
-                let message = "longer than 8 MiB, the limit for a line of a recording";
-                return Err(in_line(self.number + 1, message));
-            }
-            self.line.extend_from_slice(part);
+            let room = LONGEST_LINE - self.line.len();
+            self.line.extend_from_slice(&part[..part.len().min(room)]);
             let used = end.map_or(bytes.len(), |end| end + 1);
+            length = length.saturating_add(part.len());
+            has_begun = true;
             self.input.consume(used);
             if end.is_some() {
                 break;
             }
         }
-        self.number += 1;
+        self.read += 1;
+        self.number = self.read;
+        if length > LONGEST_LINE {
+            let message = "longer than 8 MiB, the limit for a line of a recording";
+            return Err(in_line(self.number, message));
+        }
         if self.line.last() == Some(&b'\r') {
             self.line.pop();
         }
@@ -283,18 +320,13 @@ pub(in crate::formats::recording) fn is_none(field: &[u8]) -> bool {
 }
 
 /// Returns true if a line is skipped wherever it is: a comment, or the line in which spreadsheet programs name the
-/// separator, `sep=;`. A comment begins with `#`, with `//`, or with `%` before a blank or another `%`. Otherwise a `%`
-/// may belong to a name, as in `%time` of ROS; and `#N/A` is a cell.
+/// separator, `sep=;`. A comment begins with `#`; `#N/A` is a cell.
 pub(in crate::formats) fn is_comment(line: &[u8]) -> bool {
     let line = line.trim_ascii();
-    let begins = |word: &[u8]| {
-        let start = line.get(..word.len());
-        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
-    };
     match line {
-        [b'#', ..] => !begins(b"#n/a"),
-        [b'/', b'/', ..] | [b'%'] => true,
-        [b'%', next, ..] => next.is_ascii_whitespace() || *next == b'%',
+        [b'#', ..] => !line
+            .get(..4)
+            .is_some_and(|start| start.eq_ignore_ascii_case(b"#n/a")),
         [b's' | b'S' | b'"', ..] => named_separator(line).is_some(),
         _ => false,
     }
@@ -308,13 +340,6 @@ pub(in crate::formats) fn unquoted(field: &[u8]) -> &[u8] {
     inner.map_or(field, <[u8]>::trim_ascii)
 }
 
-/// The bytes that separate fields, the first one that a line has before the others; without any of them, blanks do.
-///
-/// Recordings and streams are read line by line, and docs/sensors.md promises this order. The table of an imprint is
-/// short and read as a whole, so it is separated by what its last line has, where names cannot mislead: see
-/// [`table`](crate::formats::table).
-pub(in crate::formats) const SEPARATORS: [u8; 3] = *b";,\t";
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::formats) enum Separator {
     /// A byte; two in succession have an empty field between them.
@@ -324,12 +349,22 @@ pub(in crate::formats) enum Separator {
 }
 
 impl Separator {
-    /// Returns the separator of a line: the first of [`SEPARATORS`] that occurs outside quotes, otherwise blanks.
+    /// Returns the separator of a line: the first of semicolon, tab and comma that it has outside quotes, otherwise
+    /// blanks. Commas beside tabs separate, unless they are decimal signs.
     pub(in crate::formats::recording) fn of(line: &[u8]) -> Self {
-        let found = SEPARATORS
-            .into_iter()
-            .find(|&mark| Self::Byte(mark).split(line).nth(1).is_some());
-        found.map_or(Self::Spaces, Self::Byte)
+        let line = line.trim_ascii();
+        let has = |mark| Self::Byte(mark).split(line).nth(1).is_some();
+        let is_decimal =
+            |field: &[u8]| !field.contains(&b',') || Self::Byte(b'\t').is_numeric(field);
+        if has(b';') {
+            Self::Byte(b';')
+        } else if has(b'\t') && Self::Byte(b'\t').split(line).all(is_decimal) {
+            Self::Byte(b'\t')
+        } else if has(b',') {
+            Self::Byte(b',')
+        } else {
+            Self::Spaces
+        }
     }
 
     /// Splits a line at its separators, and removes blanks and quotes around each part. A separator in quotes is part
@@ -387,13 +422,13 @@ impl Separator {
         }
     }
 
-    /// Reads the content of a field. With semicolons as separators, a comma is the decimal sign.
+    /// Reads the content of a field. With semicolons or tabs as separators, a comma is the decimal sign.
     pub(in crate::formats) fn value(self, field: &[u8]) -> Field {
         if is_none(field) {
             return Field::NoCell;
         }
         match self {
-            Self::Byte(b';') => decimal(field),
+            Self::Byte(b';' | b'\t') => decimal(field),
             _ => read_value(field),
         }
     }
@@ -401,11 +436,6 @@ impl Separator {
     /// Returns true if a field can be that of a cell: a number, or a word for a missing value.
     pub(in crate::formats::recording) fn is_numeric(self, field: &[u8]) -> bool {
         !matches!(self.value(field), Field::Wrong)
-    }
-
-    /// Returns the number in a field; NaN if there is none.
-    pub(in crate::formats::recording) fn number(self, field: &[u8]) -> f64 {
-        self.value(field).cell().unwrap_or(f64::NAN)
     }
 }
 
@@ -550,6 +580,8 @@ mod tests {
             ("1,5;2,5", b';', &["1,5", "2,5"][..]),
             ("\"a;b\",2, 3 ", b',', &["a;b", "2", "3"]),
             ("1\t\t3\t", b'\t', &["1", "", "3"]),
+            ("0,5\t1,5", b'\t', &["0,5", "1,5"]),
+            ("1,\t2,\t3,4,5", b',', &["1", "2", "3", "4", "5"]),
             ("width in \",2", b',', &["width in \"", "2"]),
         ] {
             let expected = (Separator::Byte(mark), expected.to_vec());
@@ -570,13 +602,14 @@ mod tests {
     }
 
     #[test]
-    fn a_comma_is_the_decimal_sign_between_semicolons() {
+    fn a_comma_is_the_decimal_sign_between_semicolons_and_tabs() {
         let number = |mark, field: &str| match Separator::Byte(mark).value(field.as_bytes()) {
             Field::Value(value) => Some(value),
             Field::NoCell | Field::Wrong => None,
         };
         assert_eq!(number(b';', "1,5"), Some(1.5));
-        assert_eq!(number(b'\t', "1,5"), None);
+        assert_eq!(number(b'\t', "1,5"), Some(1.5));
+        assert_eq!(number(b',', "1,5"), None);
         for none in ["", "NaN", "#N/A", "<NA>"] {
             assert!(is_none(none.as_bytes()), "{none}");
         }
@@ -585,7 +618,7 @@ mod tests {
 
     #[test]
     fn comments_and_separator_lines_are_skipped() {
-        for line in ["# a", "// a", "%", "%% a", "% a", "sep=;", "\"sep=,\""] {
+        for line in ["# a", "sep=;", "\"sep=,\""] {
             assert!(is_comment(line.as_bytes()), "{line}");
         }
         for line in ["#N/A,1", "%time,1", "/ 1", "seconds"] {

@@ -11,11 +11,11 @@
 //! A stream that shows none of this is taken for numbers if it is text, and otherwise for `MatSense`, whose decoder
 //! counts what it drops.
 
+use crate::formats::stream::old::{self};
 use taxel_core::frame::{FrameSize, MAX_FRAME_CELLS};
 
 use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::recording::ros::echo;
-use crate::formats::recording::time;
 use crate::formats::stream::boards::{MARKER, MatsenseDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamFormat, StreamOutput};
 use crate::formats::stream::row_block;
@@ -184,7 +184,7 @@ fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
 
 /// Returns true if a line holds at least one number and nothing else; a timestamp may precede the numbers.
 pub(super) fn is_numbers(line: &[u8]) -> bool {
-    let line = time::leading(line).map_or(line, |(_, numbers)| numbers);
+    let line = old::leading(line).map_or(line, |(_, numbers)| numbers);
     let mut values = Vec::new();
     row_block::read_row(line, &mut values, usize::MAX).is_some() && !values.is_empty()
 }

@@ -17,11 +17,12 @@
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are
 //! never joined. If frames are known to be single lines, each line that is not a frame counts as a lost one.
 
+use crate::formats::stream::old::{self};
 use taxel_core::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 
 use crate::formats::recording::size::StreamSize;
 use crate::formats::recording::text::is_comment;
-use crate::formats::recording::time::{self, FrameClock, Time};
+use crate::formats::recording::time::{FrameClock, Time};
 use crate::formats::stream::event::{StreamEvent, StreamOutput};
 use crate::formats::stream::row_block::{self, RowBlock, WrongRow, may_be_end};
 
@@ -76,7 +77,7 @@ impl LinesDecoder {
         if is_comment(trimmed) {
             return;
         }
-        let (moment, line) = match time::leading(line) {
+        let (moment, line) = match old::leading(line) {
             Some((moment, numbers)) => (Some(self.clock.moment(moment)), numbers),
             None => (None, line),
         };

@@ -23,6 +23,8 @@
 
 mod event;
 
+mod old;
+
 mod row_block;
 
 mod lines;

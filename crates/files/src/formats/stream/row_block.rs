@@ -1,11 +1,12 @@
 //! The rows of a frame, one per line, and what is wrong with them.
 
+use crate::formats::stream::old::{self};
 use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE};
 use taxel_core::parameter::number::counted;
 
 use crate::formats::recording::size::frame_size;
-use crate::formats::recording::text::{SEPARATORS, Separator, unquoted};
-use crate::formats::recording::time::{self, Time};
+use crate::formats::recording::text::{Separator, unquoted};
+use crate::formats::recording::time::Time;
 
 #[derive(Debug, Default)]
 pub(super) struct RowBlock {
@@ -59,7 +60,7 @@ impl RowBlock {
     pub(super) fn begin_row(&mut self, time: Option<Time>, line: &[u8], found: Option<usize>) {
         match self.rows {
             0 => {
-                let is_one = found.map_or_else(|| time::is_alone(line), |count| count == 1);
+                let is_one = found.map_or_else(|| old::is_alone(line), |count| count == 1);
                 self.first = match time {
                     None if is_one => FirstLine::SingleValue,
                     _ => FirstLine::Row,
@@ -94,7 +95,7 @@ impl RowBlock {
             } else {
                 ", and end each frame with an empty line"
             };
-            return Some(format!("{}{end}", time::ABOVE_ROWS));
+            return Some(format!("{}{end}", old::ABOVE_ROWS));
         }
         let numbers = |count: usize| counted(count as u64, "number");
         let Some(WrongRow {
@@ -154,7 +155,7 @@ const FAST_DIGITS: usize = 9;
 /// at the end of the line is ignored, as are tabs at both ends. Returns None if there is anything else, or more than
 /// `most` numbers.
 pub(super) fn read_row(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
-    let mut marks = SEPARATORS.into_iter();
+    let mut marks = old::SEPARATORS.into_iter();
     let mark = marks.find(|mark| line.contains(mark)).unwrap_or(b'\t');
     let line = if mark == b'\t' {
         line.trim_ascii()

@@ -17,18 +17,6 @@ pub(in crate::formats::recording) enum FieldRole {
     Time(Option<TimeUnit>),
 }
 
-/// Returns the roles of a header's fields by their names. A first field without a name is an index, as pandas writes
-/// it.
-pub(in crate::formats::recording) fn roles(names: &[&str]) -> Vec<Option<FieldRole>> {
-    let mut roles: Vec<_> = names.iter().map(|name| role(name)).collect();
-    if let ([first, _, ..], [own, ..]) = (names, &mut roles[..])
-        && first.is_empty()
-    {
-        *own = Some(FieldRole::Label);
-    }
-    roles
-}
-
 /// The words for each unit of time. `min` may also mean a minimum, so it needs a word for a time before it.
 const UNITS: [(TimeUnit, &[&str]); 5] = [
     (
@@ -124,11 +112,6 @@ fn words(name: &str) -> Vec<String> {
     }
     words.extend((!word.is_empty()).then_some(word));
     words
-}
-
-/// Returns the unit of time that a text names, such as `ms` or `[s]`.
-pub(in crate::formats::recording) fn time_unit(text: &str) -> Option<TimeUnit> {
-    words(text).first().and_then(|word| unit(word))
 }
 
 fn unit(word: &str) -> Option<TimeUnit> {

@@ -39,10 +39,10 @@ impl TimeUnit {
     /// Returns the unit of this name: s, ms, us or ns.
     pub(in crate::formats::recording) fn named(name: &str) -> Option<Self> {
         match name {
-            "s" => Some(Self::Seconds),
-            "ms" => Some(Self::Milliseconds),
-            "us" => Some(Self::Microseconds),
-            "ns" => Some(Self::Nanoseconds),
+            "s" | "sec" | "seconds" => Some(Self::Seconds),
+            "ms" | "msec" | "millis" => Some(Self::Milliseconds),
+            "us" | "usec" | "micros" | "\u{b5}s" | "\u{3bc}s" => Some(Self::Microseconds),
+            "ns" | "nsec" | "nanos" => Some(Self::Nanoseconds),
             _ => None,
         }
     }
@@ -95,6 +95,31 @@ impl TimeUnit {
         let dated = dated.find(|unit| DATES.contains(&unit.seconds(number)));
         dated.unwrap_or(Self::Seconds)
     }
+}
+
+/// Reads the name of a column of times: `time`, `t_ms`, `Time (ms)`, `timestamp`. Returns its unit, if it has one; None
+/// for any other name. ROS writes `%time`.
+pub(in crate::formats::recording) fn time_name(name: &str) -> Option<Option<TimeUnit>> {
+    const NAMES: [&str; 7] = [
+        "time",
+        "t",
+        "timestamp",
+        "timestamps",
+        "stamp",
+        "date",
+        "datetime",
+    ];
+    let name = name.trim().trim_start_matches('%').to_lowercase();
+    let end = name.find(|character: char| !character.is_alphabetic());
+    let (word, rest) = name.split_at(end.unwrap_or(name.len()));
+    let unit = rest.trim_matches(|character: char| " _-.()[]".contains(character));
+    if !NAMES.contains(&word) {
+        return None;
+    }
+    if unit.is_empty() {
+        return Some(None);
+    }
+    TimeUnit::named(unit).map(Some)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,10 +209,11 @@ pub(in crate::formats) struct Moment {
 
 /// Reads a timestamp; None for anything else. Second 60, a leap second, counts as the first second of the next
 /// minute.
-pub(in crate::formats::recording) fn read_moment(field: &[u8]) -> Option<Moment> {
+pub(in crate::formats) fn read_moment(field: &[u8]) -> Option<Moment> {
     let text = str::from_utf8(field).ok()?.trim();
     let (day, clock) = match text.split_once(['T', 't', ' ']) {
         Some((date, clock)) => (Some(iso_day(date)?), clock.trim_start()),
+        None if !text.contains(':') => (Some(iso_day(text)?), "00:00:00"),
         None => (None, text),
     };
     let (clock, offset) = match clock.rfind(['+', '-']) {
@@ -213,43 +239,6 @@ fn clock_parts(clock: &str) -> Option<(i32, i32, f64)> {
         return None;
     };
     (is_number && seconds < 61.0).then_some((hours, minutes, seconds))
-}
-
-pub(in crate::formats) const ABOVE_ROWS: &str =
-    "found one value above rows of numbers; if it is the time of a frame, begin such lines with #";
-
-pub(in crate::formats) fn is_alone(line: &[u8]) -> bool {
-    !line.iter().any(|byte| b",;".contains(byte)) && read_moment(line).is_some()
-}
-
-/// Splits a line into the timestamp at its beginning and the numbers after it; None if either is missing. A comma
-/// separates cells. If they are not separated by commas, as in `12:00:00,125 7 3`, there is no timestamp.
-pub(in crate::formats) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
-    let mark = if line.contains(&b';') { b';' } else { b',' };
-    let line = line.trim_ascii_start();
-    let end_of = |from: usize| {
-        let is_end = |&byte: &u8| byte == mark || byte.is_ascii_whitespace();
-        let end = line[from..].iter().position(is_end);
-        end.map(|end| from + end)
-    };
-    let first = end_of(0)?;
-    let is_clock = line[..first].contains(&b':');
-    if !is_clock && !line[..first].contains(&b'-') && !line[..first].contains(&b'/') {
-        return None;
-    }
-    // The timestamp may be a date, a blank and a time.
-    let end = if is_clock { first } else { end_of(first + 1)? };
-    let moment = read_moment(&line[..end])?;
-    let rest = line[end..].trim_ascii_start();
-    let Some(cells) = rest.strip_prefix(&[mark]) else {
-        return Some((moment, rest)).filter(|_| !rest.is_empty());
-    };
-    let digits = cells
-        .iter()
-        .take_while(|digit| digit.is_ascii_digit())
-        .count();
-    let may_be_fraction = mark == b',' && digits > 0 && !cells[digits..].contains(&b',');
-    (!may_be_fraction && !cells.trim_ascii().is_empty()).then_some((moment, cells))
 }
 
 /// Counts the midnights that clocks without a date pass: when the time falls by more than half a day.
@@ -424,38 +413,6 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_numbers_may_begin_with_a_moment() {
-        for (line, seconds, rest) in [
-            ("2024-05-01T12:00:00.5Z,1,2", 1_714_564_800.5, "1,2"),
-            ("2024-05-01 12:00:00,1,2,3", 1_714_564_800.0, "1,2,3"),
-            (" 2024/05/01 12:00:00 1 2", 1_714_564_800.0, "1 2"),
-            ("12:00:00, 1 2 3", 43_200.0, " 1 2 3"),
-            ("12:00:00.25\t-1", 43_200.25, "-1"),
-            ("12:00:00,,2", 43_200.0, ",2"),
-            ("12:00:00;1;2;3", 43_200.0, "1;2;3"),
-            ("12:00:00;1", 43_200.0, "1"),
-        ] {
-            let found = leading(line.as_bytes());
-            let found = found.map(|(moment, rest)| (moment.seconds, rest));
-            assert_eq!(found, Some((seconds, rest.as_bytes())), "{line}");
-        }
-        for line in [
-            "12:00:00,25;1,5;2",
-            "12:00:00,125 7 3",
-            "12:00:00,125",
-            "12:00:00",
-            "12:00:00,",
-            "2024-05-01,1,2",
-            "01/02/2024 12:00:00,1,2",
-            "-1 12:00:00 5",
-            "1 2 3",
-            "",
-        ] {
-            assert_eq!(leading(line.as_bytes()), None, "{line}");
-        }
-    }
-
-    #[test]
     fn moments_are_read() {
         for (text, seconds) in [
             ("1970-01-01T00:00:00Z", 0.0),
@@ -465,10 +422,11 @@ mod tests {
             ("2024-05-01t08:30:00-0330", 1_714_564_800.0),
             ("2024-02-29T23:59:60Z", 1_709_251_200.0),
             ("1969-12-31T23:59:59Z", -1.0),
+            ("2024-05-01", 1_714_521_600.0),
             ("12:00:00.5", 43_200.5),
             ("9:05:07", 32_707.0),
         ] {
-            let is_dated = text.len() > 12;
+            let is_dated = text.contains(['-', '/']);
             let expected = Moment { seconds, is_dated };
             assert_eq!(read_moment(text.as_bytes()), Some(expected), "{text}");
         }
@@ -480,7 +438,6 @@ mod tests {
             "",
             "12",
             "12:00",
-            "2024-05-01",
             "01.05.2024 12:00:00",
             "05/01/2024 12:00:00",
             "2024-13-01T00:00:00",
