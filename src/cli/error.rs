@@ -179,11 +179,7 @@ impl From<FileError> for CliError {
 
 impl From<ArchiveFileError> for CliError {
     fn from(error: ArchiveFileError) -> Self {
-        if error.exists() {
-            Self::Taken { name: error.name }
-        } else {
-            Self::SweepFile(error)
-        }
+        Self::SweepFile(error)
     }
 }
 

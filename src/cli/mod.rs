@@ -103,11 +103,7 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
         shelf,
         charset,
     };
-    let status = surroundings.run(request)?;
-    if let Some(complaint) = surroundings.shelf.complaint() {
-        note(&complaint, charset);
-    }
-    Ok(status)
+    surroundings.run(request)
 }
 
 struct Surroundings {

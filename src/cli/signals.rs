@@ -75,14 +75,6 @@ impl Signals {
         !self.stopped.load(Ordering::Relaxed)
     }
 
-    pub(crate) fn failure_or(&self, error: CliError) -> CliError {
-        if self.goes_on() {
-            error
-        } else {
-            self.failure()
-        }
-    }
-
     pub(crate) fn training_failure(&self, error: TrainingError) -> CliError {
         match error {
             TrainingError::Stopped => self.failure(),

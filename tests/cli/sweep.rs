@@ -294,7 +294,7 @@ fn the_memory_of_a_merge_is_limited() {
     let run = merge(&format!("--atlas {} --quiet", path("q.npz")));
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     let run = merge(&format!("--atlas {} --memory 1M", path("no.npz")));
-    let said = "of the 1.0M of memory allowed";
+    let said = "needs more memory than the 1.0M allowed";
     assert!(
         run.status == Some(1) && run.stderr.contains(said),
         "{}",

@@ -11,7 +11,7 @@ use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::sweep::Shard;
 use taxel_files::memory::MemorySize;
-use taxel_files::storage::{AtlasFile, Existing};
+use taxel_files::storage::{Existing, atlas_path};
 
 use crate::cli::arguments::flags::{
     self, Given, anchor, jobs, json, memory, misused, name_or_path, npy, option, quiet, range,
@@ -34,7 +34,7 @@ pub(crate) struct SweepArguments {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Wanted {
-    pub(crate) atlas: Option<AtlasFile>,
+    pub(crate) atlas: Option<PathBuf>,
     pub(crate) poses: Option<PathBuf>,
     pub(crate) existing: Existing,
     pub(crate) json: bool,
@@ -133,7 +133,7 @@ fn atlas() -> Arg {
         "FILE",
         "Write the atlas, a list of all imprints found, as\n.csv, .jsonl or .npz",
     )
-    .value_parser(OsStringValueParser::new().try_map(AtlasFile::new))
+    .value_parser(OsStringValueParser::new().try_map(|path| atlas_path(path)))
 }
 
 impl SweepArguments {
@@ -170,7 +170,7 @@ impl Wanted {
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let poses = matches.try_get_one::<PathBuf>("poses");
         Self {
-            atlas: matches.get_one::<AtlasFile>("atlas").cloned(),
+            atlas: matches.get_one::<PathBuf>("atlas").cloned(),
             poses: poses.ok().flatten().cloned(),
             existing: flags::existing(matches),
             json: matches.get_flag("json"),

@@ -41,7 +41,7 @@ impl ListLine {
     fn of(library: &Library, entry: LibraryEntry) -> Option<Self> {
         let found = match library.load(&entry.name) {
             Ok(loaded) => Ok(ShapeSummary::of(loaded)),
-            Err(LibraryError::Unknown { .. }) => return None,
+            Err(LibraryError::Unknown(_)) => return None,
             Err(error) => Err(shortened_message(&error.to_string())),
         };
         Some(Self {
@@ -197,7 +197,7 @@ fn restoring(shelf: &Shelf, name: &str) -> Option<String> {
 }
 
 pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
-    let restored = shelf.library()?.restore(name);
+    let restored = shelf.library()?.restore(Some(name));
     let name = restored.map_err(|error| shelf.refused(error))?;
     Ok(format!("restored {name}\n"))
 }
@@ -265,10 +265,10 @@ pub(crate) fn check(
     let mut findings: Vec<Finding> = broken.collect();
     let broken = findings.len();
     findings.extend(names);
-    let leftovers = library.leftovers()?;
-    findings.extend(leftovers.into_iter().map(|(path, reason)| {
-        let path = path.display().to_string();
-        Finding::OtherFile { path, reason }
+    let foreign = library.foreign_files()?;
+    findings.extend(foreign.into_iter().map(|path| Finding::OtherFile {
+        path: path.display().to_string(),
+        reason: "not a shape: its name is not NAME.json",
     }));
     let text = if as_json {
         json::ascii(&findings) + "\n"

@@ -27,7 +27,7 @@ use taxel_files::storage::{
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::model::{ModelTarget, TrainArguments};
-use crate::cli::commands::{Summary, unless_stopped};
+use crate::cli::commands::Summary;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::{self, Shelf};
 use crate::cli::output::charset::{Charset, note};
@@ -43,29 +43,33 @@ pub(crate) fn train(
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<Summary, CliError> {
-    let path = path_of(&asked.to, shelf)?;
+    if let ModelTarget::Named(name) = &asked.to
+        && !ModelChoice::from_name(name.clone()).is_read()
+    {
+        return Err(CliError::BuiltInSet { name: name.clone() });
+    }
     let shapes = shapes::read_set(&asked.set, shelf)?;
     let grid = TrainingGrid::of(asked, &shapes)?;
     let (sensor, anchor, ranges) = (grid.sensor, grid.anchor, grid.ranges);
     let signals = Signals::catch()?;
-    let stopped = &signals.stopped;
     let training = Training::new(shapes, sensor, anchor, ranges)?
         .with_shard(asked.shard)
         .allow_cut(asked.allow_cut);
-    if let ModelTarget::Named(_) = &asked.to {
-        folder(shelf)?.make()?;
+    match &asked.to {
+        ModelTarget::File(path) => check_writable(path, asked.existing)?,
+        ModelTarget::Named(name) => folder(shelf)?.check(name, asked.existing)?,
     }
-    check_writable(&path, asked.existing)?;
     if !asked.quiet {
         note(&grid_text(&sensor, anchor, &ranges), charset);
     }
     let model = run(training, asked, grid.remedy, &signals, charset)?;
-    let saved = save_model(&model, &path, asked.existing, stopped);
-    let written = unless_stopped(saved.map_err(|error| match error {
-        error if error.exists() => error.into(),
-        error => signals.failure_or(error.into()),
-    }))?;
-    let text = trained(&model, &path, written.is_ok(), asked, charset);
+    let saved = match &asked.to {
+        ModelTarget::File(path) => save_model(&model, path, asked.existing).map(|()| path.clone()),
+        ModelTarget::Named(name) => folder(shelf)?.save(&model, name, asked.existing),
+    };
+    let written = saved.map_err(CliError::from);
+    let text = trained(&model, written.as_deref().ok(), asked, charset);
+    let written = written.map(drop);
     Ok(Summary { text, written })
 }
 
@@ -93,38 +97,25 @@ fn run(
 
 fn trained(
     model: &Model,
-    path: &Path,
-    is_written: bool,
+    written: Option<&Path>,
     asked: &TrainArguments,
     charset: Charset,
 ) -> String {
     let limit = Evaluation::of(model);
-    let name = path.to_string_lossy();
+    let name = written.map(Path::to_string_lossy);
     if asked.json {
         let mut text = card_json(model, &limit);
-        if is_written {
+        if let Some(name) = name {
             text.insert("file".to_owned(), json!(name));
         }
         json::ascii(&text) + "\n"
     } else {
         let mut text = evaluation::summary(&limit, NamedBy::Imprint);
-        if is_written && !asked.quiet {
+        if let Some(name) = name.filter(|_| !asked.quiet) {
             let said = charset.line(&format!("written: {name}")).into_owned();
             text.insert_str(0, &(said + "\n"));
         }
         text
-    }
-}
-
-fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
-    match target {
-        ModelTarget::File(path) => Ok(path.clone()),
-        ModelTarget::Named(name) => {
-            if !ModelChoice::from_name(name.clone()).is_read() {
-                return Err(CliError::BuiltInSet { name: name.clone() });
-            }
-            Ok(folder(shelf)?.file(name))
-        }
     }
 }
 
@@ -144,25 +135,20 @@ fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
 }
 
 fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
-    Ok(ModelFolder::beside(shelf.library()?.folder()))
+    Ok(ModelFolder::of(shelf.library()?.folder()))
 }
 
 fn stored(shelf: &Shelf) -> Result<Vec<(Name, PathBuf)>, CliError> {
     let Ok(models) = folder(shelf) else {
         return Ok(Vec::new());
     };
-    let names = models.names()?.into_iter();
-    let with_file = |name| {
-        let path = models.file(&name);
-        (name, path)
-    };
-    Ok(names.map(with_file).collect())
+    Ok(models.list()?)
 }
 
-/// Returns true if there is a model of this name beside the library. The file is not opened: a damaged model counts
+/// Returns true if there is a model of this name in the library. The file is not opened: a damaged model counts
 /// too.
 pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
-    folder(shelf).is_ok_and(|models| models.file(name).exists())
+    folder(shelf).is_ok_and(|models| models.find(name).is_some())
 }
 
 /// A model that was found but may have to be trained first, so that other errors can be reported before a training.
@@ -218,7 +204,10 @@ fn found(
     load: &dyn Fn(&Path) -> Result<Model, ArchiveFileError>,
 ) -> Result<FoundModel, CliError> {
     let path = match choice(which, shelf)? {
-        ModelChoice::Stored(name) => folder(shelf)?.file(&name),
+        ModelChoice::Stored(name) => {
+            let path = folder(shelf)?.find(&name);
+            path.ok_or_else(|| unknown(which, shelf))?
+        }
         ModelChoice::File(path) => path,
         own => {
             let training = own.training().ok_or_else(|| unknown(which, shelf))?;
@@ -247,8 +236,7 @@ pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliErr
 }
 
 fn unknown(which: &OsStr, shelf: &Shelf) -> CliError {
-    let stored = folder(shelf).ok().and_then(|models| models.names().ok());
-    let stored: Vec<Name> = stored.into_iter().flatten().collect();
+    let stored = folder(shelf).map_or_else(|_| Vec::new(), |models| models.names());
     CliError::NoSet(unknown_set(&which.to_string_lossy(), &stored))
 }
 
@@ -390,7 +378,7 @@ fn card_json(model: &Model, limit: &Evaluation) -> serde_json::Map<String, serde
     card
 }
 
-/// Lists the built-in models, which are trained when they are first used, and those beside the library, sorted by name.
+/// Lists the built-in models, which are trained when they are first used, and those of the library, sorted by name.
 /// If a model cannot be read, the reason takes the place of the numbers. The JSON lists only models in files.
 /// ```text
 /// figures: built in
@@ -442,20 +430,17 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
 
 /// Deletes a model. Unlike a shape of the library, it does not go to the trash: it can be trained again.
 pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
-    match folder(shelf)?.delete(name) {
-        Err(error) if error.is_missing() => {
-            let name = name.clone();
-            Err(if ModelChoice::from_name(name.clone()).is_read() {
-                let stored = folder(shelf)?.names()?;
-                let near = did_you_mean(name.as_str(), stored.iter().map(Name::as_str));
-                let name = name.to_string();
-                CliError::NoModel { name, near }
-            } else {
-                CliError::BuiltInModel { name }
-            })
-        }
-        deleted => Ok(format!("deleted {}\n", deleted?)),
+    let models = folder(shelf)?;
+    if let Some(deleted) = models.delete(name)? {
+        return Ok(format!("deleted {deleted}\n"));
     }
+    let name = name.clone();
+    if !ModelChoice::from_name(name.clone()).is_read() {
+        return Err(CliError::BuiltInModel { name });
+    }
+    let near = did_you_mean(name.as_str(), models.names().iter().map(Name::as_str));
+    let name = name.to_string();
+    Err(CliError::NoModel { name, near })
 }
 
 pub(super) struct TrainingGrid {

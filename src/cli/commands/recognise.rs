@@ -214,7 +214,7 @@ impl Recogniser<'_> {
         else {
             return Ok(None);
         };
-        let memory = MemoryGuard::of_pose_search();
+        let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
         let estimate = memory.limit(&ToTheEnd, |progress| {
             self.model.pose_of(shape, touch, progress)
         });

@@ -25,8 +25,8 @@ use taxel_files::formats::value::{counted, grouped};
 use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
-    ArchiveFileError, AtlasFile, NewFile, PoseFile, load_atlas, load_model, open_archive,
-    save_model,
+    self, ArchiveFileError, FileError, NewFile, PoseFile, check_writable, load_atlas, load_model,
+    save_model, write_atlas,
 };
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
@@ -44,8 +44,7 @@ use crate::cli::signals::{self, Signals};
 
 impl Wanted {
     pub(super) fn note_written(&self, summary: &Summary, charset: Charset) {
-        let atlas = self.atlas.as_ref().map(AtlasFile::path);
-        let files = atlas.into_iter().chain(self.poses.as_deref());
+        let files = self.atlas.iter().chain(&self.poses);
         for path in files.filter(|_| summary.written.is_ok() && !self.quiet) {
             note(&written(path), charset);
         }
@@ -102,11 +101,10 @@ pub(crate) fn sweep(
     let start = Instant::now();
     let signals = Signals::catch()?;
     if let Some(file) = &wanted.atlas {
-        file.check(wanted.existing)?;
+        check_writable(file, wanted.existing)?;
     }
     let pool = signals::pool(jobs)?;
     let memory = MemoryGuard::new(wanted.memory, TOO_LITTLE_MEMORY);
-    memory.check(grid).map_err(CliError::Memory)?;
     let new = |path| PoseFile::new(path, grid, wanted.existing);
     let mut poses = wanted.poses.as_ref().map(new).transpose()?;
     let display = ProgressDisplay::new(shard.poses(grid), wanted.quiet, charset);
@@ -135,7 +133,7 @@ pub(super) fn leave(
     result: &SweepResult,
     start: Instant,
     wanted: &Wanted,
-    poses: Result<Option<NewFile>, ArchiveFileError>,
+    poses: Result<Option<NewFile>, FileError>,
     charset: Charset,
     signals: &Signals,
 ) -> Result<Summary, CliError> {
@@ -155,7 +153,7 @@ fn write(
 ) -> Result<(), CliError> {
     let atlas = match &wanted.atlas {
         Some(file) => {
-            let whole = file.prepare(result, wanted.existing, &signals.stopped);
+            let whole = write_atlas(file, result, wanted.existing);
             if !signals.goes_on() {
                 return Err(signals.failure());
             }
@@ -164,7 +162,7 @@ fn write(
         None => None,
     };
     for file in [atlas, poses].into_iter().flatten() {
-        file.persist().map_err(ArchiveFileError::from)?;
+        file.persist()?;
     }
     Ok(())
 }
@@ -187,7 +185,7 @@ struct Part {
 impl Part {
     fn of(path: &Path) -> Result<Self, ArchiveFileError> {
         let refused = |error| ArchiveFileError::new(path, error);
-        let file = open_archive(path)?;
+        let file = storage::open(path)?;
         let kind = archive_kind(BufReader::new(file)).map_err(refused)?;
         Ok(Self {
             path: path.to_owned(),
@@ -215,8 +213,7 @@ impl Part {
 
 /// Refuses to replace one of the shards by the result: the shards could not be merged again.
 fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
-    let written = wanted.atlas.as_ref().map(AtlasFile::path);
-    let written = written.into_iter().chain(wanted.poses.as_deref());
+    let written = wanted.atlas.iter().chain(&wanted.poses);
     for written in written.filter_map(|path| path.canonicalize().ok()) {
         let own = |path: &&PathBuf| path.canonicalize().is_ok_and(|path| path == written);
         if let Some(path) = files.iter().find(own) {
@@ -281,7 +278,7 @@ pub(crate) fn merge(
 ) -> Result<Summary, CliError> {
     let start = Instant::now();
     if let Some(file) = &wanted.atlas {
-        file.check(wanted.existing)?;
+        check_writable(file, wanted.existing)?;
     }
     check_no_shard(files, wanted)?;
     let parts = files.iter().map(|path| Part::of(path));
@@ -300,7 +297,7 @@ pub(crate) fn merge(
         "allow more (--memory), or merge on a machine that has more",
     );
     let summary = if is_model {
-        leave_model(&models(&parts, wanted, &memory)?, wanted)?
+        leave_model(&models(&parts, wanted, &memory)?, wanted)
     } else {
         let result = sweeps(&parts, &memory)?;
         // Until here nothing is written, so a signal may just end the program.
@@ -313,7 +310,7 @@ pub(crate) fn merge(
 
 fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     match &wanted.atlas {
-        Some(file) => model_file(file.path()),
+        Some(file) => model_file(file),
         None => Ok(()),
     }
 }
@@ -333,7 +330,7 @@ fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError>
             MergeError::Order(ShardOrderError::Twice { .. }) => part.refused(&error),
             other => other.into(),
         })?;
-        memory.check_merge().map_err(CliError::Memory)?;
+        memory.check().map_err(CliError::Memory)?;
     }
     Ok(merge.finish()?)
 }
@@ -358,18 +355,14 @@ fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model
             ModelError::Shards(ShardOrderError::Twice { .. }) => part.refused(&error),
             other => TrainingError::from(other).into(),
         })?;
-        memory.check_merge().map_err(CliError::Memory)?;
+        memory.check().map_err(CliError::Memory)?;
     }
     Ok(merge.finish().map_err(TrainingError::from)?)
 }
 
-fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
-    let signals = Signals::catch()?;
-    let saved = wanted.atlas.as_ref().map_or(Ok(()), |file| {
-        let saved = save_model(model, file.path(), wanted.existing, &signals.stopped);
-        saved.map_err(|error| signals.failure_or(error.into()))
-    });
-    let written = unless_stopped(saved)?;
+fn leave_model(model: &Model, wanted: &Wanted) -> Summary {
+    let save = |file: &PathBuf| Ok(save_model(model, file, wanted.existing)?);
+    let written = wanted.atlas.as_ref().map_or(Ok(()), save);
     let limit = Evaluation::of(model);
     let text = if wanted.json {
         json::ascii(&EvaluationJson {
@@ -379,5 +372,5 @@ fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
     } else {
         evaluation::summary(&limit, evaluation::NamedBy::Imprint)
     };
-    Ok(Summary { text, written })
+    Summary { text, written }
 }

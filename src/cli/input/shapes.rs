@@ -8,7 +8,7 @@ use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex};
 
 use taxel_core::figure::{Figure, FigureKind};
 use taxel_core::imprint::Imprint;
@@ -17,7 +17,7 @@ use taxel_core::picture::Picture;
 use taxel_core::quote::as_argument;
 use taxel_core::recognition::NamedShape;
 use taxel_core::sensor::Sensor;
-use taxel_files::formats::file::{has_ending, system_reason, without_mark};
+use taxel_files::formats::file::{has_ending, is_missing, system_reason, without_mark};
 use taxel_files::formats::name::folded;
 use taxel_files::formats::{Content, ShapeLookup, StoredShape, named_shape};
 use taxel_files::storage::{Existing, Expected, Library, LibraryError};
@@ -32,7 +32,6 @@ pub(crate) struct Shelf {
     /// The folder of the library; None if the user has no home.
     folder: Option<PathBuf>,
     asked: bool,
-    library: OnceLock<Option<Library>>,
     /// The imprints that [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked
     /// up.
     found: Arc<Mutex<HashMap<String, Imprint>>>,
@@ -56,31 +55,18 @@ impl Shelf {
         Self {
             folder,
             asked,
-            library: OnceLock::new(),
             found: Arc::default(),
         }
     }
 
     pub(crate) fn library(&self) -> Result<Library, LibraryError> {
-        let library = || self.folder.clone().map(Library::open);
-        let library = self.library.get_or_init(library);
-        library.clone().ok_or(LibraryError::NoPlace)
+        let folder = self.folder.clone().ok_or(LibraryError::NoPlace)?;
+        Ok(Library::open(folder))
     }
 
     pub(crate) fn readable(&self) -> Library {
         self.library()
             .unwrap_or_else(|_| Library::open(PathBuf::from(NO_FOLDER)))
-    }
-
-    /// Returns a warning that only the shapes that come with the program can be read, if the library was used and a
-    /// file is in the place of a folder above it.
-    pub(crate) fn complaint(&self) -> Option<String> {
-        let library = self.library.get()?.as_ref()?;
-        let file = library.file_above()?;
-        Some(format!(
-            "warning: {}: a file, expected a folder for the library: only shipped shapes can be read",
-            file.display()
-        ))
     }
 
     /// Returns the library that `--library` names; None if it is not given: scripts then use an empty library of
@@ -93,7 +79,6 @@ impl Shelf {
     /// may be mistyped.
     pub(crate) fn missing_folder(&self) -> Option<&Path> {
         let folder = self.folder.as_deref().filter(|_| self.asked)?;
-        let is_missing = |error: &std::io::Error| error.kind() == ErrorKind::NotFound;
         (folder.metadata().as_ref().err().is_some_and(is_missing)).then_some(folder)
     }
 
@@ -119,7 +104,7 @@ impl Shelf {
         let nowhere = match named {
             Some(Ok(loaded)) => return Ok(Located::Shape(loaded.shape)),
             // A similar name is searched only if there is no such file.
-            Some(Err(LibraryError::Unknown { name })) => {
+            Some(Err(LibraryError::Unknown(name))) => {
                 let near = String::new();
                 Some(CliError::Nowhere { name, near })
             }
@@ -149,7 +134,7 @@ impl Shelf {
     fn near_or_figure(&self, name: &str) -> String {
         match name.parse::<FigureKind>() {
             Ok(_) => format!("; {name:?} is a figure, which taxel figure and taxel sweep take"),
-            Err(_) => self.suggestion(&LibraryError::Unknown { name: name.into() }),
+            Err(_) => self.suggestion(&LibraryError::Unknown(name.into())),
         }
     }
 
@@ -165,7 +150,7 @@ impl Shelf {
         }
         if !matches!(
             error,
-            LibraryError::Unknown { .. } | LibraryError::NotInTrash { .. }
+            LibraryError::Unknown(_) | LibraryError::NotInTrash(_)
         ) {
             return error.into();
         }
@@ -180,7 +165,7 @@ impl Shelf {
         if !similar.is_empty() {
             return similar;
         }
-        if matches!(error, LibraryError::NotInTrash { .. }) {
+        if matches!(error, LibraryError::NotInTrash(_)) {
             return String::new();
         }
         let command = self.library_command("list");
@@ -224,10 +209,11 @@ impl Shelf {
     /// shape of that name is replaced.
     pub(crate) fn save(&self, shape: &StoredShape, existing: Existing) -> Result<String, CliError> {
         let library = self.library()?;
-        let saved = match library.save(shape, Expected::Nothing) {
-            Err(LibraryError::Exists { stamp, .. }) if existing == Existing::Replaced => {
-                library.save(shape, Expected::Stamp(stamp))
-            }
+        let expected = match existing {
+            Existing::Replaced => Expected::Anything,
+            Existing::Kept => Expected::Nothing,
+        };
+        let saved = match library.save(shape, expected) {
             Err(LibraryError::Exists { name, .. }) => return Err(CliError::Taken { name }),
             saved => saved,
         };
@@ -272,13 +258,13 @@ pub(crate) fn read_set(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedS
 /// that gives one; a folder of that name is mentioned.
 fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     let kind = match &error {
-        LibraryError::Unknown { name } => name.parse().ok(),
+        LibraryError::Unknown(name) => name.parse().ok(),
         _ => None,
     };
     let Some(kind) = kind else {
         return match error {
-            LibraryError::Unknown { name } if Path::new(&name).is_dir() => CliError::NoShape {
-                error: LibraryError::Unknown { name },
+            LibraryError::Unknown(name) if Path::new(&name).is_dir() => CliError::NoShape {
+                error: LibraryError::Unknown(name),
                 near: "; there is a folder of this name, but a set is a file".to_owned(),
             },
             error => shelf.refused(error),
@@ -385,7 +371,6 @@ mod tests {
         assert!(shelf.imprint("washer").is_ok());
         assert!(!shelf.readable().list().expect("shipped shapes").is_empty());
         assert!(matches!(shelf.library(), Err(LibraryError::NoPlace)));
-        assert_eq!(shelf.complaint(), None);
     }
 
     #[test]

@@ -13,7 +13,7 @@ use clap::ArgMatches;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_files::formats::file::{is_missing, system_reason};
-use taxel_files::storage::location;
+use taxel_files::storage::{LIBRARY_VARIABLE, below_home, library_folder};
 
 use crate::cli::arguments::flags::Given;
 use crate::cli::error::CliError;
@@ -125,10 +125,10 @@ impl Effective {
         let ascii = chosen.ascii.then_some(Choice::Made(true));
         let library = chosen
             .library
-            .or_else(|| set(location::VARIABLE).map(PathBuf::from));
+            .or_else(|| set(LIBRARY_VARIABLE).map(PathBuf::from));
         let library = library.or_else(|| match &config.library {
-            Some(own) => location::below_home(own),
-            None => location::folder(None, None).ok(),
+            Some(own) => below_home(own),
+            None => library_folder(None, None).ok(),
         });
         let sensor = chosen.sensor.sensor(*config.sensor())?;
         let is_pitched = chosen.sensor.has(Parameter::Pitch)

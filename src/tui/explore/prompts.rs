@@ -6,7 +6,7 @@ use taxel_core::atlas::{AtlasFilter, FilterError};
 use taxel_core::quote::{joined, shortened};
 use taxel_files::formats::file::has_ending;
 use taxel_files::formats::value::grouped;
-use taxel_files::storage::{AtlasFile, is_poses};
+use taxel_files::storage::{atlas_path, is_poses};
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::Dialog;
@@ -163,7 +163,7 @@ impl ExportKind {
     }
 
     fn takes(name: &str) -> bool {
-        is_poses(name) || has_ending(name, "svg") || AtlasFile::new(name).is_ok()
+        is_poses(name) || has_ending(name, "svg") || atlas_path(name).is_ok()
     }
 }
 

@@ -2,12 +2,14 @@
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
+use std::time::SystemTime;
+
 use taxel_core::imprint::Imprint;
 use taxel_core::pose::{Axis, DecimalRange, PoseGrid, Ranges};
 use taxel_core::recognition::{Evaluation, Model, below};
 use taxel_core::sensor::Sensor;
 use taxel_core::touch::Plane;
-use taxel_files::storage::{FileVersion, ModelChoice};
+use taxel_files::storage::ModelChoice;
 
 use crate::tui::recognise::confusion::Examples;
 
@@ -15,8 +17,8 @@ use crate::tui::recognise::confusion::Examples;
 pub struct TrainedModel {
     pub choice: ModelChoice,
     pub model: Model,
-    /// The version of the file that it was read from; None for a model that was not read from a file.
-    pub version: Option<FileVersion>,
+    /// The length and the time of the file that it was read from; None for a model that was not read from a file.
+    pub version: Option<(u64, SystemTime)>,
     pub evaluation: Evaluation,
     pub examples: Examples,
     /// The number of random poses in hundredths of a cell and whole degrees that leave an imprint which the model does
@@ -33,7 +35,7 @@ impl PartialEq for TrainedModel {
 }
 
 impl TrainedModel {
-    pub fn new(choice: ModelChoice, model: Model, version: Option<FileVersion>) -> Self {
+    pub fn new(choice: ModelChoice, model: Model, version: Option<(u64, SystemTime)>) -> Self {
         Self {
             evaluation: Evaluation::of(&model),
             examples: Examples::of(&model),

@@ -41,9 +41,7 @@ use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::disk::files::WriteAccess;
 use crate::tui::runtime::disk::journal_writer::JournalWriter;
 use crate::tui::runtime::disk::queue::DiskQueue;
-use crate::tui::runtime::disk::request::{
-    DiskAnswer, DiskRequest, Reminders, newest_orphan, not_recorded,
-};
+use crate::tui::runtime::disk::request::{DiskAnswer, DiskRequest, Reminders, not_recorded};
 use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork, TerminalEffect};
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::work::execution::PATIENCE;
@@ -71,7 +69,8 @@ fn temporary_folder() -> io::Result<TempDir> {
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
 pub struct World {
-    orphan: Option<(Box<Orphan>, usize)>,
+    /// The unsaved work to offer, one after the other, the last one first.
+    orphans: Vec<Orphan>,
     journal: JournalWriter,
     /// The reminders from run to run; None if nothing is remembered.
     reminders: Option<Reminders>,
@@ -85,8 +84,8 @@ pub struct World {
 impl World {
     pub fn new(library: Library) -> Self {
         Self {
-            journal: JournalWriter::new(library.clone()),
-            orphan: newest_orphan(&library),
+            journal: JournalWriter::new(&library),
+            orphans: Orphan::all(&library),
             reminders: Some(Reminders::of(&library)),
             ..Self::for_script(library)
         }
@@ -99,7 +98,7 @@ impl World {
         Self {
             disk: DiskQueue::new(library),
             later: VecDeque::new(),
-            orphan: None,
+            orphans: Vec::new(),
             reminders: None,
             journal: JournalWriter::idle(),
             workers,
@@ -128,10 +127,9 @@ impl World {
         for shape in shapes {
             library.save(shape, Expected::Nothing).map_err(sentence)?;
         }
-        for leftover in leftovers {
-            // A dropped journal leaves its work behind, as a crash does.
-            Journal::new(&library).keep(leftover).map_err(sentence)?;
-        }
+        let leftovers: Vec<StoredShape> = leftovers.iter().copied().cloned().collect();
+        // A dropped journal leaves its work behind, as a crash does.
+        (Journal::new(&library).keep(leftovers)).map_err(|error| error.to_string())?;
         Ok(Self {
             _scratch: Some(folder),
             ..Self::new(library)
@@ -193,10 +191,10 @@ impl World {
 
     /// Returns the offer of unsaved work, None if there is none.
     fn left(&self) -> Option<Leftover> {
-        let (orphan, waiting) = self.orphan.as_ref()?;
+        let orphan = self.orphans.last()?;
         Some(Leftover {
             what: disk::request::described(orphan),
-            waiting: *waiting,
+            waiting: self.orphans.len(),
         })
     }
 
@@ -436,17 +434,18 @@ impl World {
                 LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
                     LibraryEvent::Differs(shape, stamp, error.to_string())
                 }
-                LibraryError::Shipped { name } => {
+                LibraryError::Shipped(name) => {
                     let text = "is the name of a shipped shape; choose another";
                     LibraryEvent::NotStored(format!("{name} {text}"))
                 }
                 _ => LibraryEvent::NotStored(error.to_string()),
             },
-            DiskAnswer::FoundWork(found) => {
-                self.orphan = found;
-                LibraryEvent::Found(self.left()?)
+            DiskAnswer::ThrownAway(Ok(name)) => LibraryEvent::GivenUp(name, self.left()),
+            DiskAnswer::ThrownAway(Err(error)) => {
+                // The rest is offered again at the next start, too.
+                self.orphans.clear();
+                LibraryEvent::NotGivenUp(error.to_string())
             }
-            DiskAnswer::ThrownAway(thrown, next) => self.given_up(thrown, next),
             DiskAnswer::File(event) => return Some(Message::File(event)),
             DiskAnswer::Library(event) => event,
             DiskAnswer::Recording(number, begun) => return Some(self.recording(number, begun)),
@@ -476,32 +475,22 @@ impl World {
     }
 
     fn recover(&mut self) -> Message {
-        let Some((orphan, _)) = self.orphan.take() else {
+        let Some(orphan) = self.orphans.pop() else {
             return no_work_left();
         };
         let shape = orphan.shape.clone();
         // The work is put into this program's journal before it is taken out of the other one.
-        self.journal.adopt(*orphan);
-        self.disk.change(DiskRequest::FindWork);
+        self.journal.adopt(orphan);
+        if let Some(next) = self.greeting() {
+            self.later.push_back(next);
+        }
         Message::Library(LibraryEvent::Recovered(Box::new(shape)))
     }
 
     fn give_up(&mut self, app: &App) -> Option<Message> {
-        match self.orphan.take() {
-            Some((orphan, _)) => self.change(app, DiskRequest::ThrowAway(orphan)),
+        match self.orphans.pop() {
+            Some(orphan) => self.change(app, DiskRequest::ThrowAway(Box::new(orphan))),
             None => Some(no_work_left()),
-        }
-    }
-
-    fn given_up(
-        &mut self,
-        thrown: Result<String, LibraryError>,
-        next: Option<(Box<Orphan>, usize)>,
-    ) -> LibraryEvent {
-        self.orphan = next;
-        match thrown {
-            Ok(name) => LibraryEvent::GivenUp(name, self.left()),
-            Err(error) => LibraryEvent::NotGivenUp(error.to_string()),
         }
     }
 }

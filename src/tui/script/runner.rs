@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use taxel_core::quote::shortened;
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{DescribedImprint, StoredShape};
-use taxel_files::storage::{Library, location};
+use taxel_files::storage::{Library, below_home};
 
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::{App, Options};
@@ -462,7 +462,7 @@ impl<'a> ScriptStart<'a> {
                     .to_owned());
             }
             ScriptSetting::Library(folder) => {
-                let folder = location::below_home(&folder.to_string_lossy())
+                let folder = below_home(&folder.to_string_lossy())
                     .ok_or("no home folder, so ~ cannot be used")?;
                 self.library = Some((line, Library::open(folder)));
             }

@@ -166,7 +166,7 @@ fn on_recovered(app: &mut App, shape: &StoredShape) {
             origin.called(format!("{taxels} restored"))
         }
         name => {
-            let is_shipped = shipped::has(&shape.name);
+            let is_shipped = shipped::get(name).is_some();
             let proposed = is_shipped.then(|| name_of_copy(name));
             let proposed = proposed.unwrap_or_else(|| name.to_owned());
             origin

@@ -5,12 +5,11 @@ use std::path::{Path, PathBuf};
 
 use crate::error::ReadError;
 use crate::formats::ArchiveError;
-use crate::formats::file::write_reason;
-use crate::formats::file::{is_missing, system_reason};
+use crate::formats::file::{is_missing, system_reason, write_reason};
 
 /// The error for an operation on a file that the system refused.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: cannot {doing}: {}", path.display(), system_reason(error))]
+#[error("{}: cannot {doing}: {}", path.display(), self.reason())]
 pub struct FileError {
     /// The operation, in words that follow "cannot".
     pub doing: &'static str,
@@ -30,6 +29,13 @@ impl FileError {
         }
     }
 
+    fn reason(&self) -> String {
+        match self.doing {
+            "write" => write_reason(&self.error),
+            _ => system_reason(&self.error),
+        }
+    }
+
     /// Whether there is a file already, which was to be kept.
     pub fn exists(&self) -> bool {
         self.error.kind() == io::ErrorKind::AlreadyExists
@@ -41,50 +47,27 @@ impl FileError {
     }
 }
 
-/// The error for a file of a sweep or a model that cannot be written or read.
+/// The error for a file of a sweep or a model that cannot be read.
 #[derive(Debug, thiserror::Error)]
-#[error("{name}: {error}")]
-pub struct ArchiveFileError {
-    /// The file's name.
-    pub name: String,
-    /// The problem.
-    pub error: ArchiveError,
-}
-
-impl From<FileError> for ArchiveFileError {
-    fn from(error: FileError) -> Self {
-        let path = error.path.clone();
-        Self::doing("write", &path, &error.error)
-    }
+pub enum ArchiveFileError {
+    /// The system refused.
+    #[error(transparent)]
+    System(#[from] FileError),
+    /// The content is wrong.
+    #[error("{}: {error}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// The problem with the content.
+        error: ArchiveError,
+    },
 }
 
 impl ArchiveFileError {
-    /// Creates an error about a file.
-    pub fn new(path: &Path, error: impl Into<ArchiveError>) -> Self {
-        Self {
-            name: path.to_string_lossy().into_owned(),
-            error: error.into(),
-        }
-    }
-
-    /// Creates the error for an operation that the system refused, in words that follow "cannot".
-    pub(crate) fn doing(doing: &str, path: &Path, error: &io::Error) -> Self {
-        let reason = match doing {
-            "write" => write_reason(error),
-            _ => system_reason(error),
-        };
-        let text = format!("cannot {doing}: {reason}");
-        Self::new(path, io::Error::new(error.kind(), text))
-    }
-
-    /// Whether there is no such file, or if a file is where a folder is expected.
-    pub fn is_missing(&self) -> bool {
-        matches!(&self.error, ArchiveError::Io(error) if is_missing(error))
-    }
-
-    /// Whether a file of that name is there already, and was to be kept.
-    pub fn exists(&self) -> bool {
-        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
+    /// Creates an error about the content of a file.
+    pub fn new(path: &Path, error: ArchiveError) -> Self {
+        let path = path.to_owned();
+        Self::Content { path, error }
     }
 }
 
@@ -95,32 +78,14 @@ pub enum LibraryError {
     #[error(transparent)]
     Name(#[from] ReadError),
     /// No shape has that name.
-    #[error("no shape named {name:?}")]
-    Unknown {
-        /// The given name.
-        name: String,
-    },
+    #[error("no shape named {0:?}")]
+    Unknown(String),
     /// No shape in the trash has that name.
-    #[error("no shape named {name:?} in the trash")]
-    NotInTrash {
-        /// The given name.
-        name: String,
-    },
-    /// The trash is empty.
-    #[error("the trash is empty")]
-    TrashEmpty,
+    #[error("no shape named {0:?} in the trash")]
+    NotInTrash(String),
     /// The shape comes with the program and cannot be changed.
-    #[error("{name:?} comes with taxel and cannot be replaced; choose another name")]
-    Shipped {
-        /// The name of the shape.
-        name: String,
-    },
-    /// The shape comes with the program and cannot be deleted.
-    #[error("{name:?} comes with taxel and cannot be deleted")]
-    NotDeletable {
-        /// The name of the shape.
-        name: String,
-    },
+    #[error("{0:?} comes with taxel and cannot be replaced; choose another name")]
+    Shipped(String),
     /// The name is taken.
     #[error("{name:?} already exists")]
     Exists {
@@ -137,51 +102,13 @@ pub enum LibraryError {
         /// The stamp of the file's present content.
         stamp: u64,
     },
-    /// The path is taken by something of another kind than expected: a folder instead of a file, for example.
-    #[error("{}: is {what}, expected {expected}", path.display())]
-    InTheWay {
-        /// The path.
-        path: PathBuf,
-        /// The kind of thing that is there.
-        what: &'static str,
-        /// The kind of thing that is expected.
-        expected: &'static str,
-    },
-    /// The file does not hold a shape.
-    #[error("{}: {error}", path.display())]
-    Broken {
-        /// The file.
-        path: PathBuf,
-        /// The problem with the content.
-        error: ReadError,
-    },
     /// The system refused.
     #[error(transparent)]
     System(#[from] FileError),
     /// No folder was named, and the system does not say where a user's data belong.
     #[error("no home folder to keep the library in")]
     NoPlace,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_file_below_a_file_is_missing_to_every_command() {
-        for (kind, is_missing) in [
-            (io::ErrorKind::NotFound, true),
-            (io::ErrorKind::NotADirectory, true),
-            (io::ErrorKind::PermissionDenied, false),
-        ] {
-            let path = Path::new("a");
-            let file = FileError::new("read it", path, kind.into());
-            let archive = ArchiveFileError::doing("read", path, &kind.into());
-            assert_eq!(
-                [file.is_missing(), archive.is_missing()],
-                [is_missing; 2],
-                "{kind}"
-            );
-        }
-    }
+    /// Anything else, in a sentence.
+    #[error("{0}")]
+    Refused(String),
 }

@@ -5,7 +5,8 @@
 //! that is killed leaves its temporary file; a program that writes into the folder a day later removes it.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File, FileType, Metadata};
+use std::ffi::OsString;
+use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -14,6 +15,7 @@ use std::time::Duration;
 use taxel_core::lock::locked;
 use tempfile::{Builder, TempPath};
 
+use crate::formats::file::is_missing;
 use crate::storage::error::FileError;
 
 /// The beginning of the name of a temporary file.
@@ -68,19 +70,25 @@ impl NewFile {
     /// file, or the system's error.
     pub fn begin(path: &Path, existing: Existing) -> Result<Self, FileError> {
         let folder = folder_of(path);
-        // Reported before the work, not after it.
-        let old = replaced(path, existing)?;
         remove_abandoned(folder);
-        let options = options(old.is_some());
-        let mut builder = Builder::new();
-        builder.prefix(PREFIX).rand_bytes(8);
-        // Not with the builder's own method: its error names the temporary file.
-        let made = builder.make_in(folder, |path| options.open(path));
-        let made = made.map_err(|error| FileError::new("write into its folder", path, error))?;
-        let (file, temporary) = made.into_parts();
-        if let Some(old) = old {
-            keep_mode(&file, &old);
-        }
+        let begin = || {
+            // Reported before the work, not after it.
+            let old = replaced(path, existing)?;
+            let mut builder = Builder::new();
+            builder.prefix(PREFIX).rand_bytes(8);
+            // Not with the builder's own method: its error names the temporary file.
+            let made = builder.make_in(folder, |path| {
+                let mut options = File::options();
+                options.read(true).write(true).create_new(true).open(path)
+            })?;
+            if let Some(old) = old {
+                // On a file system without modes it stays as it is.
+                let _ = made.as_file().set_permissions(old.permissions());
+            }
+            Ok(made.into_parts())
+        };
+        let begun = begin().map_err(|error| FileError::new("write", path, error));
+        let (file, temporary) = begun?;
         Ok(Self {
             path: path.to_owned(),
             existing,
@@ -100,7 +108,7 @@ impl NewFile {
     ) -> Result<Self, FileError> {
         let mut file = Self::begin(path, existing)?;
         let written = file.output.write_all(content);
-        written.map_err(|error| FileError::new("write it", path, error))?;
+        written.map_err(|error| FileError::new("write", path, error))?;
         file.finish()?;
         Ok(file)
     }
@@ -115,12 +123,9 @@ impl NewFile {
     /// # Errors
     /// The system's error.
     pub fn finish(&mut self) -> Result<(), FileError> {
-        let refuse = |doing| {
-            let path = &self.path;
-            move |error| FileError::new(doing, path, error)
-        };
-        self.output.flush().map_err(refuse("write it"))?;
-        self.output.get_ref().sync_all().map_err(refuse("sync it"))
+        let written = self.output.flush();
+        let synced = written.and_then(|()| self.output.get_ref().sync_all());
+        synced.map_err(|error| FileError::new("write", &self.path, error))
     }
 
     /// Finishes the file, gives it its name and syncs the folder. Returns the open file.
@@ -130,20 +135,17 @@ impl NewFile {
     /// file is unchanged, unless only syncing the folder failed.
     pub fn persist(mut self) -> Result<File, FileError> {
         self.finish()?;
-        let Self {
-            path,
-            existing,
-            output,
-            temporary,
-        } = self;
-        let named = match existing {
-            Existing::Replaced => temporary.persist(&path),
-            Existing::Kept => temporary.persist_noclobber(&path),
+        let path = &self.path;
+        let refuse = |error| FileError::new("write", path, error);
+        let file = self.output.into_inner();
+        let file = file.map_err(|error| refuse(error.into_error()))?;
+        let named = match self.existing {
+            Existing::Replaced => self.temporary.persist(path),
+            Existing::Kept => self.temporary.persist_noclobber(path),
         };
-        named.map_err(|failed| FileError::new("move it into place", &path, failed.error))?;
-        sync_folder(folder_of(&path))?;
-        let file = output.into_inner();
-        file.map_err(|error| FileError::new("write it", &path, error.into_error()))
+        named.map_err(|failed| refuse(failed.error))?;
+        sync_folder(folder_of(path))?;
+        Ok(file)
     }
 }
 
@@ -167,65 +169,50 @@ fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// The options to create a temporary file; a private one cannot be opened by others until it has its mode.
-#[cfg_attr(
-    not(unix),
-    expect(unused_variables, reason = "files have no modes there")
-)]
-fn options(is_private: bool) -> fs::OpenOptions {
-    let mut options = File::options();
-    options.read(true).write(true).create_new(true);
-    #[cfg(unix)]
-    if is_private {
-        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    }
-    options
-}
-
-/// Gives a new file the mode of the one that it replaces. Bits that make a file run as its owner or group are dropped:
-/// it has other content, and perhaps another owner. On a file system without modes it stays as it is.
-fn keep_mode(file: &File, old: &Metadata) {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        let mode = old.permissions().mode() & 0o777;
-        let _ = file.set_permissions(fs::Permissions::from_mode(mode));
-    }
-    #[cfg(not(unix))]
-    let _ = file.set_permissions(old.permissions());
-}
-
 /// The metadata of the file to replace; None if there is none. An error if it must be kept or is not a regular file.
-fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileError> {
-    let Ok(found) = path.symlink_metadata() else {
-        return Ok(None);
-    };
-    if !found.is_file() {
-        let kind = kind_in_words(found.file_type());
-        let error = format!("it is {kind}, and only regular files are replaced");
-        return Err(FileError::new("replace it", path, io::Error::other(error)));
+fn replaced(path: &Path, existing: Existing) -> io::Result<Option<Metadata>> {
+    match path.symlink_metadata() {
+        Err(_) => Ok(None),
+        Ok(found) if !found.is_file() => Err(io::Error::other("only regular files are replaced")),
+        Ok(_) if existing == Existing::Kept => Err(ErrorKind::AlreadyExists.into()),
+        Ok(found) => Ok(Some(found)),
     }
-    if existing == Existing::Kept {
-        let error = ErrorKind::AlreadyExists.into();
-        return Err(FileError::new("create it", path, error));
-    }
-    Ok(Some(found))
 }
 
-pub(super) fn kind_in_words(kind: FileType) -> &'static str {
-    #[cfg(unix)]
-    if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
-        return "a FIFO";
+/// Opens a file to read it. Refuses anything except a regular file: opening a pipe waits for a writer that may never
+/// come.
+///
+/// # Errors
+/// The system's error.
+pub fn open(path: &Path) -> Result<File, FileError> {
+    let opened = path.metadata().and_then(|found| {
+        if found.is_file() {
+            File::open(path)
+        } else {
+            Err(io::Error::other("not a regular file"))
+        }
+    });
+    opened.map_err(|error| FileError::new("read", path, error))
+}
+
+/// The names of everything in a folder; none if the folder does not exist, or if a file is where a folder above it
+/// would be.
+pub(crate) fn names_in(folder: &Path) -> Result<Vec<OsString>, FileError> {
+    let files = match fs::read_dir(folder) {
+        Err(error) if is_missing(&error) && !folder.exists() => return Ok(Vec::new()),
+        files => files.and_then(|files| files.map(|file| Ok(file?.file_name())).collect()),
+    };
+    files.map_err(|error| FileError::new("read the folder", folder, error))
+}
+
+/// Makes a folder and the folders above it, and syncs the one that it is in.
+pub(crate) fn make_folder(path: &Path) -> Result<(), FileError> {
+    if path.is_dir() {
+        return Ok(());
     }
-    if kind.is_symlink() {
-        "a symbolic link"
-    } else if kind.is_dir() {
-        "a folder"
-    } else if kind.is_file() {
-        "a file"
-    } else {
-        "a device or a socket"
-    }
+    let made = fs::create_dir_all(path);
+    made.map_err(|error| FileError::new("make the folder", path, error))?;
+    sync_folder(folder_of(path))
 }
 
 /// The folder that contains a file: `.` if the path is only a name.
@@ -238,16 +225,11 @@ pub fn folder_of(path: &Path) -> &Path {
 
 /// Syncs a folder, so that files renamed in it stay renamed.
 pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
-    // On other systems a folder cannot be opened, and renaming is all that can be done.
-    if !cfg!(unix) {
-        return Ok(());
-    }
-    let synced = File::open(folder).and_then(|folder| folder.sync_all());
-    match synced {
-        // A folder that may be written to but not read cannot be synced; some file systems cannot sync any.
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
         Err(error)
             if !matches!(
                 error.kind(),
+                // Of a folder that may be written to but not read, and of file systems that cannot sync any.
                 ErrorKind::PermissionDenied | ErrorKind::InvalidInput | ErrorKind::Unsupported
             ) =>
         {
@@ -324,7 +306,7 @@ mod tests {
         assert!(check_writable(&path("new"), Existing::Kept).is_ok());
         let refused = check_writable(&path("no/folder"), Existing::Kept).expect_err("no folder");
         assert!(
-            refused.to_string().contains("write into its folder"),
+            refused.to_string().contains("cannot write: no such folder"),
             "{refused}"
         );
         assert_eq!(files(folder.path()), 0);
@@ -348,10 +330,10 @@ mod tests {
         {
             use std::os::unix::fs::PermissionsExt;
             let mode = || path.metadata().expect("there").permissions().mode() & 0o7777;
-            for (old, kept) in [(0o640, 0o640), (0o600, 0o600), (0o4755, 0o755)] {
+            for old in [0o640, 0o600, 0o755] {
                 fs::set_permissions(&path, fs::Permissions::from_mode(old)).expect("set");
                 write("three", Existing::Replaced).expect("replaced");
-                assert_eq!(mode(), kept);
+                assert_eq!(mode(), old);
             }
         }
         assert!(check_writable(folder.path(), Existing::Replaced).is_err());

@@ -1,25 +1,32 @@
 //! Unsaved work: kept in a file while the program runs, and offered again if it died.
 //!
-//! Each journal is a file in the folder's `.journal`, beside it a file whose lock its program holds. A journal whose
-//! lock is free was left by a program that died; the program that takes its lock offers it, so several programs do not
-//! take each other's.
+//! A program has one file in the folder `.journal` with all of its unsaved work, an array of shapes, and holds the lock
+//! of that file. A file whose lock is free was left by a program that died; the program that takes its lock offers its
+//! work, so several programs do not take each other's.
 
 use std::fs::{self, File};
-use std::io::{self, ErrorKind};
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use serde_json::value::RawValue;
+use taxel_core::lock::locked;
+
+use crate::formats::file::is_missing;
 use crate::formats::shape::StoredShape;
-use crate::storage::error::{FileError, LibraryError};
-use crate::storage::file::{self, Existing};
-use crate::storage::folder;
+use crate::storage::error::FileError;
+use crate::storage::file::{Existing, FileId, NewFile, folder_of, make_folder, names_in, open};
 use crate::storage::library::Library;
 
 pub(super) const FOLDER: &str = ".journal";
 
 /// The largest number of journals that are offered at once. Each keeps a file open, and a program may have about a
 /// thousand; the others wait for the next start.
-const MOST_ORPHANS: usize = 100;
+const MOST_JOURNALS: usize = 100;
+
+/// The size, in bytes, beyond which a journal is not read.
+const MOST_BYTES: u64 = 1 << 28;
 
 /// The name of unsaved work that has none.
 pub const UNNAMED: &str = "unsaved";
@@ -28,151 +35,156 @@ pub const UNNAMED: &str = "unsaved";
 /// until it is cleared: a program that ends without clearing it has lost nothing.
 #[derive(Debug)]
 pub struct Journal {
-    folder: PathBuf,
-    open: Option<(PathBuf, File)>,
+    path: PathBuf,
+    /// The file, if there is one, opened and locked.
+    file: Option<File>,
+    works: Vec<StoredShape>,
 }
 
 impl Journal {
-    /// Creates a journal in a library.
+    /// Creates a journal in a library, under a name that no program has used, also none of the same process number that
+    /// has died.
     pub fn new(library: &Library) -> Self {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        let now = now.map_or(0, |now| now.as_nanos());
+        let name = format!("{}-{now}.json", std::process::id());
         Self {
-            folder: library.folder().join(FOLDER),
-            open: None,
+            path: library.folder().join(FOLDER).join(name),
+            file: None,
+            works: Vec::new(),
         }
     }
 
-    /// Keeps a shape in place of the one kept before; durable on return.
+    /// Keeps work in place of all that was kept before; durable on return. Without work, there is no file.
     ///
     /// # Errors
-    /// The system's error. The shape kept before is still there.
-    pub fn keep(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
-        // Someone may have removed the whole folder.
-        let open = self.open.take().filter(|(path, _)| lock_of(path).exists());
-        let (path, _) = self.open.insert(match open {
-            Some(open) => open,
-            None => self.begin()?,
-        });
-        let content = shape.write();
-        Ok(file::write(path, content.as_bytes(), Existing::Replaced)?)
+    /// The system's error. What was kept before is still there.
+    pub fn keep(&mut self, works: Vec<StoredShape>) -> Result<(), FileError> {
+        let path = &self.path;
+        let existing = match self.file {
+            Some(_) if works.is_empty() => {
+                let removed = fs::remove_file(path).or_else(|error| {
+                    if is_missing(&error) {
+                        Ok(())
+                    } else {
+                        Err(error)
+                    }
+                });
+                removed.map_err(|error| FileError::new("remove", path, error))?;
+                self.file = None;
+                return Ok(());
+            }
+            None if works.is_empty() => return Ok(()),
+            Some(_) => Existing::Replaced,
+            None => Existing::Kept,
+        };
+        make_folder(folder_of(path))?;
+        let texts: Vec<String> = works.iter().map(StoredShape::write).collect();
+        let content = format!("[{}]\n", texts.join(","));
+        let file = NewFile::with_content(path, content.as_bytes(), existing)?;
+        // Locked before it has its name, so that no other program finds it free.
+        let locked = file.output.get_ref().try_lock();
+        locked.map_err(|error| FileError::new("lock", path, error.into()))?;
+        self.file = Some(file.persist()?);
+        self.works = works;
+        Ok(())
     }
 
-    /// Whether the shape that was kept last is still there: someone may have removed it, or the whole folder.
+    /// Whether what was kept last is still there: someone may have removed it, or the whole folder.
     pub fn is_intact(&self) -> bool {
-        let open = self.open.as_ref();
-        open.is_some_and(|(path, _)| path.exists() && lock_of(path).exists())
-    }
-
-    /// Takes a name that no other journal has or had, with its lock.
-    fn begin(&self) -> Result<(PathBuf, File), LibraryError> {
-        folder::make(&self.folder)?;
-        let refuse = |path: &Path, error| FileError::new("create a journal", path, error);
-        let process = std::process::id();
-        for number in 0_u32.. {
-            let path = self.folder.join(format!("{process}-{number}.json"));
-            // Left by a dead program with the same process number.
-            if path.exists() {
-                continue;
-            }
-            match File::create_new(lock_of(&path)) {
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-                made => {
-                    let lock = made.map_err(|error| refuse(&path, error))?;
-                    lock.try_lock()
-                        .map_err(|error| refuse(&path, error.into()))?;
-                    return Ok((path, lock));
-                }
-            }
-        }
-        Err(refuse(&self.folder, io::Error::other("no name is free")).into())
-    }
-
-    /// Forgets the shape that was kept, because it is saved or given up.
-    pub fn clear(&mut self) {
-        if let Some((path, lock)) = self.open.take() {
-            remove(&path, lock);
-        }
+        let file = self.file.as_ref();
+        file.is_none_or(|file| FileId::of(file).is_ok_and(|id| id.is_at(&self.path)))
     }
 }
 
-/// Work that a program left behind when it died. While this value lives, no other program offers the work.
+/// A piece of work that a program left behind when it died. While this value or another piece of the same program
+/// lives, no other program offers the work.
 #[derive(Debug)]
 pub struct Orphan {
-    /// The shape that was on the program's matrix.
+    /// The shape.
     pub shape: StoredShape,
-    path: PathBuf,
-    lock: File,
+    written: Option<SystemTime>,
+    journal: Arc<Mutex<Journal>>,
 }
 
 impl Orphan {
-    /// The newest journals that wait in a library, at most 100, the oldest of them first. Removes work that is
-    /// identical to the saved shape of its name. Leaves a journal alone if it cannot be read: it may be of a later
-    /// version.
+    /// The work that waits in a library, of at most 100 programs, the newest last. Work that is identical to the saved
+    /// shape of its name is left out. Leaves a journal alone if it cannot be read: it may be of a later version.
     pub fn all(library: &Library) -> Vec<Self> {
         let folder = library.folder().join(FOLDER);
         // A folder that cannot be read must not keep the program from starting.
-        let names = folder::names(&folder).unwrap_or_default().into_iter();
-        let mut paths: Vec<PathBuf> = names.map(|name| folder.join(name)).collect();
-        paths.retain(|path| path.extension().is_some_and(|ending| ending == "json"));
-        paths.sort_by_cached_key(|path| {
-            let changed = fs::symlink_metadata(path).and_then(|file| file.modified());
-            (changed.ok(), path.clone())
-        });
-        let newest = paths.into_iter().rev();
-        let orphans = newest.filter_map(|path| Self::of(library, path));
-        let mut found: Vec<Self> = orphans.take(MOST_ORPHANS).collect();
-        found.reverse();
-        found
+        let names = names_in(&folder).unwrap_or_default().into_iter();
+        let paths = names.map(|name| folder.join(name));
+        let mut journals: Vec<(Option<SystemTime>, PathBuf)> = paths
+            .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
+            .map(|path| (written(&path), path))
+            .collect();
+        journals.sort();
+        let older = journals.len().saturating_sub(MOST_JOURNALS);
+        let newest = journals.drain(older..);
+        newest
+            .flat_map(|(_, path)| Self::of(library, path).unwrap_or_default())
+            .collect()
     }
 
-    /// The work in a journal, if its program is dead and the work would be lost.
-    fn of(library: &Library, path: PathBuf) -> Option<Self> {
-        let lock = folder::open_lock(&lock_of(&path)).ok()?;
-        lock.try_lock().ok()?;
-        let shape = StoredShape::read(&folder::read(&path).ok()?).ok()?;
-        if is_saved(library, &shape) {
-            remove(&path, lock);
+    /// The work in a journal, if its program is dead and the work would be lost. Removes a journal without such work.
+    fn of(library: &Library, path: PathBuf) -> Option<Vec<Self>> {
+        let file = open(&path).ok()?;
+        file.try_lock().ok()?;
+        // Its program may have replaced it before the lock was free.
+        if !FileId::of(&file).ok()?.is_at(&path) {
             return None;
         }
-        Some(Self { shape, path, lock })
+        let mut content = Vec::new();
+        (&file).take(MOST_BYTES).read_to_end(&mut content).ok()?;
+        let texts: Vec<&RawValue> = serde_json::from_slice(&content).ok()?;
+        let works = texts
+            .iter()
+            .map(|text| StoredShape::read(text.get().as_bytes()));
+        let mut works: Vec<StoredShape> = works.collect::<Result<_, _>>().ok()?;
+        works.retain(|work| !is_saved(library, work));
+        let written = written(&path);
+        let journal = Arc::new(Mutex::new(Journal {
+            path,
+            file: Some(file),
+            works: works.clone(),
+        }));
+        if works.is_empty() {
+            // What cannot be removed is looked at again at the next start.
+            let _ = locked(&journal).keep(Vec::new());
+        }
+        let orphan = |shape| Self {
+            shape,
+            written,
+            journal: Arc::clone(&journal),
+        };
+        Some(works.into_iter().map(orphan).collect())
     }
 
     /// How long ago the work was written; None if the system does not say, or if its clock was set back since.
     pub fn age(&self) -> Option<Duration> {
-        let written = fs::symlink_metadata(&self.path).ok()?.modified().ok()?;
-        written.elapsed().ok()
+        self.written?.elapsed().ok()
     }
 
     /// Removes the work, because it is stored elsewhere now or is not wanted. Returns false if the system refuses: then
     /// it is still there.
     pub fn discard(self) -> bool {
-        remove(&self.path, self.lock)
+        let mut journal = locked(&self.journal);
+        let others = journal.works.iter().filter(|work| **work != self.shape);
+        let others = others.cloned().collect();
+        journal.keep(others).is_ok()
     }
+}
+
+fn written(path: &Path) -> Option<SystemTime> {
+    path.symlink_metadata().ok()?.modified().ok()
 }
 
 /// Whether a library holds exactly this work under its name, or there is nothing to hold.
 fn is_saved(library: &Library, shape: &StoredShape) -> bool {
+    let is_nothing = shape.imprint.is_empty() && shape.source.is_none();
     let same = |saved: &StoredShape| {
         (saved.sensor, saved.imprint, &saved.source) == (shape.sensor, shape.imprint, &shape.source)
     };
-    shape.imprint.is_empty() && shape.source.is_none()
-        || library
-            .load(shape.name.as_str())
-            .is_ok_and(|saved| same(&saved.shape))
-}
-
-fn lock_of(path: &Path) -> PathBuf {
-    path.with_extension("lock")
-}
-
-/// Removes a journal, and returns whether its file is gone. The lock goes last, so that nobody finds the file without
-/// it.
-fn remove(path: &Path, lock: File) -> bool {
-    // What cannot be removed is offered again: better twice than never.
-    let _ = fs::remove_file(path);
-    let is_gone = path.symlink_metadata().is_err();
-    if is_gone {
-        let _ = fs::remove_file(lock_of(path));
-    }
-    drop(lock);
-    is_gone
+    is_nothing || (library.load(shape.name.as_str())).is_ok_and(|saved| same(&saved.shape))
 }

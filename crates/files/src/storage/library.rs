@@ -2,27 +2,57 @@
 //! restoring.
 
 use std::collections::HashSet;
-use std::fs;
-use std::io::{self, ErrorKind};
+use std::ffi::OsString;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use taxel_core::quote::did_you_mean;
+use xxhash_rust::xxh3::xxh3_64;
 
-use crate::formats::file::is_missing;
 use crate::formats::name::{Name, folded};
-use crate::formats::shape::StoredShape;
+use crate::formats::shape::{MAX_BYTES, StoredShape};
 use crate::storage::error::{FileError, LibraryError};
-use crate::storage::file::{self, Existing, PREFIX, sync_folder};
-use crate::storage::folder::{self, stamp};
-use crate::storage::{journal, shipped};
+use crate::storage::file::{self, Existing, make_folder, names_in, open, sync_folder};
+use crate::storage::{models, shipped};
 
 const TRASH: &str = ".trash";
 
+const LOCK: &str = ".lock";
+
 /// The number of deleted shapes that are kept; older ones are removed for good.
 pub const TRASH_KEPT: usize = 50;
+
+/// The environment variable that names the folder of the library.
+pub const LIBRARY_VARIABLE: &str = "TAXEL_LIBRARY";
+
+/// The folder of the library: the one asked for, else that of the variable, else `taxel/library` in the user's data
+/// folder.
+///
+/// # Errors
+/// [`LibraryError::NoPlace`] if there is none of these.
+pub fn library_folder(
+    asked: Option<PathBuf>,
+    variable: Option<OsString>,
+) -> Result<PathBuf, LibraryError> {
+    let variable = variable.filter(|value| !value.is_empty());
+    let own = || {
+        directories::ProjectDirs::from("", "", "taxel").map(|own| own.data_dir().join("library"))
+    };
+    let named = asked.or_else(|| variable.map(PathBuf::from));
+    named.or_else(own).ok_or(LibraryError::NoPlace)
+}
+
+/// Replaces `~/` at the start of a path by the user's home folder; None if that is not known.
+pub fn below_home(path: &str) -> Option<PathBuf> {
+    match path.strip_prefix("~/") {
+        Some(rest) => directories::BaseDirs::new().map(|own| own.home_dir().join(rest)),
+        None => Some(PathBuf::from(path)),
+    }
+}
 
 /// Where a shape comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -62,6 +92,8 @@ pub enum Expected {
     Nothing,
     /// A file with this stamp.
     Stamp(u64),
+    /// Whatever is there.
+    Anything,
 }
 
 /// A library in a folder. The folder is made when the first shape is saved.
@@ -88,7 +120,7 @@ pub enum Expected {
 /// let own = library.list()?.into_iter().filter(|entry| entry.origin == ShapeOrigin::Own);
 /// assert_eq!(own.count(), 1, "beside those that come with the program");
 /// library.delete("my hexagon")?;
-/// library.restore_last()?;
+/// library.restore(None)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -106,16 +138,9 @@ impl Library {
         }
     }
 
-    /// Whether a change, on another thread, waits because another program holds the lock. A change waits for at most
-    /// five seconds.
+    /// Whether a change, on another thread, waits because another program holds the lock.
     pub fn waits_for_lock(&self) -> bool {
         self.waits.load(Ordering::Relaxed)
-    }
-
-    /// The file, if any, in the place of a folder above the library's folder. Then only shapes that come with the
-    /// program can be loaded, and none can be saved.
-    pub fn file_above(&self) -> Option<&Path> {
-        folder::file_above(&self.folder)
     }
 
     /// The folder of the library.
@@ -129,41 +154,29 @@ impl Library {
     /// # Errors
     /// If the folder exists but cannot be read.
     pub fn list(&self) -> Result<Vec<LibraryEntry>, LibraryError> {
-        let own = |name| LibraryEntry {
-            name,
-            origin: ShapeOrigin::Own,
-        };
-        let mut entries: Vec<LibraryEntry> = self.own_names()?.into_iter().map(own).collect();
-        entries.sort_by_cached_key(|entry| (folded(&entry.name), entry.name.clone()));
-        let key = |entry: &LibraryEntry| folded(&entry.name);
-        let shipped: Vec<LibraryEntry> = shipped::names()
-            .filter(|name| entries.binary_search_by_key(&folded(name), key).is_err())
-            .map(|name| LibraryEntry {
-                name: name.to_owned(),
-                origin: ShapeOrigin::Shipped,
-            })
-            .collect();
-        entries.extend(shipped);
-        Ok(entries)
+        let mut own = self.own_names()?;
+        own.sort_by_cached_key(|name| (folded(name), name.clone()));
+        let known: HashSet<String> = own.iter().map(|name| folded(name)).collect();
+        let shipped = shipped::names().filter(|name| !known.contains(&folded(name)));
+        let of = |origin| move |name| LibraryEntry { name, origin };
+        let own = own.into_iter().map(of(ShapeOrigin::Own));
+        let shipped = shipped.map(str::to_owned).map(of(ShapeOrigin::Shipped));
+        Ok(own.chain(shipped).collect())
     }
 
-    fn own_names(&self) -> Result<Vec<String>, LibraryError> {
-        let files = folder::names(&self.folder)?.into_iter();
+    fn own_names(&self) -> Result<Vec<String>, FileError> {
+        let files = names_in(&self.folder)?.into_iter();
         let own = files.filter_map(|file| Some(name_of(file.to_str()?)?.to_owned()));
         Ok(own.collect())
     }
 
     /// The name of the user's shape, spelled as in its file; None if the user has none of that name.
-    fn own_name(&self, name: &Name) -> Result<Option<String>, LibraryError> {
+    fn own_name(&self, name: &Name) -> Result<Option<String>, FileError> {
         // The usual case needs no search.
-        let path = self.path(name.as_str());
-        match fs::symlink_metadata(&path) {
-            Ok(_) => return Ok(Some(name.as_str().to_owned())),
-            Err(error) if is_missing(&error) => {}
-            Err(error) => return Err(FileError::new("access it", &path, error).into()),
+        if self.path(name.as_str()).symlink_metadata().is_ok() {
+            return Ok(Some(name.to_string()));
         }
-        let own = self.own_names()?;
-        Ok(own.into_iter().find(|own| name.same(own)))
+        Ok(self.own_names()?.into_iter().find(|own| name.same(own)))
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -177,28 +190,28 @@ impl Library {
     /// If there is no such shape, or if its file is broken or cannot be read.
     pub fn load(&self, name: &str) -> Result<LoadedShape, LibraryError> {
         let name = Name::new(name)?;
-        let Some(own) = self.own_name(&name)? else {
-            let unknown = || LibraryError::Unknown {
-                name: name.to_string(),
-            };
-            let (shape, stamp) = shipped::load(&name).ok_or_else(unknown)??;
-            return Ok(LoadedShape {
-                written_name: shape.name.clone(),
-                shape,
-                stamp,
-                origin: ShapeOrigin::Shipped,
-            });
+        let (path, content, origin) = match (self.own_name(&name)?, shipped::text(&name)) {
+            (Some(own), _) => {
+                let path = self.path(&own);
+                let content = read(&path)?;
+                (path, content, ShapeOrigin::Own)
+            }
+            (None, Some((shipped, text))) => (
+                self.path(shipped),
+                text.as_bytes().to_vec(),
+                ShapeOrigin::Shipped,
+            ),
+            (None, None) => return Err(LibraryError::Unknown(name.to_string())),
         };
-        let path = self.path(&own);
-        let content = folder::read(&path)?;
-        let shape =
-            StoredShape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
+        let shape = StoredShape::read(&content)
+            .map_err(|error| LibraryError::Refused(format!("{}: {error}", path.display())))?;
         // A file that was renamed by hand goes by its new name.
+        let stem = path.file_stem().map(|stem| stem.to_string_lossy());
         Ok(LoadedShape {
             written_name: shape.name.clone(),
-            shape: shape.renamed(Name::new(&own)?),
-            stamp: stamp(&content),
-            origin: ShapeOrigin::Own,
+            shape: shape.renamed(Name::new(&stem.unwrap_or_default())?),
+            stamp: xxh3_64(&content),
+            origin,
         })
     }
 
@@ -217,41 +230,64 @@ impl Library {
     /// [`LibraryError::Exists`] if the name is taken, [`LibraryError::Changed`] if the file's stamp is not the
     /// expected one, [`LibraryError::Shipped`] for the name of a shipped shape, or the system's error.
     pub fn save(&self, shape: &StoredShape, expected: Expected) -> Result<u64, LibraryError> {
-        let name = &shape.name;
-        folder::make(&self.folder)?;
-        let _lock = folder::lock(&self.folder, &self.waits)?;
-        let own = self.own_name(name)?;
+        make_folder(&self.folder)?;
+        let _lock = self.lock()?;
+        let own = self.own_name(&shape.name)?;
         match &own {
             Some(own) => self.check_replaceable(own, expected)?,
-            None if shipped::has(name) => {
-                return Err(LibraryError::Shipped {
-                    name: name.to_string(),
-                });
+            None if shipped::text(&shape.name).is_some() => {
+                let name = shape.name.to_string();
+                return Err(LibraryError::Shipped(name));
             }
             None => {}
         }
         // A file that differs in case only has the same name: it is replaced.
-        let name = own.map_or_else(|| Ok(name.clone()), |own| Name::new(&own))?;
+        let name = own.map_or_else(|| Ok(shape.name.clone()), |own| Name::new(&own))?;
         let path = self.path(name.as_str());
         let content = shape.clone().renamed(name).write();
         file::write(&path, content.as_bytes(), Existing::Replaced)?;
-        Ok(stamp(content.as_bytes()))
+        Ok(xxh3_64(content.as_bytes()))
     }
 
     /// Refuses to replace a file that is read-only or whose content is not as expected.
     fn check_replaceable(&self, own: &str, expected: Expected) -> Result<(), LibraryError> {
         let path = self.path(own);
-        let now = stamp(&folder::read(&path)?);
+        let stamp = xxh3_64(&read(&path)?);
         if (path.metadata()).is_ok_and(|found| found.permissions().readonly()) {
             let protected = io::Error::from(ErrorKind::PermissionDenied);
             return Err(FileError::new("replace it, it is read-only", &path, protected).into());
         }
         let name = own.to_owned();
         match expected {
-            Expected::Stamp(known) if known == now => Ok(()),
-            Expected::Stamp(_) => Err(LibraryError::Changed { name, stamp: now }),
-            Expected::Nothing => Err(LibraryError::Exists { name, stamp: now }),
+            Expected::Stamp(known) if known != stamp => Err(LibraryError::Changed { name, stamp }),
+            Expected::Nothing => Err(LibraryError::Exists { name, stamp }),
+            Expected::Stamp(_) | Expected::Anything => Ok(()),
         }
+    }
+
+    /// Waits for the lock of the folder, which the system releases when its program dies or the file is closed.
+    fn lock(&self) -> Result<File, FileError> {
+        let path = self.folder.join(LOCK);
+        let refuse = |error| FileError::new("lock", &path, error);
+        let file = File::options()
+            .read(true)
+            .write(true)
+            .create(true)
+            .open(&path);
+        // A file of another user that may only be read can be locked, too.
+        let file = file.or_else(|error| File::open(&path).map_err(|_| error));
+        let file = file.map_err(refuse)?;
+        let locked = match file.try_lock() {
+            Err(TryLockError::WouldBlock) => {
+                self.waits.store(true, Ordering::Relaxed);
+                let locked = file.lock();
+                self.waits.store(false, Ordering::Relaxed);
+                locked
+            }
+            locked => locked.map_err(io::Error::from),
+        };
+        locked.map_err(refuse)?;
+        Ok(file)
     }
 
     /// The name of a shape that can be deleted, spelled as in its file.
@@ -260,16 +296,14 @@ impl Library {
     /// If no such shape is stored, if it comes with the program, or if the folder cannot be read.
     pub fn deletable(&self, name: &str) -> Result<String, LibraryError> {
         let name = Name::new(name)?;
-        if let Some(own) = self.own_name(&name)? {
-            return Ok(own);
+        match (self.own_name(&name)?, shipped::text(&name)) {
+            (Some(own), _) => Ok(own),
+            (None, Some(_)) => Err(LibraryError::Refused(format!(
+                "{:?} comes with taxel and cannot be deleted",
+                name.as_str()
+            ))),
+            (None, None) => Err(LibraryError::Unknown(name.to_string())),
         }
-        let shipped = shipped::has(&name);
-        let name = name.to_string();
-        Err(if shipped {
-            LibraryError::NotDeletable { name }
-        } else {
-            LibraryError::Unknown { name }
-        })
     }
 
     /// Moves a shape into the trash without reading its file, and returns its name, spelled as in its file.
@@ -279,15 +313,14 @@ impl Library {
     pub fn delete(&self, name: &str) -> Result<String, LibraryError> {
         // Checked before the lock is taken: the lock is a file in the folder, which may not exist.
         self.deletable(name)?;
-        let _lock = folder::lock(&self.folder, &self.waits)?;
+        let _lock = self.lock()?;
         let own = self.deletable(name)?;
         let path = self.path(&own);
-        let trash = self.made_trash()?;
-        fs::rename(&path, trash.next_path(&own))
-            .map_err(|error| FileError::new("move it into the trash", &path, error))?;
-        sync_folder(&trash.folder)?;
+        self.put_into_trash(&own, |to| {
+            let moved = fs::rename(&path, to);
+            moved.map_err(|error| FileError::new("move it into the trash", &path, error))
+        })?;
         sync_folder(&self.folder)?;
-        trash.forget_oldest();
         Ok(own)
     }
 
@@ -296,189 +329,138 @@ impl Library {
     /// # Errors
     /// The system's error; then the shape is stored nowhere.
     pub fn throw_away(&self, shape: &StoredShape) -> Result<String, LibraryError> {
-        folder::make(&self.folder)?;
-        let _lock = folder::lock(&self.folder, &self.waits)?;
-        let trash = self.made_trash()?;
-        let free = |name: &Name| {
-            let thrown = trash.shapes.iter().any(|thrown| name.same(&thrown.name));
-            !thrown && matches!(self.own_name(name), Ok(None))
-        };
-        let mut numbered = (1..1000).filter_map(|number| {
-            let name = format!("{} {number}", shape.name);
-            Name::new(&name).ok()
-        });
-        // If all numbers are taken, the name is used without one: in the trash a name may occur twice.
-        let name = numbered.find(free);
-        let name = name.unwrap_or_else(|| shape.name.clone());
-        let thrown = shape.clone().renamed(name.clone());
-        let path = trash.next_path(name.as_str());
-        file::write(&path, thrown.write().as_bytes(), Existing::Kept)?;
-        trash.forget_oldest();
+        make_folder(&self.folder)?;
+        let _lock = self.lock()?;
+        let taken: HashSet<String> = (self.own_names()?.into_iter())
+            .chain(self.trash()?.into_iter().map(|(_, name)| name))
+            .map(|name| folded(&name))
+            .collect();
+        let numbered = (1_u32..).map(|number| format!("{} {number}", shape.name));
+        let mut free = numbered.filter(|name| !taken.contains(&folded(name)));
+        let name = Name::new(&free.next().unwrap_or_default())?;
+        let content = shape.clone().renamed(name.clone()).write();
+        self.put_into_trash(name.as_str(), |to| {
+            file::write(to, content.as_bytes(), Existing::Kept)
+        })?;
         Ok(name.to_string())
     }
 
-    /// The end of a message about the unknown name of a shape, or of a shape in the trash: a suggestion of a similar
-    /// name. Empty if there is none, and for other errors.
-    pub fn suggestion(&self, error: &LibraryError) -> String {
-        match error {
-            LibraryError::Unknown { name } => self.list().map_or_else(
-                |_| String::new(),
-                |shapes| did_you_mean(name, shapes.iter().map(|shape| shape.name.as_str())),
-            ),
-            LibraryError::NotInTrash { name } => self.in_trash().map_or_else(
-                |_| String::new(),
-                |names| did_you_mean(name, names.iter().map(String::as_str)),
-            ),
-            _ => String::new(),
+    /// Gives a shape the next place in the trash, and removes the oldest ones there if it is too full.
+    fn put_into_trash(
+        &self,
+        name: &str,
+        put: impl FnOnce(&Path) -> Result<(), FileError>,
+    ) -> Result<(), FileError> {
+        let folder = self.folder.join(TRASH);
+        make_folder(&folder)?;
+        let deleted = self.trash()?;
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        let now = now.map_or(0, |now| u64::try_from(now.as_millis()).unwrap_or(u64::MAX));
+        // Later than all others, even if the clock was set back.
+        let last = deleted.first().map_or(0, |(time, _)| *time);
+        put(&self.in_trash(now.max(last.saturating_add(1)), name))?;
+        sync_folder(&folder)?;
+        for (time, name) in deleted.iter().skip(TRASH_KEPT - 1) {
+            // One too many does no harm; the next deletion tries again.
+            let _ = fs::remove_file(self.in_trash(*time, name));
         }
+        Ok(())
+    }
+
+    /// The times when the shapes in the trash were deleted, in milliseconds since 1970, and their names, the last deleted
+    /// first.
+    fn trash(&self) -> Result<Vec<(u64, String)>, FileError> {
+        let deleted = |file: OsString| {
+            let (name, time) = file.to_str()?.strip_suffix(".json")?.rsplit_once('-')?;
+            Some((time.parse().ok()?, Name::new(name).ok()?.to_string()))
+        };
+        let files = names_in(&self.folder.join(TRASH))?.into_iter();
+        let mut shapes: Vec<(u64, String)> = files.filter_map(deleted).collect();
+        shapes.sort_by(|one, other| other.cmp(one));
+        Ok(shapes)
+    }
+
+    fn in_trash(&self, time: u64, name: &str) -> PathBuf {
+        self.folder.join(TRASH).join(format!("{name}-{time}.json"))
     }
 
     /// The names of the shapes in the trash, the last deleted first, each once.
     ///
     /// # Errors
     /// If the folder exists but cannot be read.
-    pub fn in_trash(&self) -> Result<Vec<String>, LibraryError> {
+    pub fn deleted(&self) -> Result<Vec<String>, LibraryError> {
         let mut met = HashSet::new();
-        let names = self.trash()?.shapes.into_iter().map(|deleted| deleted.name);
+        let names = self.trash()?.into_iter().map(|(_, name)| name);
         Ok(names.filter(|name| met.insert(folded(name))).collect())
     }
 
-    /// Restores the last deleted shape of that name, and returns its name.
+    /// Restores the last deleted shape, or the last of that name, whether this program deleted it or another one, and
+    /// returns its name.
     ///
     /// # Errors
-    /// If no shape of that name is in the trash, the name is taken again, or the system refuses.
-    pub fn restore(&self, name: &str) -> Result<String, LibraryError> {
-        let name = Name::new(name)?;
-        let missing = || LibraryError::NotInTrash {
-            name: name.to_string(),
+    /// If there is no such shape in the trash, the name is taken again, or the system refuses.
+    pub fn restore(&self, name: Option<&str>) -> Result<String, LibraryError> {
+        let wanted = name.map(Name::new).transpose()?;
+        // Without the folder, there is nowhere to lock it.
+        let _lock = self.folder.is_dir().then(|| self.lock()).transpose()?;
+        let is_wanted = |name: &str| wanted.as_ref().is_none_or(|wanted| wanted.same(name));
+        let mut deleted = self.trash()?.into_iter();
+        let Some((time, name)) = deleted.find(|(_, name)| is_wanted(name)) else {
+            return Err(match wanted {
+                Some(wanted) => LibraryError::NotInTrash(wanted.to_string()),
+                None => LibraryError::Refused("the trash is empty".to_owned()),
+            });
         };
-        self.restore_newest(|deleted| name.same(deleted), missing)
-    }
-
-    /// Restores the last deleted shape, whether this program deleted it or another one, and returns its name.
-    ///
-    /// # Errors
-    /// If the trash is empty, the name is taken again, or the system refuses.
-    pub fn restore_last(&self) -> Result<String, LibraryError> {
-        self.restore_newest(|_| true, || LibraryError::TrashEmpty)
-    }
-
-    fn restore_newest(
-        &self,
-        is_wanted: impl Fn(&str) -> bool,
-        missing: impl Fn() -> LibraryError,
-    ) -> Result<String, LibraryError> {
-        if !self.folder.is_dir() {
-            return Err(missing());
-        }
-        let _lock = folder::lock(&self.folder, &self.waits)?;
-        let trash = self.trash()?;
-        let mut newest = trash.shapes.into_iter();
-        let deleted = newest.find(|deleted| is_wanted(&deleted.name));
-        let deleted = deleted.ok_or_else(missing)?;
-        if let Some(name) = self.own_name(&Name::new(&deleted.name)?)? {
-            let stamp = stamp(&folder::read(&self.path(&name))?);
+        if let Some(name) = self.own_name(&Name::new(&name)?)? {
+            let stamp = xxh3_64(&read(&self.path(&name))?);
             return Err(LibraryError::Exists { name, stamp });
         }
-        fs::rename(&deleted.path, self.path(&deleted.name))
-            .map_err(|error| FileError::new("bring it back", &deleted.path, error))?;
+        let from = self.in_trash(time, &name);
+        fs::rename(&from, self.path(&name))
+            .map_err(|error| FileError::new("bring it back", &from, error))?;
         sync_folder(&self.folder)?;
-        sync_folder(&trash.folder)?;
-        Ok(deleted.name)
+        sync_folder(file::folder_of(&from))?;
+        Ok(name)
     }
 
-    fn trash(&self) -> Result<Trash, LibraryError> {
-        let folder = self.folder.join(TRASH);
-        let files = folder::names(&folder)?.into_iter();
-        let mut shapes: Vec<DeletedShape> = files
-            .filter_map(|file| DeletedShape::at(folder.join(file)))
-            .collect();
-        shapes.sort_by_key(|shape| std::cmp::Reverse(shape.time));
-        Ok(Trash { folder, shapes })
+    /// The end of a message about the unknown name of a shape, or of a shape in the trash: a suggestion of a similar
+    /// name. Empty if there is none, and for other errors.
+    pub fn suggestion(&self, error: &LibraryError) -> String {
+        let (name, known) = match error {
+            LibraryError::Unknown(name) => {
+                let listed = self.list().unwrap_or_default().into_iter();
+                (name, listed.map(|entry| entry.name).collect())
+            }
+            LibraryError::NotInTrash(name) => (name, self.deleted().unwrap_or_default()),
+            _ => return String::new(),
+        };
+        did_you_mean(name, known.iter().map(String::as_str))
     }
 
-    fn made_trash(&self) -> Result<Trash, LibraryError> {
-        folder::make(&self.folder.join(TRASH))?;
-        self.trash()
-    }
-
-    /// Lists what is in the folder, its trash and its journal and is neither a shape nor one of the library's own
-    /// files, by path, each with a description. None of it is harmful.
+    /// Lists what is in the folder and is neither a shape nor one of the library's own files, by path. None of it is
+    /// harmful.
     ///
     /// # Errors
-    /// If a folder exists but cannot be read.
-    pub fn leftovers(&self) -> Result<Vec<(PathBuf, &'static str)>, LibraryError> {
-        let mut found = Vec::new();
-        let inner = [TRASH, journal::FOLDER].map(|name| self.folder.join(name));
-        for folder in inner.iter().chain([&self.folder]) {
-            for name in folder::names(folder)? {
-                let path = folder.join(&name);
-                let name = name.to_string_lossy();
-                let what = if name.starts_with(PREFIX) {
-                    "half-written by a program that died, or being written"
-                } else if folder.ends_with(journal::FOLDER) && name.ends_with(".json") {
-                    "unsaved work, of a running program or of one that died"
-                } else if inner.contains(folder)
-                    || name.starts_with('.')
-                    || name_of(&name).is_some()
-                {
-                    continue;
-                } else if name.ends_with(".json") {
-                    "not a shape: shapes cannot have this name"
-                } else {
-                    "not a shape: its name is not NAME.json"
-                };
-                found.push((path, what));
-            }
-        }
-        found.sort();
-        Ok(found)
+    /// If the folder exists but cannot be read.
+    pub fn foreign_files(&self) -> Result<Vec<PathBuf>, LibraryError> {
+        let is_foreign = |name: &OsString| {
+            let name = name.to_string_lossy();
+            !name.starts_with('.') && name != models::FOLDER && name_of(&name).is_none()
+        };
+        let mut foreign = names_in(&self.folder)?;
+        foreign.retain(is_foreign);
+        foreign.sort();
+        Ok(foreign.iter().map(|name| self.folder.join(name)).collect())
     }
 }
 
-struct Trash {
-    folder: PathBuf,
-    shapes: Vec<DeletedShape>,
-}
-
-/// A deleted shape: `NAME-TIME.json`.
-struct DeletedShape {
-    name: String,
-    /// The time when it was deleted, in milliseconds since 1970.
-    time: u64,
-    path: PathBuf,
-}
-
-impl Trash {
-    /// The path of the next shape, whose time is later than all others, even if the clock was set back.
-    fn next_path(&self, name: &str) -> PathBuf {
-        let now = SystemTime::now().duration_since(UNIX_EPOCH);
-        let now = now.map_or(0, |now| u64::try_from(now.as_millis()).unwrap_or(u64::MAX));
-        let last = self.shapes.first().map_or(0, |last| last.time);
-        let time = now.max(last.saturating_add(1));
-        self.folder.join(format!("{name}-{time}.json"))
-    }
-
-    /// Removes the oldest shapes, so that [`TRASH_KEPT`] are left, together with the one just added.
-    fn forget_oldest(self) {
-        for old in self.shapes.iter().skip(TRASH_KEPT - 1) {
-            // One too many does no harm; the next deletion tries again.
-            let _ = fs::remove_file(&old.path);
-        }
-    }
-}
-
-impl DeletedShape {
-    /// The deleted shape at a path; None if the file's name is not that of a deleted shape.
-    fn at(path: PathBuf) -> Option<Self> {
-        let name = path.file_name()?.to_str()?.strip_suffix(".json")?;
-        let (name, time) = name.rsplit_once('-')?;
-        Some(Self {
-            time: time.parse().ok()?,
-            name: Name::new(name).ok()?.to_string(),
-            path,
-        })
-    }
+/// Reads the content of a shape's file, at most one byte more than a shape may have.
+fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    let mut content = Vec::new();
+    let file = open(path)?.take(MAX_BYTES as u64 + 1);
+    let read = { file }.read_to_end(&mut content);
+    read.map_err(|error| FileError::new("read", path, error))?;
+    Ok(content)
 }
 
 /// The name of the shape in a file with this name; None if it is not `NAME.json`.
@@ -486,9 +468,6 @@ fn name_of(file: &str) -> Option<&str> {
     let name = file.strip_suffix(".json")?;
     Name::new(name).is_ok().then_some(name)
 }
-
-/// The size, in bytes, beyond which a file is not read: a hundred commands of the longest kind are shorter.
-const MOST_BYTES: u64 = 1 << 17;
 
 /// A small file in the library's folder in which the screen keeps its memory between runs: one entry per line, the
 /// newest last. Errors are ignored: a file that cannot be read counts as empty, and lines that cannot be written are
@@ -502,55 +481,36 @@ pub struct RememberedFile {
 impl RememberedFile {
     /// The file with the commands that were typed.
     pub fn commands(library: &Library) -> Self {
-        Self::of(library, ".commands", 100)
+        let path = library.folder().join(".commands");
+        Self { path, most: 100 }
     }
 
     /// The file with the name of the set of shapes that was recognised last.
     pub fn recognised_set(library: &Library) -> Self {
-        Self::of(library, ".recognise", 1)
-    }
-
-    fn of(library: &Library, name: &str, most: usize) -> Self {
-        Self {
-            path: library.folder().join(name),
-            most,
-        }
+        let path = library.folder().join(".recognise");
+        Self { path, most: 1 }
     }
 
     /// The lines, the newest last, without empty lines and lines with control characters; empty if there is
     /// no such file.
     pub fn read(&self) -> Vec<String> {
-        let small = fs::symlink_metadata(&self.path)
-            .is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
-        let text = small.then(|| fs::read_to_string(&self.path));
-        let Some(Ok(text)) = text else {
-            return Vec::new();
-        };
+        let content = read(&self.path).unwrap_or_default();
+        let text = String::from_utf8_lossy(&content);
         let clean = |line: &&str| !line.is_empty() && !line.contains(char::is_control);
-        let lines: Vec<&str> = text.lines().filter(clean).collect();
-        let first = lines.len().saturating_sub(self.most);
-        lines[first..].iter().map(|&line| line.to_owned()).collect()
+        let mut lines: Vec<String> = text.lines().filter(clean).map(str::to_owned).collect();
+        lines.split_off(lines.len().saturating_sub(self.most))
     }
 
     /// Adds lines to those of the file, which another program may have changed, and keeps only the last ones if there
-    /// are too many.
+    /// are too many. Makes the folder if there is none.
     pub fn add(&self, lines: Vec<String>) {
         let mut all = self.read();
         all.extend(lines);
-        self.write(&all);
-    }
-
-    /// Replaces the lines of the file, and keeps only the last ones if there are too many. Makes the folder if there
-    /// is none.
-    pub fn write(&self, lines: &[String]) {
-        if let Some(folder) = self.path.parent() {
-            // Without the folder nothing can be written, which does no harm.
-            let _ = folder::make(folder);
-        }
-        let kept = &lines[lines.len().saturating_sub(self.most)..];
+        let kept = &all[all.len().saturating_sub(self.most)..];
         let text: String = kept.iter().map(|line| format!("{line}\n")).collect();
         // On a full disk, it is not worth a message.
-        let _ = file::write(&self.path, text.as_bytes(), Existing::Replaced);
+        let _ = make_folder(file::folder_of(&self.path))
+            .and_then(|()| file::write(&self.path, text.as_bytes(), Existing::Replaced));
     }
 }
 
@@ -565,7 +525,7 @@ mod tests {
         let file = RememberedFile::commands(&library);
         assert!(file.read().is_empty());
         let lines: Vec<String> = (0..150).map(|number| format!("turn {number}")).collect();
-        file.write(&lines);
+        file.add(lines.clone());
         assert_eq!(file.read(), lines[50..]);
         let path = library.folder().join(".commands");
         fs::write(path, "new\n\u{1b}[31m\n\ngrab\n").expect("written");
@@ -574,13 +534,10 @@ mod tests {
         file.add(vec!["turn 20".to_owned()]);
         assert_eq!(file.read(), ["new", "grab", "turn 20"]);
         let set = RememberedFile::recognised_set(&library);
-        set.write(&["my parts".to_owned()]);
-        assert_eq!(
-            (set.read(), file.read().len()),
-            (vec!["my parts".to_owned()], 3)
-        );
-        let path = library.folder().join(".recognise");
-        fs::write(path, "x".repeat(1 << 18)).expect("written");
-        assert!(set.read().is_empty());
+        for name in ["my parts", "others"] {
+            set.add(vec![name.to_owned()]);
+            assert_eq!(set.read(), [name]);
+        }
+        assert_eq!(file.read().len(), 3);
     }
 }

@@ -6,36 +6,35 @@
 //! moves its file to a trash inside the folder; a model is removed for good, because it can be trained again. Writers
 //! of shapes hold the folder's lock while they write, so that two programs see each other's work; the files of what was
 //! typed are written without it, and of two programs that add a line at once, one may lose it. A program that is
-//! killed may leave a file `.taxel-…`. Reading needs neither a lock nor write access to the folder.
+//! killed may leave a file `.taxel-…`, which another program removes a day later. Reading needs neither a lock nor write
+//! access to the folder.
 //!
 //! ```text
 //! FOLDER/washer.json                        a shape
+//! FOLDER/models/parts.npz                   a model
 //! FOLDER/.commands                          what was typed after `:`, a line each
 //! FOLDER/.recognise                         the set of shapes that was recognised last
 //! FOLDER/.lock                              held while writing
 //! FOLDER/.taxel-4fQx0ZmW                    being written; the ending is random
 //! FOLDER/.trash/washer-1764370000123.json   deleted at that time, in milliseconds since 1970
-//! FOLDER/.journal/4711-0.json               unsaved work of a running program, or of one that died
-//! FOLDER/.journal/4711-0.lock               held as long as that program runs
+//! FOLDER/.journal/4711-1764370000123.json   unsaved work of a running program, which holds its lock, or of one that died
 //! ```
 
 mod error;
 mod file;
-mod folder;
 mod journal;
 mod library;
-pub mod location;
 mod models;
 pub mod shipped;
 mod sweep_file;
 
 pub use error::{ArchiveFileError, FileError, LibraryError};
-pub use file::{Existing, FileId, NewFile, check_writable, folder_of, write};
+pub use file::{Existing, FileId, NewFile, check_writable, folder_of, open, write};
 pub use journal::{Journal, Orphan, UNNAMED};
-pub use library::RememberedFile;
 pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin, TRASH_KEPT};
+pub use library::{LIBRARY_VARIABLE, RememberedFile, below_home, library_folder};
 pub use models::{
-    FileVersion, ModelCache, ModelChoice, ModelFolder, cached_or_trained, load_model,
-    load_whole_model, model_hash, save_model, unknown_set,
+    ModelCache, ModelChoice, ModelFolder, cached_or_trained, load_model, load_whole_model,
+    model_hash, save_model, unknown_set,
 };
-pub use sweep_file::{AtlasEndingError, AtlasFile, PoseFile, is_poses, load_atlas, open_archive};
+pub use sweep_file::{PoseFile, atlas_path, is_poses, load_atlas, write_atlas};

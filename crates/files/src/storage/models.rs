@@ -1,18 +1,12 @@
-//! Models of shapes as files: the user's own, by name in a folder beside the library, and a cache of models that can
-//! be trained again.
-//!
-//! ```text
-//! taxel/library/washer.json      the library
-//! taxel/models/parts.npz         a model
-//! ```
+//! Models of shapes as files: the user's own, by name in the folder `models` of the library, and a cache of models that
+//! can be trained again.
 
-use std::ffi::{OsStr, OsString};
-use std::io::{self, BufReader, Cursor, Read, Seek};
+use std::ffi::OsStr;
+use std::fmt;
+use std::fs;
+use std::io::{BufRead, BufReader, Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::sync::atomic::AtomicBool;
-use std::time::SystemTime;
-use std::{fmt, fs};
 
 use taxel_core::picture::Picture;
 use taxel_core::quote::{did_you_mean, shortened};
@@ -25,10 +19,14 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::formats::file::without_mark;
 use crate::formats::name::folded;
 use crate::formats::{ArchiveError, Name, StoredShape, model_header, read_model, write_model};
-use crate::storage::error::{ArchiveFileError, LibraryError};
-use crate::storage::file::{self, Existing, NewFile, sync_folder};
-use crate::storage::sweep_file::{FirstErrorWriter, open_archive};
-use crate::storage::{folder, shipped};
+use crate::storage::error::{ArchiveFileError, FileError};
+use crate::storage::file::{
+    self, Existing, check_writable, make_folder, names_in, open, sync_folder,
+};
+use crate::storage::shipped;
+
+/// The folder of the models in that of a library.
+pub(super) const FOLDER: &str = "models";
 
 const ENDING: &str = "npz";
 
@@ -44,24 +42,14 @@ const COUNTING: u32 = 1;
 /// # Errors
 /// Returns an error with the file's name if the file cannot be read or is not a model.
 pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
-    let mut file = BufReader::new(open_archive(path)?);
-    read_model(&mut file).map_err(|error| {
-        let error = match error {
-            ArchiveError::Zip if is_json(&mut file) => ArchiveError::Untrained,
-            error => error,
-        };
-        ArchiveFileError::new(path, error)
-    })
-}
-
-/// Whether a file begins like a JSON object, as a set of shapes does.
-fn is_json(file: &mut (impl Read + Seek)) -> bool {
-    let mut start = Vec::new();
-    let read = file
-        .rewind()
-        .and_then(|()| file.take(1 << 10).read_to_end(&mut start));
-    let start = without_mark(&start);
-    read.is_ok() && start.trim_ascii_start().starts_with(b"{")
+    let mut file = BufReader::new(open(path)?);
+    let is_set = |start: &[u8]| without_mark(start).trim_ascii_start().starts_with(b"{");
+    let read = match file.fill_buf() {
+        // A set of shapes, which is text, is given in place of its model now and then.
+        Ok(start) if is_set(start) => Err(ArchiveError::Untrained),
+        _ => read_model(&mut file),
+    };
+    read.map_err(|error| ArchiveFileError::new(path, error))
 }
 
 /// Reads a whole model from a file, so that it can answer touches.
@@ -75,156 +63,132 @@ pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
     if shard == Shard::WHOLE {
         return Ok(model);
     }
-    Err(ArchiveFileError::new(
-        path,
-        ArchiveError::PartOfModel { shard },
-    ))
+    let part = ArchiveError::PartOfModel { shard };
+    Err(ArchiveFileError::new(path, part))
 }
 
-/// The version of a file: another one once the file was written again, as far as its size and its time show it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FileVersion {
-    bytes: u64,
-    modified: SystemTime,
-}
-
-impl FileVersion {
-    /// The version of the file at a path; None if there is no file, or if the system keeps no time.
-    pub fn of(path: &Path) -> Option<Self> {
-        let found = path.metadata().ok()?;
-        Some(Self {
-            bytes: found.len(),
-            modified: found.modified().ok()?,
-        })
-    }
-}
-
-/// Writes a model to a file: all of it or nothing. Nothing is written if `stopped` becomes true on the way.
+/// Writes a model to a file: all of it or nothing.
 ///
 /// # Errors
 /// The system's error, with the file's name; also if a file exists and must be kept.
-pub fn save_model(
-    model: &Model,
-    path: &Path,
-    existing: Existing,
-    stopped: &AtomicBool,
-) -> Result<(), ArchiveFileError> {
-    let mut file = NewFile::begin(path, existing)?;
-    let mut output = FirstErrorWriter::new(&mut file.output, stopped);
-    let written = write_model(model, &mut output);
-    let written = output.finish(written);
-    written.map_err(|error| ArchiveFileError::new(path, error))?;
-    file.persist()?;
-    Ok(())
+pub fn save_model(model: &Model, path: &Path, existing: Existing) -> Result<(), FileError> {
+    file::write(path, &file_content(model), existing)
 }
 
-/// The folder of the user's models.
+/// The user's models: files `NAME.npz` in the folder `models` of a library. Models of earlier versions, which kept them
+/// in a folder `models` beside the library, are found there, too, but no file is written there.
+///
+/// Upper and lower case count as the same, as for shapes, so a folder can move to a file system that ignores case.
 #[derive(Clone, Debug)]
-pub struct ModelFolder(PathBuf);
+pub struct ModelFolder {
+    own: PathBuf,
+    earlier: PathBuf,
+}
 
 impl ModelFolder {
-    /// The folder `models` beside the folder of a library.
-    pub fn beside(library: &Path) -> Self {
-        // `.` has no name that could be replaced by another one.
-        let whole = match library.file_name() {
-            Some(_) => library.to_owned(),
-            None => library
-                .canonicalize()
-                .unwrap_or_else(|_| library.to_owned()),
-        };
-        Self(whole.with_file_name("models"))
-    }
-
-    /// The path of the folder; it may not exist yet.
-    pub fn path(&self) -> &Path {
-        &self.0
-    }
-
-    /// The file of a model. Upper and lower case count as the same, as for shapes, so a folder can move to a
-    /// file system that ignores case.
-    pub fn file(&self, name: &Name) -> PathBuf {
-        self.path_of(&self.stored_name(name))
-    }
-
-    fn path_of(&self, name: &Name) -> PathBuf {
-        self.0.join(format!("{name}.{ENDING}"))
-    }
-
-    /// Returns a model's name as its file has it; the given name if there is no file.
-    fn stored_name(&self, name: &Name) -> Name {
-        if self.path_of(name).exists() {
-            return name.clone();
+    /// The models of the library in a folder.
+    pub fn of(library: &Path) -> Self {
+        let whole = std::path::absolute(library).unwrap_or_else(|_| library.to_owned());
+        Self {
+            own: library.join(FOLDER),
+            earlier: whole.with_file_name(FOLDER),
         }
-        let names = self.names().into_iter().flatten();
-        let alike = names.into_iter().find(|other| name.same(other.as_str()));
-        alike.unwrap_or_else(|| name.clone())
     }
 
-    /// The names of all models, sorted regardless of case; files that do not look like models are left out.
+    /// The file of a model; None if there is no model of that name.
+    pub fn find(&self, name: &Name) -> Option<PathBuf> {
+        let models = self.list().unwrap_or_default();
+        let exact = models.iter().find(|(own, _)| own == name);
+        let found = exact.or_else(|| models.iter().find(|(own, _)| name.same(own.as_str())));
+        found.map(|(_, path)| path.clone())
+    }
+
+    /// The names of all models and their files, sorted regardless of case; files that do not look like models are left
+    /// out.
     ///
     /// # Errors
     /// The system's error, except if the folder does not exist.
-    pub fn names(&self) -> Result<Vec<Name>, ArchiveFileError> {
-        let files = folder::names(&self.0)
-            .map_err(|error| ArchiveFileError::doing(error.doing, &error.path, &error.error))?;
-        let name = |file: &OsString| {
-            let path = Path::new(file);
-            let stem = path.file_stem().and_then(|stem| stem.to_str())?;
-            let is_model = path.extension().is_some_and(|ending| ending == ENDING);
-            Name::new(stem).ok().filter(|_| is_model)
+    pub fn list(&self) -> Result<Vec<(Name, PathBuf)>, FileError> {
+        let own = names_in(&self.own)?
+            .into_iter()
+            .map(|file| self.own.join(file));
+        let earlier = names_in(&self.earlier).unwrap_or_default().into_iter();
+        let earlier = earlier.map(|file| self.earlier.join(file));
+        let named = |path: PathBuf| {
+            let name = Name::new(path.file_stem()?.to_str()?).ok()?;
+            (path.extension()? == ENDING).then_some((name, path))
         };
-        let mut names: Vec<Name> = files.iter().filter_map(name).collect();
-        names.sort_by_cached_key(|name| (folded(name.as_str()), name.clone()));
-        Ok(names)
+        let mut models: Vec<(Name, PathBuf)> = own.chain(earlier).filter_map(named).collect();
+        // Of two of the same name, the one in the library comes first.
+        models.sort_by_cached_key(|(name, _)| (folded(name.as_str()), name.clone()));
+        models.dedup_by(|next, first| next.0 == first.0);
+        Ok(models)
     }
 
-    /// Creates the folder if there is none, for a model that will be written there.
-    ///
-    /// # Errors
-    /// The system's error, with the folder's name.
-    pub fn make(&self) -> Result<(), ArchiveFileError> {
-        folder::make(&self.0).map_err(|error| match error {
-            LibraryError::System(refused) => refused.into(),
-            LibraryError::InTheWay {
-                path,
-                what,
-                expected,
-            } => {
-                let text = format!("is {what}, expected {expected}");
-                ArchiveFileError::new(&path, io::Error::other(text))
-            }
-            other => ArchiveFileError::new(&self.0, io::Error::other(other)),
-        })
+    /// The names of all models, as [`Self::list`] has them; none if the folder cannot be read.
+    pub fn names(&self) -> Vec<Name> {
+        let models = self.list().unwrap_or_default().into_iter();
+        models.map(|(name, _)| name).collect()
     }
 
-    /// Writes a model under a name, and makes the folder for it.
+    /// Checks whether a model can be saved, without making a folder for it, so that an error comes before the training.
     ///
     /// # Errors
-    /// The errors of [`save_model`].
+    /// Those of [`Self::save`].
+    pub fn check(&self, name: &Name, existing: Existing) -> Result<(), FileError> {
+        let path = self.target(name, existing)?;
+        if self.own.is_dir() {
+            return check_writable(&path, existing);
+        }
+        // The folders that are still missing are made when the model is saved.
+        let there = self.own.ancestors().find(|folder| folder.exists());
+        let place = there.unwrap_or(Path::new(".")).join(name.as_str());
+        check_writable(&place, Existing::Replaced)
+    }
+
+    /// The file that a model of this name gets.
+    fn target(&self, name: &Name, existing: Existing) -> Result<PathBuf, FileError> {
+        match self.find(name) {
+            Some(path) if existing == Existing::Kept => Err(FileError::new(
+                "write",
+                &path,
+                ErrorKind::AlreadyExists.into(),
+            )),
+            Some(path) if path.starts_with(&self.own) => Ok(path),
+            _ => Ok(self.own.join(format!("{name}.{ENDING}"))),
+        }
+    }
+
+    /// Writes a model under a name, and makes the folder for it. Returns the path.
+    ///
+    /// # Errors
+    /// The system's error, with the file's name; also if a model of that name exists and must be kept.
     pub fn save(
         &self,
         model: &Model,
         name: &Name,
         existing: Existing,
-        stopped: &AtomicBool,
-    ) -> Result<PathBuf, ArchiveFileError> {
-        self.make()?;
-        let path = self.file(name);
-        save_model(model, &path, existing, stopped)?;
+    ) -> Result<PathBuf, FileError> {
+        let path = self.target(name, existing)?;
+        make_folder(&self.own)?;
+        save_model(model, &path, existing)?;
         Ok(path)
     }
 
-    /// Removes a model for good: it can be trained again. Returns its name as it was stored.
+    /// Removes a model for good: it can be trained again. Returns its name as it was stored; None if there is no model
+    /// of that name.
     ///
     /// # Errors
     /// The system's error, with the file's name.
-    pub fn delete(&self, name: &Name) -> Result<Name, ArchiveFileError> {
-        let stored = self.stored_name(name);
-        let path = self.path_of(&stored);
-        fs::remove_file(&path).map_err(|error| ArchiveFileError::new(&path, error))?;
-        sync_folder(&self.0)
-            .map_err(|error| ArchiveFileError::doing("delete", &path, &error.error))?;
-        Ok(stored)
+    pub fn delete(&self, name: &Name) -> Result<Option<String>, FileError> {
+        let Some(path) = self.find(name) else {
+            return Ok(None);
+        };
+        fs::remove_file(&path).map_err(|error| FileError::new("delete", &path, error))?;
+        sync_folder(file::folder_of(&path))?;
+        Ok(path
+            .file_stem()
+            .map(|stem| stem.to_string_lossy().into_owned()))
     }
 }
 
@@ -252,19 +216,10 @@ impl ModelCache {
         content.extend(model_header(&training.head()));
         self.0.join(format!("{:032x}.{ENDING}", xxh3_128(&content)))
     }
-
-    /// Keeps a model. A cache that cannot be written to is not an error: the model is trained again next time. A
-    /// model that takes more than 64 MiB is not kept.
-    fn keep(&self, path: &Path, model: &Model) {
-        let bytes = file_content(model);
-        if bytes.len() <= MAX_CACHED && folder::make(&self.0).is_ok() {
-            let _ = file::write(path, &bytes, Existing::Replaced);
-        }
-    }
 }
 
 /// The model of a training from the cache. If the cache does not have it, `train` makes it, and it is kept
-/// there. Without a cache it is trained each time.
+/// there, unless it takes more than 64 MiB. Without a cache it is trained each time.
 ///
 /// # Errors
 /// The errors of `train`.
@@ -282,7 +237,11 @@ pub fn cached_or_trained<'a, E>(
         return Ok(model);
     }
     let model = train(training)?;
-    cache.keep(&path, &model);
+    let bytes = file_content(&model);
+    if bytes.len() <= MAX_CACHED && make_folder(&cache.0).is_ok() {
+        // A cache that cannot be written to is not an error: the model is trained again next time.
+        let _ = file::write(&path, &bytes, Existing::Replaced);
+    }
     Ok(model)
 }
 
@@ -313,10 +272,6 @@ pub enum ModelChoice {
     File(PathBuf),
 }
 
-/// The steps of the grid of the shapes that come with the program. In hundredths and whole degrees they leave 5.2
-/// million imprints; in these steps they are trained in a second or two.
-const SHIPPED_STEPS: GridSteps = GridSteps::COARSE;
-
 impl ModelChoice {
     /// The choices that need no file.
     pub const BUILT_IN: &'static [Self] = &[Self::Figures, Self::EqualFigures, Self::Shipped];
@@ -332,14 +287,24 @@ impl ModelChoice {
         Name::new(text).map_or_else(|_| Self::File(text.into()), Self::from_name)
     }
 
+    /// The name, the shapes and the steps of a built-in set.
+    fn built_in(&self) -> Option<(&'static str, fn() -> Vec<NamedShape>, GridSteps)> {
+        match self {
+            Self::Figures => Some(("figures", default_figures, GridSteps::FINE)),
+            Self::EqualFigures => Some(("figures-30", equal_figures, GridSteps::FINE)),
+            // In hundredths and whole degrees they leave 5.2 million imprints; in these steps they are trained in a
+            // second or two.
+            Self::Shipped => Some(("shapes", shipped_shapes, GridSteps::COARSE)),
+            Self::Stored(_) | Self::File(_) => None,
+        }
+    }
+
     /// The name that is used after `:recognise`.
     pub fn name(&self) -> &str {
         match self {
-            Self::Figures => "figures",
-            Self::EqualFigures => "figures-30",
-            Self::Shipped => "shapes",
             Self::Stored(name) => name.as_str(),
             Self::File(path) => path.file_name().and_then(OsStr::to_str).unwrap_or("file"),
+            own => own.built_in().map_or("", |(name, ..)| name),
         }
     }
 
@@ -351,19 +316,28 @@ impl ModelChoice {
     pub fn training(&self) -> Option<Result<Training<'static>, TrainingError>> {
         static FITTED: [OnceLock<Result<Training<'static>, TrainingError>>; 3] =
             [const { OnceLock::new() }; 3];
-        let (number, shapes, steps): (_, fn() -> Vec<NamedShape>, _) = match self {
-            Self::Figures => (0, default_figures, GridSteps::FINE),
-            Self::EqualFigures => (1, equal_figures, GridSteps::FINE),
-            Self::Shipped => (2, shipped_shapes, SHIPPED_STEPS),
-            Self::Stored(_) | Self::File(_) => return None,
-        };
+        let (_, shapes, steps) = self.built_in()?;
+        let number = Self::BUILT_IN.iter().position(|own| own == self)?;
         let fitted = FITTED[number].get_or_init(|| Training::fitting(shapes(), steps));
         Some(fitted.clone())
     }
 
     /// Whether the model is read from a file of the user's rather than trained.
     pub fn is_read(&self) -> bool {
-        matches!(self, Self::Stored(_) | Self::File(_))
+        self.built_in().is_none()
+    }
+}
+
+fn shipped_shapes() -> Vec<NamedShape> {
+    let picture = |shape: StoredShape| {
+        NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))
+    };
+    shipped::all().map(picture).collect()
+}
+
+impl fmt::Display for ModelChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "model {}", self.name())
     }
 }
 
@@ -382,19 +356,6 @@ pub fn unknown_set(name: &str, stored: &[Name]) -> String {
         all.join(", "),
         did_you_mean(name, all.iter().copied())
     )
-}
-
-impl fmt::Display for ModelChoice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "model {}", self.name())
-    }
-}
-
-fn shipped_shapes() -> Vec<NamedShape> {
-    let picture = |shape: StoredShape| {
-        NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))
-    };
-    shipped::all().map(picture).collect()
 }
 
 #[cfg(test)]
@@ -418,39 +379,74 @@ mod tests {
         Training::new(shapes, sensor, Anchor::Centre, ranges).expect("a set")
     }
 
+    fn folder_and_models() -> (tempfile::TempDir, ModelFolder) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let models = ModelFolder::of(&folder.path().join("library"));
+        (folder, models)
+    }
+
     #[test]
     fn a_model_comes_back_from_its_file_as_it_was() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let models = ModelFolder::beside(&folder.path().join("library"));
-        assert_eq!(models.path(), folder.path().join("models"));
-        assert_eq!(models.names().expect("none").len(), 0);
+        let (folder, models) = folder_and_models();
+        assert_eq!(models.names().len(), 0);
         let model = training(4.0).run().expect("not stopped");
         let name = Name::new("set").expect("a name");
-        let stopped = AtomicBool::new(false);
-        let path = models.save(&model, &name, Existing::Kept, &stopped);
-        let path = path.expect("written");
+        let save = |existing| models.save(&model, &name, existing);
+        models.check(&name, Existing::Kept).expect("free");
+        assert_eq!(
+            names_in(folder.path()).expect("read").len(),
+            0,
+            "nothing is left"
+        );
+        let path = save(Existing::Kept).expect("written");
         assert!(
             models
-                .save(&model, &name, Existing::Kept, &stopped)
-                .is_err()
+                .check(&name, Existing::Kept)
+                .expect_err("there")
+                .exists()
         );
+        assert!(save(Existing::Kept).expect_err("there").exists());
+        assert_eq!(save(Existing::Replaced).expect("written"), path);
         let again = load_model(&path).expect("read");
         assert_eq!(Evaluation::of(&again), Evaluation::of(&model));
         assert_eq!(again.shapes(), model.shapes());
         assert_eq!(model_hash(&again), model_hash(&model));
-        assert_eq!(models.names().expect("one").len(), 1);
-        models.delete(&name).expect("it is there");
-        assert!(models.delete(&name).is_err());
+        assert_eq!(models.names().len(), 1);
+        assert_eq!(
+            models.delete(&name).expect("deleted").as_deref(),
+            Some("set")
+        );
+        assert_eq!(models.delete(&name).expect("none"), None);
     }
 
     #[test]
-    fn a_file_in_place_of_the_folder_cannot_be_read_as_a_folder() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let models = ModelFolder::beside(&folder.path().join("library"));
-        fs::write(models.path(), "").expect("written");
-        let refused = models.names().expect_err("a file").to_string();
-        let expected = format!("{}: cannot read the folder: ", models.path().display());
+    fn a_model_beside_the_library_is_found_but_none_is_written_there() {
+        let (folder, models) = folder_and_models();
+        let earlier = folder.path().join("models");
+        fs::create_dir(&earlier).expect("made");
+        let model = training(4.0).run().expect("not stopped");
+        save_model(&model, &earlier.join("Set.npz"), Existing::Kept).expect("written");
+        let name = Name::new("set").expect("a name");
+        let found = models.find(&name).expect("it is there");
+        assert!(load_model(&found).is_ok() && models.check(&name, Existing::Kept).is_err());
+        let path = models
+            .save(&model, &name, Existing::Replaced)
+            .expect("written");
+        assert_eq!(path, folder.path().join("library/models/set.npz"));
+        assert_eq!(names_in(&earlier).expect("read"), ["Set.npz"]);
+        assert_eq!(models.find(&name), Some(path));
+    }
+
+    #[test]
+    fn a_file_in_place_of_the_folder_is_reported() {
+        let (folder, models) = folder_and_models();
+        fs::create_dir(folder.path().join("library")).expect("made");
+        fs::write(&models.own, "").expect("written");
+        let refused = models.list().expect_err("a file").to_string();
+        let expected = format!("{}: cannot read the folder: ", models.own.display());
         assert!(refused.starts_with(&expected), "{refused}");
+        let name = Name::new("set").expect("a name");
+        assert!(models.check(&name, Existing::Kept).is_err());
     }
 
     #[test]
@@ -488,22 +484,21 @@ mod tests {
 
     #[test]
     fn models_are_listed_by_alphabet_and_an_exact_name_comes_first() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let models = ModelFolder::beside(&folder.path().join("library"));
-        models.make().expect("made");
+        let (_folder, models) = folder_and_models();
+        fs::create_dir_all(&models.own).expect("made");
         for name in ["Bar", "apple", "cup", "CUP"] {
-            fs::write(models.path().join(format!("{name}.npz")), "").expect("written");
+            fs::write(models.own.join(format!("{name}.npz")), "").expect("written");
         }
-        let names = models.names().expect("there");
+        let names = models.names();
         // There is only one cup if the file system ignores case.
         let shown: Vec<&str> = names.iter().map(Name::as_str).take(2).collect();
         assert_eq!(shown, ["apple", "Bar"]);
         for name in names {
-            let file = models.path().join(format!("{name}.npz"));
-            assert_eq!(models.file(&name), file);
+            let file = models.own.join(format!("{name}.npz"));
+            assert_eq!(models.find(&name), Some(file));
         }
         let other_case = Name::new("BAR").expect("a name");
-        assert_eq!(models.file(&other_case), models.path().join("Bar.npz"));
+        assert_eq!(models.find(&other_case), Some(models.own.join("Bar.npz")));
     }
 
     #[test]

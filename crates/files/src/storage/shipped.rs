@@ -1,8 +1,6 @@
 //! The shapes that come with the program, compiled in. They were made with the program itself, by `library/make`.
 
 use crate::formats::{Name, StoredShape};
-use crate::storage::LibraryError;
-use crate::storage::folder::stamp;
 
 macro_rules! shapes {
     ($($name:literal),* $(,)?) => {
@@ -46,24 +44,10 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     SHIPPED.iter().map(|&(name, _)| name)
 }
 
-/// Whether a shape of that name comes with the program, regardless of case.
-pub fn has(name: &Name) -> bool {
-    SHIPPED.iter().any(|(shipped, _)| name.same(shipped))
-}
-
-/// The shape of that name with its stamp; None if no shape of that name comes with the program.
-pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryError>> {
-    let &(name, text) = SHIPPED.iter().find(|(shipped, _)| name.same(shipped))?;
-    let broken = |error| LibraryError::Broken {
-        path: format!("{name}.json").into(),
-        error,
-    };
-    let loaded = |shape| (shape, stamp(text.as_bytes()));
-    Some(
-        StoredShape::read(text.as_bytes())
-            .map(loaded)
-            .map_err(broken),
-    )
+/// The name, as its file has it, and the content of the shape of that name, regardless of case; None if no shape of that
+/// name comes with the program.
+pub(crate) fn text(name: &Name) -> Option<(&'static str, &'static str)> {
+    SHIPPED.into_iter().find(|(shipped, _)| name.same(shipped))
 }
 
 /// The shape of that name, regardless of case; None if no shape of that name comes with the program.
@@ -76,8 +60,8 @@ pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryErro
 /// assert!(shipped::get("wrench").is_none());
 /// ```
 pub fn get(name: &str) -> Option<StoredShape> {
-    let (shape, _) = load(&Name::new(name).ok()?)?.ok()?;
-    Some(shape)
+    let (_, text) = text(&Name::new(name).ok()?)?;
+    StoredShape::read(text.as_bytes()).ok()
 }
 
 /// Iterates over all shapes, by name.

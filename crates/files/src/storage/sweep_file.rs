@@ -1,111 +1,62 @@
 //! The files that a sweep writes: its atlas, in the format given by the extension of the name, and the atlas number
 //! of every pose.
 //!
-//! At any time, either the complete new file or the complete old one exists ([`crate::storage::file`]).
+//! At any time, either the complete new file or the complete old one exists ([`NewFile`]).
 
-use std::fs::File;
-use std::io::{self, BufReader, Seek, SeekFrom, Write};
+use std::ffi::OsString;
+use std::io::{self, BufReader, Cursor, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use taxel_core::pose::PoseGrid;
 use taxel_core::progress::stop_if;
 use taxel_core::sweep::SweepResult;
 
-use crate::formats::ArchiveError;
 use crate::formats::atlas::{self, write_csv, write_jsonl};
 use crate::formats::file::has_ending;
 use crate::formats::npy::{self, Dtype};
 use crate::storage::error::{ArchiveFileError, FileError};
-use crate::storage::file::{Existing, NewFile, check_writable};
+use crate::storage::file::{Existing, NewFile, open};
 
-/// The file for an atlas: its path and its format.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AtlasFile {
-    path: PathBuf,
-    format: AtlasFormat,
+/// The path of an atlas; its extension gives the format.
+///
+/// # Errors
+/// If no format has this extension.
+pub fn atlas_path(path: impl Into<OsString>) -> Result<PathBuf, &'static str> {
+    let path = PathBuf::from(path.into());
+    if ["csv", "jsonl", "npz"]
+        .iter()
+        .any(|ending| has_ending(&path, ending))
+    {
+        Ok(path)
+    } else {
+        Err("expected a name that ends in .csv, .jsonl or .npz")
+    }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum AtlasFormat {
-    Csv,
-    JsonLines,
-    Archive,
-}
-
-/// The error for a name without the ending of an atlas format.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected a name that ends in .csv, .jsonl or .npz")]
-pub struct AtlasEndingError;
-
-impl AtlasFile {
-    /// Takes a path, whose extension gives the format. Creates nothing yet.
-    ///
-    /// # Errors
-    /// If no format has this extension.
-    pub fn new(path: impl Into<PathBuf>) -> Result<Self, AtlasEndingError> {
-        let path = path.into();
-        let formats = [
-            ("csv", AtlasFormat::Csv),
-            ("jsonl", AtlasFormat::JsonLines),
-            ("npz", AtlasFormat::Archive),
-        ];
-        let mut formats = formats.into_iter();
-        let found = formats.find(|(ending, _)| has_ending(&path, ending));
-        let (_, format) = found.ok_or(AtlasEndingError)?;
-        Ok(Self { path, format })
-    }
-
-    /// The path of the file.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Checks whether a file can be begun there, so that an error comes before the work rather than after it.
-    ///
-    /// # Errors
-    /// The system's error, with the file's name; also if a file exists and must be kept.
-    pub fn check(&self, existing: Existing) -> Result<(), ArchiveFileError> {
-        Ok(check_writable(&self.path, existing)?)
-    }
-
-    /// Writes the atlas of a result. Leaves nothing behind if `stopped` becomes true on the way.
-    ///
-    /// # Errors
-    /// The system's error, with the file's name.
-    pub fn write(
-        &self,
-        result: &SweepResult,
-        existing: Existing,
-        stopped: &AtomicBool,
-    ) -> Result<(), ArchiveFileError> {
-        self.prepare(result, existing, stopped)?.persist()?;
-        Ok(())
-    }
-
-    /// Writes the atlas without giving the file its name yet, so that several files can appear together.
-    ///
-    /// # Errors
-    /// The system's error, with the file's name.
-    pub fn prepare(
-        &self,
-        result: &SweepResult,
-        existing: Existing,
-        stopped: &AtomicBool,
-    ) -> Result<NewFile, ArchiveFileError> {
-        let mut file = NewFile::begin(&self.path, existing)?;
-        let mut output = FirstErrorWriter::new(&mut file.output, stopped);
-        let written = match self.format {
-            AtlasFormat::Csv => write_csv(result, &mut output).map_err(ArchiveError::from),
-            AtlasFormat::JsonLines => write_jsonl(result, &mut output).map_err(ArchiveError::from),
-            AtlasFormat::Archive => atlas::write(result, &mut output),
-        };
-        let written = output.finish(written);
-        written.map_err(|error| ArchiveFileError::new(&self.path, error))?;
-        file.finish()?;
-        Ok(file)
-    }
+/// Writes the atlas of a result without giving the file its name yet, so that several files can appear together.
+///
+/// # Errors
+/// The system's error.
+pub fn write_atlas(
+    path: &Path,
+    result: &SweepResult,
+    existing: Existing,
+) -> Result<NewFile, FileError> {
+    let mut file = NewFile::begin(path, existing)?;
+    let written = if has_ending(path, "csv") {
+        write_csv(result, &mut file.output)
+    } else if has_ending(path, "jsonl") {
+        write_jsonl(result, &mut file.output)
+    } else {
+        let mut archive = Cursor::new(Vec::new());
+        // Made in memory: if the disk is full, a zip complains on standard error, where the screen is.
+        let made = atlas::write(result, &mut archive).map_err(io::Error::other);
+        made.and_then(|()| file.output.write_all(archive.get_ref()))
+    };
+    written.map_err(|error| FileError::new("write", path, error))?;
+    file.finish()?;
+    Ok(file)
 }
 
 /// Reads the atlas of an archive.
@@ -113,24 +64,8 @@ impl AtlasFile {
 /// # Errors
 /// Returns an error with the file's name if the file cannot be read or is not an atlas.
 pub fn load_atlas(path: &Path) -> Result<SweepResult, ArchiveFileError> {
-    let file = open_archive(path)?;
+    let file = open(path)?;
     atlas::read(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
-}
-
-/// Opens the file of an atlas or of a model. Refuses anything except a regular file, because opening a pipe waits for
-/// a writer that may never come.
-///
-/// # Errors
-/// The system's error, with the file's name.
-pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
-    let opened = path.metadata().and_then(|metadata| {
-        if metadata.is_file() {
-            File::open(path)
-        } else {
-            Err(io::Error::other("not a regular file"))
-        }
-    });
-    opened.map_err(|error| ArchiveFileError::doing("read", path, &error))
 }
 
 /// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in upper or lower
@@ -169,19 +104,18 @@ pub struct PoseFile {
     row_length: u64,
     missing: u64,
     error: Option<io::Error>,
-    bytes: Vec<u8>,
 }
 
 impl PoseFile {
     /// Begins a file for the poses of a grid.
     ///
     /// # Errors
-    /// The system's error, with the file's name.
+    /// The system's error.
     pub fn new(
         path: impl Into<PathBuf>,
         grid: &PoseGrid,
         existing: Existing,
-    ) -> Result<Self, ArchiveFileError> {
+    ) -> Result<Self, FileError> {
         let mut file = NewFile::begin(&path.into(), existing)?;
         let mut shape = grid.counts().into_array();
         shape.reverse();
@@ -189,16 +123,14 @@ impl PoseFile {
             [1, 1, angles, rows, columns] => npy::header(Dtype::U32, &[angles, rows, columns]),
             _ => npy::header(Dtype::U32, &shape),
         };
-        let begun = file.output.write_all(&header);
-        begun.map_err(|error| FileError::new("write it", file.path(), error))?;
+        let error = file.output.write_all(&header).err();
         Ok(Self {
             file,
             start: header.len() as u64,
             rows: grid.rows(),
             row_length: grid.row_length(),
             missing: grid.rows(),
-            error: None,
-            bytes: Vec::new(),
+            error,
         })
     }
 
@@ -224,99 +156,26 @@ impl PoseFile {
             );
             return Err(io::Error::new(io::ErrorKind::InvalidInput, error));
         }
-        self.bytes.clear();
-        self.bytes
-            .extend(ids.iter().flat_map(|id| id.to_le_bytes()));
-        let place = self.start + row * self.bytes.len() as u64;
         let output = &mut self.file.output;
-        output.seek(SeekFrom::Start(place))?;
-        output.write_all(&self.bytes)
+        output.seek(SeekFrom::Start(self.start + row * length * 4))?;
+        ids.iter()
+            .try_for_each(|id| output.write_all(&id.to_le_bytes()))
     }
 
     /// Completes the file, without giving it its name yet. Returns None if rows are missing, because the sweep was
     /// stopped or was one of a shard; then nothing is left of the file, and neither is if it is dropped instead.
     ///
     /// # Errors
-    /// The first error, with the file's name.
-    pub fn finish(mut self) -> Result<Option<NewFile>, ArchiveFileError> {
+    /// The first error.
+    pub fn finish(mut self) -> Result<Option<NewFile>, FileError> {
         match self.error {
-            Some(error) => Err(ArchiveFileError::new(self.file.path(), error)),
+            Some(error) => Err(FileError::new("write", self.file.path(), error)),
             None if self.missing > 0 => Ok(None),
             None => {
                 self.file.finish()?;
                 Ok(Some(self.file))
             }
         }
-    }
-}
-
-/// A writer that stops writing at the first error, or when it is to stop. From then on it only counts what would have
-/// been written, since a zip whose writer fails complains on standard error, where the screen is.
-pub(crate) struct FirstErrorWriter<'a, W> {
-    output: W,
-    stopped: &'a AtomicBool,
-    error: Option<io::Error>,
-    place: u64,
-    end: u64,
-}
-
-impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
-    pub(crate) fn new(output: W, stopped: &'a AtomicBool) -> Self {
-        Self {
-            output,
-            stopped,
-            error: None,
-            place: 0,
-            end: 0,
-        }
-    }
-
-    /// The first error of the system or of stopping, otherwise `written`, the result of the function that
-    /// wrote: it may not have noticed that error.
-    pub(crate) fn finish<E: From<io::Error>>(self, written: Result<(), E>) -> Result<(), E> {
-        match self.error {
-            Some(error) => Err(error.into()),
-            None => written,
-        }
-    }
-
-    fn attempt<T>(&mut self, act: impl FnOnce(&mut W) -> io::Result<T>) -> Option<T> {
-        if self.stopped.load(Ordering::Relaxed) && self.error.is_none() {
-            self.error = Some(io::Error::other("stopped"));
-        }
-        if self.error.is_some() {
-            return None;
-        }
-        act(&mut self.output)
-            .map_err(|error| self.error = Some(error))
-            .ok()
-    }
-}
-
-impl<W: Write + Seek> Write for FirstErrorWriter<'_, W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let _ = self.attempt(|output| output.write_all(bytes));
-        self.place += bytes.len() as u64;
-        self.end = self.end.max(self.place);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        let _ = self.attempt(Write::flush);
-        Ok(())
-    }
-}
-
-impl<W: Write + Seek> Seek for FirstErrorWriter<'_, W> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let _ = self.attempt(|output| output.seek(to));
-        let place = match to {
-            SeekFrom::Start(place) => Some(place),
-            SeekFrom::End(by) => self.end.checked_add_signed(by),
-            SeekFrom::Current(by) => self.place.checked_add_signed(by),
-        };
-        self.place = place.ok_or(io::ErrorKind::InvalidInput)?;
-        Ok(self.place)
     }
 }
 
@@ -359,29 +218,25 @@ mod tests {
         let result = result();
         for name in ["a.csv", "a.jsonl", "a.npz"] {
             let path = folder.path().join(name);
-            let file = AtlasFile::new(&path).expect("a format");
-            let stopped = AtomicBool::new(true);
-            let refused = file.write(&result, Existing::Kept, &stopped);
-            let refused = refused.expect_err("stopped").to_string();
-            assert!(refused.contains("stopped"), "{refused}");
+            assert_eq!(atlas_path(&path).as_ref(), Ok(&path));
+            let write = |existing| {
+                write_atlas(&path, &result, existing)
+                    .and_then(NewFile::persist)
+                    .map(drop)
+            };
+            let dropped = write_atlas(&path, &result, Existing::Kept).expect("written");
+            drop(dropped);
             assert_eq!(files(folder.path()), [""; 0], "nothing is left");
-            let stopped = AtomicBool::new(false);
-            file.write(&result, Existing::Kept, &stopped)
-                .expect("written");
+            write(Existing::Kept).expect("written");
             let first = std::fs::read(&path).expect("it is there");
-            let again = file.write(&result, Existing::Kept, &stopped);
-            assert!(again.expect_err("it is there").exists());
-            file.write(&result, Existing::Replaced, &stopped)
-                .expect("written again");
+            assert!(write(Existing::Kept).expect_err("it is there").exists());
+            write(Existing::Replaced).expect("written again");
             assert_eq!(std::fs::read(&path).ok(), Some(first));
             std::fs::remove_file(&path).expect("it is there");
         }
-        let refused = ["a.txt", "csv"].map(|name| AtlasFile::new(name).err());
-        assert_eq!(refused, [const { Some(AtlasEndingError) }; 2]);
+        assert!(atlas_path("a.txt").is_err() && atlas_path("csv").is_err());
         let nowhere = folder.path().join("nowhere/a.csv");
-        let nowhere = AtlasFile::new(nowhere).expect("a format");
-        let stopped = AtomicBool::new(false);
-        let error = nowhere.write(&result, Existing::Kept, &stopped);
+        let error = write_atlas(&nowhere, &result, Existing::Kept);
         let error = error.expect_err("there is no such folder").to_string();
         assert!(
             error.ends_with("a.csv: cannot write: no such folder"),

@@ -11,7 +11,7 @@ use taxel_files::acquire::FrameSource;
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, imprint_file, read_content};
-use taxel_files::storage::{self, Existing, ModelChoice, location};
+use taxel_files::storage::{self, Existing, ModelChoice, below_home};
 
 use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::live::message::WatchRequest;
@@ -70,7 +70,7 @@ fn refuse_baud(source: &FrameSource, request: &WatchRequest) -> Result<(), Strin
 }
 
 fn open(name: &str) -> Result<OpenedFile, String> {
-    let path = location::below_home(name).ok_or("no home folder, so ~ cannot be used")?;
+    let path = below_home(name).ok_or("no home folder, so ~ cannot be used")?;
     let sentence = |error: std::io::Error| format!("cannot read: {}", system_reason(&error));
     let kind = fs::metadata(&path).map_err(sentence)?;
     if !kind.is_file() {
@@ -136,7 +136,7 @@ fn paths(start: &str) -> Vec<String> {
         .rfind('/')
         .map_or(("", start), |slash| start.split_at(slash + 1));
     let place = if folder.is_empty() { "./" } else { folder };
-    let entries = location::below_home(place).map(fs::read_dir);
+    let entries = below_home(place).map(fs::read_dir);
     let Some(Ok(entries)) = entries else {
         return Vec::new();
     };
@@ -176,7 +176,7 @@ impl WriteAccess {
         existing: Existing,
     ) -> Result<PathBuf, String> {
         let Some(folder) = &self.folder else {
-            return location::below_home(name)
+            return below_home(name)
                 .ok_or_else(|| format!("{name}: no home folder, so ~ cannot be used"));
         };
         let path = inside(folder, name)?;

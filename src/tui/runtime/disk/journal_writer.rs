@@ -8,15 +8,14 @@
 //!    +---- any             +-------------------------------+
 //! ```
 //! Of the changes within the interval only the last one is written. The thread sleeps while nothing is due. A flush
-//! also writes work that was written before, if someone has removed it from the disk. A journal holds one shape, so
-//! each piece of work has a journal of its own.
+//! also writes work that was written before, if someone has removed it from the disk.
 
 use std::cell::Cell;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use taxel_files::storage::{Journal, Library, LibraryError, Orphan};
+use taxel_files::storage::{FileError, Journal, Library, Orphan};
 
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::app::state::App;
@@ -50,7 +49,7 @@ enum JournalRequest {
 }
 
 impl JournalWriter {
-    pub(in crate::tui) fn new(library: Library) -> Self {
+    pub(in crate::tui) fn new(library: &Library) -> Self {
         let (notes, inbox) = channel();
         let writer = JournalThread::new(library);
         match start(move || writer.run(&inbox)) {
@@ -135,8 +134,9 @@ impl Drop for JournalWriter {
 
 /// The thread's end: gathers changes for a moment, then writes the latest.
 struct JournalThread {
-    library: Library,
-    journals: Vec<(Journal, UnsavedWork)>,
+    journal: Journal,
+    /// The work in the journal.
+    written: Vec<UnsavedWork>,
     works: Vec<UnsavedWork>,
     /// The time to write it; None if it is written.
     due: Option<Instant>,
@@ -148,10 +148,10 @@ struct JournalThread {
 }
 
 impl JournalThread {
-    fn new(library: Library) -> Self {
+    fn new(library: &Library) -> Self {
         Self {
-            library,
-            journals: Vec::new(),
+            journal: Journal::new(library),
+            written: Vec::new(),
             works: Vec::new(),
             due: None,
             adopted: Vec::new(),
@@ -190,7 +190,7 @@ impl JournalThread {
     }
 
     /// Takes work to be written after a moment, together with later changes. If there is none, nothing can be lost, so
-    /// the journals are cleared at once.
+    /// the journal is cleared at once.
     fn note(&mut self, works: Vec<UnsavedWork>) {
         let soon = Instant::now() + GATHER;
         self.works = works;
@@ -224,129 +224,14 @@ impl JournalThread {
         self.due.is_none()
     }
 
-    /// Brings the journals up to date: writes work that no journal holds, then clears the journals of other work. A
-    /// journal of other work may be written over only once everything else is on the disk, so a crash loses nothing:
-    /// the former state of a drawing stays until the new one is there. All work is tried, whatever fails; returns the
-    /// first error.
-    fn keep(&mut self) -> Result<(), LibraryError> {
-        let mut old = std::mem::take(&mut self.journals);
-        let mut unwritten = Vec::new();
-        for work in &self.works {
-            let holds = |(journal, written): &mut (Journal, UnsavedWork)| {
-                written == work && journal.is_intact()
-            };
-            match old.extract_if(.., holds).next() {
-                Some(holder) => self.journals.push(holder),
-                None => unwritten.push(work),
-            }
+    /// Brings the journal up to date, if it does not hold the work already.
+    fn keep(&mut self) -> Result<(), FileError> {
+        if self.written == self.works && self.journal.is_intact() {
+            return Ok(());
         }
-        let mut kept = Ok(());
-        for (index, work) in unwritten.iter().enumerate() {
-            let is_last = index + 1 == unwritten.len();
-            let reused = (is_last && kept.is_ok()).then(|| old.pop()).flatten();
-            let (journal, before) = reused.unzip();
-            let mut journal = journal.unwrap_or_else(|| Journal::new(&self.library));
-            let written = journal.keep(&work.to_shape());
-            match (&written, before) {
-                (Ok(()), _) => self.journals.push((journal, (*work).clone())),
-                (Err(_), Some(before)) => old.push((journal, before)),
-                (Err(_), None) => journal.clear(),
-            }
-            kept = kept.and(written);
-        }
-        if kept.is_ok() {
-            old.drain(..).for_each(|(mut journal, _)| journal.clear());
-        }
-        self.journals.extend(old);
-        kept
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::fs;
-
-    use taxel_core::imprint::Imprint;
-    use taxel_core::sensor::Sensor;
-    use taxel_files::formats::{Name, StoredShape};
-
-    use super::*;
-
-    fn drawing(taxels: u8) -> UnsavedWork {
-        let sensor = Sensor::default();
-        let mut imprint = Imprint::empty(sensor.size());
-        (0..taxels).for_each(|row| imprint.toggle(3, row));
-        UnsavedWork::from(&StoredShape {
-            name: Name::new("drawn").expect("a name"),
-            sensor,
-            imprint,
-            source: None,
-        })
-    }
-
-    struct Journals {
-        folder: tempfile::TempDir,
-        thread: JournalThread,
-    }
-
-    impl Journals {
-        fn new() -> Self {
-            let folder = tempfile::tempdir().expect("a folder");
-            let thread = JournalThread::new(Library::open(folder.path().to_owned()));
-            Self { folder, thread }
-        }
-
-        /// Keeps drawings with these numbers of taxels; returns whether all could be kept, and the numbers of taxels
-        /// that are on the disk afterwards.
-        fn keep(&mut self, taxels: &[u8]) -> (bool, Vec<u32>) {
-            self.thread.works = taxels.iter().copied().map(drawing).collect();
-            let kept = self.thread.keep().is_ok();
-            let files = fs::read_dir(self.folder.path().join(".journal")).expect("a folder");
-            let paths = files.map(|file| file.expect("a file").path());
-            let journals = paths.filter(|path| {
-                path.extension().is_some_and(|ending| ending == "json") && path.is_file()
-            });
-            let mut found: Vec<u32> = journals
-                .map(|path| StoredShape::read(&fs::read(path).expect("a journal")))
-                .map(|shape| shape.expect("whole").imprint.count())
-                .collect();
-            found.sort_unstable();
-            (kept, found)
-        }
-
-        /// Puts a folder in the place of the journal of this number, so that it can be neither read nor written.
-        fn block(&self, number: usize) {
-            let name = format!(".journal/{}-{number}.json", std::process::id());
-            let path = self.folder.path().join(name);
-            fs::remove_file(&path).expect("a journal");
-            fs::create_dir(&path).expect("a folder");
-        }
-    }
-
-    #[test]
-    fn the_journals_hold_the_present_work() {
-        let mut journals = Journals::new();
-        for works in [
-            &[1][..],
-            &[1, 2],
-            &[3, 1],
-            &[2, 3, 4],
-            &[5, 6],
-            &[6, 5],
-            &[],
-        ] {
-            let mut sorted: Vec<u32> = works.iter().copied().map(u32::from).collect();
-            sorted.sort_unstable();
-            assert_eq!(journals.keep(works), (true, sorted));
-        }
-    }
-
-    #[test]
-    fn a_journal_is_not_written_over_while_its_work_is_kept() {
-        let mut journals = Journals::new();
-        assert_eq!(journals.keep(&[1, 2]), (true, vec![1, 2]));
-        // The new work cannot be written. What was in the first place stays, though it has moved to the second.
-        journals.block(1);
-        assert_eq!(journals.keep(&[3, 1]), (false, vec![1]));
+        let shapes = self.works.iter().map(UnsavedWork::to_shape).collect();
+        self.journal.keep(shapes)?;
+        self.written.clone_from(&self.works);
+        Ok(())
     }
 }

@@ -28,14 +28,11 @@ use crate::tui::runtime::work::models::ModelStore;
 pub(in crate::tui::runtime) enum DiskRequest {
     /// Read or change the library.
     Library(LibraryRequest),
-    /// Look for unsaved work of programs that crashed.
-    FindWork,
-    /// Move unsaved work of a program that crashed to the trash, and look for more of it.
+    /// Move unsaved work of a program that crashed to the trash.
     ThrowAway(Box<Orphan>),
     File(FileRequest),
-    /// Remember lines for the next run, in place of those remembered before.
+    /// Remember lines for the next run.
     Remember(RememberedFile, Vec<String>),
-    RememberMore(RememberedFile, Vec<String>),
     BeginRecording(u64, Box<RecordingMetadata>),
     WriteMetadata(u64, Arc<Recording>, Box<RecordedView>),
     FlushRecording(u64, Arc<Recording>),
@@ -46,11 +43,8 @@ pub(in crate::tui::runtime) enum DiskRequest {
 pub(in crate::tui::runtime) enum DiskAnswer {
     /// The shape that was to be saved; the stamp of its file, or the error.
     Stored(Box<StoredShape>, Result<u64, LibraryError>),
-    /// The unsaved work to offer, with the number of offers; None if there is none.
-    FoundWork(Option<(Box<Orphan>, usize)>),
-    /// The name of the unsaved work in the trash, or the error; and the next work to offer, with the number of
-    /// offers.
-    ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
+    /// The name of the unsaved work in the trash, or the error.
+    ThrownAway(Result<String, LibraryError>),
     File(FileEvent),
     Library(LibraryEvent),
     Recording(u64, Result<(String, Arc<Recording>), String>),
@@ -62,13 +56,12 @@ impl DiskRequest {
     pub(super) fn words(&self) -> String {
         match self {
             Self::Library(request) => request_words(request),
-            Self::FindWork => "Looking for unsaved work".to_owned(),
             Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
             Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
             Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
             Self::File(FileRequest::Source(request)) => format!("Opening {}", request.name()),
             Self::File(FileRequest::Paths(_)) => "Listing files".to_owned(),
-            Self::Remember(..) | Self::RememberMore(..) => "Remembering it".to_owned(),
+            Self::Remember(..) => "Remembering it".to_owned(),
             Self::BeginRecording(..) => "Starting a recording".to_owned(),
             Self::WriteMetadata(_, recording, _) => {
                 format!("Saving the metadata of {}", recording.path().display())
@@ -90,17 +83,12 @@ impl DiskRequest {
     pub(super) fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
         match self {
             Self::Library(request) => answer(library, request),
-            Self::FindWork => DiskAnswer::FoundWork(newest_orphan(library)),
-            Self::ThrowAway(orphan) => throw_away(library, *orphan),
+            Self::ThrowAway(orphan) => DiskAnswer::ThrownAway(throw_away(library, *orphan)),
             Self::File(request) => {
                 let models = ModelStore::beside(library);
                 DiskAnswer::File(files::perform(request, &models, access))
             }
             Self::Remember(file, lines) => {
-                file.write(&lines);
-                DiskAnswer::Nothing
-            }
-            Self::RememberMore(file, lines) => {
                 file.add(lines);
                 DiskAnswer::Nothing
             }
@@ -141,7 +129,7 @@ fn answer(library: &Library, request: LibraryRequest) -> DiskAnswer {
             let names = ModelStore::beside(library).names().into_iter();
             LibraryEvent::Models(names.map(|name| name.to_string()).collect())
         }
-        LibraryRequest::Trash => LibraryEvent::Trash(library.in_trash().map_err(sentence)),
+        LibraryRequest::Trash => LibraryEvent::Trash(library.deleted().map_err(sentence)),
         LibraryRequest::Read(names) => {
             let read = names.into_iter().map(|name| {
                 let loaded = library.load(&name).map_err(sentence);
@@ -167,7 +155,7 @@ fn answer(library: &Library, request: LibraryRequest) -> DiskAnswer {
             removed.map_or_else(LibraryEvent::Failed, LibraryEvent::Removed)
         }
         LibraryRequest::Restore(name) => {
-            let restored = restore(library, name);
+            let restored = library.restore(name.as_deref());
             let restored = restored.map_err(|error| not_changed(library, "not restored", &error));
             restored.map_or_else(LibraryEvent::Failed, LibraryEvent::Restored)
         }
@@ -235,27 +223,14 @@ fn sentence(library: &Library, error: &LibraryError) -> String {
     format!("{error}{}", library.suggestion(error))
 }
 
-fn restore(library: &Library, name: Option<String>) -> Result<String, LibraryError> {
-    name.map_or_else(|| library.restore_last(), |name| library.restore(&name))
-}
-
-/// Moves unsaved work to the trash. Other work is looked for only if this one is gone; otherwise the same work would be
-/// offered, and moved, again without end.
-fn throw_away(library: &Library, orphan: Orphan) -> DiskAnswer {
+fn throw_away(library: &Library, orphan: Orphan) -> Result<String, LibraryError> {
     let mut shape = orphan.shape.clone();
     if let Ok(name) = Name::new(UNNAMED) {
         shape = shape.renamed(name);
     }
-    let thrown = library.throw_away(&shape);
-    let is_gone = thrown.is_ok() && orphan.discard();
-    let next = is_gone.then(|| newest_orphan(library)).flatten();
-    DiskAnswer::ThrownAway(thrown, next)
-}
-
-pub(in crate::tui::runtime) fn newest_orphan(library: &Library) -> Option<(Box<Orphan>, usize)> {
-    let mut all = Orphan::all(library);
-    let count = all.len();
-    all.pop().map(|newest| (Box::new(newest), count))
+    let thrown = library.throw_away(&shape)?;
+    orphan.discard();
+    Ok(thrown)
 }
 
 /// Returns the name, the size and the age of the work: `hexagon side 4.00, 40 taxels, about 12 minutes ago`.
@@ -317,7 +292,7 @@ impl Reminders {
     pub(in crate::tui::runtime) fn note(&mut self, app: &App, queue: &mut DiskQueue) {
         if let Some(new @ [_, ..]) = app.commands.get(self.remembered..) {
             let (file, new) = (self.commands.clone(), new.to_vec());
-            queue.begin(DiskRequest::RememberMore(file, new));
+            queue.begin(DiskRequest::Remember(file, new));
             self.remembered = app.commands.len();
         }
         let is_new = |now: &&ModelChoice| {
@@ -344,12 +319,12 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let library = Library::open(folder.path().to_owned());
         let said = |kind: ErrorKind| {
-            let error = FileError::new("write it", folder.path(), kind.into());
+            let error = FileError::new("write", folder.path(), kind.into());
             not_changed(&library, "not deleted", &error.into())
         };
         let expected = "not deleted: the library is read-only";
         assert_eq!(said(ErrorKind::ReadOnlyFilesystem), expected);
-        assert!(said(ErrorKind::StorageFull).contains("cannot write it"));
+        assert!(said(ErrorKind::StorageFull).contains("cannot write"));
     }
 
     #[test]

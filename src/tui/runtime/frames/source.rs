@@ -11,13 +11,13 @@ use taxel_files::acquire::{AcquireError, FrameSource, SourceName};
 use taxel_files::formats::recording::unknown_format;
 use taxel_files::formats::stream::{NoFrameReason, StreamCounts, StreamRefusal};
 use taxel_files::formats::value::counted;
-use taxel_files::storage::location;
+use taxel_files::storage::below_home;
 
 use crate::tui::runtime::disk::files::WriteAccess;
 
 pub(in crate::tui::runtime) fn named(name: &SourceName) -> FrameSource {
     let below = match name {
-        SourceName::Path(path) => path.to_str().and_then(location::below_home),
+        SourceName::Path(path) => path.to_str().and_then(below_home),
         SourceName::Standard | SourceName::Tcp(_) => None,
     };
     FrameSource::named(below.map_or_else(|| name.clone(), SourceName::Path))

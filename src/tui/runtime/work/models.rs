@@ -4,7 +4,7 @@
 //! Prepare(number, set)  -> Begun, Progress …, then Prepared: the model, or why there is none
 //! ```
 //! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the
-//! folder beside the library, any other from its file. Training goes on while a sweep begins, and stops only on
+//! folder of the library, any other from its file. Training goes on while a sweep begins, and stops only on
 //! request.
 
 use std::cell::OnceCell;
@@ -21,8 +21,8 @@ use taxel_core::recognition::{Model, TrainingError};
 use taxel_files::formats::Name;
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
-    FileVersion, Library, ModelCache, ModelChoice, ModelFolder, cached_or_trained,
-    load_whole_model, location, unknown_set,
+    Library, ModelCache, ModelChoice, ModelFolder, below_home, cached_or_trained, load_whole_model,
+    unknown_set,
 };
 
 use crate::tui::app::message::WorkerEvent;
@@ -43,15 +43,14 @@ pub(in crate::tui::runtime) struct ModelStore {
 impl ModelStore {
     pub(in crate::tui::runtime) fn beside(library: &Library) -> Self {
         Self {
-            folder: Some(ModelFolder::beside(library.folder())),
+            folder: Some(ModelFolder::of(library.folder())),
             cache: None,
         }
     }
 
     /// Returns the names of the user's models; none if the folder cannot be read.
     pub(in crate::tui::runtime) fn names(&self) -> Vec<Name> {
-        let names = |folder: &ModelFolder| folder.names().into_iter().flatten();
-        self.folder.iter().flat_map(names).collect()
+        self.folder.iter().flat_map(ModelFolder::names).collect()
     }
 
     pub(in crate::tui::runtime) fn model(
@@ -82,9 +81,9 @@ impl ModelStore {
     /// Returns the file of a stored model or of a model in a file, whose path may begin with `~`; None for any other.
     fn path(&self, choice: &ModelChoice) -> Option<PathBuf> {
         match choice {
-            ModelChoice::Stored(name) => Some(self.folder.as_ref()?.file(name)),
+            ModelChoice::Stored(name) => self.folder.as_ref()?.find(name),
             ModelChoice::File(path) => {
-                let below_home = path.to_str().and_then(location::below_home);
+                let below_home = path.to_str().and_then(below_home);
                 Some(below_home.unwrap_or_else(|| path.clone()))
             }
             _ => None,
@@ -97,7 +96,7 @@ impl ModelStore {
             choice => choice.name().to_owned(),
         };
         let path = self.path(choice);
-        let path = path.ok_or_else(|| format!("no model named {name:?}"))?;
+        let path = path.ok_or_else(|| unknown_set(&name, &self.names()))?;
         match path.metadata() {
             // Opening a pipe waits, and opening a serial line may reset its device.
             Ok(kind) if !kind.is_file() => Err(format!("{}: not a regular file", shortened(&name))),
@@ -116,7 +115,7 @@ impl ModelStore {
             return choice;
         };
         let folder = self.folder.as_ref();
-        let is_stored = folder.is_some_and(|folder| folder.file(name).exists());
+        let is_stored = folder.is_some_and(|folder| folder.find(name).is_some());
         let path = Path::new(name.as_str());
         if is_stored || !path.exists() {
             return choice;
@@ -192,7 +191,8 @@ fn prepare(
 ) -> WorkerEvent {
     let choice = store.located(choice);
     // Before it is read: if it is written meanwhile, it is read again the next time.
-    let version = store.path(&choice).as_deref().and_then(FileVersion::of);
+    let found = store.path(&choice).and_then(|path| path.metadata().ok());
+    let version = found.and_then(|found| Some((found.len(), found.modified().ok()?)));
     let known = known.filter(|known| version.is_some() && known.version == version);
     let trained = match known.filter(|known| known.choice == choice) {
         Some(known) => Ok(known),

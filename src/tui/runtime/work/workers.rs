@@ -20,7 +20,7 @@ use taxel_core::pose::{PoseGrid, PoseIndex};
 use taxel_core::progress::Progress;
 use taxel_core::sweep::{Sweep, SweepResult, TimingSample};
 use taxel_files::memory::MemoryGuard;
-use taxel_files::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile, is_poses};
+use taxel_files::storage::{Existing, FileError, PoseFile, atlas_path, is_poses, write_atlas};
 
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::explore::angles::AngleCurve;
@@ -184,7 +184,7 @@ impl Workers {
     ) -> Option<WorkerEvent> {
         let stop = self.begin();
         let run = move |clock: Option<&ProgressReporter<'_>>| {
-            let memory = MemoryGuard::of_sweep();
+            let memory = MemoryGuard::new(None, COARSER);
             let to = (name.as_str(), path.as_path());
             write(number, &findings, to, existing, &memory, &stop, clock)
         };
@@ -237,11 +237,7 @@ fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
 }
 
 fn sweep(number: u64, grid: &PoseGrid, progress: &WorkProgress<'_>) -> WorkerEvent {
-    let memory = MemoryGuard::of_sweep();
-    if let Err(message) = memory.check(grid) {
-        return WorkerEvent::Failed(number, message);
-    }
-    let swept = progress.within(&memory, |progress| {
+    let swept = progress.within(&MemoryGuard::new(None, COARSER), |progress| {
         Sweep::new(grid).with_progress(progress).run()
     });
     match swept {
@@ -270,8 +266,15 @@ fn write(
             Err(message) => return WorkerEvent::Failed(number, message),
         }
     } else {
-        match AtlasFile::new(path) {
-            Ok(file) => file.write(result, existing, stop).map(|()| true),
+        match atlas_path(path) {
+            Ok(path) => write_atlas(&path, result, existing).and_then(|file| {
+                // Dropped if it comes too late.
+                let goes_on = !stop.load(Ordering::Relaxed);
+                goes_on
+                    .then(|| file.persist())
+                    .transpose()
+                    .map(|named| named.is_some())
+            }),
             Err(expected) => return WorkerEvent::Failed(number, format!("{name}: {expected}")),
         }
     };
@@ -294,7 +297,7 @@ fn write_poses(
     path: &Path,
     existing: Existing,
     progress: &dyn Progress,
-) -> Result<bool, ArchiveFileError> {
+) -> Result<bool, FileError> {
     let mut file = PoseFile::new(path, &result.grid, existing)?;
     let sweep = Sweep::new(&result.grid).with_progress(progress);
     sweep.run_with_rows(&mut |row, ids| file.take(row, ids));
@@ -304,6 +307,13 @@ fn write_poses(
     whole.persist()?;
     Ok(true)
 }
+
+/// What helps a sweep, whose results are in memory.
+const COARSER: &str =
+    "take coarser steps, or sweep it in shards on the command line (taxel sweep --shard)";
+
+/// What helps a search for poses, which keeps all poses of an imprint until they are counted.
+const COARSER_MODEL: &str = "train the model in coarser steps to see poses";
 
 /// The largest number of poses whose outlines are drawn; more cannot be told apart over a matrix.
 const POSES: usize = 13;
@@ -321,7 +331,7 @@ pub(in crate::tui::runtime) fn find(
         WorkerEvent::Recognition(searched)
     };
     let run = move |progress: &WorkProgress<'_>| {
-        search(&request, &MemoryGuard::of_pose_search(), progress)
+        search(&request, &MemoryGuard::new(None, COARSER_MODEL), progress)
     };
     let post = match execution {
         Execution::AtOnce(limit) => return Some(event(Ok(run(&WorkProgress::up_to(*limit))))),
