@@ -312,8 +312,8 @@ fn models_can_be_named_listed_and_shown() {
     place.done(&format!(
         "model train rectangles.jsonl {COARSE} --name parts --threshold 0.4"
     ));
-    assert!(place.path("models/parts.npz").ends_with("parts.npz"));
-    assert_eq!(names(&place.0.path().join("models")), ["parts.npz"]);
+    let library = place.0.path().join("library");
+    assert_eq!(names(&library.join("models")), ["parts.npz"]);
     let card = place.done("model show parts");
     for line in [
         "16 × 16 sensor, threshold 0.4, centre at x0 7:7.9:0.1 cells, y0 7:7.9:0.1 cells, angle 0:355:5°",
@@ -349,7 +349,7 @@ fn models_can_be_named_listed_and_shown() {
     );
     let there = format!(
         "{:?} already exists; --force replaces it",
-        place.path("models/parts.npz")
+        place.path("library/models/parts.npz")
     );
     refused(&run, 1, &there);
     refused(

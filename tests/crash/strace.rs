@@ -1,64 +1,51 @@
-//! System calls, listed and tampered with by `strace`.
+//! System calls, listed by `strace`, and programs that it kills before one of them.
 
+use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use super::state::{finish, piped};
-
 /// All system calls that can change files. The `?` lets strace ignore those that a machine does not have.
-const CALLS: &str = "?openat,?open,?creat,?write,?pwrite64,?writev,?fsync,?fdatasync,?rename,?renameat,?renameat2,\
+const CALLS: &str = "trace=?openat,?open,?creat,?write,?pwrite64,?writev,?fsync,?fdatasync,?rename,?renameat,?renameat2,\
     ?unlink,?unlinkat,?link,?linkat,?symlink,?symlinkat,?mkdir,?mkdirat,?rmdir,?truncate,?ftruncate,?flock,?fchmod";
 
 /// A system call: its name, and which call of that name it is, counted from 1.
-#[derive(Clone, Debug)]
-pub(crate) struct Call {
-    pub(crate) name: String,
-    pub(crate) number: usize,
-}
+pub(crate) type Call = (String, usize);
 
-/// Returns true if there is a `strace` that is allowed to trace.
+/// Whether there is a `strace` that is allowed to trace.
 pub(crate) fn works() -> bool {
-    let traced = Command::new("strace")
-        .args(["-qq", "-o", "/dev/null", "-e", "trace=?openat", "true"])
-        .stderr(Stdio::null())
-        .status();
+    let mut strace = Command::new("strace");
+    strace.args(["-qq", "-o", "/dev/null", "-e", "trace=?openat", "true"]);
+    let traced = strace.stderr(Stdio::null()).status();
     traced.is_ok_and(|status| status.success())
 }
 
-/// Returns the calls of a command that concern a folder or its contents.
+/// The calls of a command that concern a folder or its contents.
 pub(crate) fn calls(command: &Command, folder: &Path) -> Vec<Call> {
     let log = tempfile::NamedTempFile::new().expect("there is a folder for temporary files");
-    let log_path = log.path().to_str().expect("a text");
-    let trace = format!("trace={CALLS}");
-    let output = traced(command, &["-y", "-o", log_path, "-e", &trace]);
+    let path = log.path().to_str().expect("a text");
+    let output = traced(command, &["-y", "-o", path, "-e", CALLS]);
     assert!(output.status.success(), "{output:?}");
-    let text = std::fs::read_to_string(log.path()).expect("a log");
+    let text = std::fs::read_to_string(path).expect("a log");
     let folder = folder.to_str().expect("a text");
-    let mut counted: Vec<Call> = Vec::new();
+    let mut counts: HashMap<&str, usize> = HashMap::new();
     let mut calls = Vec::new();
-    for line in text.lines() {
-        let Some((name, _)) = line.split_once('(') else {
-            continue;
-        };
-        let number = 1 + counted.iter().filter(|call| call.name == name).count();
-        let name = name.to_owned();
-        let call = Call { name, number };
-        counted.push(call.clone());
-        if line.contains(folder) {
-            calls.push(call);
+    for (name, rest) in text.lines().filter_map(|line| line.split_once('(')) {
+        let number = counts.entry(name).or_default();
+        *number += 1;
+        if rest.contains(folder) {
+            calls.push((name.to_owned(), *number));
         }
     }
     calls
 }
 
-/// Runs a command and tampers with one of its calls: `signal=KILL` kills it just before, `error=EIO` refuses the call.
-pub(crate) fn tampered(command: &Command, call: &Call, how: &str) -> Output {
-    let Call { name, number } = call;
+/// Runs a command until it is killed just before a call.
+pub(crate) fn killed_before(command: &Command, (name, number): &Call) -> Output {
     let trace = format!("trace={name}");
-    let inject = format!("inject={name}:{how}:when={number}");
+    let kill = format!("inject={name}:signal=KILL:when={number}");
     traced(
         command,
-        &["-qq", "-o", "/dev/null", "-e", &trace, "-e", &inject],
+        &["-qq", "-o", "/dev/null", "-e", &trace, "-e", &kill],
     )
 }
 
@@ -69,12 +56,11 @@ fn traced(command: &Command, options: &[&str]) -> Output {
         .arg("--")
         .arg(command.get_program())
         .args(command.get_args());
-    for (name, value) in command.get_envs() {
-        match value {
-            Some(value) => strace.env(name, value),
-            None => strace.env_remove(name),
-        };
-    }
-    piped(&mut strace);
-    finish(&mut strace)
+    strace.envs(
+        command
+            .get_envs()
+            .filter_map(|(name, value)| Some((name, value?))),
+    );
+    strace.current_dir(command.get_current_dir().unwrap_or(Path::new(".")));
+    strace.stdin(Stdio::null()).output().expect("it starts")
 }

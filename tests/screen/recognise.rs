@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
@@ -46,12 +45,9 @@ fn save_model(library: &Library, shapes: &[(&str, f64, f64)]) {
     let training = Training::new(shapes, sensor, Anchor::Corner, ranges).expect("a set");
     let model = training.run().expect("not stopped");
     let name = Name::new("my parts").expect("a name");
-    let models = ModelFolder::beside(library.folder());
-    fs::create_dir_all(models.path()).expect("a folder");
-    let stopped = AtomicBool::new(false);
-    models
-        .save(&model, &name, Existing::Replaced, &stopped)
-        .expect("written");
+    let models = ModelFolder::of(library.folder());
+    let saved = models.save(&model, &name, Existing::Replaced);
+    saved.expect("written");
 }
 
 #[test]
@@ -69,7 +65,8 @@ fn a_stored_model_that_was_trained_anew_is_read_again() {
     press(&mut session, ":recognise my parts<Enter>");
     shows(&session, &["model my parts", "certain: square"]);
     let name = Name::new("my parts").expect("a name");
-    fs::remove_file(ModelFolder::beside(library.folder()).file(&name)).expect("deleted");
+    let deleted = ModelFolder::of(library.folder()).delete(&name);
+    deleted.expect("deleted");
     press(&mut session, ":recognise my parts<Enter>");
     shows(
         &session,
@@ -81,8 +78,8 @@ fn a_stored_model_that_was_trained_anew_is_read_again() {
 fn a_model_that_cannot_be_read_does_not_block_the_next_one() {
     let folder = tempfile::tempdir().expect("a folder");
     let library = with_model(folder.path());
-    let models_folder = ModelFolder::beside(library.folder());
-    fs::write(models_folder.path().join("broken.npz"), "junk").expect("written");
+    let broken = library.folder().join("models/broken.npz");
+    fs::write(broken, "junk").expect("written");
     let world = World::new(library).with_model_cache(Some(models()));
     let mut session = started(world, ":recognise shapes<Enter>o");
     shows(&session, &["broken.npz: ", "Recognise: model shapes"]);
@@ -145,9 +142,10 @@ fn a_stored_model_is_completed_used_and_remembered() {
     shows(&begin("r"), &["Recognise: model shapes"]);
     shows(&begin(":recognise <Tab>"), &["figures-30", "my parts"]);
     // A file is named by its path and not remembered, because the next run may start in another folder.
-    let models = ModelFolder::beside(library.folder());
+    let models = ModelFolder::of(library.folder());
     let file = folder.path().join("parts of today.npz");
-    fs::copy(models.file(&Name::new("my parts").expect("a name")), &file).expect("copied");
+    let stored = models.find(&Name::new("my parts").expect("a name"));
+    fs::copy(stored.expect("it is there"), &file).expect("copied");
     let by_path = format!(":recognise {}<Enter>", file.display());
     shows(&begin(&by_path), &["Recognise: model parts of today.npz"]);
     shows(&begin("r"), &["Recognise: model shapes"]);

@@ -3,7 +3,6 @@
 
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
-use std::path::Path;
 use std::process::Command;
 
 use taxel_files::storage::{Expected, Journal, Library, Orphan};
@@ -11,33 +10,27 @@ use taxel_files::storage::{Expected, Journal, Library, Orphan};
 use super::{Scratch, is_root, refusal, shape};
 use crate::skip::skipped;
 
-fn pipe(path: &Path) {
-    let made = Command::new("mkfifo").arg(path).status();
-    assert!(made.expect("mkfifo starts").success(), "a pipe");
-}
-
 #[test]
 fn what_is_no_file_is_reported_and_left_alone() {
     let scratch = Scratch::with(&["good"]);
     fs::create_dir(scratch.path("dir.json")).expect("a folder");
-    pipe(&scratch.path("pipe.json"));
-    for (name, what) in [("dir", "a folder"), ("pipe", "a FIFO")] {
-        let expected = format!("FOLDER/{name}.json: is {what}, expected a regular file");
-        let new = shape(name, 9);
-        assert_eq!(refusal(scratch.library.load(name), &scratch), expected);
-        for replaced in [Expected::Nothing, Expected::Stamp(0)] {
-            let saved = scratch.library.save(&new, replaced);
+    let made = Command::new("mkfifo")
+        .arg(scratch.path("pipe.json"))
+        .status();
+    assert!(made.expect("mkfifo starts").success(), "a pipe");
+    for name in ["dir", "pipe"] {
+        let expected = format!("FOLDER/{name}.json: cannot read: not a regular file");
+        let load = scratch.library.load(name);
+        assert_eq!(refusal(load, &scratch), expected);
+        for replaced in [Expected::Nothing, Expected::Stamp(0), Expected::Anything] {
+            let saved = scratch.library.save(&shape(name, 9), replaced);
             assert_eq!(refusal(saved, &scratch), expected);
         }
     }
     // A link is not replaced, and nothing is written through it.
     symlink("good.json", scratch.path("link.json")).expect("a link");
-    let stamp = scratch.library.load("link").expect("loaded").stamp;
-    let saved = scratch
-        .library
-        .save(&shape("link", 9), Expected::Stamp(stamp));
-    let message = "it is a symbolic link, and only regular files are replaced";
-    assert!(refusal(saved, &scratch).contains(message));
+    let saved = scratch.library.save(&shape("link", 9), Expected::Anything);
+    assert!(refusal(saved, &scratch).contains("only regular files are replaced"));
     assert_eq!(scratch.own(), ["dir", "good", "link", "pipe"]);
     assert_eq!(scratch.number("good"), Some(1));
 }
@@ -47,51 +40,40 @@ fn a_library_path_that_is_not_a_folder_is_reported() {
     let scratch = Scratch::new();
     scratch.put("file", "");
     symlink("nowhere", scratch.path("dangling")).expect("a link");
-    for (inner, message) in [
-        ("file", "FOLDER/file: is a file, expected a folder"),
-        ("file/inner", "FOLDER/file: is a file, expected a folder"),
-        (
-            "dangling",
-            "FOLDER/dangling: is a broken symbolic link, expected a folder",
-        ),
-    ] {
+    for inner in ["file", "file/inner", "dangling"] {
         let library = Library::open(scratch.path(inner));
         let saved = library.save(&shape("new", 1), Expected::Nothing);
-        assert_eq!(refusal(saved, &scratch), message);
+        let refused = format!("FOLDER/{inner}: cannot make the folder: ");
+        assert!(refusal(saved, &scratch).starts_with(&refused));
         assert_eq!(Orphan::all(&library).len(), 0);
-        let kept = Journal::new(&library).keep(&shape("work", 1));
-        assert_eq!(refusal(kept, &scratch), message);
+        let kept = Journal::new(&library).keep(vec![shape("work", 1)]);
+        assert!(kept.is_err());
     }
     let library = Library::open(scratch.path("file"));
-    let message = "FOLDER/file: cannot read the folder: it is a file";
+    let message = "FOLDER/file: cannot read the folder: not a folder";
     assert_eq!(refusal(library.list(), &scratch), message);
-    let folder = scratch.path("a/b/c");
-    let library = Library::open(folder.clone());
+    let library = Library::open(scratch.path("a/b/c"));
     assert!(library.list().is_ok() && library.load("new").is_err());
     assert!(!scratch.path("a").exists(), "nothing is made by looking");
-    library
-        .save(&shape("new", 1), Expected::Nothing)
-        .expect("made with those above it");
+    let saved = library.save(&shape("new", 1), Expected::Nothing);
+    saved.expect("made with those above it");
 }
 
 #[test]
 fn broken_files_are_listed_and_reported_without_affecting_others() {
     let scratch = Scratch::with(&["good"]);
     let good = shape("x", 1).write();
+    let cut = &good[..good.len() / 2];
     for (name, content, message) in [
-        (
-            "cut",
-            &good[..good.len() / 2],
-            "line 15, column 20: EOF while parsing a string",
-        ),
+        ("cut", cut, "line 15, column 20: "),
         (
             "newer",
             &good.replace("shape/1", "shape/2"),
-            "line 2, column 27: unknown value `taxel-shape/2`, expected `taxel-shape/1`",
+            "`taxel-shape/2`, expected `taxel-shape/1`",
         ),
         (
             "huge",
-            &" ".repeat((1 << 20) + 1),
+            &" ".repeat((1 << 20) + 5),
             "larger than 1 MiB, the limit for a shape",
         ),
     ] {
@@ -100,70 +82,49 @@ fn broken_files_are_listed_and_reported_without_affecting_others() {
         let start = format!("FOLDER/{name}.json: ");
         assert!(told.starts_with(&start) && told.contains(message), "{told}");
     }
-    let all = ["cut", "good", "huge", "newer"];
-    assert_eq!(scratch.own(), all);
+    assert_eq!(scratch.own(), ["cut", "good", "huge", "newer"]);
     assert_eq!(scratch.number("good"), Some(1));
     // A broken file is moved into the trash and back unchanged.
     scratch.library.delete("cut").expect("deleted");
-    scratch.library.restore("cut").expect("restored");
+    scratch.library.restore(Some("cut")).expect("restored");
     let back = fs::read_to_string(scratch.path("cut.json")).expect("there");
-    assert_eq!(back, good[..good.len() / 2]);
+    assert_eq!(back, cut);
 }
 
 #[test]
 fn foreign_files_are_skipped_and_reported() {
     let scratch = Scratch::with(&["good"]);
-    fs::create_dir(scratch.path(".journal")).expect("made");
-    for (file, what) in [
-        (".hidden.json", None),
-        (".journal/1-0.json", Some("unsaved work, of a running")),
-        (".journal/1-0.lock", None),
-        (".taxel-AbC123Ab", Some("half-written")),
-        ("a:b.json", Some("not a shape: shapes cannot have")),
-        ("good.json~", Some("not a shape: its name is not")),
-        ("notes.txt", Some("not a shape: its name is not")),
-        ("x.JSON", Some("not a shape: its name is not")),
-    ] {
-        scratch.put(file, "");
-        let left = scratch.library.leftovers().expect("read");
-        let found = left.iter().find(|(path, _)| *path == scratch.path(file));
-        assert_eq!(found.is_some(), what.is_some(), "{file}");
-        let words = found.map_or("", |(_, words)| words);
-        assert!(words.starts_with(what.unwrap_or_default()), "{words}");
+    for own in ["models", ".journal", ".trash"] {
+        fs::create_dir(scratch.path(own)).expect("made");
+        scratch.put(&format!("{own}/x.json"), "");
     }
+    let foreign = ["a:b.json", "good.json~", "notes.txt", "x.JSON"];
+    for file in foreign.iter().chain(&[".hidden.json", ".taxel-AbC123Ab"]) {
+        scratch.put(file, "");
+    }
+    let found = scratch.library.foreign_files().expect("read");
+    assert_eq!(found, foreign.map(|file| scratch.path(file)));
     assert_eq!(scratch.own(), ["good"]);
 }
 
 #[test]
 fn read_only_files_are_not_replaced_and_modes_are_kept() {
     let scratch = Scratch::with(&["kept", "own"]);
-    let mode = |name: &str| {
-        let found = fs::metadata(scratch.path(name)).expect("there");
-        found.permissions().mode() & 0o7777
-    };
-    let stamp = |name: &str| scratch.library.load(name).expect("loaded").stamp;
-    fs::set_permissions(scratch.path("kept.json"), Permissions::from_mode(0o444)).expect("set");
-    fs::set_permissions(scratch.path("own.json"), Permissions::from_mode(0o640)).expect("set");
-    let kept = scratch
-        .library
-        .save(&shape("kept", 9), Expected::Stamp(stamp("kept")));
-    let message = "FOLDER/kept.json: cannot replace it, it is read-only: permission denied";
-    assert_eq!(refusal(kept, &scratch), message);
-    let own = scratch
-        .library
-        .save(&shape("own", 9), Expected::Stamp(stamp("own")));
-    assert!(own.is_ok());
-    assert_eq!(
-        (scratch.number("kept"), scratch.number("own")),
-        (Some(1), Some(9))
-    );
-    assert_eq!((mode("kept.json"), mode("own.json")), (0o444, 0o640));
+    for (name, mode, saved) in [("kept", 0o444, false), ("own", 0o640, true)] {
+        let path = scratch.path(&format!("{name}.json"));
+        fs::set_permissions(&path, Permissions::from_mode(mode)).expect("set");
+        let replaced = scratch.library.save(&shape(name, 9), Expected::Anything);
+        assert_eq!(replaced.is_ok(), saved, "{replaced:?}");
+        assert_eq!(scratch.number(name) == Some(9), saved);
+        let found = fs::metadata(path).expect("there").permissions();
+        assert_eq!(found.mode() & 0o7777, mode);
+    }
 }
 
 #[test]
 fn a_read_only_folder_can_be_read() {
     if is_root() {
-        skipped("root may write everywhere; tests/crash does this with a read-only disk");
+        skipped("root may write everywhere");
         return;
     }
     let scratch = Scratch::with(&["one"]);

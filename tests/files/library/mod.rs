@@ -57,14 +57,14 @@ impl Scratch {
         std::fs::write(self.path(file), content).expect("written");
     }
 
-    /// Returns the number of a shape.
+    /// The number of a shape.
     fn number(&self, name: &str) -> Option<usize> {
         let loaded = self.library.load(name).ok()?;
         let word = loaded.shape.imprint.words()[0];
         usize::try_from(word).ok()
     }
 
-    /// Returns the names of the user's own shapes, as listed.
+    /// The names of the user's own shapes, as listed.
     fn own(&self) -> Vec<String> {
         let entries = self.library.list().expect("listed").into_iter();
         let own = entries.filter(|entry| entry.origin == ShapeOrigin::Own);
@@ -72,7 +72,7 @@ impl Scratch {
     }
 }
 
-/// Returns the names of the files in a folder, sorted.
+/// the names of the files in a folder, sorted.
 fn files(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
@@ -81,7 +81,7 @@ fn files(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Returns a shape that encodes a number below 65,536.
+/// a shape that encodes a number below 65,536.
 fn shape(name: &str, number: usize) -> StoredShape {
     let mut imprint = Imprint::empty(Sensor::default().size());
     imprint.set_word(0, u64::try_from(number).expect("small"));
@@ -89,13 +89,13 @@ fn shape(name: &str, number: usize) -> StoredShape {
     StoredShape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
 }
 
-/// Returns the message of a refusal, with FOLDER for the folder.
+/// the message of a refusal, with FOLDER for the folder.
 fn refusal<T: std::fmt::Debug>(result: Result<T, LibraryError>, scratch: &Scratch) -> String {
     let message = result.expect_err("refused").to_string();
     message.replace(&scratch.folder.display().to_string(), "FOLDER")
 }
 
-/// Returns true if this user is root, whom permissions do not stop.
+/// Whether this user is root, whom permissions do not stop.
 #[cfg(unix)]
 fn is_root() -> bool {
     rustix::process::geteuid().is_root()

@@ -1,7 +1,6 @@
 //! The shipped shapes: each equals the output of its command, and moves like a picture.
 
 use std::path::Path;
-use std::time::Instant;
 
 use taxel_core::description::{RegionKind, regions};
 use taxel_core::imprint::Imprint;
@@ -9,7 +8,7 @@ use taxel_core::picture::Picture;
 use taxel_core::touch::Plane;
 use taxel_files::storage::{Library, LoadedShape, ShapeOrigin, shipped};
 
-use super::{Scratch, files, shape};
+use super::{Scratch, files};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/library");
 
@@ -124,34 +123,4 @@ fn without_angle_and_zoom_a_picture_is_only_shifted() {
         }
     }
     assert!(positions > 250, "{positions}");
-}
-
-/// The times are printed, not checked: a busy machine is not a failure.
-#[test]
-fn ten_thousand_shapes_are_listed_and_any_of_them_is_loaded() {
-    let scratch = Scratch::new();
-    let content = shape("any", 1).write();
-    for number in 0..10_000 {
-        scratch.put(&format!("shape {number:05}.json"), &content);
-    }
-    let start = Instant::now();
-    let library = Library::open(scratch.folder.clone());
-    let opened = start.elapsed();
-    let start = Instant::now();
-    let entries = library.list().expect("listed");
-    let listed = start.elapsed();
-    let shipped = shipped::names().count();
-    assert_eq!(entries.len(), 10_000 + shipped);
-    assert_eq!(entries[0].name, "shape 00000");
-    let start = Instant::now();
-    let loaded = library.load("shape 07321").expect("loaded");
-    let found = start.elapsed();
-    assert_eq!(loaded.shape.name.as_str(), "shape 07321");
-    let start = Instant::now();
-    assert!(library.load("SHAPE 07321").is_ok());
-    let searched = start.elapsed();
-    eprintln!(
-        "10,000 shapes: opened in {opened:?}, listed in {listed:?}, one loaded in {found:?}, in another case in \
-         {searched:?}"
-    );
 }
