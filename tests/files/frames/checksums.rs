@@ -77,12 +77,12 @@ fn a_wrong_checksum_of_an_array_is_reported_as_damage() {
     let last = position(&bytes, &array) + array.len() - 1;
     let damaged = with_another_byte(&bytes, last);
     assert_eq!(first_two(&damaged), first_two(&whole));
-    let expected = "pad: the array is damaged, so some of its values may be wrong";
+    let expected = "array \"pad\" is damaged";
     assert_eq!(error(&damaged).as_deref(), Some(expected));
     // A part of the archive is missing, as after a download that broke off: its list of contents is gone.
     for length in [30, 100, bytes.len() - 1] {
         let cut = recorded(&bytes[..length], None);
-        let expected = "an archive that is cut short or damaged";
+        let expected = "an archive that is cut short or damaged, or a file of another kind";
         assert_eq!(
             (cut.frames.len(), error(&cut).as_deref()),
             (0, Some(expected))
@@ -90,7 +90,7 @@ fn a_wrong_checksum_of_an_array_is_reported_as_damage() {
     }
     // A byte after the last frame.
     let longer = recorded(&archive("pad.npy", &[&array[..], &[7]].concat()), None);
-    let expected = "pad: more bytes than the header states for 3 frames";
+    let expected = "array \"pad\": more bytes than the header states for 3 frames";
     assert_eq!(
         (longer.frames.len(), error(&longer).as_deref()),
         (3, Some(expected))

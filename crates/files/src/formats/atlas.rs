@@ -23,10 +23,11 @@ use taxel_core::quote::shortened;
 use taxel_core::sensor::Sensor;
 use taxel_core::sweep::{Parts, Shard, SweepResult};
 
+use crate::error::ReadError;
 use crate::formats::json::{self, RegionRecord};
-use crate::formats::npy::Dtype;
-use crate::formats::npz::{
-    ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
+use crate::formats::numpy::Number;
+use crate::formats::numpy::archive::{
+    ArrayReader, ArrayWriter, header_of, in_header, little_endian,
 };
 use crate::formats::record::{Record, SensorRecord, no_names};
 
@@ -147,22 +148,14 @@ struct ArchiveHeader<Shape, Size> {
 ///
 /// # Errors
 /// Returns the errors of the writer.
-pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
-    let mut archive = ArrayWriter::new(&mut output);
+pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> io::Result<()> {
     let (grid, parts) = (&result.grid, result.parts());
-    let header = header(result, &parts);
-    archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
+    let mut archive = ArrayWriter::new(&mut output, &header(result, &parts))?;
     let count = parts.counts.len() as u64;
-    let height = u64::from(grid.sensor().rows());
-    archive.add(
-        "rows",
-        Dtype::U64,
-        &[count, height],
-        &little_endian(&parts.rows),
-    )?;
-    archive.add("count", Dtype::U64, &[count], &little_endian(&parts.counts))?;
-    let first_poses = little_endian(&parts.first_poses);
-    archive.add("first_pose", Dtype::U64, &[count], &first_poses)?;
+    let shape = [count, grid.sensor().rows().into()];
+    archive.add("rows", Number::U64, &shape, &little_endian(&parts.rows))?;
+    archive.add_words("count", &parts.counts)?;
+    archive.add_words("first_pose", &parts.first_poses)?;
     let axes: Vec<_> = grid.axes().collect();
     let mut first = Vec::new();
     for &number in &parts.first_poses {
@@ -170,21 +163,15 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), 
         let values = axes.iter().map(|&axis| pose[axis]);
         first.extend(values.flat_map(f64::to_le_bytes));
     }
-    archive.add("first", Dtype::F64, &[count, axes.len() as u64], &first)?;
+    archive.add("first", Number::F64, &[count, axes.len() as u64], &first)?;
     let pieces = regions_of_each(&result.atlas, |summary| summary.pieces);
-    archive.add("pieces", Dtype::U16, &[count], &pieces)?;
+    archive.add("pieces", Number::U16, &[count], &pieces)?;
     let holes = regions_of_each(&result.atlas, |summary| summary.holes);
-    archive.add("holes", Dtype::U16, &[count], &holes)?;
+    archive.add("holes", Number::U16, &[count], &holes)?;
     for (feature, column) in features().iter().zip(feature_columns(&result.atlas)) {
-        archive.add(&feature.key, Dtype::F64, &[count], &column)?;
+        archive.add(&feature.key, Number::F64, &[count], &column)?;
     }
-    let length = parts.variance_words.len() as u64;
-    archive.add(
-        "spread",
-        Dtype::U64,
-        &[length],
-        &little_endian(&parts.variance_words),
-    )?;
+    archive.add_words("spread", &parts.variance_words)?;
     archive.finish()
 }
 
@@ -232,12 +219,15 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 ///
 /// # Errors
 /// Returns an error if it is not an atlas; the input may be any bytes.
-pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
+pub fn read(input: impl Read + Seek) -> Result<SweepResult, ReadError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
     let header: ArchiveHeader<Record, SensorRecord> = header_of(&header, FORMAT)?;
-    let sensor = header.sensor.sensor(Sensor::default())?;
-    let source = header.source.source(&sensor, &no_names)?;
+    let sensor = header.sensor.sensor(Sensor::default()).map_err(in_header)?;
+    let source = header
+        .source
+        .source(&sensor, &no_names)
+        .map_err(in_header)?;
     let anchor = anchor(&header.anchor)?;
     let ranges = ranges([
         &header.x0,
@@ -246,8 +236,8 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
         &header.zoom_x,
         &header.zoom_y,
     ])?;
-    let shard: Shard = header.shard.parse()?;
-    let grid = PoseGrid::new(source, sensor, anchor, ranges)?;
+    let shard: Shard = header.shard.parse().map_err(in_header)?;
+    let grid = PoseGrid::new(source, sensor, anchor, ranges).map_err(in_header)?;
     let parts = Parts {
         poses: header.poses,
         partly_off: header.partly_off,
@@ -257,12 +247,12 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
         variance_words: archive.words("spread")?,
     };
     archive.finish()?;
-    Ok(SweepResult::from_parts(grid, shard, &parts)?)
+    SweepResult::from_parts(grid, shard, &parts).map_err(|error| ReadError::new(error.to_string()))
 }
 
-pub(super) fn anchor(name: &str) -> Result<Anchor, ArchiveError> {
+pub(super) fn anchor(name: &str) -> Result<Anchor, ReadError> {
     name.parse().map_err(|_| {
-        ArchiveError::Header(format!(
+        in_header(format!(
             "anchor {:?} is unknown, expected {}",
             shortened(name),
             Anchor::NAMES.join(" or ")
@@ -271,10 +261,10 @@ pub(super) fn anchor(name: &str) -> Result<Anchor, ArchiveError> {
 }
 
 /// Parses the ranges, in the order of [`Axis::ALL`].
-pub(super) fn ranges(texts: [&str; 5]) -> Result<Ranges, ArchiveError> {
+pub(super) fn ranges(texts: [&str; 5]) -> Result<Ranges, ReadError> {
     let mut ranges = Ranges::default();
     for (axis, text) in Axis::ALL.into_iter().zip(texts) {
-        ranges[axis] = text.parse()?;
+        ranges[axis] = text.parse().map_err(in_header)?;
     }
     Ok(ranges)
 }

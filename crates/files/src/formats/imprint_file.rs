@@ -20,7 +20,7 @@ use taxel_core::imprint::Imprint;
 use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::file::{has_ending, without_mark};
 use crate::formats::shape::StoredShape;
-use crate::formats::{array, pbm, table};
+use crate::formats::{numpy, pbm, table};
 
 /// The size limit of an imprint's file in bytes, 1 MiB; a larger file is refused unread.
 pub const MAX_BYTES: usize = 1 << 20;
@@ -74,8 +74,8 @@ impl ImprintFormat {
             name: "npy",
             ending: Some("npy"),
             begins: |bytes| bytes.starts_with(b"\x93"),
-            read: |bytes| array::read(bytes).map_err(|error| ReadError::new(error).of_key("NPY")),
-            write: array::write,
+            read: |bytes| numpy::imprint::read(bytes).map_err(|error| error.of_key("NPY")),
+            write: numpy::imprint::write,
         },
     ];
 

@@ -8,7 +8,6 @@
 //! lines are read as a whole, by `StoredShape::read`, `Job::read` and `named_shape`. Their errors name the line, the
 //! column or the key.
 
-mod array;
 pub mod atlas;
 mod drawing;
 pub mod file;
@@ -18,8 +17,7 @@ pub mod json;
 mod model;
 pub mod name;
 mod named_shape;
-pub mod npy;
-mod npz;
+pub mod numpy;
 mod pbm;
 mod record;
 pub mod recording;
@@ -40,7 +38,7 @@ pub use job::Job;
 
 pub use shape::StoredShape;
 
-pub use npz::{ArchiveError, ArchiveKind, kind_of as archive_kind};
+pub use numpy::archive::{ArchiveKind, kind_of as archive_kind};
 
 pub use model::{
     FORMAT as MODEL_FORMAT, header as model_header, read as read_model, write as write_model,

@@ -1,6 +1,6 @@
 //! A model of shapes as an archive of numpy arrays, which can be read back and merged.
 
-use std::io::{Read, Seek, Write};
+use std::io::{self, Read, Seek, Write};
 
 use serde::{Deserialize, Serialize};
 use taxel_core::imprint::Imprint;
@@ -11,12 +11,11 @@ use taxel_core::recognition::{
 };
 use taxel_core::sensor::{MatrixSize, Sensor};
 
+use crate::error::ReadError;
 use crate::formats::atlas::{anchor, ranges};
 use crate::formats::json;
-use crate::formats::npy::Dtype;
-use crate::formats::npz::{
-    ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
-};
+use crate::formats::numpy::Number;
+use crate::formats::numpy::archive::{ArrayReader, ArrayWriter, header_of, in_header, unexpected};
 use crate::formats::record::{Record, SensorRecord, no_names};
 
 /// The required value of the header's key `format`.
@@ -65,10 +64,8 @@ struct ShapeHeader<Shape> {
 ///
 /// # Errors
 /// Returns the errors of the writer.
-pub fn write(model: &Model, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
-    let mut archive = ArrayWriter::new(&mut output);
-    let header = header(model.head());
-    archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
+pub fn write(model: &Model, mut output: impl Write + Seek) -> io::Result<()> {
+    let mut archive = ArrayWriter::new(&mut output, &header(model.head()))?;
     let keys = model.keys();
     let imprints = || (0..keys.len()).map(|key| keys.imprint(key));
     let side = |of: fn(&Imprint) -> u8| {
@@ -77,30 +74,30 @@ pub fn write(model: &Model, mut output: impl Write + Seek) -> Result<(), Archive
     };
     let (heights, widths) = (side(Imprint::rows), side(Imprint::columns));
     let count = keys.len() as u64;
-    archive.add("height", Dtype::U8, &[count], &heights)?;
-    archive.add("width", Dtype::U8, &[count], &widths)?;
+    archive.add("height", Number::U8, &[count], &heights)?;
+    archive.add("width", Number::U8, &[count], &widths)?;
     let highest = largest(&heights);
-    let kind = row_type(largest(&widths));
-    let mut rows = Vec::with_capacity(keys.len() * usize::from(highest) * kind.width());
+    let number = row_type(largest(&widths));
+    let mut rows = Vec::with_capacity(keys.len() * usize::from(highest) * number.size());
     for imprint in imprints() {
         let words = imprint.as_ref().map_or(&[][..], Imprint::words);
         let words = words.iter().chain(std::iter::repeat(&0));
         for word in words.take(highest.into()) {
-            rows.extend_from_slice(&word.to_le_bytes()[..kind.width()]);
+            rows.extend_from_slice(&word.to_le_bytes()[..number.size()]);
         }
     }
-    archive.add("rows", kind, &[count, highest.into()], &rows)?;
+    archive.add("rows", number, &[count, highest.into()], &rows)?;
     let entries =
         || (0..keys.len()).flat_map(|key| model.counts(key).iter().map(move |c| (key, c)));
     let numbers: Vec<u64> = entries().map(|(key, _)| key as u64).collect();
     let length = [numbers.len() as u64];
-    archive.add("key", Dtype::U64, &length, &little_endian(&numbers))?;
+    archive.add_words("key", &numbers)?;
     let shapes: Vec<u8> = entries()
         .flat_map(|(_, count)| count.shape.to_le_bytes())
         .collect();
-    archive.add("shape", Dtype::U16, &length, &shapes)?;
+    archive.add("shape", Number::U16, &length, &shapes)?;
     let counts: Vec<u64> = entries().map(|(_, count)| count.poses).collect();
-    archive.add("count", Dtype::U64, &length, &little_endian(&counts))?;
+    archive.add_words("count", &counts)?;
     archive.finish()
 }
 
@@ -109,12 +106,12 @@ fn largest(sides: &[u8]) -> u8 {
 }
 
 /// Returns the smallest type for rows of that many columns.
-fn row_type(columns: u8) -> Dtype {
+fn row_type(columns: u8) -> Number {
     match columns {
-        0..=8 => Dtype::U8,
-        9..=16 => Dtype::U16,
-        17..=32 => Dtype::U32,
-        _ => Dtype::U64,
+        0..=8 => Number::U8,
+        9..=16 => Number::U16,
+        17..=32 => Number::U32,
+        _ => Number::U64,
     }
 }
 
@@ -152,14 +149,15 @@ pub fn header(head: &ModelHead) -> Vec<u8> {
 ///
 /// # Errors
 /// Returns an error that says what is wrong; the input may be any bytes.
-pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
+pub fn read(input: impl Read + Seek) -> Result<Model, ReadError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
     let header: ModelHeader<Record, SensorRecord> = header_of(&header, FORMAT)?;
-    let sensor = header.sensor.sensor(Sensor::default())?;
+    let sensor = header.sensor.sensor(Sensor::default()).map_err(in_header)?;
     let mut shapes = Vec::with_capacity(header.shapes.len());
     for shape in &header.shapes {
-        let source = shape.source.source(&Sensor::LARGEST, &no_names)?;
+        let source = shape.source.source(&Sensor::LARGEST, &no_names);
+        let source = source.map_err(in_header)?;
         shapes.push(NamedShape::new(shape.name.clone(), source).weighted(shape.weight));
     }
     let texts = [
@@ -171,26 +169,26 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     ];
     let (anchor, ranges) = (anchor(&header.anchor)?, ranges(texts.map(String::as_str))?);
     let mut head = ModelHead::new(shapes, sensor, anchor, ranges, header.poses);
-    head.shard = header.shard.parse()?;
+    head.shard = header.shard.parse().map_err(in_header)?;
     head.cut = header.shapes.iter().map(|shape| shape.cut).collect();
     let keys = keys(&mut archive)?;
     let counts = counts(&mut archive, keys.len())?;
     archive.finish()?;
     let counts_of = |key: usize| counts[key].iter().copied();
-    Ok(Model::of_table(head, &keys, counts_of)?)
+    Model::of_table(head, &keys, counts_of).map_err(|error| ReadError::new(error.to_string()))
 }
 
 /// Reads the keys in the order of the file. A duplicate is refused at once, so the table never takes much more memory
 /// than the file.
-fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, ArchiveError> {
-    let heights = archive.bytes("height", Dtype::U8)?;
-    let widths = archive.bytes("width", Dtype::U8)?;
+fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, ReadError> {
+    let heights = archive.bytes("height", Number::U8)?;
+    let widths = archive.bytes("width", Number::U8)?;
     let highest = usize::from(largest(&heights));
-    let kind = row_type(largest(&widths));
-    let rows = archive.bytes("rows", kind)?;
-    let stride = highest * kind.width();
+    let number = row_type(largest(&widths));
+    let rows = archive.bytes("rows", number)?;
+    let stride = highest * number.size();
     if heights.len() != widths.len() || rows.len() != heights.len() * stride {
-        return Err(ArchiveError::Array("rows"));
+        return Err(unexpected("rows"));
     }
     let mut keys = KeyTable::default();
     let empty = Imprint::empty(MatrixSize::SMALLEST);
@@ -200,11 +198,11 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, Archiv
         if (width, height) == (0, 0) && rows.iter().all(|&byte| byte == 0) {
             key.set(&empty);
         } else {
-            let imprint = imprint(rows, kind, (width, height));
-            key.set(&imprint.ok_or(ArchiveError::Array("rows"))?);
+            let imprint = imprint(rows, number, (width, height));
+            key.set(&imprint.ok_or_else(|| unexpected("rows"))?);
         }
         if !keys.add(&key) {
-            return Err(ModelError::TWICE.into());
+            return Err(ReadError::new(ModelError::TWICE.to_string()));
         }
     }
     Ok(keys)
@@ -213,17 +211,17 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, Archiv
 fn counts<R: Read + Seek>(
     archive: &mut ArrayReader<R>,
     keys: usize,
-) -> Result<Vec<Vec<ShapeCount>>, ArchiveError> {
+) -> Result<Vec<Vec<ShapeCount>>, ReadError> {
     let (numbers, counts) = (archive.words("key")?, archive.words("count")?);
-    let shapes = archive.bytes("shape", Dtype::U16)?;
+    let shapes = archive.bytes("shape", Number::U16)?;
     if numbers.len() != counts.len() || shapes.len() != 2 * counts.len() {
-        return Err(ArchiveError::Array("count"));
+        return Err(unexpected("count"));
     }
     let shapes = shapes.chunks_exact(2);
     let mut of_keys = vec![Vec::new(); keys];
     for ((number, poses), shape) in numbers.into_iter().zip(counts).zip(shapes) {
         let own = of_keys.get_mut(index(number));
-        let own = own.ok_or(ArchiveError::Array("key"))?;
+        let own = own.ok_or_else(|| unexpected("key"))?;
         own.push(ShapeCount::new(
             u16::from_le_bytes([shape[0], shape[1]]),
             poses,
@@ -233,11 +231,11 @@ fn counts<R: Read + Seek>(
 }
 
 /// Returns the imprint of a key that has taxels; None if it is not cut to its box.
-fn imprint(rows: &[u8], kind: Dtype, (width, height): (u8, u8)) -> Option<Imprint> {
+fn imprint(rows: &[u8], number: Number, (width, height): (u8, u8)) -> Option<Imprint> {
     let mut imprint = Imprint::empty(MatrixSize::new(width, height).ok()?);
-    for (row, bytes) in rows.chunks_exact(kind.width()).enumerate() {
+    for (row, bytes) in rows.chunks_exact(number.size()).enumerate() {
         let mut word = [0; 8];
-        word[..kind.width()].copy_from_slice(bytes);
+        word[..number.size()].copy_from_slice(bytes);
         let word = u64::from_le_bytes(word);
         if word & !imprint.mask() != 0 || row >= height.into() && word != 0 {
             return None;

@@ -4,7 +4,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::ReadError;
-use crate::formats::ArchiveError;
 use crate::formats::file::{is_missing, system_reason, write_reason};
 
 /// The error for an operation on a file that the system refused.
@@ -59,13 +58,13 @@ pub enum ArchiveFileError {
         /// The file.
         path: PathBuf,
         /// The problem with the content.
-        error: ArchiveError,
+        error: ReadError,
     },
 }
 
 impl ArchiveFileError {
     /// Creates an error about the content of a file.
-    pub fn new(path: &Path, error: ArchiveError) -> Self {
+    pub fn new(path: &Path, error: ReadError) -> Self {
         let path = path.to_owned();
         Self::Content { path, error }
     }

@@ -16,9 +16,10 @@ use taxel_core::recognition::{
 use taxel_core::sweep::Shard;
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::error::ReadError;
 use crate::formats::file::without_mark;
 use crate::formats::name::folded;
-use crate::formats::{ArchiveError, Name, StoredShape, model_header, read_model, write_model};
+use crate::formats::{Name, StoredShape, model_header, read_model, write_model};
 use crate::storage::error::{ArchiveFileError, FileError};
 use crate::storage::file::{
     self, Existing, check_writable, make_folder, names_in, open, sync_folder,
@@ -46,7 +47,9 @@ pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
     let is_set = |start: &[u8]| without_mark(start).trim_ascii_start().starts_with(b"{");
     let read = match file.fill_buf() {
         // A set of shapes, which is text, is given in place of its model now and then.
-        Ok(start) if is_set(start) => Err(ArchiveError::Untrained),
+        Ok(start) if is_set(start) => Err(ReadError::new(
+            "not a model; if it is a set of shapes, 'taxel model train' makes a model of it",
+        )),
         _ => read_model(&mut file),
     };
     read.map_err(|error| ArchiveFileError::new(path, error))
@@ -55,16 +58,15 @@ pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
 /// Reads a whole model from a file, so that it can answer touches.
 ///
 /// # Errors
-/// The errors of [`load_model`], or [`ArchiveError::PartOfModel`] for a shard, which knows some of the poses
-/// only.
+/// The errors of [`load_model`]; also for a shard, which knows some of the poses only.
 pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
     let model = load_model(path)?;
     let shard = model.shard();
     if shard == Shard::WHOLE {
         return Ok(model);
     }
-    let part = ArchiveError::PartOfModel { shard };
-    Err(ArchiveFileError::new(path, part))
+    let part = format!("shard {shard} of a model only; 'taxel merge' puts shards together");
+    Err(ArchiveFileError::new(path, ReadError::new(part)))
 }
 
 /// Writes a model to a file: all of it or nothing.

@@ -14,7 +14,7 @@ use taxel_core::sweep::SweepResult;
 
 use crate::formats::atlas::{self, write_csv, write_jsonl};
 use crate::formats::file::has_ending;
-use crate::formats::npy::{self, Dtype};
+use crate::formats::numpy::{self, Number};
 use crate::storage::error::{ArchiveFileError, FileError};
 use crate::storage::file::{Existing, NewFile, open};
 
@@ -120,8 +120,8 @@ impl PoseFile {
         let mut shape = grid.counts().into_array();
         shape.reverse();
         let header = match shape {
-            [1, 1, angles, rows, columns] => npy::header(Dtype::U32, &[angles, rows, columns]),
-            _ => npy::header(Dtype::U32, &shape),
+            [1, 1, angles, rows, columns] => numpy::header(Number::U32, &[angles, rows, columns]),
+            _ => numpy::header(Number::U32, &shape),
         };
         let error = file.output.write_all(&header).err();
         Ok(Self {

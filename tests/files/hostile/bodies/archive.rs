@@ -11,7 +11,7 @@ use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::sweep::{Shard, Sweep, SweepMerge, SweepResult};
 use taxel_files::formats::atlas::{read, write, write_csv, write_jsonl};
-use taxel_files::formats::npy;
+use taxel_files::formats::numpy::{Header, Number, header};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -110,10 +110,13 @@ pub(super) fn changed(sound: &[Arrays], bytes: &[u8]) -> Option<Vec<u8>> {
 pub(crate) fn with_spread(choice: usize, change: impl FnOnce(&mut Vec<u64>)) -> Vec<u8> {
     let mut arrays = sound().swap_remove(choice);
     let (_, content) = arrays.last_mut().expect("the sums are the last array");
-    let mut words = npy::words(content).expect("they are words");
+    let mut numbers = &content[..];
+    Header::read(&mut numbers).expect("an array");
+    let word = |bytes: &[u8; 8]| u64::from_le_bytes(*bytes);
+    let mut words: Vec<u64> = numbers.as_chunks().0.iter().map(word).collect();
     change(&mut words);
     let length = u64::try_from(words.len()).expect("it is in memory");
-    *content = npy::header(npy::Dtype::U64, &[length]);
+    *content = header(Number::U64, &[length]);
     content.extend(words.into_iter().flat_map(u64::to_le_bytes));
     packed(&arrays)
 }

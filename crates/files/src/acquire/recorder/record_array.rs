@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE};
 use taxel_core::index::index;
 
-use crate::formats::npy::{BEFORE_TEXT, header_of};
+use crate::formats::numpy::{BEFORE_TEXT, header_of};
 use crate::storage::FileId;
 
 /// The beginning of the header's text, before the rows and columns of a frame.

@@ -52,10 +52,6 @@ impl ChannelTable {
         self.channels.iter().any(|info| info.name.is_some())
     }
 
-    pub(super) fn info(&self, channel: usize) -> &ChannelInfo {
-        &self.channels[channel]
-    }
-
     pub(super) fn number(&mut self, channel: usize, frame: &mut Frame) {
         frame.channel = channel;
         frame.number = self.frames[channel];

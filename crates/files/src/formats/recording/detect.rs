@@ -8,12 +8,12 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use crate::error::ReadError;
 use crate::formats::file::without_mark;
-use crate::formats::npy;
+use crate::formats::numpy;
 use crate::formats::recording::error::unknown_format;
 use crate::formats::recording::event::{ReadOptions, ReadState, RecordingSink, Sink, Stop};
 use crate::formats::recording::format;
 use crate::formats::recording::json as json_lines;
-use crate::formats::recording::numpy::{archive, array};
+use crate::formats::recording::numpy as arrays;
 use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
 use crate::formats::recording::table;
 use crate::formats::recording::vendor::{flexitac, tekscan, xsensor};
@@ -109,10 +109,10 @@ pub fn read_as(
     let mut state = ReadState::default();
     let sink = &mut Sink::new(consumer, &mut state);
     let read = match format {
-        RecordingFormat::Tekscan => tekscan::read(input, sink),
-        RecordingFormat::Xsensor => xsensor::read(input, sink),
-        RecordingFormat::Npy => array::read(&mut input, options, sink),
-        RecordingFormat::Npz => archive::read(input, options, sink),
+        RecordingFormat::Tekscan => tekscan::read(&mut input, sink),
+        RecordingFormat::Xsensor => xsensor::read(&mut input, sink),
+        RecordingFormat::Npy => arrays::read_array(&mut input, options, sink),
+        RecordingFormat::Npz => arrays::read_archive(input, options, sink),
         RecordingFormat::JsonLines => json_lines::read(input, options, sink),
         RecordingFormat::Ros2 => echo::read(input, options, sink),
         RecordingFormat::Csv => table::read(&mut input, options, sink),
@@ -127,7 +127,7 @@ pub fn read_as(
 
 /// The first bytes of the formats that have such bytes. An archive without a file begins with its end.
 const MAGIC: [(&[u8], RecordingFormat); 5] = [
-    (npy::MAGIC, RecordingFormat::Npy),
+    (numpy::MAGIC, RecordingFormat::Npy),
     (&MCAP_MAGIC, RecordingFormat::Mcap),
     (&FLEXITAC_MARKER, RecordingFormat::Flexitac),
     (b"PK\x03\x04", RecordingFormat::Npz),
@@ -160,10 +160,10 @@ impl VendorSigns {
         if line.starts_with(b"ASCII_DATA") || is_first && line.starts_with(b"DATA_TYPE ") {
             return Some(RecordingFormat::Tekscan);
         }
-        if self.has_frame && xsensor::begins_cells(line) {
+        if self.has_frame && xsensor::has_key(line, "SENSELS") {
             return Some(RecordingFormat::Xsensor);
         }
-        self.has_frame |= xsensor::begins_frame(line);
+        self.has_frame |= xsensor::has_key(line, "FRAME");
         None
     }
 }

@@ -7,11 +7,11 @@ use taxel_core::parameter::UnknownName;
 
 use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::file::without_mark;
-use crate::formats::npy;
+use crate::formats::numpy::MAGIC;
 use crate::formats::recording::error::{foreign, unknown_format, unshaped};
 use crate::formats::recording::event::{ReadOptions, ReadState, RecordingSink, Sink, Stop};
 use crate::formats::recording::json as json_lines;
-use crate::formats::recording::numpy::{archive, array};
+use crate::formats::recording::numpy;
 use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
 use crate::formats::recording::table;
 use crate::formats::recording::text::is_parted_by_cr;
@@ -70,22 +70,22 @@ pub static FORMATS: [Format; 10] = [
         name: "npy",
         title: "NPY",
         stream: None,
-        sniff: |head, _, _| head.starts_with(npy::MAGIC),
-        read: Reader::File(|mut input, options, sink| array::read(&mut input, options, sink)),
+        sniff: |head, _, _| head.starts_with(MAGIC),
+        read: Reader::File(|input, options, sink| numpy::read_array(input, options, sink)),
     },
     Format {
         name: "npz",
         title: "NPZ",
         stream: None,
         sniff: |head, _, _| head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06"),
-        read: Reader::File(|input, options, sink| archive::read(input, options, sink)),
+        read: Reader::File(|input, options, sink| numpy::read_archive(input, options, sink)),
     },
     Format {
         name: "mcap",
         title: "MCAP",
         stream: None,
         sniff: |head, _, _| head.starts_with(&MCAP_MAGIC),
-        read: Reader::File(|mut input, options, sink| mcap::read(&mut input, options, sink)),
+        read: Reader::File(|input, options, sink| mcap::read(input, options, sink)),
     },
     Format {
         name: "jsonl",
@@ -265,7 +265,9 @@ fn is_tekscan(head: &[u8]) -> bool {
 
 fn is_xsensor(head: &[u8]) -> bool {
     let mut lines = lines(head);
-    is_text(head) && lines.any(xsensor::begins_frame) && lines.any(xsensor::begins_cells)
+    is_text(head)
+        && lines.any(|line| xsensor::has_key(line, "FRAME"))
+        && lines.any(|line| xsensor::has_key(line, "SENSELS"))
 }
 
 /// For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.

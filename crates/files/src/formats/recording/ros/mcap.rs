@@ -29,11 +29,8 @@ use taxel_core::parameter::number::counted;
 
 use crate::error::ReadError;
 use crate::formats::job::too_large;
-use crate::formats::npy::{Dtype, NumberType};
-use crate::formats::recording::channels::ChannelTable;
-use crate::formats::recording::event::{
-    ChannelInfo, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink, Stop,
-};
+use crate::formats::numpy::Number;
+use crate::formats::recording::event::{ChannelInfo, LONGEST_NAME, ReadOptions, Sink, Stop};
 use crate::formats::recording::ros::records::{McapRecord, each_record};
 use crate::formats::recording::size::{arranged, changed, frame_size, matrix_size};
 use crate::formats::recording::time;
@@ -48,7 +45,8 @@ struct McapState<'a, 'b> {
     schemas: HashMap<u16, Option<MessageKind>>,
     /// The topics whose messages have frames, by number: the name, and the kind of message.
     topics: HashMap<u16, (Rc<str>, MessageKind)>,
-    channels: ChannelTable,
+    /// The size of each channel's first frame.
+    sizes: Vec<Option<FrameSize>>,
     start: Option<u64>,
     time: u64,
     values: Vec<f64>,
@@ -57,7 +55,7 @@ struct McapState<'a, 'b> {
 }
 
 pub(in crate::formats::recording) fn read(
-    input: &mut impl Read,
+    input: &mut dyn Read,
     options: &ReadOptions,
     sink: &mut Sink<'_>,
 ) -> Result<(), Stop> {
@@ -65,7 +63,7 @@ pub(in crate::formats::recording) fn read(
         options,
         schemas: HashMap::new(),
         topics: HashMap::new(),
-        channels: ChannelTable::new(MOST_CHANNELS, "channels"),
+        sizes: Vec::new(),
         start: None,
         time: 0,
         values: Vec::new(),
@@ -84,11 +82,9 @@ pub(in crate::formats::recording) fn read(
 /// Refuses a name that is too long: compressed, thousands of names of many megabytes each take little space in a
 /// file.
 fn check_name(name: &str) -> Result<(), ReadError> {
-    if name.len() > LONGEST_NAME {
-        let message = format!(
-            "a name of {} bytes, expected {LONGEST_NAME} at most",
-            name.len()
-        );
+    let length = name.len();
+    if length > LONGEST_NAME {
+        let message = format!("a name of {length} bytes, expected {LONGEST_NAME} at most");
         return Err(ReadError::new(message));
     }
     Ok(())
@@ -127,7 +123,9 @@ impl McapState<'_, '_> {
             } => {
                 if let Some((topic, kind)) = self.topics.get(&channel).cloned() {
                     self.time = time;
-                    self.message(&topic, kind, data)?;
+                    let read = self.message(&topic, kind, data)?;
+                    let message = || ReadError::new(format!("{topic}: a message is broken"));
+                    read.ok_or_else(message)?;
                 }
             }
             McapRecord::LargeMessage { channel } => match self.topics.get(&channel) {
@@ -142,34 +140,45 @@ impl McapState<'_, '_> {
         Ok(())
     }
 
-    fn message(&mut self, topic: &str, kind: MessageKind, data: &[u8]) -> Result<(), Stop> {
-        let broken = || ReadError::new(format!("{topic}: a message is broken"));
-        let mut cdr = CdrReader::new(data).ok_or_else(broken)?;
+    /// Reads the frames of a message; None if it is broken.
+    fn message(&mut self, topic: &str, kind: MessageKind, data: &[u8]) -> Result<Option<()>, Stop> {
+        self.values.clear();
+        let Some(mut cdr) = CdrReader::new(data) else {
+            return Ok(None);
+        };
         match kind {
-            MessageKind::Array(dtype) => {
-                let sizes = multi_array(&mut cdr, dtype, &mut self.values);
-                let stated = matrix_size(&sizes.ok_or_else(broken)?);
+            MessageKind::Array(number) => {
+                let Some(sizes) = cdr.multi_array(number, &mut self.values) else {
+                    return Ok(None);
+                };
+                let stated = matrix_size(&sizes);
                 let size = arranged(self.values.len(), stated, self.options.size);
-                self.give(topic, size)
+                self.give(topic, size)?;
             }
-            MessageKind::Image => match image(&mut cdr, &mut self.values).ok_or_else(broken)? {
-                ImageFrame::Values(size) => self.give(topic, Some(size)),
-                ImageFrame::OfCamera => Ok(()),
+            MessageKind::Image => match cdr.image(&mut self.values) {
+                Some(ImageFrame::Values(size)) => self.give(topic, Some(size))?,
+                Some(ImageFrame::OfCamera) => {}
+                None => return Ok(None),
             },
             MessageKind::TactileState => {
-                header(&mut cdr).ok_or_else(broken)?;
-                for _ in 0..cdr.count(8).ok_or_else(broken)? {
-                    let name = format!("{topic}#{}", cdr.text().ok_or_else(broken)?);
+                let Some(count) = cdr.header().and_then(|()| cdr.count(8)) else {
+                    return Ok(None);
+                };
+                for _ in 0..count {
                     self.values.clear();
-                    let numbers = cdr.numbers(Dtype::F32, &mut self.values);
-                    numbers.ok_or_else(broken)?;
-                    self.give(&name, None)?;
+                    let name = cdr.text();
+                    let numbers = cdr.numbers(Number::F32, &mut self.values);
+                    let (Some(name), Some(())) = (name, numbers) else {
+                        return Ok(None);
+                    };
+                    self.give(&format!("{topic}#{name}"), None)?;
                 }
-                Ok(())
             }
         }
+        Ok(Some(()))
     }
 
+    /// Reports the values as a frame of a channel.
     fn give(&mut self, name: &str, size: Option<FrameSize>) -> Result<(), Stop> {
         let found = self.values.len();
         // Rows and columns that are given for one channel need not fit the others.
@@ -177,59 +186,41 @@ impl McapState<'_, '_> {
         let size = size.or(named);
         check_name(name)?;
         let start = *self.start.get_or_insert(self.time);
-        let info = || ChannelInfo {
+        let channel = self.sink.channel(Some(name), || ChannelInfo {
             size,
             values: Some(found as u64),
             start: date_time(start),
             ..ChannelInfo::default()
+        })?;
+        if channel == self.sizes.len() {
+            self.sizes.push(size);
+        }
+        let before = self.sizes[channel].or(size);
+        let wrong = match size {
+            Some(size) if size.cells() != found => {
+                let found = counted(found as u64, "value");
+                Some(format!("found {found}, expected {}", size.cells()))
+            }
+            Some(size) => before
+                .filter(|&before| before != size)
+                .map(|before| changed(size, before)),
+            None => None,
         };
-        let channel = self.channels.index_of(Some(name), info);
-        let channel = channel.map_err(ReadError::new)?;
-        for info in self.channels.take_new() {
-            self.sink.event(RecordingEvent::Channel(info))?;
+        let mut values = self.values.iter();
+        let large = values.find(|value| value.abs() > LARGEST_VALUE);
+        let large = large.map(|value| format!("a value is {}", too_large(*value)));
+        if let Some(wrong) = wrong.or(large) {
+            return Err(ReadError::new(format!("{name}: {wrong}")).into());
+        }
+        // Without a size, the values can only be counted.
+        self.frame.reset(size.unwrap_or(FrameSize::SMALLEST));
+        if size.is_some() {
+            self.frame.values_mut().copy_from_slice(&self.values);
         }
         #[expect(clippy::cast_precision_loss, reason = "a difference in nanoseconds")]
         let seconds = (i128::from(self.time) - i128::from(start)) as f64 / 1e9;
         self.frame.time = Some(seconds);
-        self.channels.number(channel, &mut self.frame);
-        self.fill(name, size, self.channels.info(channel).size)?;
-        let mut values = self.values.iter();
-        if let Some(value) = values.find(|value| value.abs() > LARGEST_VALUE) {
-            let message = format!("{name}: a value is {}", too_large(*value));
-            return Err(ReadError::new(message).into());
-        }
-        self.sink.event(RecordingEvent::Frame(&self.frame))
-    }
-
-    /// Fills the frame with the values; `before` is the size of the channel's first frame.
-    fn fill(
-        &mut self,
-        name: &str,
-        size: Option<FrameSize>,
-        before: Option<FrameSize>,
-    ) -> Result<(), ReadError> {
-        let found = self.values.len();
-        match size {
-            Some(size) if size.cells() == found => {
-                if let Some(before) = before.filter(|&before| before != size) {
-                    let message = format!("{name}: {}", changed(size, before));
-                    return Err(ReadError::new(message));
-                }
-                self.frame.reset(size);
-                self.frame.values_mut().copy_from_slice(&self.values);
-            }
-            Some(size) => {
-                let message = format!(
-                    "{name}: found {}, expected {}",
-                    counted(found as u64, "value"),
-                    size.cells()
-                );
-                return Err(ReadError::new(message));
-            }
-            // The values can only be counted: rows and columns must be given.
-            None => self.frame.reset(FrameSize::SMALLEST),
-        }
-        Ok(())
+        self.sink.frame(channel, &mut self.frame)
     }
 }
 
@@ -257,9 +248,9 @@ fn date_time(nanoseconds: u64) -> Option<String> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum MessageKind {
+enum MessageKind {
     /// A `MultiArray` of numbers of this type.
-    Array(Dtype),
+    Array(Number),
     /// Grey pixels, row by row; rows may be padded.
     Image,
     TactileState,
@@ -267,98 +258,40 @@ pub(super) enum MessageKind {
 
 impl MessageKind {
     /// Returns the kind of a schema such as `std_msgs/msg/UInt16MultiArray`; None if its messages have no frames.
-    pub(super) fn of(schema: &str) -> Option<Self> {
+    fn of(schema: &str) -> Option<Self> {
         let (package, name) = (schema.split('/').next()?, schema.rsplit('/').next()?);
         match (package, name) {
             ("sensor_msgs", "Image") => Some(Self::Image),
             ("tactile_msgs", "TactileState") => Some(Self::TactileState),
             ("std_msgs", name) => {
-                let dtype = match name.strip_suffix("MultiArray")? {
-                    "Int8" => Dtype::I8,
-                    "UInt8" | "Byte" | "Char" => Dtype::U8,
-                    "Int16" => Dtype::I16,
-                    "UInt16" => Dtype::U16,
-                    "Int32" => Dtype::I32,
-                    "UInt32" => Dtype::U32,
-                    "Int64" => Dtype::I64,
-                    "UInt64" => Dtype::U64,
-                    "Float32" => Dtype::F32,
-                    "Float64" => Dtype::F64,
+                let code = match name.strip_suffix("MultiArray")? {
+                    "Int8" => "|i1",
+                    "UInt8" | "Byte" | "Char" => "|u1",
+                    "Int16" => "<i2",
+                    "UInt16" => "<u2",
+                    "Int32" => "<i4",
+                    "UInt32" => "<u4",
+                    "Int64" => "<i8",
+                    "UInt64" => "<u8",
+                    "Float32" => "<f4",
+                    "Float64" => "<f8",
                     _ => return None,
                 };
-                Some(Self::Array(dtype))
+                Number::of(code).map(Self::Array)
             }
             _ => None,
         }
     }
 }
 
-/// Reads an array into `values`. Returns the sizes of its layout; None if it is broken.
-pub(super) fn multi_array(
-    cdr: &mut CdrReader<'_>,
-    dtype: Dtype,
-    values: &mut Vec<f64>,
-) -> Option<Vec<u32>> {
-    let mut sizes = Vec::new();
-    for _ in 0..cdr.count(12)? {
-        cdr.text()?;
-        sizes.push(cdr.word()?);
-        cdr.word()?;
-    }
-    let offset = usize::try_from(cdr.word()?).ok()?;
-    values.clear();
-    cdr.numbers(dtype, values)?;
-    values.drain(..offset.min(values.len()));
-    Some(sizes)
-}
-
-/// Skips a `std_msgs/Header`.
-pub(super) fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
-    cdr.word()?;
-    cdr.word()?;
-    cdr.text().map(drop)
-}
-
-pub(super) enum ImageFrame {
+enum ImageFrame {
     Values(FrameSize),
     /// Not a frame: an encoding with other than one value per pixel, or an image that is too large.
     OfCamera,
 }
 
-/// Reads an image into `values`; None if it is broken. `step` is the number of bytes from one row to the next.
-pub(super) fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<ImageFrame> {
-    header(cdr)?;
-    let (height, width) = (cdr.word()?, cdr.word()?);
-    let dtype = match cdr.text()? {
-        "mono8" | "8UC1" => Dtype::U8,
-        "8SC1" => Dtype::I8,
-        "mono16" | "16UC1" => Dtype::U16,
-        "16SC1" => Dtype::I16,
-        "32SC1" => Dtype::I32,
-        "32FC1" => Dtype::F32,
-        "64FC1" => Dtype::F64,
-        _ => return Some(ImageFrame::OfCamera),
-    };
-    let big_endian = cdr.byte()? != 0;
-    let number = NumberType { dtype, big_endian };
-    let step = usize::try_from(cdr.word()?).ok()?;
-    let data = cdr.bytes()?;
-    let Some(frame) = frame_size(width, height) else {
-        return Some(ImageFrame::OfCamera);
-    };
-    let line = usize::from(frame.columns()) * dtype.width();
-    values.clear();
-    for row in 0..usize::from(frame.rows()) {
-        let start = row.checked_mul(step)?;
-        let bytes = data.get(start..start.checked_add(line)?)?;
-        values.extend(number.values(bytes));
-    }
-    Some(ImageFrame::Values(frame))
-}
-
 /// A reader of a message, field by field; its methods return None if the message ends too early.
-#[derive(Debug)]
-pub(super) struct CdrReader<'a> {
+struct CdrReader<'a> {
     bytes: &'a [u8],
     at: usize,
     big_endian: bool,
@@ -366,16 +299,14 @@ pub(super) struct CdrReader<'a> {
 
 impl<'a> CdrReader<'a> {
     /// Reads the header of a message; None if it is in another representation.
-    pub(super) fn new(message: &'a [u8]) -> Option<Self> {
-        let (head, bytes) = message.split_first_chunk::<4>()?;
-        let big_endian = match head {
-            [0, 0, ..] => true,
-            [0, 1, ..] => false,
-            _ => return None,
+    fn new(message: &'a [u8]) -> Option<Self> {
+        let (&[0, order @ (0 | 1), ..], bytes) = message.split_first_chunk::<4>()? else {
+            return None;
         };
+        let (at, big_endian) = (0, order == 0);
         Some(Self {
             bytes,
-            at: 0,
+            at,
             big_endian,
         })
     }
@@ -388,11 +319,7 @@ impl<'a> CdrReader<'a> {
         Some(taken)
     }
 
-    pub(super) fn byte(&mut self) -> Option<u8> {
-        self.take(1, 1)?.first().copied()
-    }
-
-    pub(super) fn word(&mut self) -> Option<u32> {
+    fn word(&mut self) -> Option<u32> {
         let bytes: [u8; 4] = self.take(4, 4)?.try_into().ok()?;
         Some(if self.big_endian {
             u32::from_be_bytes(bytes)
@@ -402,31 +329,79 @@ impl<'a> CdrReader<'a> {
     }
 
     /// Reads the number of elements of a list, each of at least `least` bytes; None if they cannot fit.
-    pub(super) fn count(&mut self, least: usize) -> Option<usize> {
+    fn count(&mut self, least: usize) -> Option<usize> {
         let count = usize::try_from(self.word()?).ok()?;
         (count.checked_mul(least)? <= self.bytes.len()).then_some(count)
     }
 
-    pub(super) fn text(&mut self) -> Option<&'a str> {
-        let length = self.count(1)?;
-        let text = self.take(length, 1)?;
-        str::from_utf8(text.strip_suffix(&[0]).unwrap_or(text)).ok()
-    }
-
-    pub(super) fn bytes(&mut self) -> Option<&'a [u8]> {
+    fn bytes(&mut self) -> Option<&'a [u8]> {
         let length = self.count(1)?;
         self.take(length, 1)
     }
 
-    pub(super) fn numbers(&mut self, dtype: Dtype, values: &mut Vec<f64>) -> Option<()> {
-        let size = dtype.width();
+    fn text(&mut self) -> Option<&'a str> {
+        let text = self.bytes()?;
+        str::from_utf8(text.strip_suffix(&[0]).unwrap_or(text)).ok()
+    }
+
+    fn numbers(&mut self, number: Number, values: &mut Vec<f64>) -> Option<()> {
+        let size = number.size();
         let count = self.count(size)?;
         // An empty list is not aligned.
         let alignment = if count > 0 { size } else { 1 };
         let bytes = self.take(count.checked_mul(size)?, alignment)?;
-        let big_endian = self.big_endian;
-        values.extend(NumberType { dtype, big_endian }.values(bytes));
+        values.extend(number.in_order(self.big_endian).values(bytes));
         Some(())
+    }
+
+    /// Reads an array into `values`. Returns the sizes of its layout.
+    fn multi_array(&mut self, number: Number, values: &mut Vec<f64>) -> Option<Vec<u32>> {
+        let mut sizes = Vec::new();
+        for _ in 0..self.count(12)? {
+            self.text()?;
+            sizes.push(self.word()?);
+            self.word()?;
+        }
+        let offset = usize::try_from(self.word()?).ok()?;
+        self.numbers(number, values)?;
+        values.drain(..offset.min(values.len()));
+        Some(sizes)
+    }
+
+    /// Skips a `std_msgs/Header`.
+    fn header(&mut self) -> Option<()> {
+        self.word()?;
+        self.word()?;
+        self.text().map(drop)
+    }
+
+    /// Reads an image into `values`. `step` is the number of bytes from one row to the next.
+    fn image(&mut self, values: &mut Vec<f64>) -> Option<ImageFrame> {
+        self.header()?;
+        let (height, width) = (self.word()?, self.word()?);
+        let code = match self.text()? {
+            "mono8" | "8UC1" => "|u1",
+            "8SC1" => "|i1",
+            "mono16" | "16UC1" => "<u2",
+            "16SC1" => "<i2",
+            "32SC1" => "<i4",
+            "32FC1" => "<f4",
+            "64FC1" => "<f8",
+            _ => return Some(ImageFrame::OfCamera),
+        };
+        let number = Number::of(code)?.in_order(self.take(1, 1)? != [0]);
+        let step = usize::try_from(self.word()?).ok()?;
+        let data = self.bytes()?;
+        let Some(frame) = frame_size(width, height) else {
+            return Some(ImageFrame::OfCamera);
+        };
+        let line = usize::from(frame.columns()) * number.size();
+        for row in 0..usize::from(frame.rows()) {
+            let start = row.checked_mul(step)?;
+            let bytes = data.get(start..start.checked_add(line)?)?;
+            values.extend(number.values(bytes));
+        }
+        Some(ImageFrame::Values(frame))
     }
 }
 
@@ -482,7 +457,7 @@ mod tests {
         word(&mut message, data.len());
         message.extend(data);
         let mut values = Vec::new();
-        let found = image(&mut CdrReader::new(&message)?, &mut values)?;
+        let found = CdrReader::new(&message)?.image(&mut values)?;
         matches!(found, ImageFrame::Values(size) if size == FrameSize::new(2, 1).expect("an allowed size")).then_some(values)
     }
 

@@ -1,124 +1,81 @@
 //! An imprint as a numpy array (`numpy.load`): rows × columns, true for an active taxel.
 //!
-//! An array of `bool` is written. Two-dimensional arrays of `bool`, whole numbers or floats (even of 16 bits) are
-//! read, in either byte order and in C or Fortran order, if their values are 0 and one other number. The format's
-//! versions 1 to 3 are read. For the source, see [`crate::formats::npy`].
+//! An array of `bool` is written. Arrays of two axes and any real numbers are read if their values are 0 and one other
+//! number.
 
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::counted;
 use taxel_core::quote::shortened;
 use taxel_core::sensor::MatrixSize;
 
+use crate::error::ReadError;
 use crate::formats::imprint_file::Mask;
-use crate::formats::npy::{self, Dtype, NumberType};
+use crate::formats::numpy::{self, Elements, Header, Number};
 
-/// The meaning of an array's numbers in an imprint, by their bits: no value has to be computed.
-#[derive(Clone, Copy, Debug)]
-struct TaxelType {
-    number: NumberType,
-    /// The bits of infinity, if the type is a float: numbers have smaller bits, apart from the sign, which is the
-    /// highest bit.
-    infinity: Option<u64>,
-    /// The bits of 1, and of 255 if the type has it.
-    active: [u64; 2],
-}
-
-impl TaxelType {
-    fn of(code: &str) -> Option<Self> {
-        let number = NumberType::of(code)?;
-        let single = |number: f32| u64::from(number.to_bits());
-        let (infinity, active) = match number.dtype {
-            Dtype::F16 => (Some(0x7c00), [0x3c00, 0x5bf8]),
-            Dtype::F32 => (Some(single(f32::INFINITY)), [single(1.0), single(255.0)]),
-            Dtype::F64 => (
-                Some(f64::INFINITY.to_bits()),
-                [1_f64.to_bits(), 255_f64.to_bits()],
-            ),
-            Dtype::Bool | Dtype::I8 => (None, [1, 1]),
-            _ => (None, [1, 255]),
+pub(in crate::formats) fn read(mut bytes: &[u8]) -> Result<Imprint, ReadError> {
+    let header = Header::read(&mut bytes)?;
+    let number = header.number().ok_or_else(|| {
+        let found = match &header.descr {
+            Elements::Code(code) => shortened(code),
+            Elements::Record(_) => "records".to_owned(),
         };
-        Some(Self {
-            number,
-            infinity,
-            active,
-        })
-    }
-
-    /// Returns the bits of a number; None for 0, and an error if it is not finite.
-    fn value(&self, bytes: &[u8]) -> Result<Option<u64>, ()> {
-        let bits = self.number.word(bytes);
-        let Some(infinity) = self.infinity else {
-            return Ok((bits != 0).then_some(bits));
-        };
-        let magnitude = bits & !(1 << (8 * self.number.size() - 1));
-        if magnitude >= infinity {
-            return Err(());
-        }
-        Ok((magnitude != 0).then_some(bits))
-    }
-}
-
-pub(super) fn read(bytes: &[u8]) -> Result<Imprint, String> {
-    let header = "not a numpy array: expected a header of version 1 to 3";
-    let (header, numbers) = npy::parse(bytes).ok_or(header)?;
-    let kind = TaxelType::of(&header.code).ok_or_else(|| {
-        let found = shortened(&header.code);
-        format!("type {found:?}, expected bool, whole numbers or floats")
+        ReadError::new(format!(
+            "type {found:?}, expected bool, whole numbers or floats"
+        ))
     })?;
-    let size = match &header.shape[..] {
-        [rows, columns] => MatrixSize::of_sides(*columns, *rows),
+    let size = match header.shape[..] {
+        [rows, columns] => MatrixSize::of_sides(columns, rows),
         _ => None,
     };
     let size = size.ok_or_else(|| {
-        let sides = header.shape.iter().take(8).map(ToString::to_string);
-        let sides = sides.collect::<Vec<_>>().join(", ");
-        format!("shape ({sides}), expected rows and columns, 1 to 64 each")
+        let shape = header.shape_in_words();
+        ReadError::new(format!(
+            "shape {shape}, expected rows and columns, 1 to 64 each"
+        ))
     })?;
-    let width = kind.number.size();
-    let expected = size.cells() * width;
-    if numbers.len() != expected {
-        let found = counted(numbers.len() as u64, "byte");
-        return Err(format!("found {found} of numbers, expected {expected}"));
+    let expected = size.cells() * number.size();
+    if bytes.len() != expected {
+        let found = counted(bytes.len() as u64, "byte");
+        return Err(ReadError::new(format!(
+            "found {found} of numbers, expected {expected}"
+        )));
     }
     let mut imprint = Imprint::empty(size);
     let mut mask = Mask::new();
-    let (slow, fast) = if header.fortran_order {
-        (size.columns(), size.rows())
-    } else {
-        (size.rows(), size.columns())
-    };
-    let taxels = (0..slow).flat_map(|outer| (0..fast).map(move |inner| (outer, inner)));
-    for ((outer, inner), bytes) in taxels.zip(numbers.chunks(width)) {
-        let (column, row) = if header.fortran_order {
-            (outer, inner)
+    let taxels = (0..size.rows()).flat_map(|row| (0..size.columns()).map(move |own| (row, own)));
+    for (row, column) in taxels {
+        let (slow, fast, sides) = if header.fortran_order {
+            (column, row, size.rows())
         } else {
-            (inner, outer)
+            (row, column, size.columns())
         };
-        let Ok(Ok(active)) = kind.value(bytes).map(|number| mask.take(number)) else {
-            return Err(format!(
-                "row {}, column {}: expected 0, or the one other value of active taxels",
-                row + 1,
-                column + 1
-            ));
-        };
-        imprint.set(column, row, active);
+        let at = (usize::from(slow) * usize::from(sides) + usize::from(fast)) * number.size();
+        let value = number.value(&bytes[at..at + number.size()]);
+        match mask.take(Some(value).filter(|&value| value != 0.0)) {
+            Ok(active) if value.is_finite() => imprint.set(column, row, active),
+            _ => {
+                let expected = "expected 0, or the one other value of active taxels";
+                let (row, column) = (row + 1, column + 1);
+                let message = format!("row {row}, column {column}: {expected}");
+                return Err(ReadError::new(message));
+            }
+        }
     }
-    if mask.unclear(&kind.active).is_some() {
+    if mask.unclear(&[1.0, 255.0]).is_some() {
         let message = "one value everywhere, expected 0, 1 or 255, or two of which one is 0";
-        return Err(message.to_owned());
+        return Err(ReadError::new(message));
     }
     Ok(imprint)
 }
 
-pub(super) fn write(imprint: &Imprint) -> Vec<u8> {
+pub(in crate::formats) fn write(imprint: &Imprint) -> Vec<u8> {
     let shape = [imprint.rows(), imprint.columns()].map(u64::from);
-    let mut file = npy::header(Dtype::Bool, &shape);
+    let mut file = numpy::header(Number::BOOL, &shape);
     for row in 0..imprint.rows() {
         file.extend((0..imprint.columns()).map(|column| u8::from(imprint.get(column, row))));
     }
     file
 }
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,7 +84,7 @@ mod tests {
         let length = u32::try_from(text.len()).expect("short").to_le_bytes();
         let length = if version == 1 { &length[..2] } else { &length };
         [
-            npy::MAGIC,
+            numpy::MAGIC,
             &[version, 0][..],
             length,
             text.as_bytes(),
@@ -194,7 +151,10 @@ mod tests {
     #[test]
     fn errors_say_what_is_wrong() {
         let wrong = |bytes: &[u8], message: &str| {
-            assert_eq!(read(bytes), Err(message.to_owned()));
+            assert_eq!(
+                read(bytes).map_err(|error| error.message),
+                Err(message.to_owned())
+            );
         };
         let small =
             |code: &str, shape: &str, numbers: &[u8]| file(1, &header(code, false, shape), numbers);

@@ -1,0 +1,679 @@
+//! Frames as a numpy array, or as an archive of such arrays.
+//!
+//! The type may be any real number in either byte order, the order that of C or Fortran. NaN means that there is no
+//! cell.
+//!
+//! | shape | means |
+//! |---|---|
+//! | (frames, rows, columns), also with an axis of length 1 after the first or at the end | frames |
+//! | (rows, columns) | one frame; or frames × cells if rows and columns are known beforehand and fit the second |
+//! | (cells) | one frame, if rows and columns are known beforehand |
+//! | (records) | a frame a record: fields of two axes are channels, or fields of a number each are its cells; others its time and label |
+//!
+//! Of an archive, each array of two or three axes is a channel, and an array of one axis named `t…` or `time…` gives the
+//! times of the channels with as many frames. Times are in the unit of their name (`time_ms`), of their type (datetime64
+//! and timedelta64 of numpy) or of their size, and count from the first one. Whole nanoseconds since 1970 keep all
+//! their digits.
+//!
+//! A file must have exactly the bytes that its header requires. Only taxel's own recordings, records of `time`, `number`
+//! and `values`, may end anywhere, since the file of a killed program is not complete: whole records count.
+
+use std::cmp::Reverse;
+use std::io::{Read, Seek};
+
+use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE, Label};
+use taxel_core::index::index;
+use taxel_core::parameter::number::counted;
+use taxel_core::quote::shortened;
+use taxel_core::sensor::MAX_SIDE;
+use zip::ZipArchive;
+
+use crate::error::ReadError;
+use crate::formats::job::too_large;
+use crate::formats::numpy::archive::{in_array, refused};
+use crate::formats::numpy::{Elements, Field, Header, Number};
+use crate::formats::recording::error::{foreign, unshaped};
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingNote, Sink, Stop};
+use crate::formats::recording::size::frame_size;
+use crate::formats::recording::time::field_role::{FieldRole, role};
+use crate::formats::recording::time::{FrameClock, Time, TimeUnit};
+
+/// The size limit of an array in Fortran order, 256 MiB: it is read as a whole, since the values of a frame are
+/// spread over the file.
+const LARGEST_FORTRAN: u64 = 1 << 28;
+
+/// The size limit of a record in bytes; it may have frames of several channels.
+const LARGEST_RECORD: usize = 1 << 26;
+
+/// The most frames of an archive of which times are read: 256 MiB of them.
+const MOST_TIMES: u64 = 1 << 24;
+
+/// The most arrays in an archive.
+const MOST_ARRAYS: usize = 256;
+
+/// The arrangement of the frames in an array.
+#[derive(Default)]
+struct Layout {
+    frames: u64,
+    channels: Vec<Cells>,
+    /// Numbers of records that are none of the others: perhaps cells.
+    others: Vec<(usize, Number)>,
+    time: Option<(usize, TimeType)>,
+    label: Option<(usize, Number)>,
+    /// The number of bytes that are read at once: a frame or a record; in Fortran order, the whole array.
+    block: usize,
+    /// The number of bytes from one frame to the next, if there are several in a block.
+    step: usize,
+    /// The number of records that the header of taxel's own recordings counts; there may be more or fewer.
+    own: Option<u64>,
+}
+
+/// The cells of a channel: where each value is in the first block.
+struct Cells {
+    name: Option<String>,
+    size: FrameSize,
+    places: Vec<(usize, Number)>,
+}
+
+impl Layout {
+    fn of(header: &Header, asked: Option<FrameSize>) -> Result<Self, ReadError> {
+        let mut layout = Self::default();
+        let numbers;
+        let fields = match &header.descr {
+            Elements::Record(fields) => fields,
+            Elements::Code(code) => {
+                let (frames, size) = frames_of_axes(header, asked)?;
+                layout.frames = frames;
+                numbers = [Field {
+                    name: String::new(),
+                    code: code.clone(),
+                    sides: [size.rows(), size.columns()].map(u64::from).to_vec(),
+                }];
+                &numbers[..]
+            }
+        };
+        let is_own = fields
+            .iter()
+            .map(|field| &*field.name)
+            .eq(["time", "number", "values"]);
+        if let Elements::Record(_) = header.descr {
+            let [frames] = header.shape[..] else {
+                return Err(unexpected_shape(header, None));
+            };
+            layout.own = Some(frames).filter(|_| is_own);
+            layout.frames = if is_own { u64::MAX } else { frames };
+        }
+        if header.shape.contains(&0) && !is_own {
+            let shape = header.shape_in_words();
+            return Err(ReadError::new(format!(
+                "an empty array of shape {shape}, expected frames"
+            )));
+        }
+        for field in fields {
+            layout.add(field)?;
+        }
+        if let Some(size) = asked.filter(|size| size.cells() == layout.others.len())
+            && layout.channels.is_empty()
+        {
+            let places = layout.others.clone();
+            layout.channels.push(Cells {
+                name: None,
+                size,
+                places,
+            });
+        }
+        if layout.channels.is_empty() {
+            return Err(unshaped(layout.others.len() as u64, asked));
+        }
+        if header.fortran_order && header.shape.len() > 1 {
+            layout.turn(header)?;
+        }
+        Ok(layout)
+    }
+
+    /// Adds a field: the cells of a channel, the time, the label or something else.
+    fn add(&mut self, field: &Field) -> Result<(), ReadError> {
+        let name = shortened(&field.name);
+        let start = self.block;
+        let number = Number::of(&field.code);
+        let end = field.bytes().and_then(|bytes| start.checked_add(bytes));
+        let Some(end) = end.filter(|&end| end <= LARGEST_RECORD) else {
+            return Err(not_real(&field.code));
+        };
+        self.block = end;
+        let time = match role(&field.name) {
+            // Taxel writes seconds.
+            _ if self.own.is_some() && field.name == "time" => Some(Some(TimeUnit::Seconds)),
+            Some(FieldRole::Time(unit)) => Some(unit),
+            _ => None,
+        };
+        let is_label = field.name == "number" || role(&field.name) == Some(FieldRole::Label);
+        match (&field.sides[..], number) {
+            ([], _) if time.is_some() && self.time.is_none() => {
+                let own = TimeType::of(&field.code, time.flatten());
+                self.time = Some((start, own.ok_or_else(|| {
+                    let found = shortened(&field.code);
+                    ReadError::new(format!("{name}: times of type {found:?}, expected numbers, or datetime64 in s, ms, us or ns"))
+                })?));
+            }
+            ([], Some(number)) if is_label => self.label = Some((start, number)),
+            ([], Some(number)) => self.others.push((start, number)),
+            (&[rows, columns], _) => {
+                let number = number.ok_or_else(|| not_real(&field.code))?;
+                let size = frame_size(columns, rows).ok_or_else(|| {
+                    ReadError::new(format!(
+                        "{name}: {rows} × {columns} values, expected 1 to 512 rows and columns"
+                    ))
+                })?;
+                let place = |cell| (start + cell * number.size(), number);
+                self.channels.push(Cells {
+                    name: Some(field.name.clone())
+                        .filter(|name| self.own.is_none() && !name.is_empty()),
+                    size,
+                    places: (0..size.cells()).map(place).collect(),
+                });
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Turns the layout of an array of numbers into that of Fortran: the first axis is the fastest.
+    fn turn(&mut self, header: &Header) -> Result<(), ReadError> {
+        let all = self.frames.checked_mul(self.block as u64);
+        let Some(all) = all.filter(|&bytes| bytes <= LARGEST_FORTRAN) else {
+            return Err(ReadError::new(
+                "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it",
+            ));
+        };
+        for Cells { size, places, .. } in &mut self.channels {
+            let (rows, columns) = (usize::from(size.rows()), usize::from(size.columns()));
+            let is_flat = header.shape == [self.frames, size.cells() as u64];
+            for (cell, (place, number)) in places.iter_mut().enumerate() {
+                let across = cell / columns + rows * (cell % columns);
+                self.step = number.size();
+                *place = index(self.frames) * number.size() * if is_flat { cell } else { across };
+            }
+        }
+        self.block = index(all);
+        Ok(())
+    }
+}
+
+fn not_real(code: &str) -> ReadError {
+    let found = shortened(code);
+    ReadError::new(format!("numbers of type {found:?}, expected real ones"))
+}
+
+fn unexpected_shape(header: &Header, asked: Option<FrameSize>) -> ReadError {
+    let shape = header.shape_in_words();
+    let asked = asked.map(|asked| format!(", and {} were named", asked.in_words()));
+    ReadError::new(format!(
+        "an array of shape {shape}, expected frames, rows and columns, at most 512 rows and columns{}",
+        asked.unwrap_or_default()
+    ))
+}
+
+/// The number and the size of the frames in an array of numbers.
+fn frames_of_axes(
+    header: &Header,
+    asked: Option<FrameSize>,
+) -> Result<(u64, FrameSize), ReadError> {
+    let cells = asked.map(|size| size.cells() as u64);
+    let found = match header.shape[..] {
+        // An axis of one channel, as frameworks for images and machine learning have it.
+        [frames, rows, columns] | [frames, rows, columns, 1] | [frames, 1, rows, columns] => {
+            frame_size(columns, rows).map(|size| (frames, size))
+        }
+        [frames, values] if cells == Some(values) => asked.map(|asked| (frames, asked)),
+        [values] if cells == Some(values) => asked.map(|asked| (1, asked)),
+        [rows, columns] if frame_size(columns, rows).is_some() => {
+            frame_size(columns, rows).map(|size| (1, size))
+        }
+        [values] | [_, values] if cells.is_none() && !header.shape.contains(&0) => {
+            return Err(unshaped(values, None));
+        }
+        // An array of no values has no frames, whatever their size.
+        _ if header.shape.contains(&0) => Some((0, asked.unwrap_or(FrameSize::SMALLEST))),
+        _ => None,
+    };
+    found
+        .filter(|&(_, size)| asked.is_none_or(|asked| asked == size))
+        .ok_or_else(|| unexpected_shape(header, asked))
+}
+
+/// The type of times in a field or an array.
+struct TimeType {
+    number: Number,
+    unit: Option<TimeUnit>,
+    /// Whether the smallest number means a missing time, as in numpy's own types for times.
+    has_none: bool,
+}
+
+impl TimeType {
+    /// The type of a code, for times whose name may have a unit. A code such as `<M8[ns]` or `<m8[ms]`, numpy's types
+    /// for points in time and for durations, includes its unit.
+    fn of(code: &str, unit: Option<TimeUnit>) -> Option<Self> {
+        let Some((kind, word)) = code.split_once('[') else {
+            let (number, has_none) = (Number::of(code)?, false);
+            return Some(Self {
+                number,
+                unit,
+                has_none,
+            });
+        };
+        let order = kind
+            .strip_suffix("M8")
+            .or_else(|| kind.strip_suffix("m8"))?;
+        Some(Self {
+            number: Number::of(&format!("{order}i8"))?,
+            unit: Some(TimeUnit::named(word.strip_suffix(']')?)?),
+            has_none: true,
+        })
+    }
+
+    /// The seconds from the first time to one; None if it is missing.
+    fn seconds(&self, bytes: &[u8], clock: &mut FrameClock) -> Option<f64> {
+        let (value, whole) = (self.number.value(bytes), self.number.whole(bytes));
+        let is_none = self.has_none && whole == Some(i128::from(i64::MIN));
+        if is_none || !value.is_finite() {
+            return None;
+        }
+        let unit = clock.unit(value);
+        Some(clock.since_first(match whole {
+            Some(whole) => Time::of_whole(whole, unit),
+            None => Time::Seconds(unit.seconds(value)),
+        }))
+    }
+}
+
+pub(super) fn read_array(
+    input: &mut dyn Read,
+    options: &ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), Stop> {
+    let header = Header::read(input)?;
+    let layout = Layout::of(&header, options.size)?;
+    let channels = report(&header, &layout, None, options, sink)?;
+    frames(input, &layout, &channels, &[], sink)
+}
+
+/// Reports the channels of an array, and returns their numbers.
+fn report(
+    header: &Header,
+    layout: &Layout,
+    array: Option<&str>,
+    options: &ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<Vec<usize>, Stop> {
+    let mut channels = Vec::new();
+    for cells in &layout.channels {
+        let name = array.or(cells.name.as_deref());
+        let size = Some(cells.size);
+        channels.push(sink.channel(name, || ChannelInfo {
+            size,
+            ..ChannelInfo::default()
+        })?);
+        let (rows, columns) = (cells.size.rows(), cells.size.columns());
+        // Few sensors are that large, so a row may well be a frame.
+        let is_large = rows.max(columns) > MAX_SIDE.into();
+        if header.shape.len() == 2 && options.size.is_none() && is_large {
+            sink.note(&RecordingNote::Flat { rows, columns })?;
+        }
+    }
+    Ok(channels)
+}
+
+/// Reads all frames of an array. `times` are in seconds, one a frame, or empty.
+fn frames(
+    input: &mut dyn Read,
+    layout: &Layout,
+    channels: &[usize],
+    times: &[Option<f64>],
+    sink: &mut Sink<'_>,
+) -> Result<(), Stop> {
+    let mut clock = FrameClock::default();
+    clock.set_unit(layout.time.as_ref().and_then(|(_, time)| time.unit));
+    let mut frame = Frame::default();
+    let (mut block, mut start) = (Vec::new(), 0);
+    for number in 0..layout.frames {
+        if number == 0 || layout.step == 0 {
+            block.clear();
+            Read::take(&mut *input, layout.block as u64).read_to_end(&mut block)?;
+        }
+        if block.len() < layout.block {
+            let Some(counted) = layout.own else {
+                let frames = layout.frames;
+                let message =
+                    format!("the file ends inside frame {number}, expected {frames} frames");
+                return Err(ReadError::new(message).into());
+            };
+            if number < counted {
+                let records = number;
+                sink.note(&RecordingNote::Cut { records, counted })?;
+            }
+            return Ok(());
+        }
+        let bytes = |at: usize, number: Number| &block[start + at..][..number.size()];
+        frame.time = match &layout.time {
+            Some((at, time)) => time.seconds(bytes(*at, time.number), &mut clock),
+            None => times.get(index(number)).copied().flatten(),
+        };
+        if let Some(note) = clock.take_note() {
+            sink.note(&note)?;
+        }
+        let label = layout
+            .label
+            .and_then(|(at, number)| number.whole(bytes(at, number)));
+        frame.label = label
+            .and_then(|label| i64::try_from(label).ok())
+            .map(Label::from);
+        for (&channel, cells) in channels.iter().zip(&layout.channels) {
+            frame.reset(cells.size);
+            for (slot, &(at, number)) in frame.values_mut().iter_mut().zip(&cells.places) {
+                *slot = number.value(bytes(at, number));
+            }
+            check(&frame, number)?;
+            sink.frame(channel, &mut frame)?;
+        }
+        start += layout.step;
+    }
+    // For an array of an archive, only the attempt to read on verifies the checksum.
+    if input.take(1).read_to_end(&mut block)? > 0 {
+        let frames = counted(layout.frames, "frame");
+        let message = format!("more bytes than the header states for {frames}");
+        return Err(ReadError::new(message).into());
+    }
+    Ok(())
+}
+
+/// Refuses a frame with values that are neither finite nor NaN.
+fn check(frame: &Frame, number: u64) -> Result<(), ReadError> {
+    let mut values = frame.values().iter();
+    let Some(index) = values.position(|value| value.abs() > LARGEST_VALUE) else {
+        return Ok(());
+    };
+    let columns = usize::from(frame.columns());
+    let (row, column) = (index / columns, index % columns);
+    let found = too_large(frame.values()[index]);
+    Err(ReadError::new(format!(
+        "frame {number}, row {row}, column {column}: {found}, or NaN where there is no cell"
+    )))
+}
+
+struct ArchiveArray {
+    index: usize,
+    /// The name without `.npy`.
+    name: String,
+    header: Header,
+}
+
+impl ArchiveArray {
+    /// The code of its numbers; empty for records.
+    fn code(&self) -> &str {
+        match &self.header.descr {
+            Elements::Code(code) => code,
+            Elements::Record(_) => "",
+        }
+    }
+}
+
+pub(super) fn read_archive(
+    input: impl Read + Seek,
+    options: &ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), Stop> {
+    let archive = &mut ZipArchive::new(input).map_err(refused)?;
+    let arrays = arrays(archive)?;
+    let mut channels = Vec::new();
+    for (array, layout) in self::channels(&arrays, options)? {
+        let numbers = report(&array.header, &layout, Some(&array.name), options, sink)?;
+        channels.push((array, layout, numbers));
+    }
+    let mut noted = None;
+    for (array, layout, numbers) in &channels {
+        let (times, note) = times(archive, &arrays, layout.frames)?;
+        if let Some(note) = note.filter(|note| noted.as_ref() != Some(note)) {
+            sink.note(&note)?;
+            noted = Some(note);
+        }
+        let mut file = archive.by_index(array.index).map_err(refused)?;
+        Header::read(&mut file)?;
+        frames(&mut file, layout, numbers, &times, sink).map_err(|stop| match stop {
+            Stop::Failed(error) => in_array(&array.name, error).into(),
+            Stop::Enough => stop,
+        })?;
+    }
+    Ok(())
+}
+
+/// All arrays with their headers. An atlas or a model is refused.
+fn arrays<R: Read + Seek>(archive: &mut ZipArchive<R>) -> Result<Vec<ArchiveArray>, ReadError> {
+    if archive.len() > MOST_ARRAYS {
+        let message = format!("more than {MOST_ARRAYS} files in the archive");
+        return Err(ReadError::new(message));
+    }
+    let mut arrays = Vec::new();
+    for index in 0..archive.len() {
+        let mut file = archive.by_index(index).map_err(refused)?;
+        let name = file.name().map_err(refused)?.into_owned();
+        // A spreadsheet is a zip archive, too.
+        if matches!(&*name, "[Content_Types].xml" | "content.xml") {
+            let kind = "a spreadsheet or another office document (save the sheet as CSV)";
+            return Err(foreign(kind));
+        }
+        if let Some(name) = name.strip_suffix(".npy").map(str::to_owned) {
+            let header = Header::read(&mut file).map_err(|error| in_array(&name, error))?;
+            arrays.push(ArchiveArray {
+                index,
+                name,
+                header,
+            });
+        }
+    }
+    if arrays
+        .first()
+        .is_some_and(|array| array.name == "header" && array.code() == "|u1")
+    {
+        return Err(foreign("an atlas or a model of taxel"));
+    }
+    Ok(arrays)
+}
+
+/// The arrays whose numbers can be frames. Others, such as a list of poses, may lie beside them.
+fn channels<'a>(
+    arrays: &'a [ArchiveArray],
+    options: &ReadOptions,
+) -> Result<Vec<(&'a ArchiveArray, Layout)>, ReadError> {
+    let may_be = |array: &&ArchiveArray| array.header.shape.len() > 1 && !array.code().is_empty();
+    let arrays: Vec<_> = arrays.iter().filter(may_be).collect();
+    let message = "no array of two or three axes, expected frames, rows and columns";
+    let mut error = ReadError::new(message);
+    let mut channels = Vec::new();
+    for array in &arrays {
+        let mut layout = Layout::of(&array.header, options.size);
+        // Rows and columns that are meant for one of several arrays need not fit the others.
+        if layout.is_err() && arrays.len() > 1 {
+            layout = Layout::of(&array.header, None);
+        }
+        match layout {
+            Ok(layout) => channels.push((*array, layout)),
+            Err(own) => error = own,
+        }
+    }
+    if channels.is_empty() {
+        return Err(error);
+    }
+    Ok(channels)
+}
+
+/// The times of as many frames, in seconds since the first one, and a note about their unit; empty if there are none.
+fn times<R: Read + Seek>(
+    archive: &mut ZipArchive<R>,
+    arrays: &[ArchiveArray],
+    frames: u64,
+) -> Result<(Vec<Option<f64>>, Option<RecordingNote>), ReadError> {
+    let fitting = arrays.iter().filter(|array| array.header.shape == [frames]);
+    let named = fitting.filter_map(|array| match role(&array.name) {
+        Some(FieldRole::Time(unit)) => Some((true, array, unit)),
+        // `temperature` begins with a t, too, so a time has precedence.
+        _ => array
+            .name
+            .starts_with(['t', 'T'])
+            .then_some((false, array, None)),
+    });
+    let found = named.max_by_key(|(is_time, array, _)| (*is_time, Reverse(array.index)));
+    let time = found.and_then(|(_, array, unit)| Some((array, TimeType::of(array.code(), unit)?)));
+    let Some((array, time)) = time.filter(|_| frames <= MOST_TIMES) else {
+        return Ok((Vec::new(), None));
+    };
+    let mut file = archive.by_index(array.index).map_err(refused)?;
+    let size = time.number.size();
+    let expected = frames * size as u64;
+    let mut bytes = Vec::new();
+    Header::read(&mut file)
+        .and_then(|_| Ok(file.take(expected + 1).read_to_end(&mut bytes)?))
+        .map_err(|error| in_array(&array.name, error))?;
+    if bytes.len() as u64 != expected {
+        let message = format!("{}: expected {frames} times", array.name);
+        return Err(ReadError::new(message));
+    }
+    let mut clock = FrameClock::default();
+    clock.set_unit(time.unit);
+    let times = bytes
+        .chunks_exact(size)
+        .map(|bytes| time.seconds(bytes, &mut clock))
+        .collect();
+    Ok((times, clock.take_note()))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Write};
+    use std::ops::ControlFlow;
+
+    use zip::write::SimpleFileOptions;
+
+    use super::*;
+    use crate::formats::numpy::header_of;
+    use crate::formats::recording::{RecordingEvent, read};
+
+    fn array(code: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
+        let text = format!("{{'descr': {code}, 'fortran_order': False, 'shape': ({shape}), }}");
+        [&header_of(&text, 0), numbers].concat()
+    }
+
+    /// The times of the frames, the names of the channels and the notes.
+    type Found = (Vec<Option<f64>>, Vec<Option<String>>, Vec<String>);
+
+    fn found(file: &[u8], size: Option<FrameSize>) -> Result<Found, String> {
+        let (mut times, mut names, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+        let options = ReadOptions {
+            size,
+            ..ReadOptions::default()
+        };
+        let read = read(Cursor::new(file), &options, &mut |event| {
+            match event {
+                RecordingEvent::Frame(frame) => times.push(frame.time),
+                RecordingEvent::Channel(info) => names.push(info.name.clone()),
+                RecordingEvent::Note(note) => notes.push(note.to_string()),
+                _ => {}
+            }
+            ControlFlow::Continue(())
+        });
+        read.map(|_| (times, names, notes))
+            .map_err(|error| error.to_string())
+    }
+
+    /// The times and notes of two frames of two cells from each of two sensors, beside an array of that name and type
+    /// with these numbers.
+    fn times_of(name: &str, code: &str, times: [i64; 2]) -> (Vec<Option<f64>>, Vec<String>) {
+        let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        let options = SimpleFileOptions::default();
+        let mut add = |name: &str, array: &[u8]| {
+            let file = format!("{name}.npy");
+            archive.start_file(file, options).expect("begun");
+            archive.write_all(array).expect("written");
+        };
+        for sensor in ["left", "right"] {
+            add(sensor, &array("'|u1'", "2, 1, 2", &[1, 2, 3, 4]));
+        }
+        let numbers = times.map(i64::to_le_bytes).concat();
+        add(name, &array(&format!("'{code}'"), "2,", &numbers));
+        let archive = archive.finish().expect("finished").into_inner();
+        let (times, _, notes) = found(&archive, None).expect("read");
+        let (left, right) = times.split_at(2);
+        assert_eq!(left, right);
+        (left.to_vec(), notes)
+    }
+
+    #[test]
+    fn times_have_the_unit_of_their_name_their_type_or_their_size() {
+        let since_1970 = [1_714_564_800_123_456_789, 1_714_564_800_124_456_790];
+        let both = |step| vec![Some(0.0), Some(step)];
+        for (name, code, times, expected) in [
+            ("time_ns", "<i8", since_1970, both(0.001_000_001)),
+            ("time", "<M8[ns]", since_1970, both(0.001_000_001)),
+            ("time", "<m8[ms]", [5, 55], both(0.05)),
+            ("t_ms", "<i8", [5, 55], both(0.05)),
+            ("time", "<i8", [5, 55], both(50.0)),
+            // NaT, numpy's missing time.
+            (
+                "time",
+                "<M8[ns]",
+                [since_1970[0], i64::MIN],
+                vec![Some(0.0), None],
+            ),
+            (
+                "time",
+                "<M8[ns]",
+                [i64::MIN, since_1970[0]],
+                vec![None, Some(0.0)],
+            ),
+            ("stamps", "<i8", [5, 55], vec![None; 2]),
+        ] {
+            assert_eq!(
+                times_of(name, code, times),
+                (expected, vec![]),
+                "{name} {code}"
+            );
+        }
+        let noted =
+            vec!["the times have no unit and are taken as nanoseconds since 1970".to_owned()];
+        let found = times_of("time", "<i8", since_1970);
+        assert_eq!(found, (both(0.001_000_001), noted));
+    }
+
+    #[test]
+    fn fields_of_records_are_times_and_cells() {
+        let size = FrameSize::new(2, 1).ok();
+        let record = |fields: &str, record: &[u8]| {
+            found(
+                &array(&format!("[{fields}]"), "2,", &record.repeat(2)),
+                size,
+            )
+        };
+        let stamps = "('time', '<M8[ms]'), ('left', '|u1', (1, 2)), ('right', '|u1', (1, 2))";
+        let names = ["left", "right"].map(|name| Some(name.to_owned()));
+        let found = record(stamps, &[5, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4]);
+        assert_eq!(found, Ok((vec![Some(0.0); 4], names.to_vec(), vec![])));
+        let found = record("('index', '|u1'), ('a', '|u1'), ('b', '|u1')", &[7, 1, 2]);
+        assert_eq!(found, Ok((vec![None; 2], vec![None], vec![])));
+        for (fields, bytes, expected) in [
+            ("('time', '<M8[D]'), ('a', '|u1', (1, 2))", 10, "datetime64"),
+            ("('a', '<c8', (1, 2))", 16, "\"<c8\""),
+            ("('a', '|u1'), ('b', '|u1'), ('c', '|u1')", 3, "3 values"),
+        ] {
+            let error = record(fields, &vec![0; bytes]).expect_err(fields);
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+
+    #[test]
+    fn an_array_of_no_values_is_empty() {
+        for shape in ["0,", "0, 4, 5", "4, 0"] {
+            let error = found(&array("'<f8'", shape, &[]), None).expect_err(shape);
+            assert!(error.contains("empty"), "{error}");
+        }
+    }
+}
