@@ -244,7 +244,7 @@ fn positions_of(model: &Model) -> Option<CellPositions> {
     let of = |range: &DecimalRange| {
         let count = u8::try_from(range.count()).ok()?;
         let whole = (range.step() * f64::from(count) - 1.0).abs() < 1e-9;
-        let positions = CellPositions::new(count).ok();
+        let positions = CellPositions::new(count);
         positions.filter(|_| whole)
     };
     let ranges = model.ranges();

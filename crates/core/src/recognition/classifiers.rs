@@ -1,21 +1,22 @@
 //! Classifiers that use descriptors of the imprint, as the paper does, and their results compared with the limit of
 //! one touch.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-use crate::atlas::{feature_values, features};
-use crate::description::{Description, Descriptor, ExactValue, Value};
+use crate::atlas::{Feature, features};
+use crate::description::{Description, ExactValue, Value};
 use crate::imprint::Imprint;
 use crate::parameter::named;
 use crate::parameter::number::share;
 use crate::progress::Progress;
 use crate::recognition::evaluation::{ConfusionMatrix, Evaluation};
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
-use crate::recognition::model::{Model, float};
+use crate::recognition::model::{Model, first_of_most, float};
 use crate::recognition::simulation::Draw;
 
 /// A classifier that uses descriptors or samples. The best classifier is the model itself.
@@ -99,8 +100,6 @@ pub struct ClassifierEvaluation {
     pub sample: Option<PoseSample>,
 }
 
-type Scores = Vec<f64>;
-
 impl Classifier {
     /// Trains the classifier on a model's touches and classifies all of them.
     ///
@@ -113,98 +112,61 @@ impl Classifier {
         settings: &ClassifierSettings,
         progress: &dyn Progress,
     ) -> Option<ClassifierEvaluation> {
-        let evaluate =
-            |scores: &(dyn Fn(usize) -> Scores + Sync)| evaluate(model, scores, progress);
-        let features = || FeatureTable::new(model, settings.descriptors.as_deref());
         let sample = PoseSample {
             per_shape: settings.sample,
             seed: settings.seed,
         };
-        let (evaluation, table) = match self {
+        let table = match self {
+            Self::Template => FeatureTable::default(),
+            Self::Z | Self::Knn => FeatureTable::new(model, settings.descriptors.as_deref()),
+        };
+        let evaluation = match self {
             Self::Z => {
-                let table = features();
-                let classes = ClassMean::all(model, &table);
-                let scores = |key| {
-                    let row = table.row(key);
-                    classes.iter().map(|class| class.distance(row)).collect()
-                };
-                (evaluate(&scores)?, Some(table))
+                let classes = class_moments(model, &table);
+                evaluate(model, progress, &|key| distances(&classes, table.row(key)))
             }
             Self::Knn => {
-                let table = features();
-                let touches = Sample::new(model, sample);
-                let scores = |key| touches.scores(&table, settings.neighbours.max(1), key);
-                (evaluate(&scores)?, Some(table))
+                let voters = voters(model, sample);
+                let neighbours = settings.neighbours.max(1);
+                let shapes = model.shapes().len();
+                let scores = |key| votes(&voters, &table, neighbours, key, shapes);
+                evaluate(model, progress, &scores)
             }
             Self::Template => {
-                let templates = Templates::new(model, settings.templates.max(1));
-                (evaluate(&|key| templates.scores(model, key))?, None)
+                let templates = templates(model, settings.templates.max(1));
+                let scores = |key| {
+                    let touch = Template::of(model.keys().imprint(key).as_ref());
+                    let own = templates.iter();
+                    own.map(|templates| touch.nearest(templates)).collect()
+                };
+                evaluate(model, progress, &scores)
             }
         };
-        // For templates, imprints are compared, not features.
-        let (features, dropped) = table
-            .map(|table| (table.names, table.dropped))
-            .unwrap_or_default();
         Some(ClassifierEvaluation {
             classifier: self,
-            evaluation,
-            features,
-            dropped,
+            evaluation: evaluation?,
+            features: table.names,
+            dropped: table.dropped,
             sample: (self == Self::Knn && sample.is_drawn(model)).then_some(sample),
         })
     }
 }
 
-/// The mean of each feature over the poses of a class, and its variance.
-struct ClassMean(Vec<(f64, f64)>);
-
-impl ClassMean {
-    fn all(model: &Model, table: &FeatureTable) -> Vec<Self> {
-        let poses = u128::from(model.poses());
-        let mut classes: Vec<_> = (model.shapes().iter())
-            .map(|_| Self(vec![(0.0, LEAST_VARIANCE); table.names.len()]))
-            .collect();
-        let mut each = |add: fn(&mut (f64, f64), f64, f64)| {
-            for key in 0..model.keys().len() {
-                for count in model.counts(key) {
-                    let part = share(count.poses.into(), poses);
-                    let class = &mut classes[usize::from(count.shape)].0;
-                    for (own, &value) in class.iter_mut().zip(table.row(key)) {
-                        add(own, part, value);
-                    }
-                }
-            }
-        };
-        each(|(mean, _), part, value| *mean += part * value);
-        each(|(mean, variance), part, value| *variance += part * (value - *mean) * (value - *mean));
-        classes
-    }
-
-    /// Returns the square of the distance of a key's features from the mean, in standard deviations.
-    fn distance(&self, row: &[f64]) -> f64 {
-        let parts = row.iter().zip(&self.0);
-        parts
-            .map(|(value, (mean, variance))| (value - mean) * (value - mean) / variance)
-            .sum()
-    }
-}
-
+/// Names every touch of a model by the shape of the lowest score.
 fn evaluate(
     model: &Model,
-    scores: &(dyn Fn(usize) -> Scores + Sync),
     progress: &dyn Progress,
+    scores: &(dyn Fn(usize) -> Vec<f64> + Sync),
 ) -> Option<Evaluation> {
     let ranked = (0..model.keys().len()).into_par_iter().map(|key| {
         let ranked = first_two(&scores(key));
         progress.add(1).is_continue().then_some(ranked)
     });
-    let ranked: Vec<[Option<usize>; 3]> = ranked.collect::<Option<_>>()?;
+    let ranked: Vec<_> = ranked.collect::<Option<_>>()?;
     let mut evaluation = Evaluation::new(model);
-    evaluation.keys = model.keys().len();
-    for (key, [named, second, tie]) in ranked.into_iter().enumerate() {
-        for &count in model.counts(key) {
-            let (shape, touches) = (usize::from(count.shape), model.weighted(count));
-            let Some(named) = named else { continue };
+    evaluation.keys = ranked.len();
+    for (key, (named, second, is_tied)) in ranked.into_iter().enumerate() {
+        for (shape, touches) in model.weighted_shapes(model.counts(key)) {
             evaluation.confusion.add(shape, named, touches);
             if named == shape {
                 evaluation.right += touches;
@@ -212,7 +174,7 @@ fn evaluate(
             if named == shape || second == Some(shape) {
                 evaluation.right_in_top_two += touches;
             }
-            if tie.is_some() {
+            if is_tied {
                 evaluation.tied += touches;
             }
         }
@@ -221,25 +183,14 @@ fn evaluate(
     Some(evaluation.finished())
 }
 
-/// Returns the shape with the lowest score, the one with the second lowest, and the second one again if the two are
-/// tied.
-fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
-    let lowest = |without: Option<usize>| {
-        let open = (0..scores.len()).filter(|&shape| Some(shape) != without);
-        open.reduce(|best, next| {
-            if scores[next] < scores[best] {
-                next
-            } else {
-                best
-            }
-        })
-    };
-    let first = lowest(None);
-    let second = lowest(first);
-    let tie = first
-        .zip(second)
-        .filter(|&(one, other)| scores[one] == scores[other]);
-    [first, second, tie.map(|(_, second)| second)]
+/// The shape with the lowest score, the one with the second lowest, and whether they are tied.
+fn first_two(scores: &[f64]) -> (usize, Option<usize>, bool) {
+    let all = || scores.iter().map(|score| -score).enumerate();
+    let first = first_of_most(all()).map_or(0, |(shape, _)| shape);
+    let second = first_of_most(all().filter(|&(shape, _)| shape != first));
+    let second = second.map(|(shape, _)| shape);
+    let is_tied = second.is_some_and(|second| scores[first] == scores[second]);
+    (first, second, is_tied)
 }
 
 fn information(confusion: &ConfusionMatrix) -> f64 {
@@ -256,10 +207,42 @@ fn information(confusion: &ConfusionMatrix) -> f64 {
     bits.sum()
 }
 
+/// For each class, the mean of each feature over its poses, and its variance.
+fn class_moments(model: &Model, table: &FeatureTable) -> Vec<Vec<(f64, f64)>> {
+    let poses = u128::from(model.poses());
+    let mut classes = vec![vec![(0.0, LEAST_VARIANCE); table.names.len()]; model.shapes().len()];
+    let mut each = |add: fn(&mut (f64, f64), f64, f64)| {
+        for key in 0..model.keys().len() {
+            for count in model.counts(key) {
+                let part = share(count.poses.into(), poses);
+                let class = &mut classes[usize::from(count.shape)];
+                for (own, &value) in class.iter_mut().zip(table.row(key)) {
+                    add(own, part, value);
+                }
+            }
+        }
+    };
+    each(|(mean, _), part, value| *mean += part * value);
+    each(|(mean, variance), part, value| *variance += part * (value - *mean) * (value - *mean));
+    classes
+}
+
+/// The squares of the distances of a key's features from the means of the classes, in standard deviations.
+fn distances(classes: &[Vec<(f64, f64)>], row: &[f64]) -> Vec<f64> {
+    let distance = |class: &Vec<(f64, f64)>| {
+        let parts = row.iter().zip(class);
+        parts
+            .map(|(value, (mean, variance))| (value - mean) * (value - mean) / variance)
+            .sum()
+    };
+    classes.iter().map(distance).collect()
+}
+
 /// The number added to single variances, which only have to differ from 0.
 const LEAST_VARIANCE: f64 = 1e-9;
 
 /// The features of all keys, in units of their deviation.
+#[derive(Default)]
 struct FeatureTable {
     names: Vec<String>,
     dropped: Vec<(String, &'static str)>,
@@ -275,10 +258,10 @@ impl FeatureTable {
             |key: &str| descriptors.is_none_or(|own| own.iter().any(|one| one.key() == key));
         let (mut names, mut dropped) = (Vec::new(), Vec::new());
         let mut kept: Vec<(Vec<f64>, f64, f64)> = Vec::new();
-        for (name, descriptor, column) in columns(table.descriptions()) {
-            if descriptor.changes_under.shift || !wanted(descriptor.key) {
-                continue;
-            }
+        let all = features().iter().filter(|feature| {
+            !feature.descriptor.changes_under.shift && wanted(feature.descriptor.key)
+        });
+        for (name, column) in all.flat_map(|feature| columns(feature, table.descriptions())) {
             let (mean, variance) = moments(model, &column);
             let reason = if column.iter().any(|value| value.is_nan()) {
                 "does not exist for some imprints"
@@ -293,11 +276,10 @@ impl FeatureTable {
             };
             dropped.push((name, reason));
         }
-        let mut values = vec![0.0; keys * kept.len()];
-        for (index, (column, mean, variance)) in kept.iter().enumerate() {
-            for (key, value) in column.iter().enumerate() {
-                values[key * kept.len() + index] = (value - mean) / variance.sqrt();
-            }
+        let mut values = Vec::with_capacity(keys * kept.len());
+        for key in 0..keys {
+            let row = kept.iter();
+            values.extend(row.map(|(own, mean, variance)| (own[key] - mean) / variance.sqrt()));
         }
         Self {
             names,
@@ -311,74 +293,51 @@ impl FeatureTable {
     }
 }
 
-/// Returns the features with their names and descriptors, and the value of each for every key, NaN where it does not
-/// exist.
-fn columns(
-    descriptions: &[Option<Description>],
-) -> impl Iterator<Item = (String, &'static Descriptor, Vec<f64>)> {
+/// The values of a feature for every key, NaN where it does not exist, with their name; of a direction, the cosines and
+/// the sines.
+///
+/// Where its descriptor is exactly equal, values are made equal: computed from other sums, they differ by a rounding
+/// error, and nearest neighbours would then not be equally near.
+fn columns(feature: &Feature, descriptions: &[Option<Description>]) -> Vec<(String, Vec<f64>)> {
+    let descriptor = feature.descriptor;
     // Counts of an empty imprint are 0; other features of it do not exist.
-    let of_nothing = features().iter().map(|feature| {
-        if feature.descriptor.of_nothing == Value::None {
-            f64::NAN
-        } else {
-            0.0
-        }
-    });
-    let mut columns: Vec<_> = of_nothing
-        .map(|value| vec![value; descriptions.len()])
-        .collect();
-    for (key, description) in descriptions.iter().enumerate() {
-        if let Some(description) = description {
-            feature_values(description, |feature, value| columns[feature][key] = value);
-        }
-    }
-    for (feature, column) in features().iter().zip(&mut columns) {
-        equalise(column, descriptions, feature.descriptor);
-    }
-    let all = features().iter().zip(columns);
-    all.flat_map(|(feature, column)| {
-        let descriptor = feature.descriptor;
-        if !feature.circular {
-            return vec![(feature.key.clone(), descriptor, column)];
-        }
-        let part = |suffix: &str, of: fn(f64) -> f64| {
-            let values = column.iter().map(|degrees| {
-                if degrees.is_nan() {
-                    0.0
-                } else {
-                    of(degrees.to_radians())
-                }
-            });
-            let name = format!("{}_{suffix}", feature.key);
-            (name, descriptor, values.collect())
-        };
-        vec![part("cos", libm::cos), part("sin", libm::sin)]
-    })
-}
-
-/// Makes the values of a feature equal where its descriptor is exactly equal: computed from other sums, they differ by a
-/// rounding error, and nearest neighbours would then not be equally near.
-fn equalise(
-    column: &mut [f64],
-    descriptions: &[Option<Description>],
-    descriptor: &'static Descriptor,
-) {
+    let nothing = match descriptor.of_nothing {
+        Value::None => f64::NAN,
+        _ => 0.0,
+    };
     let mut known: HashMap<ExactValue, f64> = HashMap::new();
-    for (value, description) in column.iter_mut().zip(descriptions) {
-        if let Some(description) = description {
-            *value = *known
-                .entry((descriptor.exact)(description))
-                .or_insert(*value);
-        }
+    let values = descriptions.iter().map(|description| {
+        let Some(description) = description else {
+            return nothing;
+        };
+        let value = feature.value(description).unwrap_or(nothing);
+        *known
+            .entry((descriptor.exact)(description))
+            .or_insert(value)
+    });
+    let values: Vec<f64> = values.collect();
+    if !feature.circular {
+        return vec![(feature.key.clone(), values)];
     }
+    let part = |suffix: &str, of: fn(f64) -> f64| {
+        let values = values.iter().map(|degrees| {
+            if degrees.is_nan() {
+                0.0
+            } else {
+                of(degrees.to_radians())
+            }
+        });
+        (format!("{}_{suffix}", feature.key), values.collect())
+    };
+    vec![part("cos", libm::cos), part("sin", libm::sin)]
 }
 
 fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
     let touches = u128::from(model.poses()) * model.weights();
     let mean_of = |value: &dyn Fn(f64) -> f64| {
         let keys = column.iter().enumerate().map(|(key, &own)| {
-            let counts = model.counts(key).iter();
-            let weight: u128 = counts.map(|&count| model.weighted(count)).sum();
+            let counts = model.weighted_shapes(model.counts(key));
+            let weight: u128 = counts.map(|(_, touches)| touches).sum();
             share(weight, touches) * value(own)
         });
         keys.sum::<f64>()
@@ -403,90 +362,86 @@ impl PoseSample {
     }
 }
 
-/// The touches that vote: a random sample, or all touches.
-struct Sample {
-    touches: Vec<SampledTouches>,
-    shapes: usize,
-}
+/// Touches of one shape that leave the same key: the key, the shape and the number of touches, each of which is a vote.
+type Voters = (usize, usize, u64);
 
-/// Touches of one shape that leave the same key.
-struct SampledTouches {
-    key: usize,
-    shape: usize,
-    /// The number of the touches, each of which is a vote.
-    votes: u64,
-}
-
-impl Sample {
-    fn new(model: &Model, sample: PoseSample) -> Self {
-        let shapes = model.shapes().len();
-        let touches = if sample.is_drawn(model) {
-            Self::drawn(model, sample)
-        } else {
-            let own = |key| {
-                let counts = model.counts(key).iter();
-                counts.map(move |count| SampledTouches {
-                    key,
-                    shape: usize::from(count.shape),
-                    votes: count.poses,
-                })
-            };
-            (0..model.keys().len()).flat_map(own).collect()
-        };
-        Self { touches, shapes }
-    }
-
-    /// Draws touches. Returns them in the order of their keys.
-    fn drawn(model: &Model, sample: PoseSample) -> Vec<SampledTouches> {
+/// The touches that vote, in the order of their keys: a random sample, or all touches.
+fn voters(model: &Model, sample: PoseSample) -> Vec<Voters> {
+    let mut votes = BTreeMap::new();
+    if sample.is_drawn(model) {
         let mut random = Pcg64::seed_from_u64(sample.seed);
-        let mut votes = BTreeMap::new();
         for (shape, draw) in Draw::all(model, |_| 1).iter().enumerate() {
             for key in (0..sample.per_shape).filter_map(|_| draw.key(&mut random)) {
                 *votes.entry((key, shape)).or_insert(0) += 1;
             }
         }
-        let votes = votes.into_iter();
-        votes
-            .map(|((key, shape), votes)| SampledTouches { key, shape, votes })
-            .collect()
-    }
-
-    /// Returns minus the votes of each shape. All touches as near as the last neighbour vote too, since many touches
-    /// have the same features.
-    fn scores(&self, table: &FeatureTable, neighbours: usize, key: usize) -> Vec<f64> {
-        let row = table.row(key);
-        let mut last = (usize::MAX, 0.0);
-        let mut distances: Vec<(f64, usize, u64)> = Vec::with_capacity(self.touches.len());
-        for touches in &self.touches {
-            if touches.key != last.0 {
-                let parts = row.iter().zip(table.row(touches.key));
-                let distance = parts.map(|(one, two)| (one - two) * (one - two)).sum();
-                last = (touches.key, distance);
-            }
-            distances.push((last.1, touches.shape, touches.votes));
+    } else {
+        for key in 0..model.keys().len() {
+            let counts = model.counts(key).iter();
+            votes.extend(counts.map(|count| ((key, usize::from(count.shape)), count.poses)));
         }
-        let mut scores = vec![0.0; self.shapes];
-        let Some(rank) = neighbours.min(distances.len()).checked_sub(1) else {
-            return scores;
-        };
-        let order = |one: &(f64, usize, u64), other: &(f64, usize, u64)| one.0.total_cmp(&other.0);
-        // Each entry has at least one vote, so the first `neighbours` entries include the last neighbour.
-        distances.select_nth_unstable_by(rank, order);
-        distances[..=rank].sort_unstable_by(order);
-        let mut nearer = 0;
-        let last = distances[..=rank].iter().find(|(_, _, votes)| {
-            nearer += u128::from(*votes);
-            nearer >= neighbours as u128
-        });
-        let farthest = last.unwrap_or(&distances[rank]).0;
-        for (_, shape, votes) in distances.iter().filter(|own| own.0 <= farthest) {
-            scores[*shape] -= float(*votes);
-        }
-        scores
     }
+    let votes = votes.into_iter();
+    votes
+        .map(|((key, shape), votes)| (key, shape, votes))
+        .collect()
 }
 
-pub(super) struct Templates(Vec<Vec<Template>>);
+/// Minus the votes of each shape. All touches as near as the last neighbour vote too, since many touches have the same
+/// features.
+fn votes(
+    voters: &[Voters],
+    table: &FeatureTable,
+    neighbours: usize,
+    key: usize,
+    shapes: usize,
+) -> Vec<f64> {
+    let row = table.row(key);
+    let mut distances: Vec<(f64, usize, u64)> = Vec::with_capacity(voters.len());
+    for alike in voters.chunk_by(|one, other| one.0 == other.0) {
+        let parts = row.iter().zip(table.row(alike[0].0));
+        let distance = parts.map(|(one, two)| (one - two) * (one - two)).sum();
+        let own = alike.iter();
+        distances.extend(own.map(|&(_, shape, votes)| (distance, shape, votes)));
+    }
+    let mut scores = vec![0.0; shapes];
+    let Some(rank) = neighbours.min(distances.len()).checked_sub(1) else {
+        return scores;
+    };
+    let order = |one: &(f64, usize, u64), other: &(f64, usize, u64)| one.0.total_cmp(&other.0);
+    // Each entry has at least one vote, so the first `neighbours` entries include the last neighbour.
+    distances.select_nth_unstable_by(rank, order);
+    distances[..=rank].sort_unstable_by(order);
+    let mut nearer = 0;
+    let last = distances[..=rank].iter().find(|(_, _, votes)| {
+        nearer += u128::from(*votes);
+        nearer >= neighbours as u128
+    });
+    let farthest = last.unwrap_or(&distances[rank]).0;
+    for (_, shape, votes) in distances.iter().filter(|own| own.0 <= farthest) {
+        scores[*shape] -= float(*votes);
+    }
+    scores
+}
+
+/// The most frequent imprints of each shape.
+fn templates(model: &Model, most: usize) -> Vec<Vec<Template>> {
+    let mut all: Vec<Vec<(Reverse<u64>, usize)>> = vec![Vec::new(); model.shapes().len()];
+    for key in 0..model.keys().len() {
+        for count in model.counts(key) {
+            all[usize::from(count.shape)].push((Reverse(count.poses), key));
+        }
+    }
+    let templates = |mut own: Vec<(Reverse<u64>, usize)>| {
+        own.sort_unstable();
+        let first = own.iter().take(most);
+        let imprints = first.map(|&(_, key)| model.keys().imprint(key));
+        imprints
+            .map(|imprint| Template::of(imprint.as_ref()))
+            .collect()
+    };
+    all.into_iter().map(templates).collect()
+}
 
 /// An imprint, and how many of its taxels lie above each row and left of each column. An empty imprint has no rows.
 struct Template {
@@ -495,53 +450,16 @@ struct Template {
     left: Vec<u32>,
 }
 
-impl Templates {
-    pub(super) fn new(model: &Model, most: usize) -> Self {
-        let mut all: Vec<Vec<(std::cmp::Reverse<u64>, usize)>> =
-            vec![Vec::new(); model.shapes().len()];
-        for key in 0..model.keys().len() {
-            for count in model.counts(key) {
-                all[usize::from(count.shape)].push((std::cmp::Reverse(count.poses), key));
-            }
-        }
-        let templates = |mut own: Vec<(std::cmp::Reverse<u64>, usize)>| {
-            own.sort_unstable();
-            let first = own.iter().take(most);
-            let imprints = first.map(|&(_, key)| model.keys().imprint(key));
-            imprints
-                .map(|imprint| Template::of(imprint.as_ref()))
-                .collect()
-        };
-        Self(all.into_iter().map(templates).collect())
-    }
-
-    /// Returns, for each shape, the least number of taxels that differ from a key, over all templates of the shape
-    /// and all their shifts.
-    pub(super) fn scores(&self, model: &Model, key: usize) -> Vec<f64> {
-        let touch = Template::of(model.keys().imprint(key).as_ref());
-        let own = |templates: &Vec<Template>| {
-            let least = templates.iter().fold(None, |least, template| {
-                Some(touch.distance(template, least.unwrap_or(u32::MAX)))
-            });
-            least.map_or(f64::INFINITY, f64::from)
-        };
-        self.0.iter().map(own).collect()
-    }
-}
-
 impl Template {
     fn of(imprint: Option<&Imprint>) -> Self {
         let words = imprint.map_or(Vec::new(), |imprint| imprint.words().to_vec());
         let columns = imprint.map_or(0, Imprint::columns);
-        let in_row = |word: &u64| word.count_ones();
-        let in_column = |column| {
-            words
-                .iter()
-                .map(|word| u32::from(word >> column & 1 == 1))
-                .sum()
+        let in_column = |column: u8| {
+            let taxels = words.iter().map(|word| u32::from(word >> column & 1 == 1));
+            taxels.sum()
         };
         Self {
-            above: sums_before(words.iter().map(in_row)),
+            above: sums_before(words.iter().map(|word| word.count_ones())),
             left: sums_before((0..columns).map(in_column)),
             words,
         }
@@ -549,6 +467,18 @@ impl Template {
 
     fn count(&self) -> u32 {
         self.above[self.words.len()]
+    }
+
+    /// Returns the least number of taxels that differ from any of some templates, over all their shifts.
+    fn nearest(&self, templates: &[Self]) -> f64 {
+        let least = templates
+            .iter()
+            .fold(u32::MAX, |least, template| self.distance(template, least));
+        if templates.is_empty() {
+            f64::INFINITY
+        } else {
+            f64::from(least)
+        }
     }
 
     /// Returns the least number of taxels in which two imprints differ, over all shifts of one against the other;
@@ -674,9 +604,9 @@ mod tests {
 
     #[test]
     fn ties_go_to_the_first() {
-        assert_eq!(first_two(&[2.0, 1.0, 1.0]), [Some(1), Some(2), Some(2)]);
-        assert_eq!(first_two(&[2.0, 1.0, 3.0]), [Some(1), Some(0), None]);
-        assert_eq!(first_two(&[2.0]), [Some(0), None, None]);
+        assert_eq!(first_two(&[2.0, 1.0, 1.0]), (1, Some(2), true));
+        assert_eq!(first_two(&[2.0, 1.0, 3.0]), (1, Some(0), false));
+        assert_eq!(first_two(&[2.0]), (0, None, false));
     }
 
     #[test]

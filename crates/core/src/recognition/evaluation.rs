@@ -76,21 +76,16 @@ pub struct Certainty {
 impl Evaluation {
     /// Evaluates a model: all poses that it holds, so only those of the shard if it is one ([`Model::shard`]).
     pub fn of(model: &Model) -> Self {
-        let (evaluation, _) = Self::with_certainty(model);
-        evaluation
-    }
-
-    pub(super) fn with_certainty(model: &Model) -> (Self, Certainty) {
         let keys = 0..model.keys().len();
         Self::of_classes(model, keys.map(|key| model.counts(key)))
     }
 
     /// Evaluates the best classifier of a model's touches, which fall into classes that it can tell apart. Each class
-    /// has at least one touch. Returns the certainty of the evaluation beside it.
+    /// has at least one touch.
     pub(super) fn of_classes<'a>(
         model: &Model,
         classes: impl IntoIterator<Item = &'a [ShapeCount]>,
-    ) -> (Self, Certainty) {
+    ) -> Self {
         let mut evaluation = Self::new(model);
         let mut certainty = Certainty::default();
         for counts in classes {
@@ -101,7 +96,7 @@ impl Evaluation {
             }
         }
         evaluation.certainty = Some(certainty);
-        (evaluation.finished(), certainty)
+        evaluation.finished()
     }
 
     pub(super) fn new(model: &Model) -> Self {

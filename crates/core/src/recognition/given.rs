@@ -16,71 +16,30 @@ use crate::recognition::model::{Model, ShapeCount, first_of_most};
 use crate::recognition::simulation::{Judgement, NoisyTouches, RecognitionRate};
 
 /// A descriptor that says something about the shape, because it does not change when the imprint is moved.
-#[derive(Clone, Copy, Debug)]
-pub struct ShapeDescriptor(&'static Descriptor);
-
-impl PartialEq for ShapeDescriptor {
-    fn eq(&self, other: &Self) -> bool {
-        self.0.key == other.0.key
-    }
-}
-
-impl Eq for ShapeDescriptor {}
-
-impl std::hash::Hash for ShapeDescriptor {
-    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
-        self.0.key.hash(state);
-    }
-}
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ShapeDescriptor(usize);
 
 /// The error for a text that is not a list of descriptors, or not a rounding.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum GivenError {
-    /// An unknown name.
-    #[error(
-        "descriptor {found:?} is unknown, expected one of {}{}",
-        ShapeDescriptor::keys().join(", "),
-        did_you_mean(found, ShapeDescriptor::keys())
-    )]
-    Unknown {
-        /// The given text.
-        found: String,
-    },
-    /// A descriptor that depends on the position of the imprint.
-    #[error("{key} depends on the position of the imprint; expected one of {}", ShapeDescriptor::keys().join(", "))]
-    OfPlace {
-        /// The key of the descriptor.
-        key: &'static str,
-    },
-    /// An invalid rounding.
-    #[error(
-        "rounding {found:?}: expected a descriptor and a step from 1e-9 to 1e9, such as cg_cd=0.01"
-    )]
-    Rounding {
-        /// The given text.
-        found: String,
-    },
-}
+#[error("{0}")]
+pub struct GivenError(String);
 
 impl ShapeDescriptor {
     /// Iterates over all of them, in the order of [`DESCRIPTORS`].
     pub fn all() -> impl Iterator<Item = Self> {
-        let all = DESCRIPTORS.iter();
-        all.filter(|row| !row.changes_under.shift).map(Self)
-    }
-
-    fn keys() -> Vec<&'static str> {
-        Self::all().map(Self::key).collect()
+        let all = 0..DESCRIPTORS.len();
+        all.filter(|&row| !DESCRIPTORS[row].changes_under.shift)
+            .map(Self)
     }
 
     /// Returns the row of the descriptor in the table.
     pub fn descriptor(self) -> &'static Descriptor {
-        self.0
+        &DESCRIPTORS[self.0]
     }
 
     /// Returns the name used in JSON.
     pub fn key(self) -> &'static str {
-        self.0.key
+        self.descriptor().key
     }
 }
 
@@ -89,13 +48,17 @@ impl std::str::FromStr for ShapeDescriptor {
 
     fn from_str(text: &str) -> Result<Self, GivenError> {
         let text = text.trim();
-        match Descriptor::from_key(text) {
-            Some(row) if row.changes_under.shift => Err(GivenError::OfPlace { key: row.key }),
-            Some(row) => Ok(Self(row)),
-            None => Err(GivenError::Unknown {
-                found: shortened(text),
-            }),
+        if let Some(own) = Self::all().find(|own| own.key() == text) {
+            return Ok(own);
         }
+        let keys: Vec<&str> = Self::all().map(Self::key).collect();
+        let expected = format!("expected one of {}", keys.join(", "));
+        Err(GivenError(if Descriptor::from_key(text).is_some() {
+            format!("{text} depends on the position of the imprint; {expected}")
+        } else {
+            let (found, guess) = (shortened(text), did_you_mean(&shortened(text), keys));
+            format!("descriptor {found:?} is unknown, {expected}{guess}")
+        }))
     }
 }
 
@@ -117,16 +80,14 @@ impl Rounding {
     /// Creates a rounding to multiples of `step`, in the descriptor's own unit.
     ///
     /// # Errors
-    /// Returns [`GivenError::Rounding`] if the step is not from 1e-9 to 1e9.
+    /// Returns an error if the step is not from 1e-9 to 1e9.
     pub fn new(descriptor: ShapeDescriptor, step: f64) -> Result<Self, GivenError> {
         let rounding = Self { descriptor, step };
         // Below this a step is finer than the numbers themselves.
         if (1e-9..=1e9).contains(&step) {
             Ok(rounding)
         } else {
-            Err(GivenError::Rounding {
-                found: rounding.to_string(),
-            })
+            Err(no_rounding(&rounding.to_string()))
         }
     }
 
@@ -140,13 +101,17 @@ impl std::str::FromStr for Rounding {
     type Err = GivenError;
 
     fn from_str(text: &str) -> Result<Self, GivenError> {
-        let error = || GivenError::Rounding {
-            found: shortened(text),
-        };
+        let error = || no_rounding(&shortened(text));
         let (descriptor, step) = text.split_once('=').ok_or_else(error)?;
         let step = step.trim().parse().map_err(|_| error())?;
         Self::new(descriptor.parse()?, step)
     }
+}
+
+fn no_rounding(found: &str) -> GivenError {
+    GivenError(format!(
+        "rounding {found:?}: expected a descriptor and a step from 1e-9 to 1e9, such as cg_cd=0.01"
+    ))
 }
 
 impl std::fmt::Display for Rounding {
@@ -254,7 +219,7 @@ fn known(
         exact,
         of_nothing,
         ..
-    } = descriptor.0;
+    } = descriptor.descriptor();
     match rounding {
         Some(rounding) => rounding.rounded(description.map_or(*of_nothing, measure)),
         None => exact(description?),
@@ -266,10 +231,8 @@ impl std::str::FromStr for GivenDescriptors {
 
     fn from_str(text: &str) -> Result<Self, GivenError> {
         let descriptors = text.split(',').map(str::parse);
-        Ok(Self::new(
-            descriptors.collect::<Result<_, _>>()?,
-            Vec::new(),
-        ))
+        let descriptors = descriptors.collect::<Result<_, _>>()?;
+        Ok(Self::new(descriptors, Vec::new()))
     }
 }
 
@@ -346,8 +309,7 @@ impl<'a> GivenTable<'a> {
             rest = others;
             own
         });
-        let (evaluation, _) = Evaluation::of_classes(self.model, of_class);
-        evaluation
+        Evaluation::of_classes(self.model, of_class)
     }
 }
 
@@ -369,7 +331,7 @@ impl Rounding {
     )]
     fn steps(&self, number: f64) -> i64 {
         let (steps, turn) = (round(number / self.step) as i64, 360.0 / self.step);
-        let is_circular = self.descriptor.0.dimension == Dimension::Direction;
+        let is_circular = self.descriptor.descriptor().dimension == Dimension::Direction;
         let whole_turn = turn.round();
         // A quotient of decimals may be off by a rounding error.
         let is_whole = (turn - whole_turn).abs() <= 4.0 * f64::EPSILON * turn;

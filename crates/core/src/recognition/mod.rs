@@ -21,31 +21,19 @@
 //! This is a convention of this project, based on the definition of the Bayes classifier (R. O. Duda, P. E. Hart and D.
 //! G. Stork, *Pattern Classification*, 2001, chapter 2).
 
-mod key;
-
-mod model;
-
-mod training;
-
-mod pose_estimate;
-
-mod evaluation;
-
-mod separation;
-
-mod given;
-
-mod posterior;
-
 mod answer;
-
-mod likelihood;
-
 mod classifiers;
-
-mod simulation;
-
+mod evaluation;
+mod given;
+mod key;
+mod likelihood;
+mod model;
+mod pose_estimate;
+mod posterior;
 mod scan;
+mod separation;
+mod simulation;
+mod training;
 
 pub use answer::{Answer, AnswerState, Evidence};
 pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
@@ -59,6 +47,5 @@ pub use scan::Nearest;
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil, below};
 pub use training::{
-    CellPositions, GridSteps, GridStepsError, LEAST_SIDE, Training, TrainingError, default_figures,
-    equal_figures,
+    CellPositions, GridSteps, LEAST_SIDE, Training, TrainingError, default_figures, equal_figures,
 };

@@ -1,5 +1,6 @@
 //! The model of a set of shapes: in how many poses each shape leaves each key.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
@@ -144,53 +145,9 @@ const LONGEST_NAME: usize = 64;
 /// The error for shapes or numbers that do not make a model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ModelError {
-    /// No shape, or more than 32,768.
-    #[error("{found} shapes, expected 1 to {MAX_SHAPES}")]
-    Shapes {
-        /// The number of shapes.
-        found: usize,
-    },
-    /// A name that two shapes have.
-    #[error("two shapes are named {name:?}; give each its own name")]
-    Name {
-        /// The name.
-        name: String,
-    },
-    /// A shape without a name.
-    #[error("shape {number} has no name")]
-    NoName {
-        /// The number of the shape, from 1.
-        number: usize,
-    },
-    /// A name that would break the lines of an answer.
-    #[error("name {name:?} of shape {number} has a line break or another control character")]
-    ControlCharacter {
-        /// The number of the shape, from 1.
-        number: usize,
-        /// The name.
-        name: String,
-    },
-    /// A name that is longer than 64 characters.
-    #[error(
-        "name {name:?} of shape {number} has {length} characters (allowed: up to {LONGEST_NAME})"
-    )]
-    LongName {
-        /// The number of the shape, from 1.
-        number: usize,
-        /// The beginning of the name.
-        name: String,
-        /// The number of characters.
-        length: usize,
-    },
-    /// A weight of 0.
-    #[error("weight of {name:?}: 0, expected at least 1")]
-    Weight {
-        /// The name of the shape.
-        name: String,
-    },
-    /// Numbers that contradict each other.
+    /// An invalid set, or numbers that contradict each other; the message says what is wrong.
     #[error("{0}")]
-    Parts(&'static str),
+    Invalid(Cow<'static, str>),
     /// Shards to merge that are missing, or given twice.
     #[error(transparent)]
     Shards(#[from] ShardOrderError),
@@ -204,42 +161,43 @@ pub enum ModelError {
 
 impl ModelError {
     /// The error for two equal keys.
-    pub const TWICE: Self = Self::Parts("a key is there twice");
+    pub const TWICE: Self = Self::invalid("a key is there twice");
+
+    const fn invalid(message: &'static str) -> Self {
+        Self::Invalid(Cow::Borrowed(message))
+    }
 }
 
 /// Checks the names and weights of a set.
 pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
+    let refused = |message: String| Err(ModelError::Invalid(message.into()));
     if shapes.is_empty() || shapes.len() > MAX_SHAPES {
-        return Err(ModelError::Shapes {
-            found: shapes.len(),
-        });
+        let found = shapes.len();
+        return refused(format!("{found} shapes, expected 1 to {MAX_SHAPES}"));
     }
     let mut names = HashSet::new();
-    for (index, shape) in shapes.iter().enumerate() {
-        let name = || shortened(&shape.name);
-        let number = index + 1;
+    for (number, shape) in (1..).zip(shapes) {
+        let (name, length) = (shortened(&shape.name), shape.name.chars().count());
         if shape.name.trim().is_empty() {
-            return Err(ModelError::NoName { number });
+            return refused(format!("shape {number} has no name"));
         }
         if shape.name.contains(char::is_control) {
-            return Err(ModelError::ControlCharacter {
-                number,
-                name: name(),
-            });
+            return refused(format!(
+                "name {name:?} of shape {number} has a line break or another control character"
+            ));
         }
-        let length = shape.name.chars().count();
         if length > LONGEST_NAME {
-            return Err(ModelError::LongName {
-                number,
-                name: name(),
-                length,
-            });
+            return refused(format!(
+                "name {name:?} of shape {number} has {length} characters (allowed: up to {LONGEST_NAME})"
+            ));
         }
         if !names.insert(shape.name.as_str()) {
-            return Err(ModelError::Name { name: name() });
+            return refused(format!(
+                "two shapes are named {name:?}; give each its own name"
+            ));
         }
         if shape.weight == 0 {
-            return Err(ModelError::Weight { name: name() });
+            return refused(format!("weight of {name:?}: 0, expected at least 1"));
         }
     }
     Ok(())
@@ -276,7 +234,7 @@ impl Model {
         counts_of: impl Fn(usize) -> I,
     ) -> Result<Self, ModelError> {
         check_shapes(&head.shapes)?;
-        let check = |holds: bool, what| holds.then_some(()).ok_or(ModelError::Parts(what));
+        let check = |holds: bool, what| holds.then_some(()).ok_or(ModelError::invalid(what));
         let shapes = head.shapes.len();
         check(head.cut.len() == shapes, "a shape without its cut poses")?;
         let (keys, order) = table.sorted();
@@ -299,7 +257,7 @@ impl Model {
                 let sum = &mut sums[usize::from(count.shape)];
                 *sum = sum
                     .checked_add(count.poses)
-                    .ok_or(ModelError::Parts("counts beyond any number of poses"))?;
+                    .ok_or(ModelError::invalid("counts beyond any number of poses"))?;
             }
             starts.push(counts.len());
         }
@@ -538,7 +496,8 @@ impl ModelMerge {
             None => self.head = Some(model.head().clone()),
             Some(head) => {
                 let poses = head.poses.checked_add(model.poses());
-                head.poses = poses.ok_or(ModelError::Parts("counts beyond any number of poses"))?;
+                head.poses =
+                    poses.ok_or(ModelError::invalid("counts beyond any number of poses"))?;
                 head.shard = shard;
                 for (sum, cut) in head.cut.iter_mut().zip(model.cut()) {
                     *sum += cut;
@@ -593,7 +552,7 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_model() -> Result<(), Box<dyn std::error::Error>> {
+    fn the_most_frequent_imprint_of_a_bar_is_the_bar() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         use crate::recognition::{NamedShape, Training};
         let sensor = Sensor::default();

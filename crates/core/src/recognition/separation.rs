@@ -4,13 +4,11 @@
 use crate::figure::Figure;
 use crate::parameter::number::{share, to_decimals};
 use crate::parameter::{Parameter, named};
-use crate::pose::{
-    Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
-};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach};
 use crate::progress::Progress;
 use crate::recognition::evaluation::Evaluation;
-use crate::recognition::model::{Model, NamedShape, check_shapes};
-use crate::recognition::training::{CellPositions, LEAST_SIDE, Training, TrainingError};
+use crate::recognition::model::{NamedShape, check_shapes};
+use crate::recognition::training::{CellPositions, Training, TrainingError, fit};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -154,15 +152,10 @@ impl Separation {
     /// Returns [`TrainingError::Large`] for shapes that do not fit on the largest sensor, or [`TrainingError::Grid`]
     /// for values out of range.
     pub fn training(&self, scale: f64, threshold: f64) -> Result<Training<'static>, TrainingError> {
-        let refused = |name: &str, error| TrainingError::Grid {
-            name: name.to_owned(),
-            error,
-        };
-        let mut scaled = Vec::with_capacity(self.shapes.len());
-        let mut zooms = Vec::with_capacity(self.shapes.len());
+        let (mut scaled, mut zooms) = (Vec::new(), Vec::new());
         let mut reach = Reach::default();
         for shape in &self.shapes {
-            let refused = |error| refused(&shape.name, error);
+            let refused = |error| TrainingError::grid(&shape.name, error);
             let larger = self.scaled(&shape.source, scale).map_err(refused)?;
             let (source, given) = larger.ok_or(TrainingError::Large)?;
             reach.add(Reach::of(&source, Anchor::Centre, &given).map_err(refused)?);
@@ -172,23 +165,14 @@ impl Separation {
             });
             zooms.push(given);
         }
-        let mut given = GivenRanges::default();
-        given[Axis::Angle] = Some(self.angles);
         let sources: Vec<&Source> = scaled.iter().map(|shape| &shape.source).collect();
-        let fit = reach.smallest_sensor(
-            &sources,
-            &given,
-            SensorSides::at_least(LEAST_SIDE),
-            self.positions.step(),
-        );
-        let (sensor, ranges) = fit.ok_or(TrainingError::Large)?;
+        let (sensor, ranges) = fit(&reach, &sources, self.positions, self.angles)?;
         let grid = |(shape, zooms): (&NamedShape, &GivenRanges)| {
-            let refused = |error| refused(&shape.name, error);
             let sensor = sensor.with(Parameter::Threshold, threshold);
-            let sensor = sensor.map_err(|error| refused(error.into()))?;
+            let sensor = sensor.map_err(|error| TrainingError::grid(&shape.name, error))?;
             let ranges = Ranges::from_fn(|axis| zooms[axis].unwrap_or(ranges[axis]));
             let grid = PoseGrid::new(shape.source.clone(), sensor, Anchor::Centre, ranges);
-            grid.map_err(refused)
+            grid.map_err(|error| TrainingError::grid(&shape.name, error))
         };
         let grids = scaled.iter().zip(&zooms).map(grid);
         let grids = grids.collect::<Result<_, _>>()?;
@@ -240,38 +224,20 @@ impl Separation {
         threshold: f64,
         progress: &dyn Progress,
     ) -> Result<SeparationPoint, TrainingError> {
-        let (point, ..) = self.model_at(axis, value, threshold, progress)?;
-        Ok(point)
-    }
-
-    /// Returns the same as [`Self::at`], with the model that was counted and its evaluation. The model has the zooms of
-    /// its first shape only.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Self::at`].
-    pub fn model_at(
-        &self,
-        axis: SizeAxis,
-        value: f64,
-        threshold: f64,
-        progress: &dyn Progress,
-    ) -> Result<(SeparationPoint, Model, Evaluation), TrainingError> {
         let scale = axis.scale(value);
         let training = self.training(scale, threshold)?;
         let side = training.grids()[0].sensor().side();
-        let model = training.with_progress(progress).run()?;
-        let (limit, certainty) = Evaluation::with_certainty(&model);
-        let point = SeparationPoint {
+        let limit = Evaluation::of(&training.with_progress(progress).run()?);
+        Ok(SeparationPoint {
             value,
             scale,
             threshold,
             side,
             touches: limit.touches,
             right: limit.right,
-            certain: certainty.touches,
+            certain: limit.certainty.unwrap_or_default().touches,
             keys: limit.keys,
-        };
-        Ok((point, model, limit))
+        })
     }
 
     /// Returns the limit for every value of a range, in the order of [`SizeAxis::smallest_first`].
@@ -401,7 +367,7 @@ mod tests {
                 Anchor::Centre,
                 ranges,
             );
-            let model: Model = by_hand.and_then(Training::run).expect("not cut");
+            let model = by_hand.and_then(Training::run).expect("not cut");
             let limit = Evaluation::of(&model);
             assert_eq!(
                 (point.touches, point.right, Some(point.certain), point.keys),

@@ -3,6 +3,7 @@
 //! Random touches are the same for the same seed on every machine and for any number of threads. Every mean has its
 //! standard error.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rand_core::{Rng, SeedableRng};
@@ -10,7 +11,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
-use crate::index::{index, lower_word, narrow, wide};
+use crate::index::{index, lower_word, narrow};
 use crate::parameter::number::share;
 use crate::progress::Progress;
 use crate::recognition::key::ImprintKey;
@@ -46,30 +47,26 @@ pub struct RecognitionRate {
 
 impl RecognitionRate {
     fn of(shapes: &[(u32, ShapeRate)]) -> Self {
-        let sum = |of: fn(&ShapeRate) -> u64| shapes.iter().map(|(_, own)| of(own)).sum();
-        let weighted = |of: fn(&ShapeRate) -> u64| -> u128 {
-            let products = shapes
-                .iter()
-                .map(|(weight, own)| u128::from(*weight) * u128::from(of(own)));
-            products.sum()
-        };
-        let (all, right) = (weighted(|own| own.touches), weighted(|own| own.right));
-        let squared = |weight: u32| f64::from(weight) * f64::from(weight);
-        let variances = (shapes.iter()).map(|(weight, own)| squared(*weight) * own.variance());
-        let confidences = shapes
-            .iter()
-            .map(|(weight, own)| f64::from(*weight) * own.confidence);
-        let part = share(1, all);
+        let mut rate = Self::default();
+        let (mut held, mut variance, mut confidence) = (0, 0.0, 0.0);
+        for (weight, own) in shapes {
+            let weighted = |count: u64| u128::from(*weight) * u128::from(count);
+            rate.touches += own.touches;
+            rate.right += own.right;
+            rate.held += own.held;
+            rate.weighted_touches += weighted(own.touches);
+            rate.weighted_right += weighted(own.right);
+            held += weighted(own.held);
+            variance += f64::from(*weight) * f64::from(*weight) * own.variance();
+            confidence += f64::from(*weight) * own.confidence;
+        }
+        let all = rate.weighted_touches;
         Self {
-            touches: sum(|own| own.touches),
-            right: sum(|own| own.right),
-            held: sum(|own| own.held),
-            weighted_touches: all,
-            weighted_right: right,
-            accuracy: share(right, all),
-            standard_error: variances.sum::<f64>().sqrt() * part,
-            mean_confidence: confidences.sum::<f64>() * part,
-            held_share: share(weighted(|own| own.held), all),
+            accuracy: share(rate.weighted_right, all),
+            standard_error: variance.sqrt() * share(1, all),
+            mean_confidence: confidence * share(1, all),
+            held_share: share(held, all),
+            ..rate
         }
     }
 }
@@ -405,8 +402,8 @@ impl Model {
 struct RunCounts {
     runs: u64,
     right: u64,
-    /// The number of runs of each length, from 0 touches on, that reached the probability.
-    of_length: Vec<u64>,
+    /// The number of runs of each length that reached the probability.
+    of_length: BTreeMap<u32, u64>,
 }
 
 impl RunCounts {
@@ -414,11 +411,8 @@ impl RunCounts {
     fn with(mut self, run: Option<(u32, bool)>) -> Self {
         self.runs += 1;
         if let Some((length, right)) = run {
-            let length = wide(length);
             self.right += u64::from(right);
-            let longest = self.of_length.len().max(length + 1);
-            self.of_length.resize(longest, 0);
-            self.of_length[length] += 1;
+            *self.of_length.entry(length).or_default() += 1;
         }
         self
     }
@@ -426,10 +420,8 @@ impl RunCounts {
     fn sum(mut self, other: &Self) -> Self {
         self.runs += other.runs;
         self.right += other.right;
-        let longest = self.of_length.len().max(other.of_length.len());
-        self.of_length.resize(longest, 0);
-        for (own, more) in self.of_length.iter_mut().zip(&other.of_length) {
-            *own += more;
+        for (&length, runs) in &other.of_length {
+            *self.of_length.entry(length).or_default() += runs;
         }
         self
     }
@@ -438,11 +430,11 @@ impl RunCounts {
     /// small.
     fn summary(&self) -> TouchesUntil {
         let runs = self.runs;
-        let reached = self.of_length.iter().sum();
+        let reached = self.of_length.values().sum();
         let sum_of = |value: &dyn Fn(f64) -> f64| -> f64 {
-            let lengths = (0..).map(float).zip(&self.of_length);
+            let lengths = self.of_length.iter();
             lengths
-                .map(|(length, &runs)| value(length) * float(runs))
+                .map(|(&length, &runs)| value(length.into()) * float(runs))
                 .sum()
         };
         let mean = (reached == runs && runs > 0).then(|| sum_of(&|length| length) / float(runs));

@@ -3,7 +3,6 @@ use std::fmt;
 use rayon::prelude::*;
 
 use crate::figure::{Figure, FigureKind};
-use crate::parameter::Parameter;
 use crate::parameter::number::grouped;
 use crate::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
@@ -102,6 +101,15 @@ pub enum TrainingError {
     Stopped,
 }
 
+impl TrainingError {
+    pub(super) fn grid(name: &str, error: impl Into<GridError>) -> Self {
+        Self::Grid {
+            name: name.to_owned(),
+            error: error.into(),
+        }
+    }
+}
+
 impl<'a> Training<'a> {
     /// Creates a training over a whole grid of poses, the same for each shape.
     ///
@@ -118,10 +126,7 @@ impl<'a> Training<'a> {
         check_shapes(&shapes)?;
         let grid = |shape: &NamedShape| {
             let grid = PoseGrid::new(shape.source.clone(), sensor, anchor, ranges);
-            grid.map_err(|error| TrainingError::Grid {
-                name: shape.name.clone(),
-                error,
-            })
+            grid.map_err(|error| TrainingError::grid(&shape.name, error))
         };
         let grids = shapes.iter().map(grid).collect::<Result<_, _>>()?;
         Ok(Self::of_grids(shapes, grids))
@@ -260,21 +265,15 @@ pub fn default_figures() -> Vec<NamedShape> {
     FigureKind::ALL.iter().map(figure).collect()
 }
 
-/// Sizes at which each of the seven figures covers about 30 cells.
-const EQUAL: [(FigureKind, &[(Parameter, f64)]); 7] = [
-    (
-        FigureKind::Ellipse,
-        &[(Parameter::RadiusX, 3.09), (Parameter::RadiusY, 3.09)],
-    ),
-    (
-        FigureKind::Rectangle,
-        &[(Parameter::Length, 6.0), (Parameter::Width, 5.0)],
-    ),
-    (FigureKind::Triangle, &[(Parameter::Side, 8.32)]),
-    (FigureKind::Pentagon, &[(Parameter::Side, 4.18)]),
-    (FigureKind::Hexagon, &[(Parameter::Side, 3.4)]),
-    (FigureKind::Heptagon, &[(Parameter::Side, 2.87)]),
-    (FigureKind::Octagon, &[(Parameter::Side, 2.49)]),
+/// Sizes at which each of the seven figures covers about 30 cells, in the order of [`FigureKind::sizes`].
+const EQUAL: [(FigureKind, &[f64]); 7] = [
+    (FigureKind::Ellipse, &[3.09, 3.09]),
+    (FigureKind::Rectangle, &[6.0, 5.0]),
+    (FigureKind::Triangle, &[8.32]),
+    (FigureKind::Pentagon, &[4.18]),
+    (FigureKind::Hexagon, &[3.4]),
+    (FigureKind::Heptagon, &[2.87]),
+    (FigureKind::Octagon, &[2.49]),
 ];
 
 /// Returns the seven figures, each of about 30 cells: only their form tells them apart.
@@ -284,10 +283,10 @@ const EQUAL: [(FigureKind, &[(Parameter, f64)]); 7] = [
 )]
 pub fn equal_figures() -> Vec<NamedShape> {
     let sensor = Sensor::default();
-    let shape = |(kind, sizes): (FigureKind, &[(Parameter, f64)])| {
-        let mut sizes = sizes.iter();
+    let shape = |(kind, sizes): (FigureKind, &[f64])| {
+        let mut sizes = kind.sizes().iter().zip(sizes);
         let default = Figure::default_of(kind, &sensor);
-        let figure = sizes.try_fold(default, |figure, &(parameter, value)| {
+        let figure = sizes.try_fold(default, |figure, (&parameter, &value)| {
             figure.with(parameter, value, &sensor)
         });
         let figure = figure.expect("the sizes in the table are in range");
@@ -307,16 +306,9 @@ impl CellPositions {
     /// Tenths of a cell.
     pub const COARSE: Self = Self(10);
 
-    /// Creates a number of positions.
-    ///
-    /// # Errors
-    /// Returns [`GridStepsError::Positions`] if it is not a divisor of 100.
-    pub fn new(count: u8) -> Result<Self, GridStepsError> {
-        if count > 0 && 100_u8.is_multiple_of(count) {
-            Ok(Self(count))
-        } else {
-            Err(GridStepsError::Positions { found: count })
-        }
+    /// Creates a number of positions; None if it is not a divisor of 100.
+    pub fn new(count: u8) -> Option<Self> {
+        (count > 0 && 100_u8.is_multiple_of(count)).then_some(Self(count))
     }
 
     /// Returns the number of positions.
@@ -337,23 +329,6 @@ pub struct GridSteps {
     degrees: u16,
 }
 
-/// The error for steps that do not make a grid.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum GridStepsError {
-    /// Steps of a cell that are not whole hundredths.
-    #[error("{found} positions in a cell: expected a divisor of 100")]
-    Positions {
-        /// The given number of positions.
-        found: u8,
-    },
-    /// A step of the angle that does not divide 360.
-    #[error("steps of {found} degrees: expected a divisor of 360")]
-    Degrees {
-        /// The given step, in degrees.
-        found: u16,
-    },
-}
-
 impl GridSteps {
     /// Hundredths of a cell and whole degrees, as in a sweep.
     pub const FINE: Self = Self {
@@ -368,26 +343,11 @@ impl GridSteps {
     };
 
     /// Creates steps from the number of positions of a cell in each direction, a divisor of 100, and the degrees from
-    /// one angle to the next, a divisor of 360.
-    ///
-    /// # Errors
-    /// Returns an error if one is not a divisor.
-    pub fn new(positions: u8, degrees: u16) -> Result<Self, GridStepsError> {
+    /// one angle to the next, a divisor of 360. None if one is not a divisor.
+    pub fn new(positions: u8, degrees: u16) -> Option<Self> {
         let positions = CellPositions::new(positions)?;
-        if degrees == 0 || !360_u16.is_multiple_of(degrees) {
-            return Err(GridStepsError::Degrees { found: degrees });
-        }
-        Ok(Self { positions, degrees })
-    }
-
-    /// Returns the positions of a cell in each direction.
-    pub fn positions(self) -> CellPositions {
-        self.positions
-    }
-
-    /// Returns the degrees from one angle to the next.
-    pub fn degrees(self) -> u16 {
-        self.degrees
+        let divides = degrees > 0 && 360_u16.is_multiple_of(degrees);
+        divides.then_some(Self { positions, degrees })
     }
 
     fn angles(self) -> DecimalRange {
@@ -407,23 +367,32 @@ impl Training<'_> {
         steps: GridSteps,
     ) -> Result<Self, TrainingError> {
         let shapes: Vec<NamedShape> = shapes.into_iter().collect();
-        let mut given = GivenRanges::default();
-        given[Axis::Angle] = Some(steps.angles());
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
-        let reach = Reach::of_all(sources.iter().copied(), Anchor::Centre, &given);
-        let reach = reach.map_err(|error| TrainingError::Grid {
-            name: "the set".to_owned(),
-            error,
-        })?;
-        let fit = reach.smallest_sensor(
-            &sources,
-            &given,
-            SensorSides::at_least(LEAST_SIDE),
-            steps.positions().step(),
-        );
-        let (sensor, ranges) = fit.ok_or(TrainingError::Large)?;
+        let given = angles_only(steps.angles());
+        let reach = Reach::of_all(sources.iter().copied(), Anchor::Centre, &given)
+            .map_err(|error| TrainingError::grid("the set", error))?;
+        let (sensor, ranges) = fit(&reach, &sources, steps.positions, steps.angles())?;
         Self::new(shapes, sensor, Anchor::Centre, ranges)
     }
+}
+
+fn angles_only(angles: DecimalRange) -> GivenRanges {
+    let mut given = GivenRanges::default();
+    given[Axis::Angle] = Some(angles);
+    given
+}
+
+/// Returns the smallest square sensor, at least 16 × 16, that cuts nothing off, and one cell of positions around its
+/// middle.
+pub(super) fn fit(
+    reach: &Reach,
+    sources: &[&Source],
+    positions: CellPositions,
+    angles: DecimalRange,
+) -> Result<(Sensor, Ranges), TrainingError> {
+    let sides = SensorSides::at_least(LEAST_SIDE);
+    let found = reach.smallest_sensor(sources, &angles_only(angles), sides, positions.step());
+    found.ok_or(TrainingError::Large)
 }
 
 #[cfg(test)]
@@ -455,22 +424,11 @@ mod tests {
 
     #[test]
     fn steps_that_are_not_divisors_are_refused() {
-        let error = |positions, degrees| {
-            let steps = GridSteps::new(positions, degrees);
-            steps.map_err(|error| error.to_string())
-        };
-        let positions = |found: u8| {
-            let expected = "expected a divisor of 100";
-            Err(format!("{found} positions in a cell: {expected}"))
-        };
-        assert_eq!(error(0, 1), positions(0));
-        assert_eq!(error(7, 1), positions(7));
-        assert_eq!(error(101, 1), positions(101));
+        for positions in [0, 7, 101] {
+            assert_eq!(GridSteps::new(positions, 1), None);
+        }
         for degrees in [0, 7, 361] {
-            assert_eq!(
-                GridSteps::new(10, degrees),
-                Err(GridStepsError::Degrees { found: degrees })
-            );
+            assert_eq!(GridSteps::new(10, degrees), None);
         }
         let steps = GridSteps::new(1, 360).expect("divisors");
         assert_eq!(steps.angles().to_string(), "0");
