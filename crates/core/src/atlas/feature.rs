@@ -60,7 +60,7 @@ fn all() -> Vec<Feature> {
         parts.map(move |(part, suffix)| Feature {
             key: format!("{}{suffix}", descriptor.key),
             descriptor,
-            circular: descriptor.dimension == Dimension::Direction && descriptor.parts.len() == 1,
+            circular: is_circular(descriptor),
             part,
         })
     });
@@ -74,6 +74,32 @@ pub(crate) const FEATURE_COUNT: usize = {
         index += 1;
     }
     count
+};
+
+const fn is_circular(descriptor: &Descriptor) -> bool {
+    matches!(descriptor.dimension, Dimension::Direction) && descriptor.parts.len() == 1
+}
+
+/// For each feature, the position of its first value in a row of values, and whether it is circular: then it has two.
+pub(crate) const COLUMNS: [(usize, bool); FEATURE_COUNT] = {
+    let mut columns = [(0, false); FEATURE_COUNT];
+    let (mut row, mut part, mut column, mut index) = (0, 0, 0, 0);
+    while index < FEATURE_COUNT {
+        if part == DESCRIPTORS[row].parts.len() {
+            (row, part) = (row + 1, 0);
+        }
+        let circular = is_circular(&DESCRIPTORS[row]);
+        columns[index] = (column, circular);
+        column += if circular { 2 } else { 1 };
+        (part, index) = (part + 1, index + 1);
+    }
+    columns
+};
+
+/// The number of values of all features.
+pub(crate) const ROW_WIDTH: usize = {
+    let (column, circular) = COLUMNS[FEATURE_COUNT - 1];
+    column + if circular { 2 } else { 1 }
 };
 
 /// Calls `take` with the index in [`features`] and the value of each feature that has a value.

@@ -43,36 +43,10 @@ pub struct AtlasFilter {
     conditions: Vec<Condition>,
 }
 
-/// The error for text that is not an expression.
+/// The error for text that is not an expression: what was found, and what was expected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum FilterError {
-    /// A word is not the name of a quantity.
-    #[error("{found:?} is unknown here{}", expected(found))]
-    Unknown {
-        /// The word.
-        found: String,
-    },
-    /// A word stands between conditions, such as "and".
-    #[error("{found:?}: write conditions side by side; all must hold, as in na>40 holes=0")]
-    Joined {
-        /// The word.
-        found: String,
-    },
-    /// There is no sign after a name.
-    #[error("{name}: expected = != < <= > or >= after it")]
-    Sign {
-        /// The name.
-        name: String,
-    },
-    /// There is no number after a sign.
-    #[error("{before}: expected a number after it{}", advice(found))]
-    Number {
-        /// The name and the sign.
-        before: String,
-        /// The text in place of the number.
-        found: String,
-    },
-}
+#[error("{0}")]
+pub struct FilterError(String);
 
 /// Returns the end of a message: the text in place of a number, if there is one, and how to write a decimal comma.
 fn advice(found: &str) -> String {
@@ -113,25 +87,18 @@ impl Quantity {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Relation {
-    Equal,
-    Unequal,
-    Less,
-    AtMost,
-    Greater,
-    AtLeast,
-}
+/// Returns true if a value and a number fulfil a relation; the last argument tells whether they count as equal.
+type Relation = fn(f64, f64, bool) -> bool;
 
 /// The signs. Where one sign begins with another, the longer one comes first.
 const SIGNS: [(&str, Relation); 7] = [
-    ("!=", Relation::Unequal),
-    ("<=", Relation::AtMost),
-    (">=", Relation::AtLeast),
-    ("==", Relation::Equal),
-    ("=", Relation::Equal),
-    ("<", Relation::Less),
-    (">", Relation::Greater),
+    ("!=", |_, _, equal| !equal),
+    ("<=", |value, number, _| value <= number),
+    (">=", |value, number, _| value >= number),
+    ("==", |_, _, equal| equal),
+    ("=", |_, _, equal| equal),
+    ("<", |value, number, _| value < number),
+    (">", |value, number, _| value > number),
 ];
 
 /// The names besides those of the features. The last one is a synonym of `count`.
@@ -146,7 +113,8 @@ const OWN_NAMES: [(&str, Quantity); 5] = [
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Condition {
     quantity: Quantity,
-    relation: Relation,
+    /// The index of the sign in [`SIGNS`].
+    sign: usize,
     number: f64,
     /// Half of the last decimal that was typed: a value that differs from the number by at most this counts as equal.
     half: f64,
@@ -159,15 +127,9 @@ fn names() -> Vec<&'static str> {
 
 impl Condition {
     fn holds(&self, value: f64) -> bool {
+        let (_, relation) = SIGNS[self.sign];
         let equal = (value - self.number).abs() <= self.half;
-        match self.relation {
-            Relation::Equal => equal,
-            Relation::Unequal => !equal,
-            Relation::Less => value < self.number,
-            Relation::AtMost => value <= self.number,
-            Relation::Greater => value > self.number,
-            Relation::AtLeast => value >= self.number,
-        }
+        relation(value, self.number, equal)
     }
 }
 
@@ -224,36 +186,27 @@ const JOINING: [&str; 5] = ["and", "or", "&", "&&", ","];
 
 fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     let in_name = |c: char| c.is_alphanumeric() || "_-".contains(c);
-    let end = text
-        .find(|c: char| !in_name(c))
-        .map_or(text.len(), |end| end);
-    let (name, rest) = text.split_at(end);
+    let (name, rest) = split_at(text, |c| !in_name(c));
     let Some(quantity) = quantity(name) else {
-        let end = text.find(char::is_whitespace).map_or(text.len(), |end| end);
-        let found = if name.is_empty() { &text[..end] } else { name };
-        let found = shortened(found);
+        let (word, _) = split_at(text, char::is_whitespace);
+        let found = shortened(if name.is_empty() { word } else { name });
         let joins = |word: &&str| word.eq_ignore_ascii_case(&found);
         return Err(if JOINING.iter().any(joins) {
-            FilterError::Joined { found }
+            joined(&found)
         } else {
-            FilterError::Unknown { found }
+            let expected = expected(&found);
+            FilterError(format!("{found:?} is unknown here{expected}"))
         });
     };
     let rest = rest.trim_start();
-    let signs = SIGNS.iter();
-    let sign = signs
-        .copied()
-        .find_map(|(sign, relation)| Some((sign, relation, rest.strip_prefix(sign)?)));
-    let Some((sign, relation, rest)) = sign else {
-        let name = name.to_owned();
-        return Err(FilterError::Sign { name });
+    let Some(sign) = SIGNS.iter().position(|(sign, _)| rest.starts_with(sign)) else {
+        let expected = "expected = != < <= > or >= after it";
+        return Err(FilterError(format!("{name}: {expected}")));
     };
-    let rest = rest.trim_start();
-    let end = rest.find(char::is_whitespace).map_or(rest.len(), |end| end);
-    let (typed, rest) = rest.split_at(end);
+    let (text, _) = SIGNS[sign];
+    let (typed, rest) = split_at(rest[text.len()..].trim_start(), char::is_whitespace);
     if typed.ends_with(',') {
-        let found = ",".to_owned();
-        return Err(FilterError::Joined { found });
+        return Err(joined(","));
     }
     // The hundredth of a decimal, not of its rounded value: 70% is 0.7, but 70 * 0.01 is not.
     let in_hundredths = typed.strip_suffix('%').filter(|_| quantity.is_share());
@@ -263,32 +216,40 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     };
     let value = number.parse().ok().filter(|value: &f64| value.is_finite());
     let Some(value) = value else {
-        let (before, found) = (format!("{name}{sign}"), shortened(typed));
-        return Err(FilterError::Number { before, found });
+        let advice = advice(&shortened(typed));
+        let message = format!("{name}{text}: expected a number after it{advice}");
+        return Err(FilterError(message));
     };
     let condition = Condition {
         quantity,
-        relation,
+        sign,
         number: value,
         half: half_a_unit(&number),
     };
     Ok((condition, rest))
 }
 
+fn joined(found: &str) -> FilterError {
+    let advice = "write conditions side by side; all must hold, as in na>40 holes=0";
+    FilterError(format!("{found:?}: {advice}"))
+}
+
+/// Splits a text at its first character that fulfils a condition.
+fn split_at(text: &str, at: impl Fn(char) -> bool) -> (&str, &str) {
+    text.split_at(text.find(at).unwrap_or(text.len()))
+}
+
 fn quantity(name: &str) -> Option<Quantity> {
     let feature = |named: fn(&Feature) -> Option<&str>| {
-        let is_named = |own: &str| own.eq_ignore_ascii_case(name);
-        let position = features()
-            .iter()
-            .position(|feature| named(feature).is_some_and(is_named));
-        position.map(Quantity::Feature)
+        let is_named = |own: &Feature| named(own).is_some_and(|own| own.eq_ignore_ascii_case(name));
+        features().iter().position(is_named).map(Quantity::Feature)
     };
-    let own = OWN_NAMES.iter();
-    let mut own = own
-        .filter(|(own, _)| own.eq_ignore_ascii_case(name))
-        .map(|&(_, quantity)| quantity);
-    let by_key = feature(|feature| Some(feature.key.as_str()));
-    by_key.or(own.next()).or_else(|| feature(Feature::symbol))
+    let own = OWN_NAMES
+        .iter()
+        .find(|(own, _)| own.eq_ignore_ascii_case(name));
+    feature(|feature| Some(feature.key.as_str()))
+        .or(own.map(|&(_, quantity)| quantity))
+        .or_else(|| feature(Feature::symbol))
 }
 
 /// Returns half of the last decimal of a number as it was typed. A number with an exponent has the decimals that it has
@@ -355,15 +316,11 @@ impl SortDirection {
 /// of their first poses, and those without a value come last.
 pub fn sorted(atlas: &Atlas, by: SortKey<'_>, direction: SortDirection) -> Vec<u32> {
     let count = narrow(atlas.len());
-    let summaries = |of: fn(&ImprintSummary) -> u16| {
-        let keys: Vec<u64> = atlas
-            .summaries()
-            .iter()
-            .map(|summary| of(summary).into())
-            .collect();
-        keys
+    let summaries = |of: fn(&ImprintSummary) -> u16| -> Vec<u64> {
+        let all = atlas.summaries().iter();
+        all.map(|summary| of(summary).into()).collect()
     };
-    let keys: Vec<u64> = match by {
+    let keys = match by {
         SortKey::FirstPose => (0..count).map(u64::from).collect(),
         SortKey::Poses => atlas.counts().collect(),
         SortKey::Pieces => summaries(|summary| summary.pieces),

@@ -5,24 +5,21 @@
 //! Descriptors are those of the main region. These are conventions of this project.
 
 mod counter;
-
-mod feature;
-
-mod values;
-
-mod statistics;
-
 mod distinct;
-
-mod histogram;
-
+mod feature;
 mod filter;
+mod histogram;
+mod key;
+mod statistics;
+mod values;
 
 pub(crate) use counter::{ImprintCounter, Layout};
 pub use distinct::{Atlas, AtlasEntry, DistinctClasses, ShiftedImprint};
 pub use feature::{Feature, ImprintSummary, feature_values, features};
 pub use filter::{AtlasFilter, FilterError, SortDirection, SortKey, sorted};
 pub use histogram::Histogram;
+pub use key::{ImprintKey, KeyTable};
+pub(crate) use key::{KeyRef, or_bits};
 pub use statistics::mean_direction;
 pub(crate) use statistics::statistics;
 pub use statistics::{STATISTIC_COLUMNS, Statistic, StatisticColumn};

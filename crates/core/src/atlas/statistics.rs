@@ -4,10 +4,9 @@
 
 use rayon::prelude::*;
 
-use crate::atlas::feature::{Feature, features};
+use crate::atlas::feature::{COLUMNS, Feature, ROW_WIDTH, features};
 use crate::atlas::values::{
-    FeatureRow, ONE, RowSums, Sum, Table, VarianceParts, Wide, columns, mean, row_width,
-    signed_mean,
+    FeatureRow, ONE, RowSums, Sum, Table, VarianceParts, Wide, add_each, mean, signed_mean,
 };
 use crate::index::lower_word;
 
@@ -93,11 +92,11 @@ const fn column(
     StatisticColumn { key, title, value }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Totals {
     rows: RowSums,
     /// The squares of the values of each column.
-    squares: Vec<Squares>,
+    squares: [Squares; ROW_WIDTH],
 }
 
 /// A sum of squares, as the sum of the squares' lower words and the sum of their upper words. All poses together are
@@ -105,104 +104,83 @@ struct Totals {
 type Squares = [u128; 2];
 
 impl Totals {
-    fn new() -> Self {
-        Self {
-            rows: RowSums::new(),
-            squares: vec![[0; 2]; row_width()],
-        }
-    }
-
-    fn add(&mut self, row: FeatureRow, poses: u64) {
+    fn add(&mut self, row: &FeatureRow, poses: u64) {
         self.rows.add(row, poses);
-        for (sums, value) in self.squares.iter_mut().zip(row.values) {
+        for ([lower, upper], value) in self.squares.iter_mut().zip(&row.values) {
             let value = u128::from(value.unsigned_abs());
             let square = value * value;
-            for (sum, word) in sums.iter_mut().zip([square, square >> 64]) {
-                *sum += u128::from(lower_word(word)) * u128::from(poses);
-            }
+            *lower += u128::from(lower_word(square)) * u128::from(poses);
+            *upper += u128::from(lower_word(square >> 64)) * u128::from(poses);
         }
     }
 
     fn merged(mut self, other: &Self) -> Self {
         self.rows.merge(&other.rows);
-        let sums = self.squares.iter_mut().flatten();
-        for (sum, other) in sums.zip(other.squares.iter().flatten()) {
-            *sum += other;
+        for (sums, others) in self.squares.iter_mut().zip(&other.squares) {
+            add_each(sums, others);
         }
         self
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Total {
-    sum: Sum,
+/// Computes the statistic of a feature from the sums of its values and of their squares. `between` is the part of
+/// [`VarianceParts`].
+fn statistic(
+    feature: &'static Feature,
+    sum: &Sum,
     squares: Squares,
+    between: Wide,
+    extremes: Option<(f64, f64)>,
+) -> Statistic {
+    let poses = sum.poses;
+    let mut statistic = Statistic {
+        feature,
+        poses,
+        min: None,
+        mean: None,
+        max: None,
+        sd: None,
+        cv: None,
+        ideal: None,
+        sd_position: None,
+        sd_angle: None,
+    };
+    if poses == 0 {
+        return statistic;
+    }
+    if feature.circular {
+        directions(&mut statistic, sum, between);
+        return statistic;
+    }
+    let (squares, of_mean) = (Wide::joined(squares), Wide::square_over(sum.total(), poses));
+    let mean = mean(sum.total(), poses);
+    let sd = (squares - of_mean).root_mean(poses);
+    (statistic.min, statistic.max) = extremes.unzip();
+    statistic.mean = Some(mean);
+    statistic.sd = Some(sd);
+    statistic.cv = (mean != 0.0).then(|| sd / mean.abs());
+    statistic.sd_position = Some((squares - between).root_mean(poses));
+    statistic.sd_angle = Some((between - of_mean).root_mean(poses));
+    statistic
 }
 
-impl Total {
-    fn statistic(
-        &self,
-        feature: &'static Feature,
-        extremes: Option<(f64, f64)>,
-        between: Wide,
-        ideal: Option<f64>,
-    ) -> Statistic {
-        let mut statistic = Statistic {
-            feature,
-            poses: self.sum.poses,
-            min: None,
-            mean: None,
-            max: None,
-            sd: None,
-            cv: None,
-            ideal,
-            sd_position: None,
-            sd_angle: None,
-        };
-        let poses = self.sum.poses;
-        if poses == 0 {
-            return statistic;
-        }
-        if feature.circular {
-            self.directions(&mut statistic, between);
-            return statistic;
-        }
-        let sum = self.sum.total();
-        let squares = Wide::joined(self.squares);
-        let of_mean = Wide::square_over(sum, poses);
-        let mean = mean(sum, poses);
-        let sd = (squares - of_mean).root_mean(poses);
-        (statistic.min, statistic.max) = extremes.unzip();
-        statistic.mean = Some(mean);
-        statistic.sd = Some(sd);
-        statistic.cv = (mean != 0.0).then(|| sd / mean.abs());
-        statistic.sd_position = Some((squares - between).root_mean(poses));
-        statistic.sd_angle = Some((between - of_mean).root_mean(poses));
-        statistic
-    }
-
-    fn directions(&self, statistic: &mut Statistic, between: Wide) {
-        let poses = self.sum.poses;
-        let (x, y) = (
-            signed_mean(self.sum.x, poses),
-            signed_mean(self.sum.y, poses),
-        );
-        // No vector is longer than its parts together. A damaged file may say otherwise, and so may rounding.
-        let own = libm::hypot(x, y).min(1.0);
-        let within = between.mean(poses).clamp(own, 1.0);
-        // Lengths that differ by no more than their rounding count as equal, because the root of the rounding would
-        // look like a deviation.
-        let within = if 1.0 - within < ROUNDING { 1.0 } else { within };
-        let own = if within - own < ROUNDING { within } else { own };
-        let Some(mean) = mean_direction(x, y) else {
-            return;
-        };
-        let deviation = |length: f64| (-2.0 * libm::log(length)).max(0.0).sqrt().to_degrees();
-        statistic.mean = Some(mean);
-        statistic.sd = Some(deviation(own));
-        statistic.sd_position = Some(deviation(within));
-        statistic.sd_angle = Some(deviation(own / within));
-    }
+fn directions(statistic: &mut Statistic, sum: &Sum, between: Wide) {
+    let [x, y] = [sum.x, sum.y].map(|part| signed_mean(part, sum.poses));
+    // No vector is longer than its parts together. A damaged file may say otherwise, and so may rounding.
+    let own = libm::hypot(x, y).min(1.0);
+    let within = between.mean(sum.poses).clamp(own, 1.0);
+    // Lengths that differ by no more than their rounding count as equal, because the root of the rounding would look
+    // like a deviation.
+    let within = if 1.0 - within < ROUNDING { 1.0 } else { within };
+    let own = if within - own < ROUNDING { within } else { own };
+    let Some(mean) = mean_direction(x, y) else {
+        return;
+    };
+    let deviation = |length: f64| (-2.0 * libm::log(length)).max(0.0).sqrt().to_degrees();
+    statistic.mean = Some(mean);
+    statistic.sd = Some(deviation(own));
+    statistic.sd_position = Some(deviation(within));
+    statistic.sd_angle = Some(deviation(own / within));
 }
 
 /// Returns the circular mean of directions in degrees, given the mean of their unit vectors. None if the vectors
@@ -222,27 +200,26 @@ pub(crate) fn statistics(
     variance_parts: &VarianceParts,
     ideal: impl Fn(&str) -> Option<f64>,
 ) -> Vec<Statistic> {
-    let columns = columns();
     let totals = (0..counts.len())
         .into_par_iter()
         .with_min_len(1024)
-        .fold(Totals::new, |mut totals, index| {
+        .fold(Totals::default, |mut totals, index| {
             totals.add(table.row(index), counts[index]);
             totals
         })
-        .reduce(Totals::new, |one, other| one.merged(&other));
-    let sums = totals.rows.sums().into_iter().zip(&columns);
-    let of_features = sums.map(|(sum, &(column, _))| Total {
-        sum,
-        squares: totals.squares[column],
-    });
-    let parts = of_features.zip(features()).zip(variance_parts.closed());
-    parts
-        .enumerate()
-        .map(|(index, ((total, feature), between))| {
-            total.statistic(feature, table.extremes(index), between, ideal(&feature.key))
-        })
-        .collect()
+        .reduce(Totals::default, |one, other| one.merged(&other));
+    let (sums, between) = (totals.rows.sums(), variance_parts.closed());
+    let all = features().iter().zip(COLUMNS).enumerate();
+    all.map(|(index, (feature, (column, _)))| {
+        let squares = totals.squares[column];
+        let extremes = table.extremes(index);
+        let statistic = statistic(feature, &sums[index], squares, between[index], extremes);
+        Statistic {
+            ideal: ideal(&feature.key),
+            ..statistic
+        }
+    })
+    .collect()
 }
 
 #[cfg(test)]
@@ -261,12 +238,10 @@ mod tests {
                 own.x += i128::from(signed(cos));
                 own.y += i128::from(signed(sin));
             }
-            sum.merge(&own);
+            sum += own;
             between += Wide::rounded(own.length());
         }
-        let squares = [0; 2];
-        let total = Total { sum, squares };
-        total.statistic(feature.expect("there is one"), None, between, None)
+        statistic(feature.expect("there is one"), &sum, [0; 2], between, None)
     }
 
     /// Returns the deviations of directions: in all, from the position and from the angle.

@@ -7,7 +7,7 @@ use std::ops::{AddAssign, Sub};
 
 use rayon::prelude::*;
 
-use crate::atlas::feature::{FEATURE_COUNT, ImprintSummary, feature_values, features};
+use crate::atlas::feature::{COLUMNS, FEATURE_COUNT, ImprintSummary, ROW_WIDTH, feature_values};
 use crate::geometry::Real;
 use crate::index::{lower_word, wide};
 use crate::pose::MAX_VALUES;
@@ -19,84 +19,84 @@ const PART: usize = 256;
 /// The values of all features of the imprints of an atlas, one row per imprint.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    width: usize,
     /// The rows. All parts except the last have [`PART`] rows.
-    parts: Vec<Part>,
+    parts: Vec<Vec<FeatureRow>>,
     imprints: usize,
-    /// The smallest and the largest value of each feature; infinity and minus infinity where none exists.
-    extremes: Vec<(f64, f64)>,
+    extremes: Extremes,
 }
 
-#[derive(Clone, Debug)]
-struct Part {
-    values: Vec<i64>,
-    missing: Vec<u32>,
-}
+/// The smallest and the largest value of each feature; infinity and minus infinity where none exists.
+type Extremes = [(f64, f64); FEATURE_COUNT];
+
+const NOTHING: Extremes = [(f64::INFINITY, f64::NEG_INFINITY); FEATURE_COUNT];
 
 /// The values of all features of an imprint.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FeatureRow<'a> {
+pub(crate) struct FeatureRow {
     /// The value of each feature, 0 if it does not exist. A circular feature has two values: its cosine and its sine.
-    pub(crate) values: &'a [i64],
+    pub(crate) values: [i64; ROW_WIDTH],
     /// The features that do not exist, with feature `i` in bit `i`.
-    pub(crate) missing: u32,
+    missing: u32,
 }
 
-/// The missing features of an imprint without values: all of them.
-const ALL_MISSING: u32 = (1 << FEATURE_COUNT) - 1;
-
-/// Checks at compile time that [`Row::missing`] has a bit for each feature.
+/// Checks at compile time that [`FeatureRow::missing`] has a bit for each feature.
 const _: () = assert!(FEATURE_COUNT < 32);
 
-const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
-
-fn width(circular: bool) -> usize {
-    if circular { 2 } else { 1 }
-}
-
-pub(crate) fn row_width() -> usize {
-    let widths = features().iter().map(|feature| width(feature.circular));
-    widths.sum()
-}
-
-/// Returns for each feature the position of its first value in a row, and whether it is circular.
-pub(crate) fn columns() -> Vec<(usize, bool)> {
-    let all = features().iter().map(|feature| feature.circular);
-    let columns = all.scan(0, |next, circular| {
-        let column = *next;
-        *next += width(circular);
-        Some((column, circular))
-    });
-    columns.collect()
+impl FeatureRow {
+    /// Computes the values of an imprint, and adds them to the extremes.
+    fn of(summary: &ImprintSummary, extremes: &mut Extremes) -> Self {
+        let mut row = Self {
+            values: [0; ROW_WIDTH],
+            missing: (1 << FEATURE_COUNT) - 1,
+        };
+        let note = |index: usize, value: f64| {
+            row.missing &= !(1 << index);
+            let (column, circular) = COLUMNS[index];
+            if circular {
+                let (sin, cos) = libm::sincos(value.to_radians());
+                (row.values[column], row.values[column + 1]) = (signed(cos), signed(sin));
+            } else {
+                row.values[column] = fixed(value);
+            }
+            let (low, high) = &mut extremes[index];
+            (*low, *high) = (Real::min(*low, value), Real::max(*high, value));
+        };
+        if let Some(description) = &summary.description {
+            feature_values(description, note);
+        }
+        row
+    }
 }
 
 impl Default for Table {
     fn default() -> Self {
         Self {
-            width: row_width(),
             parts: Vec::new(),
             imprints: 0,
-            extremes: vec![NOTHING; features().len()],
+            extremes: NOTHING,
         }
     }
 }
 
 impl Table {
     pub(crate) fn extend(&mut self, summaries: &[ImprintSummary]) {
-        let (columns, width) = (columns(), self.width);
         let new = &summaries[self.imprints.min(summaries.len())..];
         let room = self.imprints.next_multiple_of(PART) - self.imprints;
         let (first, rest) = new.split_at(room.min(new.len()));
         if let Some(part) = self.parts.last_mut() {
-            note(first, &columns, width, part, &mut self.extremes);
+            part.extend(
+                first
+                    .iter()
+                    .map(|own| FeatureRow::of(own, &mut self.extremes)),
+            );
         }
         let parts = rest.par_chunks(PART).map(|summaries| {
-            let mut part = Part {
-                values: Vec::with_capacity(width * PART),
-                missing: Vec::with_capacity(PART),
-            };
-            let mut extremes = vec![NOTHING; columns.len()];
-            note(summaries, &columns, width, &mut part, &mut extremes);
+            let (mut part, mut extremes) = (Vec::with_capacity(PART), NOTHING);
+            part.extend(
+                summaries
+                    .iter()
+                    .map(|own| FeatureRow::of(own, &mut extremes)),
+            );
             (part, extremes)
         });
         for (part, extremes) in parts.collect::<Vec<_>>() {
@@ -108,50 +108,14 @@ impl Table {
         self.imprints = summaries.len();
     }
 
-    pub(crate) fn row(&self, index: usize) -> FeatureRow<'_> {
-        let (part, row) = (&self.parts[index / PART], index % PART);
-        FeatureRow {
-            values: &part.values[row * self.width..][..self.width],
-            missing: part.missing[row],
-        }
+    pub(crate) fn row(&self, index: usize) -> &FeatureRow {
+        &self.parts[index / PART][index % PART]
     }
 
     /// Returns the smallest and the largest value of a feature; None if no imprint has a value.
     pub(crate) fn extremes(&self, feature: usize) -> Option<(f64, f64)> {
         let (low, high) = self.extremes[feature];
         (low <= high).then_some((low, high))
-    }
-}
-
-/// Adds the rows of imprints to a part of a table, and their values to the extremes.
-fn note(
-    summaries: &[ImprintSummary],
-    columns: &[(usize, bool)],
-    width: usize,
-    part: &mut Part,
-    extremes: &mut [(f64, f64)],
-) {
-    for summary in summaries {
-        let start = part.values.len();
-        part.values.resize(start + width, 0);
-        let row = &mut part.values[start..];
-        let mut missing = ALL_MISSING;
-        let mut note = |index: usize, value: f64| {
-            missing &= !(1 << index);
-            let (column, circular) = columns[index];
-            if circular {
-                let (sin, cos) = libm::sincos(value.to_radians());
-                (row[column], row[column + 1]) = (signed(cos), signed(sin));
-            } else {
-                row[column] = fixed(value);
-            }
-            let (low, high) = &mut extremes[index];
-            (*low, *high) = (Real::min(*low, value), Real::max(*high, value));
-        };
-        if let Some(description) = &summary.description {
-            feature_values(description, &mut note);
-        }
-        part.missing.push(missing);
     }
 }
 
@@ -164,13 +128,15 @@ pub(crate) struct Sum {
     pub(crate) y: i128,
 }
 
-impl Sum {
-    pub(crate) fn merge(&mut self, other: &Self) {
+impl AddAssign for Sum {
+    fn add_assign(&mut self, other: Self) {
         self.poses += other.poses;
         self.x += other.x;
         self.y += other.y;
     }
+}
 
+impl Sum {
     /// Returns the sum of a feature that is not circular. It is not negative, except in a damaged file, where it counts
     /// as 0.
     pub(crate) fn total(&self) -> u128 {
@@ -182,36 +148,43 @@ impl Sum {
     pub(crate) fn length(&self) -> f64 {
         libm::hypot(self.x as f64, self.y as f64)
     }
+
+    fn words(self) -> [u64; 5] {
+        let [x, y] = [self.x, self.y].map(i128::cast_unsigned);
+        let upper = |sum: u128| lower_word(sum >> 64);
+        [self.poses, lower_word(x), upper(x), lower_word(y), upper(y)]
+    }
+
+    fn from_words(words: &[u64]) -> Self {
+        let whole = |low: u64, high: u64| (u128::from(low) | u128::from(high) << 64).cast_signed();
+        Self {
+            poses: words[0],
+            x: whole(words[1], words[2]),
+            y: whole(words[3], words[4]),
+        }
+    }
 }
 
 /// The sums of the columns of a table, each row times the number of poses that leave its imprint.
 ///
 /// For each orientation, the rows of all of its imprints are added up, which is a large part of a sweep with many
 /// imprints. So all columns are added in the same way, whether they have a value or not.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct RowSums {
     /// The number of poses, with or without a value.
     poses: u64,
-    columns: Vec<i128>,
+    columns: [i128; ROW_WIDTH],
     /// The number of poses in which each feature does not exist.
-    missing: Vec<u64>,
+    missing: [u64; FEATURE_COUNT],
 }
 
 impl RowSums {
-    pub(crate) fn new() -> Self {
-        Self {
-            poses: 0,
-            columns: vec![0; row_width()],
-            missing: vec![0; FEATURE_COUNT],
-        }
-    }
-
     /// Adds a row, times the number of poses that leave its imprint.
-    pub(crate) fn add(&mut self, row: FeatureRow, poses: u64) {
+    pub(crate) fn add(&mut self, row: &FeatureRow, poses: u64) {
         self.poses += poses;
         // One multiplication of the processor is enough: both numbers fit into 64 bits with their signs.
         let times = i128::from(poses.cast_signed());
-        for (sum, &value) in self.columns.iter_mut().zip(row.values) {
+        for (sum, &value) in self.columns.iter_mut().zip(&row.values) {
             *sum += i128::from(value) * times;
         }
         let mut missing = row.missing;
@@ -223,21 +196,13 @@ impl RowSums {
 
     pub(crate) fn merge(&mut self, other: &Self) {
         self.poses += other.poses;
-        for (sum, other) in self.columns.iter_mut().zip(&other.columns) {
-            *sum += other;
-        }
-        for (poses, other) in self.missing.iter_mut().zip(&other.missing) {
-            *poses += other;
-        }
-    }
-
-    pub(crate) fn poses(&self) -> u64 {
-        self.poses
+        add_each(&mut self.columns, &other.columns);
+        add_each(&mut self.missing, &other.missing);
     }
 
     pub(crate) fn sums(&self) -> Vec<Sum> {
-        let features = columns().into_iter().zip(&self.missing);
-        let sum = |((column, circular), missing): ((usize, bool), &u64)| Sum {
+        let features = COLUMNS.iter().zip(&self.missing);
+        let sum = |(&(column, circular), missing): (&(usize, bool), &u64)| Sum {
             poses: self.poses - missing,
             x: self.columns[column],
             y: if circular {
@@ -247,6 +212,12 @@ impl RowSums {
             },
         };
         features.map(sum).collect()
+    }
+}
+
+pub(crate) fn add_each<T: AddAssign + Copy>(sums: &mut [T], others: &[T]) {
+    for (sum, other) in sums.iter_mut().zip(others) {
+        *sum += *other;
     }
 }
 
@@ -415,12 +386,12 @@ impl OrientationSums {
         multiplicity: u64,
         counted: impl Iterator<Item = (u32, u64)>,
     ) -> Self {
-        let mut rows = RowSums::new();
+        let mut rows = RowSums::default();
         for (id, count) in counted {
             rows.add(table.row(wide(id)), count);
         }
         Self {
-            poses: rows.poses(),
+            poses: rows.poses,
             multiplicity,
             sums: rows.sums(),
         }
@@ -435,6 +406,20 @@ impl OrientationSums {
         };
         self.poses <= full && self.multiplicity <= MAX_VALUES && self.sums.iter().all(sound)
     }
+
+    /// Adds what this orientation contributes to the sums of [`VarianceParts`].
+    fn close(&self, between: &mut [Wide]) {
+        for ((between, sum), (_, circular)) in between.iter_mut().zip(&self.sums).zip(COLUMNS) {
+            if sum.poses > 0 {
+                let part = if circular {
+                    Wide::rounded(sum.length())
+                } else {
+                    Wide::square_over(sum.total(), sum.poses)
+                };
+                *between += part.times(self.multiplicity);
+            }
+        }
+    }
 }
 
 /// The parts of each feature's variance that come from the position and from the orientation.
@@ -443,7 +428,7 @@ pub(crate) struct VarianceParts {
     full: u64,
     /// For each feature, over the complete orientations: the sum of sum²/poses, or of the vectors' lengths for a
     /// circular feature.
-    between: Vec<Wide>,
+    between: [Wide; FEATURE_COUNT],
     /// The incomplete orientations, by their number.
     open: BTreeMap<u64, OrientationSums>,
 }
@@ -452,34 +437,26 @@ impl VarianceParts {
     pub(crate) fn new(full: u64) -> Self {
         Self {
             full,
-            between: vec![Wide::default(); features().len()],
+            between: [Wide::default(); FEATURE_COUNT],
             open: BTreeMap::new(),
         }
     }
 
     /// Adds a part of an orientation. All parts of an orientation must have the same `multiplicity`.
-    pub(crate) fn add(&mut self, orientation: u64, part: OrientationSums) {
-        let sums = match self.open.remove(&orientation) {
-            Some(mut sums) => {
-                sums.poses += part.poses;
-                for (sum, other) in sums.sums.iter_mut().zip(&part.sums) {
-                    sum.merge(other);
-                }
-                sums
-            }
-            None => part,
-        };
-        if sums.poses >= self.full {
-            close(&mut self.between, &sums);
+    pub(crate) fn add(&mut self, orientation: u64, mut part: OrientationSums) {
+        if let Some(known) = self.open.remove(&orientation) {
+            part.poses += known.poses;
+            add_each(&mut part.sums, &known.sums);
+        }
+        if part.poses >= self.full {
+            part.close(&mut self.between);
         } else {
-            self.open.insert(orientation, sums);
+            self.open.insert(orientation, part);
         }
     }
 
     pub(crate) fn merge(&mut self, other: Self) {
-        for (sum, other) in self.between.iter_mut().zip(other.between) {
-            *sum += other;
-        }
+        add_each(&mut self.between, &other.between);
         for (orientation, sums) in other.open {
             self.add(orientation, sums);
         }
@@ -487,18 +464,10 @@ impl VarianceParts {
 
     /// Returns the parts as words: three per feature, then each incomplete orientation.
     pub(crate) fn words(&self) -> Vec<u64> {
-        let halves = |sum: i128| {
-            let bits = sum.cast_unsigned();
-            [lower_word(bits), lower_word(bits >> 64)]
-        };
         let mut words: Vec<u64> = self.between.iter().flat_map(|sum| sum.words()).collect();
-        for (&orientation, sums) in &self.open {
-            words.extend([orientation, sums.poses, sums.multiplicity]);
-            for sum in &sums.sums {
-                words.push(sum.poses);
-                words.extend(halves(sum.x));
-                words.extend(halves(sum.y));
-            }
+        for (&orientation, own) in &self.open {
+            words.extend([orientation, own.poses, own.multiplicity]);
+            words.extend(own.sums.iter().flat_map(|sum| sum.words()));
         }
         words
     }
@@ -506,56 +475,32 @@ impl VarianceParts {
     /// Creates the parts from words; None if the number of words is wrong, or if they are not possible for orientations
     /// of `full` poses.
     pub(crate) fn from_words(full: u64, words: &[u64]) -> Option<Self> {
-        let count = features().len();
-        let (between, open) = words.split_at_checked(3 * count)?;
-        let whole =
-            |words: &[u64]| (u128::from(words[0]) | u128::from(words[1]) << 64).cast_signed();
-        let orientations = open.chunks_exact(3 + 5 * count);
-        if !orientations.remainder().is_empty() {
-            return None;
+        let (between, open) = words.split_at_checked(3 * FEATURE_COUNT)?;
+        let mut parts = Self::new(full);
+        for (sum, words) in parts.between.iter_mut().zip(between.chunks_exact(3)) {
+            *sum = Wide::from_words([words[0], words[1], words[2]]);
         }
-        let orientation = |words: &[u64]| {
-            let sum = |words: &[u64]| Sum {
-                poses: words[0],
-                x: whole(&words[1..3]),
-                y: whole(&words[3..5]),
+        for words in open.chunks(3 + 5 * FEATURE_COUNT) {
+            let (head, sums) = words.split_at_checked(3)?;
+            let own = OrientationSums {
+                poses: head[1],
+                multiplicity: head[2],
+                sums: sums.chunks_exact(5).map(Sum::from_words).collect(),
             };
-            let sums = OrientationSums {
-                poses: words[1],
-                multiplicity: words[2],
-                sums: words[3..].chunks_exact(5).map(sum).collect(),
-            };
-            sums.is_sound(full).then_some((words[0], sums))
-        };
-        let wide = |words: &[u64]| Wide::from_words([words[0], words[1], words[2]]);
-        Some(Self {
-            full,
-            between: between.chunks_exact(3).map(wide).collect(),
-            open: orientations.map(orientation).collect::<Option<_>>()?,
-        })
+            if sums.len() != 5 * FEATURE_COUNT || !own.is_sound(full) {
+                return None;
+            }
+            parts.open.insert(head[0], own);
+        }
+        Some(parts)
     }
 
     /// Returns `between`, with every orientation taken as complete.
-    pub(crate) fn closed(&self) -> Vec<Wide> {
-        let mut between = self.between.clone();
+    pub(crate) fn closed(&self) -> [Wide; FEATURE_COUNT] {
+        let mut between = self.between;
         for sums in self.open.values() {
-            close(&mut between, sums);
+            sums.close(&mut between);
         }
         between
-    }
-}
-
-fn close(between: &mut [Wide], orientation: &OrientationSums) {
-    let features = between.iter_mut().zip(&orientation.sums).zip(features());
-    for ((between, sum), feature) in features {
-        if sum.poses == 0 {
-            continue;
-        }
-        let part = if feature.circular {
-            Wide::rounded(sum.length())
-        } else {
-            Wide::square_over(sum.total(), sum.poses)
-        };
-        *between += part.times(orientation.multiplicity);
     }
 }

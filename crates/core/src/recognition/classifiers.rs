@@ -252,16 +252,21 @@ struct FeatureTable {
 
 impl FeatureTable {
     fn new(model: &Model, descriptors: Option<&[ShapeDescriptor]>) -> Self {
-        let table = GivenTable::new(model);
-        let keys = table.descriptions().len();
-        let wanted =
-            |key: &str| descriptors.is_none_or(|own| own.iter().any(|one| one.key() == key));
+        let descriptions = GivenTable::new(model).descriptions;
         let (mut names, mut dropped) = (Vec::new(), Vec::new());
         let mut kept: Vec<(Vec<f64>, f64, f64)> = Vec::new();
-        let all = features().iter().filter(|feature| {
-            !feature.descriptor.changes_under.shift && wanted(feature.descriptor.key)
-        });
-        for (name, column) in all.flat_map(|feature| columns(feature, table.descriptions())) {
+        let wanted = ShapeDescriptor::all()
+            .filter(|own| descriptors.is_none_or(|given| given.contains(own)))
+            .map(ShapeDescriptor::key);
+        let own = |key| {
+            features()
+                .iter()
+                .filter(move |own| own.descriptor.key == key)
+        };
+        let columns = wanted
+            .flat_map(own)
+            .flat_map(|own| columns(own, &descriptions));
+        for (name, column) in columns {
             let (mean, variance) = moments(model, &column);
             let reason = if column.iter().any(|value| value.is_nan()) {
                 "does not exist for some imprints"
@@ -276,11 +281,11 @@ impl FeatureTable {
             };
             dropped.push((name, reason));
         }
-        let mut values = Vec::with_capacity(keys * kept.len());
-        for key in 0..keys {
-            let row = kept.iter();
-            values.extend(row.map(|(own, mean, variance)| (own[key] - mean) / variance.sqrt()));
-        }
+        let row = |key: usize| {
+            let own = kept.iter();
+            own.map(move |(own, mean, variance)| (own[key] - mean) / variance.sqrt())
+        };
+        let values = (0..descriptions.len()).flat_map(row).collect();
         Self {
             names,
             dropped,
@@ -622,7 +627,7 @@ mod tests {
         let model = training.run().expect("not stopped");
         let table = FeatureTable::new(&model, None);
         let empty = GivenTable::new(&model);
-        assert!(empty.descriptions().iter().any(Option::is_none));
+        assert!(empty.descriptions.iter().any(Option::is_none));
         for count in ["na", "nae", "ce", "area"] {
             let kept = table.names.iter().any(|name| name == count);
             let copy = table.dropped.iter();

@@ -325,6 +325,7 @@ impl ConfusionMatrix {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::atlas::{ImprintKey, KeyTable};
     use crate::figure::Figure;
     use crate::pose::{Anchor, Axis, Ranges};
     use crate::recognition::model::{ModelHead, NamedShape};
@@ -345,8 +346,10 @@ mod tests {
         let (shapes, sensor) = (shapes.collect(), Sensor::default());
         let head = ModelHead::new(shapes, sensor, Anchor::Centre, ranges, 1);
         let counts = (0..SHAPES).map(|shape| ShapeCount::new(shape, 1));
-        let keys = [("####\n####".parse().ok(), counts.collect())];
-        let limit = Evaluation::of(&Model::from_parts(head, &keys).expect("a model"));
+        let mut keys = KeyTable::default();
+        keys.add(&ImprintKey::of(&"####\n####".parse().expect("rows")));
+        let model = Model::of_table(head, &keys, |_| counts.clone());
+        let limit = Evaluation::of(&model.expect("a model"));
         assert_eq!((limit.touches, limit.right), (SHAPES.into(), 1));
         assert_eq!(limit.worst_pairs().len(), usize::from(SHAPES) - 1);
         let worst = limit.worst_pairs()[0];

@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use crate::atlas::ImprintSummary;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value};
 use crate::imprint::Imprint;
-use crate::index::narrow;
+use crate::index::{narrow, wide};
 use crate::parameter::number::share;
 use crate::progress::Progress;
 use crate::quote::{did_you_mean, shortened};
 use crate::recognition::evaluation::Evaluation;
-use crate::recognition::model::{Model, ShapeCount, first_of_most};
+use crate::recognition::model::{Model, ShapeCount, add_count, first_of_most};
 use crate::recognition::simulation::{Judgement, NoisyTouches, RecognitionRate};
 
 /// A descriptor that says something about the shape, because it does not change when the imprint is moved.
@@ -172,7 +172,7 @@ impl GivenDescriptors {
     ) -> Option<RecognitionRate> {
         let table = GivenTable::new(model);
         let mut counts: HashMap<Vec<ExactValue>, Vec<u128>> = HashMap::new();
-        for (key, description) in table.descriptions().iter().enumerate() {
+        for (key, description) in table.descriptions.iter().enumerate() {
             let own = counts.entry(self.values(description.as_ref()));
             let own = own.or_insert_with(|| vec![0; model.shapes().len()]);
             for &count in model.counts(key) {
@@ -245,7 +245,8 @@ impl std::fmt::Display for GivenDescriptors {
 
 pub(super) struct GivenTable<'a> {
     model: &'a Model,
-    descriptions: Vec<Option<Description>>,
+    /// The description of each key, in their order; None for the empty key.
+    pub(super) descriptions: Vec<Option<Description>>,
 }
 
 /// For each key, the number of its class. Classes are numbered from 0, in the order of their first keys.
@@ -259,11 +260,6 @@ impl<'a> GivenTable<'a> {
             model,
             descriptions: keys.with_min_len(256).map(describe).collect(),
         }
-    }
-
-    /// Returns the description of each key, in their order; None for the empty key.
-    pub(super) fn descriptions(&self) -> &[Option<Description>] {
-        &self.descriptions
     }
 
     fn one_class(&self) -> Classes {
@@ -290,26 +286,17 @@ impl<'a> GivenTable<'a> {
     }
 
     fn evaluate(&self, classes: &Classes) -> Evaluation {
-        let mut counts: Vec<(u32, ShapeCount)> = Vec::new();
+        let mut counts: Vec<Vec<ShapeCount>> = Vec::new();
         for (key, &class) in classes.iter().enumerate() {
-            counts.extend(self.model.counts(key).iter().map(|&count| (class, count)));
-        }
-        counts.sort_unstable_by_key(|&(class, count)| (class, count.shape));
-        counts.dedup_by(|next, kept| {
-            let same = (next.0, next.1.shape) == (kept.0, kept.1.shape);
-            if same {
-                kept.1.poses += next.1.poses;
+            let class = wide(class);
+            if class == counts.len() {
+                counts.push(Vec::new());
             }
-            same
-        });
-        let (classes, counts): (Vec<u32>, Vec<ShapeCount>) = counts.into_iter().unzip();
-        let mut rest = &*counts;
-        let of_class = classes.chunk_by(u32::eq).map(|class| {
-            let (own, others) = rest.split_at(class.len());
-            rest = others;
-            own
-        });
-        Evaluation::of_classes(self.model, of_class)
+            for &count in self.model.counts(key) {
+                add_count(&mut counts[class], count);
+            }
+        }
+        Evaluation::of_classes(self.model, counts.iter().map(Vec::as_slice))
     }
 }
 

@@ -4,13 +4,13 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
+use crate::atlas::{ImprintKey, KeyRef, KeyTable};
 use crate::imprint::Imprint;
 use crate::parameter::number::share;
 use crate::pose::{Anchor, Axis, MAX_POSES, Ranges};
 use crate::quote::shortened;
-use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::scan::KeyIndex;
-use crate::sensor::{MatrixSize, Sensor};
+use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::sweep::{Shard, ShardOrderError};
 
@@ -204,26 +204,6 @@ pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
 }
 
 impl Model {
-    /// Assembles a model from an imprint of each key (None for the key of an empty touch) and its counts, in any order.
-    ///
-    /// # Errors
-    /// Returns an error if a name or weight is invalid, if a key is given twice, or if numbers contradict each other,
-    /// such as counts that do not add up to the poses of a shape.
-    pub fn from_parts(
-        head: ModelHead,
-        keys: &[(Option<Imprint>, Vec<ShapeCount>)],
-    ) -> Result<Self, ModelError> {
-        let mut table = KeyTable::default();
-        let mut key = ImprintKey::of(&Imprint::empty(MatrixSize::SMALLEST));
-        for (imprint, _) in keys {
-            key.set(&imprint.unwrap_or(Imprint::empty(MatrixSize::SMALLEST)));
-            if !table.add(&key) {
-                return Err(ModelError::TWICE);
-            }
-        }
-        Self::of_table(head, &table, |index| keys[index].1.iter().copied())
-    }
-
     /// Builds a model from the keys of a table, in any order, and the counts of each key, by shape.
     ///
     /// # Errors
@@ -460,13 +440,21 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
-    /// Returns the slot in which the counts of a key of another table are gathered.
-    pub(super) fn slot(&mut self, keys: &KeyTable, index: usize) -> usize {
-        let slot = self.keys.intern(keys.get(index));
+    /// Adds a count to those of a key of another table, which stay in the order of the shapes.
+    pub(super) fn add(&mut self, key: KeyRef<'_>, more: ShapeCount) {
+        let slot = self.keys.intern(key);
         if slot == self.counts.len() {
             self.counts.push(Vec::new());
         }
-        slot
+        add_count(&mut self.counts[slot], more);
+    }
+}
+
+/// Adds a count to others, which stay in the order of the shapes.
+pub(super) fn add_count(counts: &mut Vec<ShapeCount>, more: ShapeCount) {
+    match counts.binary_search_by_key(&more.shape, |count| count.shape) {
+        Ok(index) => counts[index].poses += more.poses,
+        Err(index) => counts.insert(index, more),
     }
 }
 
@@ -505,9 +493,8 @@ impl ModelMerge {
             }
         }
         for index in 0..model.keys().len() {
-            let slot = self.gathered.slot(model.keys(), index);
             for &count in model.counts(index) {
-                slot_add(&mut self.gathered.counts[slot], count);
+                self.gathered.add(model.keys().get(index), count);
             }
         }
         Ok(())
@@ -523,14 +510,6 @@ impl ModelMerge {
         head.shard = Shard::WHOLE;
         let Gathered { keys, counts } = self.gathered;
         Model::of_table(head, &keys, |index| counts[index].iter().copied())
-    }
-}
-
-/// Adds a count to the counts of a key, which stay in the order of the shapes.
-fn slot_add(counts: &mut Vec<ShapeCount>, more: ShapeCount) {
-    match counts.binary_search_by_key(&more.shape, |count| count.shape) {
-        Ok(index) => counts[index].poses += more.poses,
-        Err(index) => counts.insert(index, more),
     }
 }
 

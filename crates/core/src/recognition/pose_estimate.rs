@@ -1,8 +1,8 @@
+use crate::atlas::ImprintKey;
 use crate::imprint::Imprint;
 use crate::index::narrow;
 use crate::pose::{Axis, PoseGrid, exact_period};
 use crate::progress::Progress;
-use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, float};
 use crate::source::Source;
 use crate::sweep::Sweep;

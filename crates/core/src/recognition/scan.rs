@@ -15,9 +15,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
+use crate::atlas::{ImprintKey, KeyRef, KeyTable, or_bits};
 use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
-use crate::recognition::key::{ImprintKey, KeyRef, KeyTable, or_bits};
 use crate::recognition::model::{Model, first_of_most};
 use crate::sensor::MatrixSize;
 

@@ -8,7 +8,7 @@ use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, 
 use crate::progress::Progress;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{NamedShape, check_shapes};
-use crate::recognition::training::{CellPositions, Training, TrainingError, fit};
+use crate::recognition::training::{CellPositions, Training, TrainingError, angles_only, fit};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -155,14 +155,10 @@ impl Separation {
         let (mut scaled, mut zooms) = (Vec::new(), Vec::new());
         let mut reach = Reach::default();
         for shape in &self.shapes {
-            let refused = |error| TrainingError::grid(&shape.name, error);
-            let larger = self.scaled(&shape.source, scale).map_err(refused)?;
-            let (source, given) = larger.ok_or(TrainingError::Large)?;
-            reach.add(Reach::of(&source, Anchor::Centre, &given).map_err(refused)?);
-            scaled.push(NamedShape {
-                source,
-                ..shape.clone()
-            });
+            let (shape, given) = self.scaled(shape, scale)?;
+            let own = Reach::of(&shape.source, Anchor::Centre, &given);
+            reach.add(own.map_err(|error| TrainingError::grid(&shape.name, error))?);
+            scaled.push(shape);
             zooms.push(given);
         }
         let sources: Vec<&Source> = scaled.iter().map(|shape| &shape.source).collect();
@@ -179,38 +175,35 @@ impl Separation {
         Ok(Training::of_grids(scaled, grids))
     }
 
-    /// Multiplies every length of a shape; a picture is zoomed instead. Returns the shape with its angles and zooms,
-    /// or None if it is too large for any sensor.
+    /// Multiplies every length of a shape; a picture is zoomed instead. Returns the shape with its angles and zooms.
     fn scaled(
         &self,
-        source: &Source,
+        shape: &NamedShape,
         scale: f64,
-    ) -> Result<Option<(Source, GivenRanges)>, GridError> {
-        let mut given = GivenRanges::default();
-        given[Axis::Angle] = Some(self.angles);
-        let source = match source {
-            Source::Figure(figure) => match enlarged(figure, scale)? {
-                Some(figure) => figure.into(),
-                None => return Ok(None),
-            },
+    ) -> Result<(NamedShape, GivenRanges), TrainingError> {
+        let mut given = angles_only(self.angles);
+        let mut scaled = shape.clone();
+        match &shape.source {
+            Source::Figure(figure) => scaled.source = enlarged(figure, &shape.name, scale)?.into(),
             Source::Picture(_) => {
                 for axis in [Axis::ZoomX, Axis::ZoomY] {
-                    let zoom = source
-                        .get(axis.parameter())
-                        .map_or(scale, |own| own * scale);
+                    let own = shape.source.get(axis.parameter());
+                    let zoom = own.map_or(scale, |own| own * scale);
                     // The zoom that makes one taxel as large as the largest sensor.
                     if zoom > f64::from(Sensor::LARGEST.side()) {
-                        return Ok(None);
+                        return Err(TrainingError::Large);
                     }
                     // If the zoom is out of range, the error names it.
-                    Sensor::LARGEST.check(axis.parameter(), zoom)?;
+                    let zoom = Sensor::LARGEST.check(axis.parameter(), zoom);
+                    let zoom = zoom.map_err(|error| TrainingError::grid(&shape.name, error))?;
                     let rounded = DecimalRange::rounded(zoom, 9);
-                    given[axis] = Some(rounded.ok_or(GridError::Digits { value: zoom })?);
+                    let digits = || GridError::Digits { value: zoom };
+                    given[axis] =
+                        Some(rounded.ok_or_else(|| TrainingError::grid(&shape.name, digits()))?);
                 }
-                source.clone()
             }
-        };
-        Ok(Some((source, given)))
+        }
+        Ok((scaled, given))
     }
 
     /// Returns the limit for one value and one threshold. `progress` is called as by [`Training::with_progress`].
@@ -299,24 +292,27 @@ impl Separation {
     }
 }
 
-/// Multiplies every length of a figure; None if one becomes longer than the side of the largest sensor.
-fn enlarged(figure: &Figure, scale: f64) -> Result<Option<Figure>, GridError> {
+/// Multiplies every length of a figure.
+fn enlarged(figure: &Figure, name: &str, scale: f64) -> Result<Figure, TrainingError> {
     let sensor = Sensor::LARGEST;
+    let with = |figure: Figure, parameter: Parameter, value: f64| {
+        let changed = figure.with(parameter, value, &sensor);
+        changed.map_err(|error| TrainingError::grid(name, error))
+    };
     let mut scaled = *figure;
     for parameter in [Parameter::X0, Parameter::Y0, Parameter::Angle] {
-        scaled = scaled.with(parameter, 0.0, &sensor)?;
+        scaled = with(scaled, parameter, 0.0)?;
     }
     for &parameter in figure.kind().sizes().iter().chain(&[Parameter::Thickness]) {
-        let Some(length) = figure.get(parameter) else {
-            continue;
-        };
-        let length = to_decimals(length * scale, 9);
-        if length > f64::from(sensor.side()) {
-            return Ok(None);
+        if let Some(length) = figure.get(parameter) {
+            let length = to_decimals(length * scale, 9);
+            if length > f64::from(sensor.side()) {
+                return Err(TrainingError::Large);
+            }
+            scaled = with(scaled, parameter, length)?;
         }
-        scaled = scaled.with(parameter, length, &sensor)?;
     }
-    Ok(Some(scaled))
+    Ok(scaled)
 }
 
 #[cfg(test)]
@@ -530,11 +526,9 @@ mod tests {
         let square = Figure::rectangle(1.0, 1.0).on(&Sensor::default());
         let square = square.expect("in range");
         for source in [Source::Picture(Picture::at_home(taxel)), square.into()] {
-            let separation = coarse(vec![NamedShape::new("square", source.clone())]);
-            let is_there = |scale: f64| {
-                let scaled = separation.scaled(&source, scale).expect("in range");
-                scaled.is_some()
-            };
+            let shape = NamedShape::new("square", source.clone());
+            let separation = coarse(vec![shape.clone()]);
+            let is_there = |scale: f64| separation.scaled(&shape, scale).is_ok();
             assert!(is_there(64.0) && !is_there(64.01), "{source:?}");
         }
     }

@@ -10,11 +10,11 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
+use crate::atlas::ImprintKey;
 use crate::imprint::Imprint;
 use crate::index::{index, lower_word, narrow};
 use crate::parameter::number::share;
 use crate::progress::Progress;
-use crate::recognition::key::ImprintKey;
 use crate::recognition::likelihood::Noise;
 use crate::recognition::model::{Model, add_log_counts, first_of_most, float};
 use crate::recognition::scan::shift_count;
@@ -221,12 +221,11 @@ impl Model {
             shift_count((key.width, key.height), size)
         };
         let draws = Draw::all(self, shifts);
-        let chunks = per_shape.div_ceil(CHUNK);
-        let mut tasks =
-            (0..draws.len()).flat_map(|shape| (0..chunks).map(move |chunk| (shape, chunk)));
+        let shapes = draws.len() as u64;
+        let tasks = per_shape.div_ceil(CHUNK).saturating_mul(shapes);
         let stopped = AtomicBool::new(false);
-        let rate = |(shape, chunk): (usize, u64)| {
-            let number = chunk * draws.len() as u64 + shape as u64;
+        let rate = |number: u64| {
+            let (chunk, draw) = (number / shapes, &draws[index(number % shapes)]);
             let mut random = generator(touches.seed, number);
             // Tasks are numbered from the last one down: independent of all touches, and the same for any noise.
             let mut random_of_dead = generator(touches.seed, !number);
@@ -235,12 +234,12 @@ impl Model {
                 if stopped.load(Ordering::Relaxed) {
                     break;
                 }
-                let Some(key) = draws[shape].key(&mut random) else {
+                let Some(key) = draw.key(&mut random) else {
                     break;
                 };
                 let dead = random_taxels(size, touches.random_dead, &mut random_of_dead);
                 let touch = self.touch_of(key, touches, &mut random).without(&dead);
-                rate.count(shape, &judge(&touch, &dead));
+                rate.count(index(number % shapes), &judge(&touch, &dead));
                 if progress.add(1).is_break() {
                     stopped.store(true, Ordering::Relaxed);
                 }
@@ -248,21 +247,21 @@ impl Model {
             rate
         };
         let mut rates = vec![ShapeRate::default(); draws.len()];
-        while !stopped.load(Ordering::Relaxed) {
-            let held: Vec<(usize, u64)> = tasks.by_ref().take(HELD).collect();
-            if held.is_empty() {
-                break;
-            }
-            let counted: Vec<ShapeRate> = held.par_iter().map(|&task| rate(task)).collect();
+        for start in (0..tasks).step_by(HELD) {
+            let held = start..tasks.min(start.saturating_add(HELD as u64));
+            let counted: Vec<ShapeRate> = held.into_par_iter().map(rate).collect();
             // In order, so that the sums have the same digits for any number of threads.
-            for ((shape, _), counted) in held.into_iter().zip(counted) {
-                rates[shape].add(counted);
+            for (number, counted) in (start..).zip(counted) {
+                rates[index(number % shapes)].add(counted);
+            }
+            if stopped.load(Ordering::Relaxed) {
+                return None;
             }
         }
         let weights = self.shapes().iter().map(|shape| shape.weight);
         let rates: Vec<(u32, ShapeRate)> = weights.zip(rates).collect();
         let rate = RecognitionRate::of(&rates);
-        (!stopped.into_inner() && rate.touches > 0).then_some(rate)
+        (rate.touches > 0).then_some(rate)
     }
 
     fn touch_of(&self, key: usize, touches: &NoisyTouches, random: &mut Pcg64) -> Imprint {

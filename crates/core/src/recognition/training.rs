@@ -2,13 +2,13 @@ use std::fmt;
 
 use rayon::prelude::*;
 
+use crate::atlas::{ImprintKey, KeyTable};
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::number::grouped;
 use crate::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
 };
 use crate::progress::{Progress, ToTheEnd};
-use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::model::{
     Gathered, Model, ModelError, ModelHead, NamedShape, ShapeCount, check_shapes,
 };
@@ -222,8 +222,7 @@ impl<'a> Training<'a> {
             }
             let (keys, counts) = keys_of(&counted);
             for (index, poses) in counts.into_iter().enumerate() {
-                let slot = gathered.slot(&keys, index);
-                gathered.counts[slot].push(ShapeCount::new(shape, poses));
+                gathered.add(keys.get(index), ShapeCount::new(shape, poses));
             }
             head.cut.push(counted.partly_off);
         }
@@ -376,7 +375,7 @@ impl Training<'_> {
     }
 }
 
-fn angles_only(angles: DecimalRange) -> GivenRanges {
+pub(super) fn angles_only(angles: DecimalRange) -> GivenRanges {
     let mut given = GivenRanges::default();
     given[Axis::Angle] = Some(angles);
     given

@@ -15,7 +15,7 @@ use crate::sensor::MatrixSize;
 ///
 /// ```
 /// use taxel_core::prelude::*;
-/// use taxel_core::recognition::ImprintKey;
+/// use taxel_core::atlas::ImprintKey;
 ///
 /// let here: Imprint = "....\n.##.\n..#.".parse().unwrap();
 /// let there: Imprint = "##\n.#".parse().unwrap();
@@ -23,7 +23,7 @@ use crate::sensor::MatrixSize;
 /// assert_eq!(ImprintKey::of(&here).imprint(), Some(there));
 /// assert_eq!(ImprintKey::of(&here.without(&here)).imprint(), None);
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ImprintKey {
     height: u8,
     width: u8,
@@ -33,11 +33,7 @@ pub struct ImprintKey {
 impl ImprintKey {
     /// Returns the key of an imprint.
     pub fn of(imprint: &Imprint) -> Self {
-        let mut key = Self {
-            height: 0,
-            width: 0,
-            bits: Vec::new(),
-        };
+        let mut key = Self::default();
         key.set(imprint);
         key
     }
@@ -75,7 +71,7 @@ impl ImprintKey {
         self.height
     }
 
-    pub(super) fn borrowed(&self) -> KeyRef<'_> {
+    pub(crate) fn borrowed(&self) -> KeyRef<'_> {
         KeyRef {
             height: self.height,
             width: self.width,
@@ -88,7 +84,7 @@ fn words(width: u8, height: u8) -> usize {
     (usize::from(width) * usize::from(height)).div_ceil(64)
 }
 
-pub(super) fn or_bits(bits: &mut [u64], place: usize, row: u64) {
+pub(crate) fn or_bits(bits: &mut [u64], place: usize, row: u64) {
     let (word, shift) = (place / 64, place % 64);
     bits[word] |= row << shift;
     let rest = row.unbounded_shr(narrow(64 - shift));
@@ -99,19 +95,19 @@ pub(super) fn or_bits(bits: &mut [u64], place: usize, row: u64) {
 
 /// A reference to a key of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct KeyRef<'a> {
-    pub(super) height: u8,
-    pub(super) width: u8,
-    pub(super) bits: &'a [u64],
+pub(crate) struct KeyRef<'a> {
+    pub(crate) height: u8,
+    pub(crate) width: u8,
+    pub(crate) bits: &'a [u64],
 }
 
 impl KeyRef<'_> {
-    pub(super) fn count(self) -> u32 {
+    pub(crate) fn count(self) -> u32 {
         self.bits.iter().map(|word| word.count_ones()).sum()
     }
 
     /// Iterates over the rows from the top, bit `i` for column `i`.
-    pub(super) fn rows(self) -> impl Iterator<Item = u64> {
+    pub(crate) fn rows(self) -> impl Iterator<Item = u64> {
         let mask = u64::MAX.unbounded_shr(64 - u32::from(self.width));
         (0..usize::from(self.height)).map(move |row| {
             let place = row * usize::from(self.width);
@@ -122,7 +118,7 @@ impl KeyRef<'_> {
         })
     }
 
-    pub(super) fn imprint(self) -> Option<Imprint> {
+    pub(crate) fn imprint(self) -> Option<Imprint> {
         let mut imprint = Imprint::empty(MatrixSize::new(self.width, self.height).ok()?);
         for (row, word) in self.rows().enumerate() {
             imprint.set_word(row, word);
@@ -170,23 +166,16 @@ impl KeyTable {
 
     /// Returns the number of a key, from 0; None if the table does not have it.
     pub fn find(&self, key: &ImprintKey) -> Option<usize> {
-        self.find_ref(key.borrowed())
+        self.find_ref(key.borrowed(), self.hasher.hash_one(key.borrowed()))
     }
 
-    pub(super) fn get(&self, index: usize) -> KeyRef<'_> {
-        let (height, width) = self.sizes[index];
-        let start = self.starts[index];
-        KeyRef {
-            height,
-            width,
-            bits: &self.bits[start..start + words(width, height)],
-        }
+    fn find_ref(&self, key: KeyRef<'_>, hash: u64) -> Option<usize> {
+        let found = self.index.find(hash, |&index| self.get(wide(index)) == key);
+        found.map(|&index| wide(index))
     }
 
-    pub(super) fn find_ref(&self, key: KeyRef<'_>) -> Option<usize> {
-        let hash = self.hash(key);
-        let same = |&index: &u32| self.get(wide(index)) == key;
-        self.index.find(hash, same).map(|&index| wide(index))
+    pub(crate) fn get(&self, index: usize) -> KeyRef<'_> {
+        key_at(&self.sizes, &self.starts, &self.bits, index)
     }
 
     /// Adds a key. Returns false if the table has it already.
@@ -195,40 +184,23 @@ impl KeyTable {
         self.intern(key.borrowed()) == next
     }
 
-    pub(super) fn intern(&mut self, key: KeyRef<'_>) -> usize {
-        let hash = self.hash(key);
-        let same = |&index: &u32| self.get(wide(index)) == key;
-        if let Some(&index) = self.index.find(hash, same) {
-            return wide(index);
+    pub(crate) fn intern(&mut self, key: KeyRef<'_>) -> usize {
+        let hash = self.hasher.hash_one(key);
+        if let Some(index) = self.find_ref(key, hash) {
+            return index;
         }
         let index = self.len();
-        let number = narrow(index);
         self.sizes.push((key.height, key.width));
         self.starts.push(self.bits.len());
         self.bits.extend_from_slice(key.bits);
-        let Self {
-            sizes,
-            starts,
-            bits,
-            index: table,
-            hasher,
-        } = self;
-        table.insert_unique(hash, number, |&index| {
-            let ((height, width), start) = (sizes[wide(index)], starts[wide(index)]);
-            hash_of(
-                hasher,
-                KeyRef {
-                    height,
-                    width,
-                    bits: &bits[start..start + words(width, height)],
-                },
-            )
-        });
+        let (sizes, starts, bits, hasher) = (&self.sizes, &self.starts, &self.bits, &self.hasher);
+        let hash_of = |&index: &u32| hasher.hash_one(key_at(sizes, starts, bits, wide(index)));
+        self.index.insert_unique(hash, narrow(index), hash_of);
         index
     }
 
     /// Returns the same keys in their order, and for each its number in this table.
-    pub(super) fn sorted(&self) -> (Self, Vec<usize>) {
+    pub(crate) fn sorted(&self) -> (Self, Vec<usize>) {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_unstable_by_key(|&index| self.get(index));
         let mut sorted = Self::default();
@@ -237,14 +209,15 @@ impl KeyTable {
         }
         (sorted, order)
     }
-
-    fn hash(&self, key: KeyRef<'_>) -> u64 {
-        hash_of(&self.hasher, key)
-    }
 }
 
-fn hash_of(hasher: &DefaultHashBuilder, key: KeyRef<'_>) -> u64 {
-    hasher.hash_one(key)
+fn key_at<'a>(sizes: &[(u8, u8)], starts: &[usize], bits: &'a [u64], index: usize) -> KeyRef<'a> {
+    let (height, width) = sizes[index];
+    KeyRef {
+        height,
+        width,
+        bits: &bits[starts[index]..][..words(width, height)],
+    }
 }
 
 #[cfg(test)]
