@@ -7,7 +7,9 @@
 use std::hint::black_box;
 
 use taxel_core::prelude::*;
-use taxel_core::recognition::{Model, ModelHead, NamedShape, Noise, ShapeCount};
+use taxel_core::recognition::{
+    ImprintKey, KeyTable, Model, ModelHead, NamedShape, Noise, ShapeCount,
+};
 
 use timing::{Least, Work, in_turn};
 
@@ -30,24 +32,20 @@ fn model(keys: usize) -> Model {
     );
     let (anchor, ranges) = (Anchor::Centre, Ranges::default());
     let head = ModelHead::new(vec![shape], sensor, anchor, ranges, keys as u64);
-    let mut keys_and_counts = Vec::with_capacity(keys);
+    let mut table = KeyTable::default();
     let mut state = 1;
-    let mut seen = std::collections::HashSet::new();
-    while keys_and_counts.len() < keys {
+    while table.len() < keys {
         let mut imprint = Imprint::empty(MatrixSize::new(6, 6).expect("1 to 64"));
         for row in 0..6 {
             // Three in four taxels are active.
             imprint.set_word(row, next(&mut state) | next(&mut state));
         }
-        // It fills its box, and is new.
-        let bounds = imprint.bounds();
-        let whole =
-            bounds.is_some_and(|bounds| bounds.columns() == (0..6) && bounds.rows() == (0..6));
-        if whole && seen.insert(imprint) {
-            keys_and_counts.push((Some(imprint), vec![ShapeCount::new(0, 1)]));
+        let key = ImprintKey::of(&imprint);
+        if (key.width(), key.height()) == (6, 6) {
+            table.add(&key);
         }
     }
-    Model::from_parts(head, &keys_and_counts).expect("a model")
+    Model::of_table(head, &table, |_| [ShapeCount::new(0, 1)]).expect("a model")
 }
 
 /// Returns a touch like one of the templates, with some taxels flipped.

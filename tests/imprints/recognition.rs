@@ -6,8 +6,8 @@ use taxel_core::prelude::*;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
-    ImprintKey, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding, SearchMethod,
-    ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError,
+    ImprintKey, KeyTable, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding,
+    SearchMethod, ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError,
 };
 use taxel_core::sweep::{Shard, ShardOrderError};
 
@@ -582,8 +582,9 @@ fn a_model_with_another_number_of_poses_than_its_ranges_is_refused() {
         let ranges = ranges("5:5.1:0.1", "5", "0");
         let shapes = vec![NamedShape::new("disc", disc)];
         let head = ModelHead::new(shapes, sensor(16), Anchor::Corner, ranges, poses);
-        let key = "#".parse().expect("an imprint");
-        Model::from_parts(head, &[(Some(key), vec![ShapeCount::new(0, poses)])])
+        let mut keys = KeyTable::default();
+        keys.add(&ImprintKey::of(&"#".parse().expect("an imprint")));
+        Model::of_table(head, &keys, |_| [ShapeCount::new(0, poses)])
     };
     assert!(model(2).is_ok());
     for poses in [1, 3, u64::MAX] {

@@ -396,11 +396,19 @@ pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) ->
 mod tests {
     use taxel_core::figure::Figure;
     use taxel_core::pose::{Anchor, Axis, Ranges};
-    use taxel_core::recognition::{Model, ModelHead, NamedShape, ShapeCount};
+    use taxel_core::recognition::{ImprintKey, KeyTable, Model, ModelHead, NamedShape, ShapeCount};
     use taxel_core::sensor::Sensor;
     use taxel_files::formats::json;
 
     use super::*;
+
+    fn keys<const N: usize>(imprints: [&str; N]) -> KeyTable {
+        let mut keys = KeyTable::default();
+        for imprint in imprints {
+            keys.add(&ImprintKey::of(&imprint.parse().expect("an imprint")));
+        }
+        keys
+    }
 
     #[test]
     fn counts_beyond_64_bits_are_texts_wherever_they_stand() {
@@ -415,8 +423,9 @@ mod tests {
             ranges = ranges.with(axis, range.parse().expect("a range"));
         }
         let head = ModelHead::new(shapes, Sensor::default(), Anchor::Centre, ranges, poses);
-        let key = ("####\n####".parse().ok(), vec![ShapeCount::new(0, poses)]);
-        let limit = Evaluation::of(&Model::from_parts(head, &[key]).expect("a model"));
+        let keys = keys(["####\n####"]);
+        let model = Model::of_table(head, &keys, |_| [ShapeCount::new(0, poses)]);
+        let limit = Evaluation::of(&model.expect("a model"));
         let text = json::text(&EvaluationJson {
             evaluation: &limit,
             classifier: None,
@@ -457,14 +466,12 @@ mod tests {
             ranges,
             1000,
         );
-        let keys = [
-            (
-                "####\n####".parse().ok(),
-                vec![ShapeCount::new(0, 1000), ShapeCount::new(1, 1)],
-            ),
-            ("###\n###".parse().ok(), vec![ShapeCount::new(1, 999)]),
+        let counts = [
+            vec![ShapeCount::new(0, 1000), ShapeCount::new(1, 1)],
+            vec![ShapeCount::new(1, 999)],
         ];
-        let model = Model::from_parts(head, &keys).expect("a model");
+        let keys = keys(["####\n####", "###\n###"]);
+        let model = Model::of_table(head, &keys, |key| counts[key].clone()).expect("a model");
         let table = matrix(&Evaluation::of(&model), Charset::Unicode);
         assert!(table.contains("[1000]"), "{table}");
         let precision = table.lines().last().expect("a line");
