@@ -18,7 +18,6 @@ use taxel_files::acquire::RecorderError;
 use taxel_files::formats::Name;
 use taxel_files::formats::file::{system_reason, write_reason};
 use taxel_files::formats::recording::RecordingNote;
-use taxel_files::formats::stream::StreamRefusal;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::{ArchiveFileError, FileError, LibraryError};
 use taxel_files::{ReadError, ReadErrorKind};
@@ -204,15 +203,6 @@ fn size_advice(error: &ReadError) -> &'static str {
         "; give --rows and --columns"
     } else {
         ""
-    }
-}
-
-pub(crate) fn stream_advice(refusal: StreamRefusal) -> &'static str {
-    match refusal {
-        StreamRefusal::Unknown => "; --format names one",
-        StreamRefusal::Size => "; give --rows and --columns, and --format if it is text",
-        StreamRefusal::Shape { .. } => "; give --rows and --columns",
-        StreamRefusal::Cut => "",
     }
 }
 

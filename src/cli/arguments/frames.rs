@@ -18,8 +18,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::parameter::{Parameter, number};
 use taxel_core::recognition::Noise;
 use taxel_files::acquire::{AcquireOptions, Playback};
-use taxel_files::formats::recording::{Column, ReadOptions, TimeColumn};
-use taxel_files::formats::stream::StreamFormat;
+use taxel_files::formats::recording::{Column, Format, ReadOptions, TimeColumn};
 use taxel_files::storage::Existing;
 
 use crate::cli::arguments::flags::{
@@ -490,7 +489,7 @@ pub(crate) fn watch() -> Command {
         .required(true)
         .value_parser(name_or_path())
         .help("Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input");
-    let names: Vec<&str> = StreamFormat::ALL.iter().map(|own| own.name()).collect();
+    let names: Vec<&str> = Format::of_streams().map(|(name, _)| name).collect();
     let what = format!("Format of the stream: auto, {}", names.join(", "));
     let format = option("format", "FORMAT", flags::wrapped(&what, 52))
         .value_parser(PossibleValuesParser::new(
@@ -548,7 +547,7 @@ impl WatchArguments {
         let mut options = AcquireOptions::default();
         settings.apply(&mut options);
         if let Some(name) = format {
-            options.format = name.parse().ok();
+            options.format = Format::of_stream(name).ok();
             options.stream_format = None;
         }
         options.size = processing.size;

@@ -72,12 +72,11 @@ impl RecordingFile {
             }
         };
         let (metadata, complaint) = match metadata_beside(path) {
-            Some(Ok(metadata)) => {
-                let complaint = unended(path, &metadata);
-                (Some(metadata), complaint)
+            Ok(metadata) => {
+                let complaint = metadata.as_ref().and_then(|own| unended(path, own));
+                (metadata, complaint)
             }
-            Some(Err(error)) => (None, Some(error.to_string())),
-            None => (None, None),
+            Err(error) => (None, Some(error.to_string())),
         };
         match opened() {
             Ok((id, file)) => Ok(Self {

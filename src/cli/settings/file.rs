@@ -15,7 +15,7 @@
 use taxel_core::parameter::{Parameter, ParameterError};
 use taxel_core::quote::{did_you_mean, shortened_message};
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
-use taxel_files::formats::stream::StreamFormat;
+use taxel_files::formats::recording::Format;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -297,7 +297,7 @@ fn fill_sensor(
 ) -> Result<(), Refusal> {
     let (is_filled, found) = if let SettingKind::Format { fill } = row.kind {
         let name = string(value)?;
-        let format = name.parse::<StreamFormat>().ok();
+        let format = Format::of_stream(&name).ok();
         let is_known = format.is_some() || name == AUTO;
         (is_known && fill(sensors, FormatSetting(format)), name)
     } else {

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 use taxel_core::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
 use taxel_files::acquire::AcquireOptions;
-use taxel_files::formats::stream::StreamFormat;
+use taxel_files::formats::recording::Format;
 
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::live::message::WatchRequest;
@@ -33,11 +33,15 @@ pub(crate) enum SensorKey {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct FormatSetting(pub(crate) Option<StreamFormat>);
+pub(crate) struct FormatSetting(pub(crate) Option<&'static Format>);
 
 impl fmt::Display for FormatSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?}", self.0.map_or("auto", StreamFormat::name))
+        write!(
+            f,
+            "{:?}",
+            self.0.and_then(|format| format.stream).unwrap_or("auto")
+        )
     }
 }
 
@@ -141,8 +145,7 @@ impl SettingKind {
     pub(crate) fn expected(self) -> String {
         match self {
             Self::Format { .. } => {
-                let names = StreamFormat::ALL.iter();
-                let names = names.map(|format| format!("{:?}", format.name()));
+                let names = Format::of_streams().map(|(name, _)| format!("{name:?}"));
                 format!("one of \"auto\", {}", names.collect::<Vec<_>>().join(", "))
             }
             Self::Whole { least, most, .. } => format!("a whole number from {least} to {most}"),

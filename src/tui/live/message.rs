@@ -9,12 +9,11 @@ use std::sync::Arc;
 
 use taxel_core::frame::{Frame, FrameError, FrameSize, Processing, Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
-use taxel_core::parameter::{UnknownName, number};
+use taxel_core::parameter::number;
 use taxel_core::quote::shortened;
 use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
 use taxel_files::acquire::{AcquireOptions, Playback, SourceName};
-use taxel_files::formats::recording::ChannelInfo;
-use taxel_files::formats::stream::{StreamCounts, StreamFormat};
+use taxel_files::formats::recording::{ChannelInfo, Format, StreamCounts};
 use taxel_files::formats::value::decimal;
 use taxel_files::storage::{Existing, ModelChoice};
 
@@ -346,7 +345,7 @@ pub struct NamedSource {
     name: String,
     rows: Option<u16>,
     columns: Option<u16>,
-    format: Option<StreamFormat>,
+    format: Option<&'static Format>,
     baud: Option<u32>,
     channel: Option<String>,
     speed: Option<f64>,
@@ -365,8 +364,8 @@ impl NamedSource {
             Ok(())
         }),
         ("--format", |source, value| {
-            let format = value.text.parse();
-            source.format = Some(format.map_err(|error: UnknownName| error.to_string())?);
+            let format = Format::of_stream(value.text);
+            source.format = Some(format.map_err(|error| error.to_string())?);
             Ok(())
         }),
         ("--baud", |source, value| {

@@ -8,9 +8,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant, SystemTime};
 
 use taxel_core::frame::FrameSize;
-use taxel_files::acquire::{
-    AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire,
-};
+use taxel_files::ReadError;
+use taxel_files::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 
 use super::frame_size;
 
@@ -20,7 +19,7 @@ fn run(
     options: &AcquireOptions,
     stop: &AtomicBool,
     consumer: &mut dyn FnMut(AcquireEvent<'_>) -> ControlFlow<()>,
-) -> Result<(), AcquireError> {
+) -> Result<(), ReadError> {
     acquire(&FrameSource::File(path.to_owned()), options, stop, consumer)
 }
 
@@ -328,9 +327,8 @@ fn a_file_that_no_longer_grows_is_silent() {
         let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
             match event {
                 AcquireEvent::Tick(_) => ticks += 1,
-                AcquireEvent::Silent(found) => {
-                    let frames = found.counts.frames;
-                    silence = Some((found.bytes_per_second, frames, found.has_vanished));
+                AcquireEvent::Silent { counts, reason } => {
+                    silence = Some((counts.frames, reason.to_owned()));
                 }
                 _ => {}
             }
@@ -353,7 +351,13 @@ fn a_file_that_no_longer_grows_is_silent() {
     std::thread::scope(|scope| {
         for is_removed in [false, true] {
             scope.spawn(move || {
-                assert_eq!(silence(is_removed), Some((0.0, 2, is_removed)));
+                let end = if is_removed {
+                    "; its file was moved or removed"
+                } else {
+                    ""
+                };
+                let reason = format!("the source has gone silent{end}");
+                assert_eq!(silence(is_removed), Some((2, reason)));
             });
         }
     });

@@ -1,4 +1,4 @@
-//! The options of an acquisition, its reports, and its errors.
+//! The options of an acquisition, its reports, and the words for what goes wrong.
 
 use std::io;
 use std::ops::{ControlFlow, RangeInclusive};
@@ -6,20 +6,19 @@ use std::time::Duration;
 
 use taxel_core::frame::{Frame, FrameSize};
 
-use crate::acquire::followed_file::ReadAnew;
-use crate::error::ReadError;
 use crate::formats::file::system_reason;
-use crate::formats::recording::{ChannelInfo, Column, RecordingFormat, RecordingNote, TimeColumn};
-use crate::formats::stream::{Silence, StreamCounts, StreamFormat, StreamOptions};
-use crate::formats::value::decimal;
+use crate::formats::recording::{
+    ChannelInfo, Column, Format, ReadOptions, RecordingNote, StreamCounts, TimeColumn,
+};
+use crate::formats::value::{counted, decimal, grouped};
 
 /// The options of an acquisition: how a source is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcquireOptions {
     /// The format of a stream; None to detect it. If it is given, a file is a stream, not a recording.
-    pub format: Option<StreamFormat>,
+    pub format: Option<&'static Format>,
     /// The format of streams only, if `format` is not given; a file that is a recording is still played as one.
-    pub stream_format: Option<StreamFormat>,
+    pub stream_format: Option<&'static Format>,
     /// The size of frames of streams, and of recordings that do not state it.
     pub size: Option<FrameSize>,
     /// The size of frames of streams only, if `size` is not given; recordings state their own.
@@ -64,12 +63,13 @@ impl AcquireOptions {
     /// The allowed bits per second of a serial line.
     pub const BAUDS: RangeInclusive<u32> = 50..=20_000_000;
 
-    /// The options for decoding a stream; `from_start` says whether its first byte begins a frame.
-    pub(super) fn for_stream(&self, from_start: bool) -> StreamOptions {
-        StreamOptions {
-            format: self.format.or(self.stream_format),
-            size: self.size.or(self.stream_size),
-            from_start,
+    /// The options for reading a recording.
+    pub(super) fn of_recording(&self) -> ReadOptions {
+        ReadOptions {
+            size: self.size,
+            time_column: self.time_column.clone(),
+            label_column: self.label_column.clone(),
+            ..ReadOptions::default()
         }
     }
 }
@@ -82,10 +82,8 @@ impl Playback {
     pub fn allows(speed: f64) -> bool {
         speed > 0.0 && speed <= 1e6
     }
-}
 
-impl Playback {
-    /// Returns [`Self::Paced`] with this speed and repetition, or [`Self::Live`] for the speed 1 without repetition.
+    /// [`Self::Paced`] with this speed and repetition, or [`Self::Live`] for the speed 1 without repetition.
     pub fn paced(speed: f64, repeat: bool) -> Self {
         if repeat || speed != 1.0 {
             Self::Paced { speed, repeat }
@@ -104,8 +102,8 @@ impl Default for AcquireOptions {
     fn default() -> Self {
         Self {
             format: None,
-            size: None,
             stream_format: None,
+            size: None,
             stream_size: None,
             time_column: None,
             label_column: None,
@@ -141,12 +139,16 @@ pub enum AcquireEvent<'a> {
     Withdrawn,
     /// An oddity of a recording or a stream.
     Note(&'a RecordingNote),
-    /// The counts so far. Reported about ten times a second, with or without frames, unless a source is read as fast
-    /// as possible.
+    /// The counts so far. Reported about ten times a second, with or without frames.
     Tick(&'a StreamCounts),
     /// There was no frame for at least two seconds, and for three times as long as the source took for the last one
     /// (but a minute is enough). Reported once until the next frame, and again if bytes begin to arrive.
-    Silent(Silence<'a>),
+    Silent {
+        /// The counts so far.
+        counts: &'a StreamCounts,
+        /// The likely reason, in words.
+        reason: &'a str,
+    },
     /// The source cannot be opened yet; opening it is tried again each second.
     Absent(&'a io::Error),
     /// The source is lost; opening it is tried again each second.
@@ -156,12 +158,10 @@ pub enum AcquireEvent<'a> {
         /// The time spent waiting for it.
         gap: Duration,
     },
-    /// A recording begins again.
-    Again,
     /// The end of a recording that has grown is reached: from now on frames arrive as they are written. Reported once.
     Follows,
-    /// Reading a growing file starts again at its beginning.
-    Anew(ReadAnew),
+    /// A growing file is read again from its start, for this reason in words that follow its name.
+    Anew(&'a str),
     /// The end of a stream, with its counts.
     Ended(&'a StreamCounts),
 }
@@ -178,36 +178,68 @@ impl AcquireEvent<'_> {
     }
 }
 
-/// The error that ended an acquisition.
-#[derive(Debug, thiserror::Error)]
-pub enum AcquireError {
-    /// The source cannot be opened, or read on.
-    #[error("cannot {doing}: {}", system_reason(error))]
-    Io {
-        /// The operation, in words that follow "cannot".
-        doing: &'static str,
-        /// The error that the system reports.
-        error: io::Error,
-    },
-    /// The recording is damaged.
-    #[error(transparent)]
-    Recording(#[from] ReadError),
-    /// The source of a stream begins like a recording that only a file can be.
-    #[error("a recording ({}), not a stream", format.name())]
-    NotStream {
-        /// The format of the recording.
-        format: RecordingFormat,
-    },
-}
-
-impl AcquireError {
-    pub(super) fn opening(error: io::Error) -> Self {
-        let doing = "open";
-        Self::Io { doing, error }
+impl StreamCounts {
+    /// Why a stream has come to its end without a frame, in words; None if there was one.
+    pub fn no_frame(&self) -> Option<String> {
+        let last = self.last_dropped().map(|last| format!("; {last}"));
+        match (self.frames, self.bytes) {
+            (1.., _) => None,
+            (_, 0) => Some("the source is empty".to_owned()),
+            (_, bytes) => Some(format!(
+                "{} but no frame{}",
+                counted(bytes, "byte"),
+                last.unwrap_or_default()
+            )),
+        }
     }
 
-    pub(super) fn reading(error: io::Error) -> Self {
-        let doing = "read";
-        Self::Io { doing, error }
+    /// Why no frame comes, in words, while this many bytes a second come. A source that `has_baud` may have a wrong one.
+    pub(super) fn silence(&self, bytes_per_second: f64, has_baud: bool) -> String {
+        if bytes_per_second > 0.0 {
+            let guess = if has_baud { "baud, " } else { "" };
+            let guess = || format!("{guess}rows, columns or format?");
+            let why = self.last_dropped().unwrap_or_else(guess);
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a rate for a message"
+            )]
+            // Rounded up, so that a byte now and then is not shown as 0.
+            let rate = grouped(bytes_per_second.ceil() as u64);
+            return format!("{rate} B/s, none of it a frame; {why}");
+        }
+        let words = match self.bytes {
+            0 => "nothing has come yet; is it sending?",
+            _ => "the source has gone silent",
+        };
+        words.to_owned()
+    }
+
+    fn last_dropped(&self) -> Option<String> {
+        let reason = self.reason.as_ref()?;
+        Some(format!("the last one dropped: {reason}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_words_for_a_silence_depend_on_what_came() {
+        let mut counts = StreamCounts::default();
+        assert_eq!(
+            counts.silence(0.0, true),
+            "nothing has come yet; is it sending?"
+        );
+        counts.bytes = 9;
+        assert_eq!(counts.silence(0.0, true), "the source has gone silent");
+        let said = "8 B/s, none of it a frame; rows, columns or format?";
+        assert_eq!(counts.silence(7.5, false), said);
+        counts.reason = Some("row 2 has 1 number".to_owned());
+        let said = "8 B/s, none of it a frame; the last one dropped: row 2 has 1 number";
+        assert_eq!(counts.silence(8.0, true), said);
+        let said = "9 bytes but no frame; the last one dropped: row 2 has 1 number";
+        assert_eq!(counts.no_frame().as_deref(), Some(said));
     }
 }

@@ -5,26 +5,42 @@
 //! screen takes the frames that have arrived whenever it draws; nothing waits for the screen.
 //!
 //! ```text
-//! serial, tcp, FIFO, standard input, file -> StreamDecoder \
-//! recording -> formats::recording, at its own rate          -> AcquireEvent -> FrameRecorder (every frame)
+//! source: serial, tcp, FIFO, standard input, growing file -> an input that waits -> StreamReader \
+//!         a recording that is complete                                     -> recording::read     -> Session -> AcquireEvent
 //! ```
+//! The session gives each frame its time, waits until a frame of a recording is due, counts, ticks and notices silences.
 
-mod byte_input;
-mod clocks;
+mod clock;
 mod event;
-mod followed_file;
-mod playback;
+mod input;
+mod rate;
 mod recorder;
+mod session;
 mod source;
-mod stream;
+mod unix;
 
+use std::cell::RefCell;
+use std::fs::File;
+use std::io::{self, ErrorKind, Seek};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
 
-pub use clocks::FrameRate;
-pub use event::{AcquireError, AcquireEvent, AcquireOptions, AcquireSink, Playback};
-pub use followed_file::ReadAnew;
-pub use recorder::{FrameRecorder, MetadataFileError, RecorderError, metadata_beside};
+use crate::formats::recording::{
+    Format, ReadOptions, RecordingNote, StreamReader, format_of, read,
+};
+use crate::{ReadError, ReadErrorKind};
+use clock::TICK;
+use input::{InputEnd, OpenSource, WaitingInput};
+use session::Session;
+
+pub use event::{AcquireEvent, AcquireOptions, AcquireSink, Playback};
+pub use rate::FrameRate;
+pub use recorder::{FrameRecorder, RecorderError, metadata_beside};
 pub use source::{FrameSource, SourceName};
+
+/// The pause before opening a source is tried again.
+const RETRY: Duration = Duration::from_secs(1);
 
 /// Reads a source until it ends, `stop` is set, or the consumer breaks off. A recording is played back, and followed if
 /// it grows meanwhile. Any other file is read while it grows; if the format of a stream is given, reading always waits
@@ -70,18 +86,206 @@ pub use source::{FrameSource, SourceName};
 /// ```
 ///
 /// # Errors
-/// If the source cannot be opened at first, cannot be read on and does not come back, is a damaged
-/// recording, or turns out to be a recording that cannot be a stream, such as NPY: on standard input or a FIFO, or in a
-/// file that was no recording yet when it was opened.
+/// If the source cannot be opened at first, cannot be read on and does not come back (both with the kind
+/// [`ReadErrorKind::Io`]), is a damaged recording, has no known format, or does not say how its values are arranged.
 pub fn acquire(
     source: &FrameSource,
     options: &AcquireOptions,
     stop: &AtomicBool,
     consumer: &mut AcquireSink<'_>,
-) -> Result<(), AcquireError> {
-    let recording = source.open_recording(options);
-    match recording.map_err(|error| source.not_opened(error))? {
-        Some(recording) => playback::run(recording, options, stop, consumer),
-        None => stream::run(source, options, stop, consumer),
+) -> Result<(), ReadError> {
+    let mut session = Session::new(source, options, stop, consumer);
+    let recording = source.open_recording(options)?;
+    if let Some((path, file, format)) = &recording {
+        let metadata = metadata_beside(path).unwrap_or_else(|error| {
+            let complaint = error.to_string();
+            let _ = session.report(AcquireEvent::Note(&RecordingNote::Metadata { complaint }));
+            None
+        });
+        session.play(metadata);
+        // Tables are followed once they are read as they come.
+        if options.playback != Playback::Live || format.stream.is_none() || format.name == "csv" {
+            return play(&mut session, file, format);
+        }
     }
+    let mut reading = ReadOptions {
+        leaves_out: true,
+        is_joined: source.comes_back(),
+        ..options.of_recording()
+    };
+    match &recording {
+        Some((_, _, format)) => reading.format = Some(format),
+        None => {
+            reading.stream_size = options.stream_size;
+            reading.format = options.format.or(options.stream_format);
+        }
+    }
+    let opened = recording.map(|(path, file, _)| OpenSource::file(path, file));
+    stream(source, opened, &reading, &RefCell::new(session))
+}
+
+/// Errors of a file that may be a stream, or become a recording.
+const UNDECIDED: [ReadErrorKind; 2] = [ReadErrorKind::UnknownFormat, ReadErrorKind::Unsized];
+
+impl FrameSource {
+    /// Whether it is played as a recording: a file that has a known format, unless `options` names a format of streams.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or is of another kind, such as an image.
+    pub fn is_recording(&self, options: &AcquireOptions) -> Result<bool, ReadError> {
+        self.open_recording(options)
+            .map(|recording| recording.is_some())
+    }
+
+    /// The file in which the format was found, too: another one may have its name by now.
+    fn open_recording(
+        &self,
+        options: &AcquireOptions,
+    ) -> Result<Option<(&Path, File, &'static Format)>, ReadError> {
+        let (Self::File(path), None) = (self, options.format) else {
+            return Ok(None);
+        };
+        let mut file = File::open(path).map_err(|error| self.not_opened(&error))?;
+        let found = format_of(&file, &options.of_recording());
+        file.rewind()?;
+        match found {
+            Ok(format) => Ok(Some((path, file, format))),
+            // It may become one.
+            Err(error) if UNDECIDED.contains(&error.kind) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Plays a recording that does not grow, once or again and again.
+fn play(
+    session: &mut Session<'_, '_>,
+    file: &File,
+    format: &'static Format,
+) -> Result<(), ReadError> {
+    let options = ReadOptions {
+        format: Some(format),
+        ..session.options.of_recording()
+    };
+    loop {
+        read(file, &options, &mut |event| session.take(event))?;
+        session.check()?;
+        if session.is_stopped() || !session.begins_again() {
+            return Ok(());
+        }
+    }
+}
+
+/// Reads a stream of bytes until it ends. What is lost is opened again.
+fn stream(
+    source: &FrameSource,
+    opened: Option<OpenSource>,
+    options: &ReadOptions,
+    session: &RefCell<Session<'_, '_>>,
+) -> Result<(), ReadError> {
+    let comes_back = source.comes_back() && session.borrow().options.playback != Playback::Once;
+    let mut reader = StreamReader::new(options);
+    let mut next = match opened {
+        Some(opened) => Some(opened),
+        None => first_input(source, &mut session.borrow_mut())?,
+    };
+    if let Some(OpenSource::File { file, .. }) = &next
+        && session.borrow().options.playback != Playback::Once
+    {
+        let followed = session.borrow_mut().follow(file);
+        followed.map_err(|error| source.not_opened(&error))?;
+    }
+    session.borrow_mut().begin();
+    while let Some(opened) = next {
+        let mut input = WaitingInput::new(opened, session);
+        let result = reader.read(&mut input, &mut |event| session.borrow_mut().take(event));
+        let end = input.end();
+        let mut session = session.borrow_mut();
+        session.check()?;
+        if session.is_stopped() {
+            return Ok(());
+        }
+        let lost = match end {
+            Some(InputEnd::Anew(how)) => {
+                if session.report(AcquireEvent::Anew(how)).is_break() {
+                    return Ok(());
+                }
+                reader.begin_anew();
+                next = reopened(source, &mut session, TICK)?;
+                session.begin_anew();
+                continue;
+            }
+            Some(InputEnd::Closed) if comes_back => {
+                io::Error::new(ErrorKind::UnexpectedEof, "the other end has closed it")
+            }
+            Some(InputEnd::Lost(error)) if comes_back => error,
+            Some(InputEnd::Lost(error)) => return Err(error.into()),
+            _ => {
+                result?;
+                session.check_end()?;
+                session.report_end();
+                return Ok(());
+            }
+        };
+        result?;
+        next = back(source, &mut session, AcquireEvent::Lost(&lost))?;
+        session.begin();
+    }
+    Ok(())
+}
+
+/// Opens the source; if it does not exist yet, waits for it if the options say so. None if no more is wanted.
+fn first_input(
+    source: &FrameSource,
+    session: &mut Session<'_, '_>,
+) -> Result<Option<OpenSource>, ReadError> {
+    match OpenSource::open(source, session) {
+        Err(error) if session.options.waits && source.comes_back() && !is_invalid(&error) => {
+            back(source, session, AcquireEvent::Absent(&error))
+        }
+        opened => opened.map_err(|error| source.not_opened(&error)),
+    }
+}
+
+/// Reports why it waits for the source, opens it, and reports how long that took. None if no more is wanted.
+fn back(
+    source: &FrameSource,
+    session: &mut Session<'_, '_>,
+    event: AcquireEvent<'_>,
+) -> Result<Option<OpenSource>, ReadError> {
+    let since = Instant::now();
+    if session.report(event).is_break() {
+        return Ok(None);
+    }
+    let opened = reopened(source, session, RETRY)?;
+    let gap = since.elapsed();
+    let back = session.report(AcquireEvent::Back { gap });
+    Ok(opened.filter(|_| back.is_continue()))
+}
+
+/// Opens the source as soon as it is there, trying again after this pause. None if no more is wanted.
+fn reopened(
+    source: &FrameSource,
+    session: &mut Session<'_, '_>,
+    pause: Duration,
+) -> Result<Option<OpenSource>, ReadError> {
+    loop {
+        let next = Instant::now() + pause;
+        while Instant::now() < next {
+            if session.beat().is_break() {
+                return Ok(None);
+            }
+            std::thread::sleep(TICK);
+        }
+        match OpenSource::open(source, session) {
+            Err(error) if is_invalid(&error) => return Err(source.not_opened(&error)),
+            Err(_) => {}
+            Ok(opened) => return Ok(opened),
+        }
+    }
+}
+
+/// Whether the source is not one that can be opened. Waiting does not make it valid.
+fn is_invalid(error: &io::Error) -> bool {
+    error.kind() == ErrorKind::InvalidInput
 }

@@ -1,27 +1,17 @@
 //! The name of a source, and its kind.
 
-use crate::error::{ReadError, ReadErrorKind};
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{self, Read};
-use std::os::unix::fs::FileTypeExt;
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use crate::acquire::event::{AcquireError, AcquireOptions, Playback};
+use crate::acquire::event::Playback;
 use crate::acquire::recorder::RecorderError;
+use crate::acquire::unix;
 use crate::formats::file::system_reason;
-use crate::formats::recording::{ReadOptions, RecordingFormat, old_format_of};
 use crate::storage::FileId;
-
-#[derive(Debug)]
-pub(super) struct OpenRecording<'a> {
-    pub(super) path: &'a Path,
-    /// The file in which the format was found, at any position: another one may have its name by now.
-    pub(super) file: File,
-    /// The format, or the reason why the file is refused.
-    pub(super) format: Result<RecordingFormat, ReadError>,
-}
+use crate::{ReadError, ReadErrorKind};
 
 /// A source of frames.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -29,10 +19,9 @@ pub enum FrameSource {
     /// Standard input, named `-`.
     Standard,
     /// A connection to `HOST:PORT`, named `tcp://HOST:PORT`. If the other end closes it, taxel waits for it to return,
-    /// except with [`Playback::Once`](crate::acquire::Playback::Once).
+    /// except with [`Playback::Once`].
     Tcp(String),
-    /// A serial line. If it is unplugged, taxel waits for it to return, except with
-    /// [`Playback::Once`](crate::acquire::Playback::Once).
+    /// A serial line. If it is unplugged, taxel waits for it to return, except with [`Playback::Once`].
     Serial(PathBuf),
     /// A named pipe.
     Fifo(PathBuf),
@@ -55,42 +44,10 @@ impl FrameSource {
             SourceName::Path(path) => path,
         };
         match fs::metadata(&path).map(|metadata| metadata.file_type()) {
-            Ok(kind) if kind.is_char_device() => Self::Serial(path),
-            Ok(kind) if kind.is_fifo() => Self::Fifo(path),
+            Ok(kind) if unix::is_serial(kind) => Self::Serial(path),
+            Ok(kind) if unix::is_fifo(kind) => Self::Fifo(path),
             Err(_) if is_for_devices(&path) => Self::Serial(path),
             _ => Self::File(path),
-        }
-    }
-
-    /// The file if it is played as a recording: if it has a known format, and `options` names no format of a
-    /// stream. A file of another kind, such as an image, is returned, too, and refused when it is played.
-    ///
-    /// # Errors
-    /// If the file cannot be read.
-    pub fn recording(&self, options: &AcquireOptions) -> io::Result<Option<&Path>> {
-        let recording = self.open_recording(options)?;
-        Ok(recording.map(|recording| recording.path))
-    }
-
-    pub(super) fn open_recording(
-        &self,
-        options: &AcquireOptions,
-    ) -> io::Result<Option<OpenRecording<'_>>> {
-        let (Self::File(path), None) = (self, options.format) else {
-            return Ok(None);
-        };
-        let file = File::open(path)?;
-        match old_format_of(&file, &ReadOptions::default()) {
-            Err(error) => match error.kind {
-                ReadErrorKind::Io(kind) => Err(kind.into()),
-                ReadErrorKind::Invalid => Ok(Some(OpenRecording {
-                    path,
-                    file,
-                    format: Err(error),
-                })),
-                ReadErrorKind::UnknownFormat | ReadErrorKind::Unsized => Ok(None),
-            },
-            format @ Ok(_) => Ok(Some(OpenRecording { path, file, format })),
         }
     }
 
@@ -109,8 +66,8 @@ impl FrameSource {
     /// Refuses a source that cannot be read even later: a file that cannot be opened, or an address without a port.
     ///
     /// # Errors
-    /// Returns [`AcquireError::Io`].
-    pub fn check(&self) -> Result<(), AcquireError> {
+    /// The system's error, and an address without a port.
+    pub fn check(&self) -> Result<(), ReadError> {
         let checked = match self {
             Self::File(path) => File::open(path)
                 .and_then(|mut file| file.read(&mut [0]))
@@ -118,11 +75,11 @@ impl FrameSource {
             Self::Tcp(address) => check_address(address),
             Self::Standard | Self::Serial(_) | Self::Fifo(_) => Ok(()),
         };
-        checked.map_err(|error| self.not_opened(error))
+        checked.map_err(|error| self.not_opened(&error))
     }
 
-    /// Returns why bits per second have no effect on the source, in words that follow the name of the flag; None if
-    /// they have an effect, or if the source may be a serial line that is not plugged in.
+    /// Why bits per second have no effect on the source, in words that follow the name of the flag; None if they have
+    /// an effect, or if the source may be a serial line that is not plugged in.
     pub fn unused_baud(&self) -> Option<String> {
         match self {
             Self::Serial(_) => None,
@@ -131,32 +88,30 @@ impl FrameSource {
         }
     }
 
-    /// Creates the error for a source that cannot be opened. If the name looks like a connection, the message says
-    /// how one is written.
-    pub(super) fn not_opened(&self, error: io::Error) -> AcquireError {
-        let name = self.name();
+    /// The error for a source that cannot be opened. If the name looks like a connection, the message says how one is
+    /// written.
+    pub(super) fn not_opened(&self, error: &io::Error) -> ReadError {
+        let (name, reason) = (self.name(), system_reason(error));
         let is_connection = matches!(self, Self::File(_))
-            && error.kind() == io::ErrorKind::NotFound
+            && error.kind() == ErrorKind::NotFound
             && !name.contains('/')
             && check_address(&name).is_ok();
-        if !is_connection {
-            return AcquireError::opening(error);
-        }
-        let text = format!(
-            "{}; a connection is written {}",
-            system_reason(&error),
-            SourceName::Tcp(name)
-        );
-        AcquireError::opening(io::Error::new(error.kind(), text))
+        let hint = if is_connection {
+            format!("; a connection is written {}", SourceName::Tcp(name))
+        } else {
+            String::new()
+        };
+        ReadError::new(format!("cannot open: {reason}{hint}"))
+            .of_kind(ReadErrorKind::Io(error.kind()))
     }
 
     /// Refuses to record in the file that is watched, under any path, or to describe a recording in it.
     ///
     /// # Errors
-    /// Returns [`RecorderError::IsSource`].
+    /// [`RecorderError::Refused`].
     pub fn refuse_as_target(&self, target: &Path) -> Result<(), RecorderError> {
         let source = match self {
-            Self::Standard => FileId::of_stream(io::stdin()),
+            Self::Standard => unix::standard_input().and_then(|input| FileId::of(&input)),
             Self::File(path) => FileId::behind(path),
             Self::Tcp(_) | Self::Serial(_) | Self::Fifo(_) => return Ok(()),
         };
@@ -164,32 +119,15 @@ impl FrameSource {
         let Ok(source) = source else {
             return Ok(());
         };
-        let both = [target.to_owned(), target.with_extension("json")];
-        for path in both {
+        for path in [target.to_owned(), target.with_extension("json")] {
             if FileId::behind(&path).is_ok_and(|found| found == source) {
-                return Err(RecorderError::IsSource { path });
+                let name = path.display();
+                return Err(RecorderError::Refused(format!(
+                    "{name} is the source being watched: record to another file"
+                )));
             }
         }
         Ok(())
-    }
-
-    /// Whether the source is a file that was moved or removed: no file has its name.
-    pub(super) fn has_vanished(&self) -> bool {
-        matches!(self, Self::File(path) if has_no_file(path))
-    }
-
-    /// Whether its bytes are in a file, where they can be read again.
-    pub fn is_in_file(&self) -> bool {
-        match self {
-            Self::Standard => {
-                use std::os::fd::AsFd;
-                let input = io::stdin().as_fd().try_clone_to_owned();
-                let metadata = input.and_then(|input| File::from(input).metadata());
-                metadata.is_ok_and(|found| found.is_file())
-            }
-            Self::File(_) => true,
-            Self::Tcp(_) | Self::Serial(_) | Self::Fifo(_) => false,
-        }
     }
 
     /// Whether all its frames arrive while they are read. Those in a file came before, and standard input or a
@@ -206,15 +144,6 @@ impl FrameSource {
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
     }
-
-    /// Whether its first byte is the first one that was sent or written; false if it is joined anywhere.
-    pub(super) fn begins(&self) -> bool {
-        !self.comes_back()
-    }
-}
-
-pub(super) fn has_no_file(path: &Path) -> bool {
-    !path.is_file()
 }
 
 /// Whether a device may appear at a path when it is plugged in.
@@ -228,7 +157,7 @@ pub(super) fn check_address(address: &str) -> io::Result<()> {
     match parts.filter(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok()) {
         Some(_) => Ok(()),
         None => Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
+            ErrorKind::InvalidInput,
             "expected tcp://HOST:PORT with a port up to 65535",
         )),
     }

@@ -33,11 +33,11 @@ use std::sync::atomic::AtomicBool;
 
 use taxel_core::frame::{Frame, FrameSize, Processing};
 use taxel_core::quote::as_argument;
-use taxel_files::acquire::{
-    AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire,
+use taxel_files::acquire::{AcquireEvent, FrameRecorder, FrameSource, Playback, acquire};
+use taxel_files::formats::recording::{
+    ChannelChoice, ChannelInfo, RecordingMetadata, StreamCounts, no_channel,
 };
-use taxel_files::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata, no_channel};
-use taxel_files::formats::stream::StreamCounts;
+use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::commands::model;
@@ -301,7 +301,6 @@ impl Watcher<'_> {
 
     fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
         self.record(|recording, _| recording.tick())?;
-        self.reports.check_shape(counts)?;
         self.answers.tick(&mut self.reports)?;
         self.reports.tick(counts);
         Ok(())
@@ -310,11 +309,13 @@ impl Watcher<'_> {
     /// Ends the recording and the answers. Returns the first error in this order: of recording, of writing answers,
     /// of the frames, of the source. A tare that lacks frames is an error of the frames, unless the source has
     /// failed.
-    fn finish(mut self, acquired: Result<(), AcquireError>, stopped: bool) -> Result<(), CliError> {
+    fn finish(mut self, acquired: Result<(), ReadError>, stopped: bool) -> Result<(), CliError> {
         let mut failure = self.failure.take().or_else(|| self.release().err());
         let ended_well = acquired.is_ok() && !stopped;
-        let is_unreadable = matches!(acquired, Err(AcquireError::Io { .. }));
-        let damage = acquired.err().map(|error| self.reports.damage(error));
+        let error = acquired.err();
+        let is_unreadable =
+            (error.as_ref()).is_some_and(|error| matches!(error.kind, ReadErrorKind::Io(_)));
+        let damage = error.map(|error| self.reports.damage(error));
         if let (Some(error), Some(recording)) =
             (failure.as_ref().or(damage.as_ref()), &mut self.recording)
         {
@@ -365,7 +366,7 @@ fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
     }
     // A source that cannot be read is reported when it is watched.
     if let Playback::Paced { repeat, .. } = asked.options.playback
-        && matches!(source.recording(&asked.options), Ok(None))
+        && source.is_recording(&asked.options) == Ok(false)
     {
         let flag = if repeat { "loop" } else { "speed" };
         let reason = "on a stream: it is for recordings".to_owned();

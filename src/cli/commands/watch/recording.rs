@@ -4,22 +4,20 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use taxel_core::frame::Frame;
-use taxel_files::ReadError;
 use taxel_files::acquire::{
-    AcquireError, AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, RecorderError,
+    AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, RecorderError,
 };
-use taxel_files::formats::recording::{RecordingMetadata, unknown_format};
-use taxel_files::formats::stream::{NoFrameReason, StreamCounts, StreamFormat, StreamRefusal};
+use taxel_files::formats::recording::{Format, RecordingMetadata, StreamCounts};
 use taxel_files::formats::value::counted;
+use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::arguments::frames::WatchArguments;
-use crate::cli::error::{CliError, note_advice, stream_advice};
+use crate::cli::error::{CliError, note_advice};
 
-/// A recording, and its metadata, which is written again when something new becomes known.
+/// A recording, whose metadata is written again when something new becomes known.
 pub(super) struct WatchRecording<'a> {
     path: &'a Path,
     recorder: FrameRecorder,
-    metadata: RecordingMetadata,
 }
 
 impl<'a> WatchRecording<'a> {
@@ -38,19 +36,14 @@ impl<'a> WatchRecording<'a> {
             ..RecordingMetadata::default()
         };
         let recorder = FrameRecorder::create(path, asked.existing, &metadata)?;
-        Ok(Some(Self {
-            path,
-            recorder,
-            metadata,
-        }))
+        Ok(Some(Self { path, recorder }))
     }
 
     pub(super) fn describe(
         &mut self,
         change: impl FnOnce(&mut RecordingMetadata),
     ) -> Result<(), CliError> {
-        change(&mut self.metadata);
-        let described = self.recorder.describe(&self.metadata);
+        let described = self.recorder.describe(change);
         described.map_err(CliError::Recorder)
     }
 
@@ -109,7 +102,7 @@ const REPORT: Duration = Duration::from_secs(1);
 pub(super) struct SourceReports<'a> {
     source: &'a FrameSource,
     /// The format of streams that the settings name; None if a flag names one.
-    format: Option<StreamFormat>,
+    format: Option<&'static Format>,
     note: &'a mut dyn FnMut(&str),
     dropped: u64,
     reported: Option<Instant>,
@@ -142,14 +135,13 @@ impl<'a> SourceReports<'a> {
 
     pub(super) fn remark(&mut self, event: AcquireEvent<'_>) {
         let text = match event {
-            AcquireEvent::Silent(silence) => silence.reason(self.source.unused_baud().is_none()),
+            AcquireEvent::Silent { reason, .. } | AcquireEvent::Anew(reason) => reason.to_owned(),
             AcquireEvent::Lost(error) => AcquireEvent::lost(error),
             AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
             AcquireEvent::Note(note) if note.is_plain() => return,
             AcquireEvent::Note(note) => {
                 return self.warn(&format!("{note}{}", note_advice(note)));
             }
-            AcquireEvent::Anew(how) => how.to_string(),
             _ => return,
         };
         self.say(&text);
@@ -162,29 +154,18 @@ impl<'a> SourceReports<'a> {
         }
     }
 
-    pub(super) fn damage(&self, error: AcquireError) -> CliError {
-        match error {
-            AcquireError::Recording(error) => self.damaged(error),
-            AcquireError::NotStream { .. } => {
-                // A pipe does not bring its bytes again.
-                let advice = match self.source {
-                    source if !source.is_in_file() => {
-                        "save it to a file, then type taxel frames FILE"
-                    }
-                    FrameSource::Standard => "read it with taxel frames -",
-                    _ => "watch it again when it is complete",
-                };
-                self.refused(&format!("{error}; {advice}"))
-            }
-            AcquireError::Io { .. } => self.refused(&error),
+    /// The error that ended the source. If a stream cannot be decoded without more flags, it says which of them help.
+    pub(super) fn damage(&self, error: ReadError) -> CliError {
+        let advice = match error.kind {
+            ReadErrorKind::UnknownFormat => "; --format names one",
+            ReadErrorKind::Unsized => "; give --rows and --columns",
+            _ => "",
+        };
+        if advice.is_empty() || matches!(self.source, FrameSource::File(_)) {
+            let name = self.source.name();
+            return CliError::Recording { name, error };
         }
-    }
-
-    fn damaged(&self, error: ReadError) -> CliError {
-        CliError::Recording {
-            name: self.source.name(),
-            error,
-        }
+        self.refused(&format!("{error}{advice}{}", self.format_advice()))
     }
 
     /// Reports dropped frames, unless that was done a moment ago.
@@ -211,51 +192,27 @@ impl<'a> SourceReports<'a> {
         self.warn(&text);
     }
 
-    pub(super) fn check_shape(&self, counts: &StreamCounts) -> Result<(), CliError> {
-        match counts.refusal() {
-            // An echo that leaves out values of some messages is refused too, since the others are not all frames.
-            None if counts.cut => Err(self.undecoded(StreamRefusal::Cut)),
-            None => Ok(()),
-            Some(refusal) => Err(self.undecoded(refusal)),
-        }
-    }
-
-    /// Returns the error for a stream that cannot be decoded without more flags; it says which flags help. An unknown
-    /// format is an error of recordings for a file, and of streams for any other source.
-    fn undecoded(&self, refusal: StreamRefusal) -> CliError {
-        match (refusal, self.source) {
-            (StreamRefusal::Unknown, FrameSource::File(_)) => self.damaged(unknown_format()),
-            _ => self.refused(&format!(
-                "{refusal}{}{}",
-                stream_advice(refusal),
-                self.format_advice()
-            )),
-        }
-    }
-
+    /// Reports dropped frames, and that there was no frame at all.
     pub(super) fn end(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
-        self.check_shape(counts)?;
         self.report_dropped(counts);
-        match counts.no_frame_reason() {
-            None => Ok(()),
-            Some(NoFrameReason::Empty) => Err(CliError::Empty {
-                name: self.source.name(),
-            }),
-            Some(NoFrameReason::Refused(refusal)) => Err(self.undecoded(refusal)),
-            Some(reason @ NoFrameReason::Undecoded { reason: None, .. }) => {
-                let advice = "check --rows, --columns and --format";
-                Err(self.refused(&format!("{reason}; {advice}{}", self.format_advice())))
-            }
-            Some(reason) => Err(self.refused(&format!("{reason}{}", self.format_advice()))),
+        let Some(reason) = counts.no_frame() else {
+            return Ok(());
+        };
+        if counts.bytes == 0 {
+            let name = self.source.name();
+            return Err(CliError::Empty { name });
         }
+        let advice = match counts.reason {
+            None => "; check --rows, --columns and --format",
+            Some(_) => "",
+        };
+        Err(self.refused(&format!("{reason}{advice}{}", self.format_advice())))
     }
 
     fn format_advice(&self) -> String {
         self.format.map_or_else(String::new, |format| {
-            format!(
-                "; the settings say format {:?}, which --format overrides",
-                format.name()
-            )
+            let name = format.stream.unwrap_or(format.name);
+            format!("; the settings say format {name:?}, which --format overrides")
         })
     }
 }

@@ -17,8 +17,9 @@ use taxel_core::frame::Frame;
 use taxel_core::lock::locked;
 use taxel_files::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 use taxel_files::formats::file::system_reason;
-use taxel_files::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
-use taxel_files::formats::stream::StreamCounts;
+use taxel_files::formats::recording::{
+    ChannelChoice, ChannelInfo, RecordingMetadata, StreamCounts,
+};
 use taxel_files::storage::Existing;
 
 use crate::tui::live::history::bytes_of;
@@ -125,7 +126,7 @@ impl FrameFeed {
     ) {
         let mut wanted = ControlFlow::Continue(());
         let mut consumer = |event: AcquireEvent<'_>| {
-            let is_time = matches!(event, AcquireEvent::Tick(_) | AcquireEvent::Silent(_));
+            let is_time = matches!(event, AcquireEvent::Tick(_) | AcquireEvent::Silent { .. });
             // A script has no clock: the time between its frames is its own, not a silence of the source.
             if is_time && options.playback == Playback::Once {
                 return ControlFlow::Continue(());
@@ -206,10 +207,8 @@ impl FrameFeed {
                 pending.note_recorded(written);
                 is_new && pending.set_new()
             }
-            AcquireEvent::Silent(silence) => self.change(|pending| {
-                let source = source::named(&request.source);
-                let has_baud = source.unused_baud().is_none();
-                let why = source::silence(&source, silence.counts, &silence.reason(has_baud));
+            AcquireEvent::Silent { counts, reason } => self.change(|pending| {
+                let why = source::silence(&source::named(&request.source), counts, reason);
                 pending.status().state = SourceState::Silent(why);
             }),
             AcquireEvent::Absent(error) => self.change(|pending| {
@@ -232,10 +231,8 @@ impl FrameFeed {
                 pending.status().set_note(format!("the file {how}"));
             }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
-                let reason = source::reason_at_end(&source::named(&request.source), counts);
-                pending.end_stream(counts, reason);
+                pending.end_stream(counts, source::reason_at_end(counts));
             }),
-            AcquireEvent::Again => false,
         }
     }
 }
@@ -375,8 +372,7 @@ impl Pending {
 #[cfg(test)]
 mod tests {
     use taxel_core::frame::FrameSize;
-    use taxel_files::formats::recording::ChannelInfo;
-    use taxel_files::formats::stream::StreamCounts;
+    use taxel_files::formats::recording::{ChannelInfo, StreamCounts};
 
     use super::*;
     use crate::tui::live::state::Live;

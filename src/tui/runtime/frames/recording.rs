@@ -5,7 +5,7 @@
 //! add              each frame               the source's thread
 //! tick             what has waited          the source's thread
 //! flush            all that waits, synced   the source's thread at its end; the disk's before the program is stopped
-//! write_metadata   threshold, tare, marks   the disk's thread
+//! write_metadata   threshold, tare, marks   the disk's thread; meanwhile the source's waits to add
 //! finish           the rest, synced         the disk's thread
 //! ```
 //! A disk may hang in each of these functions, so none is called on the screen's thread.
@@ -28,8 +28,6 @@ pub(in crate::tui::runtime) struct Recording {
     path: Mutex<PathBuf>,
     /// Whether the program chose the name, so that it may choose another one.
     is_name_chosen: bool,
-    /// Locked while the disk writes metadata, and before `recorder`: the later metadata stays.
-    metadata: Mutex<()>,
     recorder: Mutex<RecorderState>,
 }
 
@@ -49,7 +47,6 @@ impl Recording {
         Self {
             path: Mutex::new(path),
             is_name_chosen: false,
-            metadata: Mutex::default(),
             recorder: Mutex::new(RecorderState::New),
         }
     }
@@ -148,27 +145,13 @@ impl Recording {
         self.write(FrameRecorder::flush)
     }
 
-    /// Writes threshold, tare and marks into the metadata, in place of those before. Frames are added meanwhile.
+    /// Writes threshold, tare and marks into the metadata, in place of those before.
     pub(in crate::tui::runtime) fn write_metadata(&self, view: RecordedView) -> Result<(), String> {
-        let one_at_a_time = locked(&self.metadata);
-        let draft = self.open(|recorder| recorder.set_view(view)).flatten();
-        let written = match draft {
-            Some(draft) => draft.write(),
-            None => Ok(()),
-        };
-        drop(one_at_a_time);
-        written.map_err(|error| {
-            self.open(|recorder| recorder.note_failure(&error));
-            self.close();
-            error.to_string()
-        })
-    }
-
-    fn open<T>(&self, act: impl FnOnce(&mut FrameRecorder) -> T) -> Option<T> {
-        match &mut *locked(&self.recorder) {
-            RecorderState::Open(recorder) => Some(act(recorder)),
-            _ => None,
-        }
+        let RecordedView { rule, tare, marks } = view;
+        let described = self.write(|recorder| {
+            recorder.describe(|own| (own.rule, own.tare, own.marks) = (rule, tare, marks))
+        });
+        described.map(drop)
     }
 
     fn write(
@@ -206,7 +189,6 @@ impl Recording {
         let RecorderState::Open(recorder) = before else {
             return None;
         };
-        let _one_at_a_time = locked(&self.metadata);
         let left_out = recorder.left_out();
         let finished = recorder.finish();
         Some(finished.map(|frames| RecordedFrames { frames, left_out }))

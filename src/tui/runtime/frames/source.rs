@@ -6,12 +6,11 @@ use std::os::fd::AsFd;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-use taxel_files::ReadErrorKind;
-use taxel_files::acquire::{AcquireError, FrameSource, SourceName};
-use taxel_files::formats::recording::unknown_format;
-use taxel_files::formats::stream::{NoFrameReason, StreamCounts, StreamRefusal};
+use taxel_files::acquire::{FrameSource, SourceName};
+use taxel_files::formats::recording::StreamCounts;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::below_home;
+use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::tui::runtime::disk::files::WriteAccess;
 
@@ -82,18 +81,21 @@ fn is_file(source: &FrameSource) -> bool {
     }
 }
 
-const FORMAT_HINT: &str = "; after Esc, add one to :watch, as in --format lines";
-
-const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --columns C";
-
-/// Returns the reason why a source cannot be read.
-pub(super) fn reason(source: &FrameSource, error: &AcquireError) -> String {
-    let hint = match (error, source) {
-        (AcquireError::Recording(error), _) if error.kind == ReadErrorKind::Unsized => SIZE_HINT,
-        (AcquireError::NotStream { .. }, FrameSource::File(_)) => {
-            "; watch it again when it is complete"
+/// Returns the reason why a source cannot be read, and what helps.
+pub(super) fn reason(source: &FrameSource, error: &ReadError) -> String {
+    let hint = match (error.kind, source) {
+        (ReadErrorKind::UnknownFormat, FrameSource::Standard) => {
+            "; start again in the shell, with --format lines"
         }
-        (AcquireError::NotStream { .. }, _) => "; save it to a file, and watch that",
+        (ReadErrorKind::UnknownFormat, source) if !matches!(source, FrameSource::File(_)) => {
+            "; after Esc, add one to :watch, as in --format lines"
+        }
+        (ReadErrorKind::Unsized, FrameSource::Standard) => {
+            "; start again in the shell, with --rows R --columns C"
+        }
+        (ReadErrorKind::Unsized, _) => {
+            "; after Esc, add them to :watch, as in --rows R --columns C"
+        }
         _ => "",
     };
     format!("{error}{hint}")
@@ -102,40 +104,19 @@ pub(super) fn reason(source: &FrameSource, error: &AcquireError) -> String {
 /// Returns the reason why no frame comes, given what is said of the silence. It stays true while the silence lasts: a
 /// page on which nothing changes sends nothing.
 pub(super) fn silence(source: &FrameSource, counts: &StreamCounts, what: &str) -> String {
-    let refusal = counts.refusal();
     // A file has no baud, and sends nothing.
-    if let (FrameSource::File(_), None, 0, 1..) = (source, refusal, counts.frames, counts.bytes) {
+    if let (FrameSource::File(_), 0, 1..) = (source, counts.frames, counts.bytes) {
         let bytes = counted(counts.bytes, "byte");
         return format!("no frame yet: none in {bytes}; rows, columns or format?");
     }
-    let hint = refusal.map_or("", |refusal| hint(source, refusal));
-    format!("no frame for more than 2 s: {what}{hint}")
+    format!("no frame for more than 2 s: {what}")
 }
 
 /// Returns the reason why a stream came to its end without a frame; None if there was one.
-pub(super) fn reason_at_end(source: &FrameSource, counts: &StreamCounts) -> Option<String> {
-    let reason = counts.no_frame_reason()?;
-    let hint = match (reason, source) {
-        (NoFrameReason::Refused(StreamRefusal::Unknown), FrameSource::File(_)) => {
-            return Some(unknown_format().to_string());
-        }
-        (NoFrameReason::Refused(refusal), source) => hint(source, refusal),
-        (NoFrameReason::Undecoded { reason: None, .. }, _) => "; rows, columns or format?",
+pub(super) fn reason_at_end(counts: &StreamCounts) -> Option<String> {
+    let hint = match counts.reason {
+        None if counts.bytes > 0 => "; rows, columns or format?",
         _ => "",
     };
-    Some(format!("{reason}{hint}"))
-}
-
-fn hint(source: &FrameSource, refusal: StreamRefusal) -> &'static str {
-    match (refusal, source) {
-        (StreamRefusal::Unknown, FrameSource::Standard) => {
-            "; start again in the shell, with --format lines"
-        }
-        (StreamRefusal::Unknown, _) => FORMAT_HINT,
-        (refusal, FrameSource::Standard) if refusal.is_of_size() => {
-            "; start again in the shell, with --rows R --columns C"
-        }
-        (refusal, _) if refusal.is_of_size() => SIZE_HINT,
-        _ => "",
-    }
+    Some(counts.no_frame()? + hint)
 }

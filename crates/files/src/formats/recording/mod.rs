@@ -70,15 +70,8 @@ mod stream;
 
 mod format;
 
-mod detect;
-
 pub use answer::FrameAnswer;
 pub use channels::{ChannelChoice, no_channel};
-pub(crate) use detect::EarlierLayout;
-pub use detect::{
-    RecordingFormat, RecordingInput, format_after, format_of as old_format_of, read_as, recognised,
-};
-pub(crate) use detect::{StartKind, StartSearch};
 pub use error::{unknown_format, unshaped};
 pub use event::{
     ChannelInfo, Column, ReadOptions, RecordingEvent, RecordingNote, RecordingSink, TimeColumn,

@@ -1,0 +1,229 @@
+//! An open source as an input that waits: reading it takes as long as bytes need to come. Meanwhile the session ticks.
+
+use std::cell::RefCell;
+use std::fs::{self, File};
+use std::io::{self, BufRead, ErrorKind, Read};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use crate::acquire::clock::TICK;
+use crate::acquire::session::Session;
+use crate::acquire::source::{FrameSource, check_address};
+use crate::acquire::unix::{self, Device};
+use crate::storage::FileId;
+
+const CHUNK: usize = 1 << 16;
+
+/// The time that making a connection may take.
+const CONNECTING: Duration = Duration::from_secs(5);
+
+/// The pause at the end of a file before it is checked for growth again.
+const GROWTH: Duration = Duration::from_millis(50);
+
+/// An open source.
+pub(super) enum OpenSource {
+    Device(Device),
+    /// A file, and the number of bytes that were read of it.
+    File {
+        path: PathBuf,
+        file: File,
+        offset: u64,
+    },
+}
+
+/// The reason why an input has ended.
+#[derive(Debug)]
+pub(super) enum InputEnd {
+    /// It is complete, or the other end has closed it.
+    Closed,
+    /// No more is wanted.
+    Stopped,
+    Lost(io::Error),
+    /// The file is to be read from its start again, for this reason in words.
+    Anew(&'static str),
+}
+
+impl OpenSource {
+    /// Opens a source. None if no more is wanted before it is open.
+    pub(super) fn open(
+        source: &FrameSource,
+        session: &mut Session<'_, '_>,
+    ) -> io::Result<Option<Self>> {
+        Ok(Some(match source {
+            FrameSource::Standard => Self::Device(Device::Standard(io::stdin())),
+            FrameSource::Tcp(address) => match connect_unless_stopped(address, session)? {
+                Some(stream) => Self::Device(Device::Tcp(stream)),
+                None => return Ok(None),
+            },
+            FrameSource::Serial(path) => {
+                Self::Device(Device::File(unix::open_line(path, session.options.baud)?))
+            }
+            FrameSource::Fifo(path) => Self::Device(Device::File(unix::open_fifo(path)?)),
+            FrameSource::File(path) => Self::file(path, File::open(path)?),
+        }))
+    }
+
+    pub(super) fn file(path: &Path, file: File) -> Self {
+        Self::File {
+            path: path.to_owned(),
+            file,
+            offset: 0,
+        }
+    }
+}
+
+/// A source behind a buffer; see the module.
+pub(super) struct WaitingInput<'s, 'a, 'b> {
+    source: OpenSource,
+    session: &'s RefCell<Session<'a, 'b>>,
+    buffer: Vec<u8>,
+    /// The part of the buffer that was not taken yet.
+    rest: std::ops::Range<usize>,
+    end: Option<InputEnd>,
+}
+
+impl<'s, 'a, 'b> WaitingInput<'s, 'a, 'b> {
+    pub(super) fn new(source: OpenSource, session: &'s RefCell<Session<'a, 'b>>) -> Self {
+        Self {
+            source,
+            session,
+            buffer: vec![0; CHUNK],
+            rest: 0..0,
+            end: None,
+        }
+    }
+
+    /// Why the input has ended; None if it was not read to its end.
+    pub(super) fn end(self) -> Option<InputEnd> {
+        self.end
+    }
+
+    /// Waits for bytes. Returns their number, or why no more come.
+    fn wait(&mut self) -> Result<usize, InputEnd> {
+        loop {
+            let mut session = self.session.borrow_mut();
+            if session.tick().is_break() {
+                return Err(InputEnd::Stopped);
+            }
+            let count = match &mut self.source {
+                OpenSource::Device(device) => match device.read(&mut self.buffer, TICK) {
+                    Ok(Some(0)) => return Err(InputEnd::Closed),
+                    Ok(count) => count.unwrap_or(0),
+                    Err(error) => return Err(InputEnd::Lost(error)),
+                },
+                OpenSource::File { path, file, offset } => {
+                    let count = read_some(file, &mut self.buffer).map_err(InputEnd::Lost)?;
+                    *offset += count as u64;
+                    if count == 0 {
+                        if let Some(how) = rewritten(path, file, *offset).map_err(InputEnd::Lost)? {
+                            return Err(InputEnd::Anew(how));
+                        }
+                        if !session.may_go_on() {
+                            return Err(InputEnd::Closed);
+                        }
+                        drop(session);
+                        std::thread::sleep(GROWTH);
+                        continue;
+                    }
+                    count
+                }
+            };
+            if count > 0 {
+                session.counts.bytes += count as u64;
+                return Ok(count);
+            }
+        }
+    }
+}
+
+impl BufRead for WaitingInput<'_, '_, '_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.rest.is_empty() && self.end.is_none() {
+            match self.wait() {
+                Ok(count) => self.rest = 0..count,
+                Err(end) => self.end = Some(end),
+            }
+        }
+        match self.end {
+            // What was sent may have been cut off anywhere, but a file ends where it ends.
+            Some(InputEnd::Closed) if self.session.borrow().is_read_to_its_end() => Ok(&[]),
+            Some(_) => Err(ErrorKind::UnexpectedEof.into()),
+            None => Ok(&self.buffer[self.rest.clone()]),
+        }
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.rest.start += count;
+    }
+}
+
+impl Read for WaitingInput<'_, '_, '_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let found = self.fill_buf()?;
+        let count = found.len().min(bytes.len());
+        bytes[..count].copy_from_slice(&found[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+}
+
+/// Reads the bytes that are there. A read that a signal interrupted is repeated: without bytes, it would count as the
+/// end of the file.
+fn read_some(file: &mut impl Read, bytes: &mut [u8]) -> io::Result<usize> {
+    loop {
+        match file.read(bytes) {
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            read => return read,
+        }
+    }
+}
+
+/// Why a file that was read to this end must be read from its start again: it has become shorter, or another one has its
+/// name. While no file has the name, the open one is the only one.
+fn rewritten(path: &Path, file: &File, offset: u64) -> io::Result<Option<&'static str>> {
+    let own = file.metadata()?;
+    if own.len() < offset {
+        return Ok(Some("was truncated: reading it again from its start"));
+    }
+    let named = fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    let is_other =
+        named.is_some_and(|named| FileId::in_metadata(&named) != FileId::in_metadata(&own));
+    // Bytes may have been appended before the other file got the name.
+    let is_replaced = is_other && own.len() == offset;
+    Ok(is_replaced.then_some("was replaced: reading the new file from its start"))
+}
+
+/// Connects on a thread of its own. The thread is abandoned if the connection is no longer wanted, because looking up
+/// the addresses of a name and waiting for an answer cannot be interrupted.
+fn connect_unless_stopped(
+    address: &str,
+    session: &mut Session<'_, '_>,
+) -> io::Result<Option<TcpStream>> {
+    let (send, connected) = channel();
+    let own = address.to_owned();
+    std::thread::Builder::new().spawn(move || send.send(connect(&own)))?;
+    loop {
+        match connected.recv_timeout(TICK) {
+            Ok(stream) => return stream.map(Some),
+            Err(RecvTimeoutError::Timeout) if session.beat().is_break() => return Ok(None),
+            Err(RecvTimeoutError::Timeout) => {}
+            // The thread does not panic.
+            Err(RecvTimeoutError::Disconnected) => return Err(ErrorKind::NotConnected.into()),
+        }
+    }
+}
+
+fn connect(address: &str) -> io::Result<TcpStream> {
+    check_address(address)?;
+    let mut failure = io::Error::new(ErrorKind::NotFound, "no such host");
+    for address in address.to_socket_addrs()? {
+        let connected = TcpStream::connect_timeout(&address, CONNECTING);
+        match connected.and_then(|stream| unix::keep_alive(&stream).map(|()| stream)) {
+            Ok(stream) => return Ok(stream),
+            Err(error) => failure = error,
+        }
+    }
+    Err(failure)
+}
