@@ -46,16 +46,22 @@ pub(crate) fn channel_shape(info: &ChannelInfo) -> Option<(u16, u16)> {
 
 /// Reads a whole recording, or the part of a damaged one before the damage.
 pub(crate) fn recorded(bytes: &[u8], shape: Option<(u16, u16)>) -> Recorded {
-    let mut options = ReadOptions::default();
-    if let Some((rows, columns)) = shape {
-        options = options.with_size(frame_size(rows, columns));
-    }
+    let size = shape.map(|(rows, columns)| frame_size(rows, columns));
+    let options = ReadOptions {
+        size,
+        ..ReadOptions::default()
+    };
+    recorded_with(bytes, &options)
+}
+
+/// Reads a recording with these options. Notes that only say how it is read are left out.
+pub(crate) fn recorded_with(bytes: &[u8], options: &ReadOptions) -> Recorded {
     let mut found = Recorded::default();
-    let read = read(Cursor::new(bytes), &options, &mut |event| {
+    let read = read(Cursor::new(bytes), options, &mut |event| {
         match event {
             RecordingEvent::Channel(info) => found.channels.push(info.clone()),
             RecordingEvent::Frame(frame) => found.frames.push(frame.clone()),
-            RecordingEvent::Note(note) => found.notes.push(note.clone()),
+            RecordingEvent::Note(note) if !note.is_plain() => found.notes.push(note.clone()),
             _ => {}
         }
         ControlFlow::Continue(())
@@ -107,7 +113,7 @@ fn a_caller_decides_whether_a_wrong_frame_is_left_out() {
 
 #[test]
 fn times_count_from_the_first_frame_even_if_a_wrong_one_before_it_is_left_out() {
-    let text = "00:00:01 5 6\n\n00:00:02 1 2\n00:00:02 3 4\n\n00:00:03.5 1 2\n00:00:03.5 3 4\n";
+    let text = "00:00:01 -> 5 6\n\n00:00:02 -> 1 2\n00:00:02 -> 3 4\n\n00:00:03.5 -> 1 2\n00:00:03.5 -> 3 4\n";
     let options = ReadOptions::default().with_size(frame_size(2, 2));
     let mut times = Vec::new();
     let read = read(Cursor::new(text), &options.leaving_out(), &mut |event| {

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use serde_json::Value;
 use taxel_core::frame::{Crop, FrameError, Label, Peak, Processing, Rule, TareFrames};
 use taxel_files::formats::DescribedImprint;
-use taxel_files::formats::recording::RecordingNote;
+use taxel_files::formats::recording::{ReadOptions, RecordingNote};
 
-use super::{Recorded, recorded};
+use super::{Recorded, frame_size, recorded, recorded_with};
 use crate::skip::skipped;
 
 /// Returns the folder of these files; reports the test as skipped if it is missing.
@@ -25,7 +25,15 @@ fn folder() -> Option<PathBuf> {
 /// Reads a recording to its end; it must have no error.
 fn whole(name: &str, shape: Option<(u16, u16)>) -> Option<Recorded> {
     let bytes = std::fs::read(folder()?.join(name)).expect("a file of the reference");
-    let found = recorded(&bytes, shape);
+    let mut options = ReadOptions {
+        size: shape.map(|(rows, columns)| frame_size(rows, columns)),
+        ..ReadOptions::default()
+    };
+    if name.ends_with("matsense.csv") {
+        options.label_column = "785".parse().ok();
+        options.time_column = "786:ms".parse().ok();
+    }
+    let found = recorded_with(&bytes, &options);
     assert!(found.error.is_none(), "{name}: {:?}", found.error);
     Some(found)
 }

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use taxel_core::frame::{Processing, Rule};
+use taxel_files::formats::recording::ReadOptions;
 
-use super::{Recorded, channel_shape, recorded};
+use super::{Recorded, channel_shape, frame_size, recorded, recorded_with};
 use crate::array::array;
 
 /// The imprints at a threshold of 9.
@@ -49,11 +50,23 @@ const SAMPLES: [(&str, &str, bool, Option<f64>); 14] = [
     ("xsensor.csv", "xsensor", false, Some(0.4)),
 ];
 
+/// Reads a sample, or a part of one, with the flags that it needs.
+fn read_sample(name: &str, bytes: &[u8], named: bool) -> Recorded {
+    let mut options = ReadOptions::default();
+    options.size = named.then(|| frame_size(4, 5));
+    // Behind the cells are a number and milliseconds.
+    if name == "plain.csv" {
+        options.label_column = "21".parse().ok();
+        options.time_column = "22:ms".parse().ok();
+    }
+    recorded_with(bytes, &options)
+}
+
 #[test]
 fn every_format_gives_the_same_imprints() {
     for (name, form, named, time) in SAMPLES {
         let bytes = sample(name);
-        let found = recorded(&bytes, named.then_some((4, 5)));
+        let found = read_sample(name, &bytes, named);
         assert!(found.error.is_none(), "{name}: {:?}", found.error);
         assert_eq!(
             (found.format, &found.notes[..]),
@@ -187,7 +200,7 @@ fn the_whole_frames_of_a_truncated_recording_are_read() {
             continue;
         }
         let whole = sample(name);
-        let cut = recorded(&whole[..whole.len() - 9], named.then_some((4, 5)));
+        let cut = read_sample(name, &whole[..whole.len() - 9], named);
         assert!(cut.frames.len() >= 2, "{name}: {:?}", cut.error);
         // In these files only lines after the last frame were cut off.
         let harmless = ["xsensor.csv", "tekscan_spreadsheet.csv"].contains(&name);
@@ -244,16 +257,13 @@ fn a_table_of_words_is_not_a_recording() {
 }
 
 #[test]
-fn a_header_that_only_counts_values_is_reported() {
+fn a_square_that_is_assumed_is_reported() {
     let header: Vec<String> = (0..9).map(|number| number.to_string()).collect();
     let text = format!("{}\n1,2,3,4,5,6,7,8,9\n", header.join(","));
     let found = recorded(text.as_bytes(), None);
     assert_eq!(channel_shape(&found.channels[0]), Some((3, 3)));
     let note = found.notes[0].to_string();
-    assert_eq!(
-        note,
-        "the header counts 9 values, taken as 3 rows of 3 columns"
-    );
+    assert_eq!(note, "9 numbers a frame, taken as 3 rows of 3 columns");
 }
 
 #[test]

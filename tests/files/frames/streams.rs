@@ -1,47 +1,72 @@
 //! Streams in pieces of any size, intact and damaged: every whole frame is found, and no false one.
 
+use std::io::BufReader;
+use std::ops::ControlFlow;
+
 use taxel_core::frame::Frame;
-use taxel_files::formats::recording::ChannelInfo;
-use taxel_files::formats::stream::{
-    StreamCounts, StreamDecoder, StreamEvent, StreamFormat, StreamOptions,
+use taxel_files::ReadErrorKind;
+use taxel_files::formats::recording::{
+    ChannelInfo, Format, ReadOptions, RecordingEvent, StreamCounts, StreamReader,
 };
 
 use super::samples::sample;
 use super::{frame_size, recorded};
 use crate::common::Random;
 
-/// Returns the values of all frames, decoded in pieces of random sizes; without provisional frames.
+/// Returns the values of all frames, read in pieces of a random size; without provisional frames.
 fn decoded(
-    options: StreamOptions,
+    options: &ReadOptions,
     bytes: &[u8],
     random: &mut Random,
 ) -> (Vec<Vec<f64>>, StreamCounts) {
-    let mut decoder = StreamDecoder::new(options);
-    let mut frames = Vec::new();
-    let mut sink = |event: StreamEvent<'_>| {
-        if let StreamEvent::Frame(frame) = event {
+    let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
+    let longest = [1, 40, 2000][usize::from(random.side(0, 2))];
+    let length = usize::try_from(random.whole(1, longest)).expect("above 0");
+    let mut pieces = BufReader::with_capacity(length, bytes);
+    let read = StreamReader::new(options).read(&mut pieces, &mut |event| {
+        counts.note(&event);
+        if let RecordingEvent::Frame(frame) = event {
             assert_eq!(frame.number, frames.len() as u64);
             frames.push(frame.values().to_vec());
         }
-    };
-    let mut rest = bytes;
-    while !rest.is_empty() {
-        let longest = [1, 40, 2000][usize::from(random.side(0, 2))];
-        let length = usize::try_from(random.whole(1, longest))
-            .expect("above 0")
-            .min(rest.len());
-        decoder.push(&rest[..length], &mut sink);
-        rest = &rest[length..];
-    }
-    decoder.finish(&mut sink);
-    (frames, decoder.counts().clone())
+        ControlFlow::Continue(())
+    });
+    read.expect("a stream");
+    (frames, counts)
 }
 
-fn options(shape: Option<(u16, u16)>) -> StreamOptions {
-    let options = StreamOptions::default().from_start();
-    shape.map_or(options, |(rows, columns)| {
-        options.with_size(frame_size(rows, columns))
-    })
+fn options(shape: Option<(u16, u16)>) -> ReadOptions {
+    let size = shape.map(|(rows, columns)| frame_size(rows, columns));
+    ReadOptions {
+        size,
+        ..ReadOptions::default()
+    }
+}
+
+/// Options for a stream of this format.
+fn of_format(name: &str, shape: (u16, u16)) -> ReadOptions {
+    ReadOptions {
+        format: Some(Format::of_stream(name).expect("a format")),
+        ..options(Some(shape))
+    }
+}
+
+/// The events of a stream whose bytes come one by one, in short.
+fn said(reader: &mut StreamReader, bytes: &[u8]) -> String {
+    let mut said = String::new();
+    let mut pieces = BufReader::with_capacity(1, bytes);
+    let read = reader.read(&mut pieces, &mut |event| {
+        match event {
+            RecordingEvent::Frame(frame) => said += &format!("f{} ", frame.values()[0]),
+            RecordingEvent::Provisional(frame) => said += &format!("p{} ", frame.values()[0]),
+            RecordingEvent::Withdrawn => said += "w ",
+            RecordingEvent::Damage { .. } => said += "d ",
+            _ => {}
+        }
+        ControlFlow::Continue(())
+    });
+    read.expect("a stream");
+    said
 }
 
 fn text(frame: &[f64], columns: usize, separator: &str) -> String {
@@ -134,14 +159,15 @@ fn every_kind_of_stream_is_recognised_and_decoded_completely() {
         ),
         ("brackets", shape, joined(&escaped)),
     ] {
-        let (found, counts) = decoded(options(shape), &stream, &mut random);
+        let (found, counts) = decoded(&options(shape), &stream, &mut random);
         assert_eq!(counts.dropped, 0, "{what}: {:?}", counts.sample);
         assert!(found == frames, "{what}: {} frames", found.len());
-        assert_eq!(counts.bytes, stream.len() as u64, "{what}");
         // Bytes before the first boundary are dropped, and not counted as a frame.
-        let mut torn = options(shape);
-        torn.from_start = false;
-        let (found, counts) = decoded(torn, &stream[5..], &mut random);
+        let torn = ReadOptions {
+            is_joined: true,
+            ..options(shape)
+        };
+        let (found, counts) = decoded(&torn, &stream[5..], &mut random);
         assert!(
             found.len() >= 8 && found == frames[9 - found.len()..],
             "{what}: {}",
@@ -169,8 +195,8 @@ fn in_a_damaged_stream_all_whole_frames_and_no_false_ones_are_found() {
             }
             stream.extend(own);
         }
-        let given = options(Some((16, 16))).with_format(StreamFormat::Flexitac);
-        let (found, counts) = decoded(given, &stream, &mut random);
+        let given = of_format("flexitac", (16, 16));
+        let (found, counts) = decoded(&given, &stream, &mut random);
         assert_eq!((whole.len(), found.len()), (37, 37), "seed {seed}");
         assert!(found == whole, "seed {seed}: a false frame");
         assert_eq!(counts.dropped, 3, "seed {seed}");
@@ -199,8 +225,8 @@ fn cells_that_look_like_a_marker_do_not_confuse_a_stream_read_from_its_start() {
         for lost in [None].into_iter().chain((2..18).map(Some)) {
             let mut stream: Vec<u8> = (1..=20).flat_map(frame).collect();
             lost.map(|lost| stream.remove(lost));
-            let given = options(Some((4, 4))).with_format(StreamFormat::Flexitac);
-            let (found, counts) = decoded(given.from_start(), &stream, &mut Random::new(7));
+            let given = of_format("flexitac", (4, 4));
+            let (found, counts) = decoded(&given, &stream, &mut Random::new(7));
             let first = if lost.is_some() { 2 } else { 1 };
             let wanted: Vec<Vec<f64>> = (first..=20)
                 .map(|number| frame(number)[2..].iter().copied().map(f64::from).collect())
@@ -214,63 +240,50 @@ fn cells_that_look_like_a_marker_do_not_confuse_a_stream_read_from_its_start() {
 /// A frame is shown at its last byte, and withdrawn if no marker follows.
 #[test]
 fn a_provisional_frame_is_confirmed_or_withdrawn() {
-    let given = options(Some((1, 3))).with_format(StreamFormat::Flexitac);
-    let mut decoder = StreamDecoder::new(given);
-    let mut said = String::new();
-    for byte in [
+    let mut reader = StreamReader::new(&of_format("flexitac", (1, 3)));
+    let bytes = [
         0xaa, 0x55, 1, 2, 3, 0xaa, 0x55, 4, 5, 6, 0xaa, 0x55, 7, 8, 9, 9, 0xaa, 0x55,
-    ] {
-        decoder.push(&[byte], &mut |event| match event {
-            StreamEvent::Frame(frame) => said += &format!("f{} ", frame.values()[0]),
-            StreamEvent::Provisional(frame) => said += &format!("p{} ", frame.values()[0]),
-            StreamEvent::Withdrawn => said += "w ",
-            _ => {}
-        });
-    }
-    assert_eq!(said, "p1 f1 p4 f4 p7 w ");
+    ];
+    assert_eq!(said(&mut reader, &bytes), "p1 f1 p4 f4 p7 w d ");
 }
 
 #[test]
 fn a_line_that_is_too_long_is_dropped_and_the_next_one_is_read() {
-    let given = options(Some((1, 2))).with_format(StreamFormat::Lines);
-    let mut decoder = StreamDecoder::new(given);
-    let mut frames = Vec::new();
-    let mut sink = |event: StreamEvent<'_>| {
-        if let StreamEvent::Frame(frame) = event {
-            frames.push(frame.values().to_vec());
-        }
-    };
-    decoder.push(b"1 2\n", &mut sink);
     // Spaces are no values.
-    decoder.push(&vec![b' '; 9 << 20], &mut sink);
-    decoder.push(b"3 4\n5 6\n", &mut sink);
-    decoder.finish(&mut sink);
-    assert_eq!(decoder.counts().dropped, 1);
-    assert_eq!(frames, [[1.0, 2.0], [5.0, 6.0]]);
+    let text = [b"1 2\n", &vec![b' '; 9 << 20][..], b"3 4\n5 6\n"].concat();
+    let (found, counts) = decoded(&of_format("lines", (1, 2)), &text, &mut Random::new(1));
+    assert_eq!(counts.dropped, 1);
+    assert_eq!(found, [[1.0, 2.0], [5.0, 6.0]]);
 }
 
 #[test]
 fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
     let lines = "9 9\n9 9\n\n1 2\n3 4\n\n1 2\n3\n\n1 2\n3 x\n\n1 2\n3 4\n5 6\n\n5 6\n7 8\n\n1 2\n3";
-    let (found, counts) = decoded(options(None), lines.as_bytes(), &mut Random::new(1));
+    let (found, counts) = decoded(&options(None), lines.as_bytes(), &mut Random::new(1));
     assert_eq!(
         found,
         [[9.0; 4], [1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]]
     );
     assert_eq!((counts.dropped, counts.sample.as_deref()), (4, Some("3")));
     let wide = "1,2,3,4\n1,2,3\n1,2,3,4,5\n1,2,?,4\n5,6,7,8\n5,6,7,";
-    let (found, counts) = decoded(options(Some((2, 2))), wide.as_bytes(), &mut Random::new(2));
+    let (found, counts) = decoded(&options(Some((2, 2))), wide.as_bytes(), &mut Random::new(2));
     assert_eq!(found, [[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]]);
     assert_eq!(counts.dropped, 4, "{counts:?}");
     let json = b"{\"frame\":[[1]]}\n{\"frame\":[[1],[2,3]]}\nnonsense\n{\"frame\":[[2]]}";
-    let (found, counts) = decoded(options(None), json, &mut Random::new(3));
+    let (found, counts) = decoded(&options(None), json, &mut Random::new(3));
     assert_eq!((found, counts.dropped), (vec![vec![1.0], vec![2.0]], 2));
-    // A frame of another size is dropped, too, until that size comes several times in a row.
-    let json =
-        [1, 2, 2, 1, 2, 2, 2, 2, 1].map(|rows| format!("{{\"frame\":{:?}}}\n", vec![[5]; rows]));
-    let (found, counts) = decoded(options(None), json.concat().as_bytes(), &mut Random::new(3));
-    let sizes: Vec<usize> = found.iter().map(Vec::len).collect();
-    assert_eq!((sizes, counts.dropped), (vec![1, 1, 2, 2], 5));
+    // The end of a message is missing, so two arrays are in one.
+    let ros = [1, 2, 3, 4].map(|value| format!("array('H', [{value}, 0])\n---\n"));
+    let ros = ros.concat().replace("[2, 0])\n---\n", "[2, 0])\n");
+    for shape in [(1, 2), (1, 4)] {
+        let given = of_format("ros2", shape);
+        let (found, counts) = decoded(&given, ros.as_bytes(), &mut Random::new(3));
+        let expected = if shape == (1, 2) { 2 } else { 0 };
+        assert_eq!(
+            (found.len(), counts.dropped),
+            (expected, 3 - expected as u64)
+        );
+    }
     let ended = [
         &[1, 2, 3, 4, 255][..],
         &[1, 2, 3, 255],
@@ -278,25 +291,97 @@ fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
         &[5, 6, 7, 8, 255],
     ]
     .concat();
-    // The end of a message is missing, so two arrays are in one.
-    let ros = [1, 2, 3, 4].map(|value| format!("array('H', [{value}, 0])\n---\n"));
-    let ros = ros.concat().replace("[2, 0])\n---\n", "[2, 0])\n");
-    for shape in [(1, 2), (1, 4)] {
-        let given = options(Some(shape)).with_format(StreamFormat::Ros2);
-        let (found, counts) = decoded(given, ros.as_bytes(), &mut Random::new(3));
-        let expected = if shape == (1, 2) { 2 } else { 0 };
-        assert_eq!(
-            (found.len(), counts.dropped),
-            (expected, 3 - expected as u64)
-        );
-    }
-    let given = options(Some((2, 2))).with_format(StreamFormat::Matsense);
     let (found, counts) = decoded(
-        given,
+        &of_format("matsense", (2, 2)),
         &[&ended[..], &ended, &[9, 9, 9, 9, 255]].concat(),
         &mut Random::new(4),
     );
     assert_eq!((found.len(), counts.dropped), (5, 4));
+}
+
+/// 3D-ViTac sends 16 lines of 16 numbers, and an empty line; another board a frame of 256 numbers a line, and a third
+/// one a word before each frame.
+#[test]
+fn lines_are_frames_or_rows_without_flags() {
+    let row = |value: usize| format!("{}\r\n", format!("{value} ").repeat(16).trim_end());
+    let block = |value| row(value).repeat(16) + "\r\n";
+    let wide = |value: usize| format!("{}\n", format!("{value}\t").repeat(256));
+    let word = |value| format!("frame\r\n{}", row(value).repeat(16));
+    let rest = row(7).repeat(5);
+    let blocks: [String; 3] = [1, 2, 3].map(block);
+    let words: [String; 4] = [1, 2, 3, 4].map(word);
+    for (text, is_joined, expected, dropped) in [
+        (blocks.concat(), false, &[1.0, 2.0, 3.0][..], 0),
+        // What precedes the first end of a frame is not counted if the stream was joined there.
+        (
+            format!("{rest}\r\n{}", blocks.concat()),
+            true,
+            &[1.0, 2.0, 3.0],
+            0,
+        ),
+        (
+            format!("{rest}\r\n{}", blocks.concat()),
+            false,
+            &[1.0, 2.0, 3.0],
+            1,
+        ),
+        ([1, 2, 3].map(wide).concat(), false, &[1.0, 2.0, 3.0], 0),
+        ([1, 2, 3].map(wide).concat(), true, &[2.0, 3.0], 0),
+        (words.concat(), false, &[1.0, 2.0, 3.0, 4.0], 0),
+        (
+            format!("boot v1\r\n{}", words.concat()),
+            false,
+            &[1.0, 2.0, 3.0, 4.0],
+            0,
+        ),
+    ] {
+        let given = ReadOptions {
+            is_joined,
+            ..options(None)
+        };
+        let (found, counts) = decoded(&given, text.as_bytes(), &mut Random::new(9));
+        let firsts: Vec<f64> = found.iter().map(|frame| frame[0]).collect();
+        assert_eq!(
+            (&firsts[..], counts.dropped),
+            (expected, dropped),
+            "{text:.60}"
+        );
+        assert!(found.iter().all(|frame| frame.len() == 256));
+    }
+}
+
+#[test]
+fn after_an_interruption_the_torn_frame_is_dropped_and_the_rest_goes_on() {
+    let times = |before: &str, after: &str, anew: bool| {
+        let mut reader = StreamReader::new(&ReadOptions::default());
+        let mut found = Vec::new();
+        for (text, again) in [(before, anew), (after, false)] {
+            let read = reader.read(&mut text.as_bytes(), &mut |event| {
+                if let RecordingEvent::Frame(frame) = event {
+                    found.push((frame.number, frame.time.expect("a time"), frame.values()[0]));
+                }
+                ControlFlow::Continue(())
+            });
+            read.expect("a stream");
+            if again {
+                reader.begin_anew();
+            }
+        }
+        found
+    };
+    let table = "t_ms,s0,s1,s2,s3\n1000,1,2,3,4\n1500,2,3,4,5\n";
+    let expected = [(0, 0.0, 1.0), (1, 0.5, 2.0), (2, 8.0, 4.0)];
+    // The header does not come again.
+    assert_eq!(times(table, "0,3,4\n9000,4,5,6,7\n", false), expected);
+    assert_eq!(times(table, "9000,4,5,6,7\n", true), expected);
+    let other = "s0,s1,s2,s3,time_us\n4,5,6,7,9000000\n";
+    assert_eq!(times(table, other, true), expected);
+    let clock = times(
+        "23:59:59.5 -> 1 2 3 4 5 6 7 8 9\n",
+        "9\n00:00:01 -> 2 2 3 4 5 6 7 8 9\n",
+        false,
+    );
+    assert_eq!(clock, [(0, 0.0, 1.0), (1, 1.5, 2.0)]);
 }
 
 /// Frames of two sensors of different sizes in turn. For each frame the channel, number, time and sum are checked, and
@@ -323,36 +408,28 @@ fn channels_of_json_lines_are_distinguished_in_files_and_streams() {
     assert_eq!(read.frames.iter().map(of).collect::<Vec<_>>(), expected);
 
     let (mut names, mut frames) = (Vec::new(), Vec::new());
-    let mut sink = |event: StreamEvent<'_>| match event {
-        StreamEvent::Channel(info) => names.push(info.shown_name().to_owned()),
-        StreamEvent::Frame(frame) => frames.push(of(frame)),
-        _ => {}
+    let mut sink = |event: RecordingEvent<'_>| {
+        match event {
+            RecordingEvent::Channel(info) => names.push(info.shown_name().to_owned()),
+            RecordingEvent::Frame(frame) => frames.push(of(frame)),
+            _ => {}
+        }
+        ControlFlow::Continue(())
     };
-    let mut decoder = StreamDecoder::new(options(None));
-    decoder.push(lines.as_bytes(), &mut sink);
+    let mut reader = StreamReader::new(&options(None));
     // Numbers and channels continue after a gap.
-    decoder.restart(&mut sink);
     let after = "torn\n".to_owned() + &line(15, "\"l\"", left);
-    decoder.push(after.as_bytes(), &mut sink);
+    for text in [&lines, &after] {
+        reader
+            .read(&mut text.as_bytes(), &mut sink)
+            .expect("a stream");
+    }
     assert_eq!(names, ["l", "7"]);
     assert_eq!(
         (&frames[..6], frames[6]),
         (&expected[..], (0, 3, Some(5.0), 10.0))
     );
-    assert_eq!(decoder.counts().frames, 7);
-
-    // A channel without a name is reported as soon as another one has a name.
-    let mut names = Vec::new();
-    let mut sink = |event: StreamEvent<'_>| {
-        if let StreamEvent::Channel(info) = event {
-            names.push(info.shown_name().to_owned());
-        }
-    };
-    let mut decoder = StreamDecoder::new(options(None));
-    for channel in ["null", "null", "\"r\"", "null"] {
-        decoder.push(line(0, channel, left).as_bytes(), &mut sink);
-    }
-    assert_eq!(names, ["unnamed", "r"]);
+    assert_eq!(frames.len(), 7);
     for wrong in ["[]", "\"\"", "1.5"] {
         let read = recorded(line(0, wrong, left).as_bytes(), None);
         let error = read.error.map(|error| error.to_string());
@@ -364,36 +441,35 @@ fn channels_of_json_lines_are_distinguished_in_files_and_streams() {
 }
 
 #[test]
-fn frames_without_rows_and_columns_are_counted_by_their_values() {
-    let unshaped = |bytes: &[u8]| {
-        decoded(options(None), bytes, &mut Random::new(5))
-            .1
-            .unshaped
+fn a_stream_without_rows_and_columns_is_refused() {
+    let refused = |bytes: &[u8]| {
+        let mut reader = StreamReader::new(&options(None));
+        let read = reader.read(&mut &bytes[..], &mut |_| ControlFlow::Continue(()));
+        let error = read.expect_err("refused");
+        (error.kind, error.message)
     };
-    assert_eq!(unshaped(&[0xff; 200]), Some(0));
-    assert_eq!(unshaped(b"1 2 3\n4 5 6\n"), Some(3));
-    assert_eq!(unshaped(b"array('B', [1, 2])\n---\n"), Some(2));
-    // In a stream without empty lines, this is known as soon as there are more rows than a frame can have.
-    let mut live = StreamDecoder::new(options(None));
-    live.push("1 2 3\n".repeat(513).as_bytes(), &mut |_| {});
-    assert_eq!(live.counts().unshaped, Some(3));
-    let cut = decoded(
-        options(None),
-        b"array('B', [1, 2, '...'])\n---\n",
-        &mut Random::new(6),
-    )
-    .1;
-    assert!(cut.cut);
+    for bytes in [
+        "1 2 3\n4 5 6\n".as_bytes(),
+        b"array('B', [1, 2])\n---\n",
+        // In a stream without empty lines, this is known as soon as there are more rows than a sensor has.
+        "1 2 3\n".repeat(513).as_bytes(),
+    ] {
+        assert_eq!(refused(bytes).0, ReadErrorKind::Unsized);
+    }
+    let (kind, message) = refused(b"array('B', [1, 2, '...'])\n---\n");
+    assert_eq!(kind, ReadErrorKind::Invalid);
+    assert!(message.contains("--full-length"), "{message}");
+    assert_eq!(refused(&[0xff; 200]).0, ReadErrorKind::UnknownFormat);
+    assert_eq!(
+        refused(b"\x93NUMPY\x01\x00").1,
+        "a recording (npy), not a stream"
+    );
 }
 
 #[test]
 fn samples_of_boards_are_decoded() {
-    let (found, counts) = decoded(
-        options(Some((4, 5))),
-        &sample("flexitac.bin"),
-        &mut Random::new(7),
-    );
-    assert_eq!((found.len(), counts.dropped), (3, 0));
-    let (found, counts) = decoded(options(None), &sample("rows.txt"), &mut Random::new(8));
-    assert_eq!((found.len(), counts.dropped), (3, 0));
+    for (name, shape) in [("flexitac.bin", Some((4, 5))), ("rows.txt", None)] {
+        let (found, counts) = decoded(&options(shape), &sample(name), &mut Random::new(7));
+        assert_eq!((found.len(), counts.dropped), (3, 0), "{name}");
+    }
 }

@@ -1,20 +1,16 @@
 //! Tables as various programs write them.
 
 use taxel_core::frame::{Frame, Label};
+use taxel_files::ReadErrorKind;
+use taxel_files::formats::recording::ReadOptions;
 
-use super::{Recorded, channel_shape, recorded};
+use super::{Recorded, channel_shape, frame_size, recorded, recorded_with};
 
 /// Returns the label, time and values of each frame of a table.
-fn frames(text: &str, shape: Option<(u16, u16)>) -> Vec<(Option<i64>, Option<f64>, Vec<f64>)> {
+fn frames(text: &str, shape: Option<(u16, u16)>) -> Vec<(Option<Label>, Option<f64>, Vec<f64>)> {
     let found = recorded(text.as_bytes(), shape);
     assert!(found.error.is_none(), "{text}: {:?}", found.error);
-    let parts = |frame: &Frame| {
-        (
-            frame.label.as_ref().and_then(Label::number),
-            frame.time,
-            frame.values().to_vec(),
-        )
-    };
+    let parts = |frame: &Frame| (frame.label.clone(), frame.time, frame.values().to_vec());
     found.frames.iter().map(parts).collect()
 }
 
@@ -29,169 +25,411 @@ fn error(found: &Recorded) -> String {
     found.error.as_ref().expect("an error").to_string()
 }
 
+/// Reads a table with the values of --time-column and --label-column.
+fn with_columns(text: &str, shape: (u16, u16), time: &str, label: &str) -> Recorded {
+    let options = ReadOptions {
+        size: Some(frame_size(shape.0, shape.1)),
+        time_column: time.parse().ok(),
+        label_column: label.parse().ok(),
+        ..ReadOptions::default()
+    };
+    recorded_with(text.as_bytes(), &options)
+}
+
+/// The names of the channels, their rows and columns, and the values of their first frames.
+fn channels(text: &str, shape: Option<(u16, u16)>) -> Vec<(String, (u16, u16), Vec<f64>)> {
+    let found = recorded(text.as_bytes(), shape);
+    assert!(found.error.is_none(), "{text}: {:?}", found.error);
+    let of = |(index, info)| {
+        let first = found.frames.iter().find(|frame| frame.channel == index);
+        let shape = channel_shape(info).expect("a size");
+        let values = first.expect("a frame").values().to_vec();
+        (info.shown_name().to_owned(), shape, values)
+    };
+    found.channels.iter().enumerate().map(of).collect()
+}
+
 #[test]
-fn a_first_line_with_a_text_is_a_frame_if_the_next_one_has_a_text_there() {
-    let both = [vec![1.0, 2.0, 3.0, 4.0], vec![5.0, 6.0, 7.0, 8.0]];
-    for [first, second] in [
-        [
-            "2021-01-02T10:11:12.345,1,2,3,4",
-            "2021-01-02T10:11:12.445,5,6,7,8",
-        ],
-        [
-            "01/02/21 10:11:12:345;1;2;3;4",
-            "01/02/21 10:11:12:445;5;6;7;8",
-        ],
-        ["10:11:12.3 1 2 3 4", "10:11:12.4 5 6 7 8"],
-        ["1,2,3,4,cup", "5,6,7,8,cup"],
-        ["cup,1,2,3,4,s1", "ring,5,6,7,8,s2"],
-    ] {
-        let text = format!("{first}\n{second}\n");
-        assert_eq!(values(&text, Some((2, 2))), both, "{text}");
-    }
-    // These first lines are names.
+fn fields_are_told_by_the_first_line_with_numbers() {
+    let expected = [[1.0, 2.5, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]];
     for text in [
-        "label,0,1,2,3\ncup,5,6,7,8\n",
-        "label,1,2,3,4\ncup,5,6,7,8\n",
+        "1,2.5,3,4\n5,6,7,8\n",
+        "1, 2.5, 3, 4,\r\n5, 6, 7, 8,\r\n",
+        "\u{feff}1;2,5;3;4\n5;6;7;8",
+        "1\t2,5\t3\t4\n5\t6\t7\t8\n",
+        "1\t2.5\t3\t4\t\n5\t6\t7\t8\t\n",
+        "  1   2.5 3  4 \n 5 6 7 8\n",
+        "# a comment\n1 2.5 3 4\n# another, in 4\n5 6 7 8\n",
+        "[1, 2.5, 3, 4]\n[5, 6, 7, 8]\n",
+        "[1 2.5 3 4]\n[5 6 7 8]\n",
+        "1.000000000000000000e+00 2.500000000000000000e+00 3e0 4.0\n5 6 7 8\n",
+        "\"1\",\"2.5\",\"3\",\"4\"\n5,6,7,8\n",
     ] {
-        assert_eq!(values(text, Some((2, 2))), both[1..], "{text}");
+        assert_eq!(values(text, Some((2, 2))), expected, "{text}");
     }
-    // A misspelt number does not make a line of names.
-    for (line, column, word) in [
-        ("1,inf,3,4", 2, "inf"),
-        ("12,13,1O,14", 3, "1O"),
-        ("1,2,3,4mV", 4, "4mV"),
-        ("1,>255,3,4", 2, ">255"),
-    ] {
-        let found = recorded(format!("{line}\n5,6,7,8\n").as_bytes(), Some((2, 2)));
-        let expected = format!("line 1, column {column}: found {word:?}, expected a number");
-        assert_eq!(error(&found), expected);
-    }
-    // A text between the cells is not a cell.
-    let found = recorded(b"1,2,x,3,4\n5,6,x,7,8\n", Some((2, 2)));
-    assert_eq!(
-        error(&found),
-        "line 1, column 3: found \"x\", expected a number"
-    );
+    // Printed by numpy.
+    let printed = "[[1. 2. 3.]\n [4. 5. 6.]]\n\n[[1. 2. 3.]\n [4. 5. 7.]]\n";
+    let found = values(printed, None);
+    assert_eq!(found[1], [1.0, 2.0, 3.0, 4.0, 5.0, 7.0]);
 }
 
 #[test]
-fn a_sensor_of_one_cell_needs_no_rows_and_columns() {
-    for (text, expected) in [
-        ("t,S0_0\n0,5\n1,6\n", [Some(0.0), Some(1.0)]),
-        ("S0_0\n5\n6\n", [None, None]),
+fn a_serial_monitor_puts_times_before_the_fields() {
+    let rows = "12:00:01.100 -> 0 9\n12:00:01.100 -> 9 9\n12:00:01.100 -> \n\
+                12:00:01.200 -> 0 0\n12:00:01.200 -> 0 9\n12:00:01.200 -> \n";
+    for (text, shape) in [
+        (rows, None),
+        (rows, Some((2, 2))),
+        (
+            "23:59:59.9 -> 0,9,9,9\n00:00:00.0 -> 0,0,0,9\n",
+            Some((2, 2)),
+        ),
     ] {
-        let found = frames(text, None);
-        let expected = expected.into_iter().zip([5.0, 6.0]);
-        let expected = expected.map(|(time, value)| (None, time, vec![value]));
-        assert_eq!(found, expected.collect::<Vec<_>>(), "{text}");
-    }
-    for text in ["x1\n5\n6\n", "v1.1\n5\n6\n", "S0_0\ntext\n"] {
-        assert!(recorded(text.as_bytes(), None).error.is_some(), "{text}");
+        let expected = [
+            (None, Some(0.0), vec![0.0, 9.0, 9.0, 9.0]),
+            (None, Some(0.1), vec![0.0, 0.0, 0.0, 9.0]),
+        ];
+        assert_eq!(frames(text, shape), expected, "{text}");
     }
 }
 
 #[test]
-fn an_index_of_pandas_is_not_a_cell() {
-    let text = ",0,1,2,3\n0,1,2,3,4\n1,5,6,7,8\n";
-    let expected = [
-        (Some(0), None, vec![1.0, 2.0, 3.0, 4.0]),
-        (Some(1), None, vec![5.0, 6.0, 7.0, 8.0]),
-    ];
-    assert_eq!(frames(text, None), expected);
-    assert_eq!(frames(text, Some((2, 2))), expected);
-    let text = ",time,0,1,2,3\n7,0.5,1,2,3,4\n8,0.75,5,6,7,8\n";
-    let found = frames(text, Some((1, 4)));
-    assert_eq!(
-        (found[1].0, found[1].1, &found[1].2),
-        (Some(8), Some(0.25), &expected[1].2)
-    );
-}
-
-#[test]
-fn two_numbers_beside_the_cells_have_two_layouts_and_anything_else_is_refused() {
-    let with = |label, time: f64| (Some(label), Some(time));
-    for (text, expected, first_cells) in [
+fn the_first_line_may_hold_names() {
+    let frame = vec![5.0, 6.0, 7.0, 8.0];
+    let label = |text: &str| Some(Label::from(text));
+    for (text, label, time) in [
         (
-            "7,0.00,1,2,9,4\n8,0.05,1,2,8,6\n9,0.10,1,2,9,7\n",
-            [with(7, 0.0), with(8, 0.05), with(9, 0.1)],
-            [1.0, 1.0, 1.0],
+            "time_ms,s0,s1,s2,s3\n10,5,6,7,8\n60,5,6,7,8\n",
+            None,
+            Some(0.05),
         ),
         (
-            "0,1714564800000,0,0,0,0\n1,1714564800050,3,9,8,2\n2,1714564800092,4,18,16,4\n",
-            [with(0, 0.0), with(1, 0.05), with(2, 0.092)],
-            [0.0, 3.0, 4.0],
+            "s0,s1,s2,s3,t[us]\n5,6,7,8,10\n5,6,7,8,60\n",
+            None,
+            Some(5e-5),
         ),
-        // Milliseconds behind the cells; the last line is torn.
         (
-            "5,6,2,1,0,0\n7,6,2,1,1,40\n9,6,2,2,2,8\n",
-            [with(0, 0.0), with(1, 0.04), with(2, 0.008)],
-            [5.0, 7.0, 9.0],
+            "Time (ms);S0_0;S0_1;S1_0;S1_1\n10,5;5;6;7;8\n60,5;5;6;7;8\n",
+            None,
+            Some(0.05),
         ),
-        // A number before a timestamp.
         (
-            "0,12:00:00.00,1,2,3,4\n1,12:00:00.05,2,3,4,5\n2,12:00:00.10,3,4,5,6\n",
-            [with(0, 0.0), with(1, 0.05), with(2, 0.1)],
-            [1.0, 2.0, 3.0],
+            "timestamp,s0,s1,s2,s3\n2024-05-01T12:00:00Z,5,6,7,8\n2024-05-01T14:00:00.5+02:00,5,6,7,8\n",
+            None,
+            Some(0.5),
+        ),
+        (
+            "date,s0,s1,s2,s3\n2024-05-01,5,6,7,8\n2024-05-02,5,6,7,8\n",
+            None,
+            Some(86_400.0),
+        ),
+        (
+            "label,0,1,2,3\ncup,5,6,7,8\npen,5,6,7,8\n",
+            label("pen"),
+            None,
+        ),
+        (
+            "Frame,Time,s0,s1,s2,s3\n6,0.5,5,6,7,8\n7,0.75,5,6,7,8\n",
+            label("7"),
+            Some(0.25),
+        ),
+        (
+            "s0,s1,s2,s3,class\n5,6,7,8,\n5,6,7,8,\"a, b\"\n",
+            label("a, b"),
+            None,
+        ),
+        // The index of pandas, and the names of savetxt.
+        (",s0,s1,s2,s3\n0,5,6,7,8\n1,5,6,7,8\n", None, None),
+        (
+            ",time,0,1,2,3\n7,0.5,5,6,7,8\n8,0.75,5,6,7,8\n",
+            None,
+            Some(0.25),
+        ),
+        (
+            "# time s0 s1 s2 s3\n1 5 6 7 8\n3 5 6 7 8\n",
+            None,
+            Some(2.0),
+        ),
+        ("# s0, s1, s2, s3\n5 6 7 8\n5 6 7 8\n", None, None),
+        ("0,1,2,3\n5,6,7,8\n5,6,7,8\n", None, None),
+        // A date stands beside the time of day, and text is ignored.
+        (
+            "date,time,note,s0,s1,s2,s3\n2024-05-01,12:00:00,x 1,5,6,7,8\n2024-05-01,12:00:01,y,5,6,7,8\n",
+            None,
+            Some(1.0),
         ),
     ] {
-        let found = frames(text, Some((2, 2)));
-        let beside: Vec<_> = found.iter().map(|own| (own.0, own.1)).collect();
-        let cells: Vec<f64> = found.iter().map(|own| own.2[0]).collect();
         assert_eq!(
-            (&beside[..], &cells[..]),
-            (&expected[..], &first_cells[..]),
+            frames(text, None)[1],
+            (label, time, frame.clone()),
             "{text}"
         );
+        assert_eq!(values(text, Some((2, 2))), [&frame[..]; 2], "{text}");
     }
-    let one = "found 1 number besides the 4 cells, and cannot tell which";
-    let two = "found 2 numbers besides the 4 cells, and cannot tell which";
-    for (text, line, expected) in [
-        ("0,1,2,3,4\n1,5,6,7,8\n2,5,6,7,9\n", 1, one),
-        ("5,1,2,9,0.00\n7,1,2,9,0.05\n", 1, one),
-        ("# a\n\n0,0.0,1,2,3,4\n1,0.1,1,2,4,8\n", 3, two),
-        ("17,0.25,1,2,3,4\n", 1, two),
-        ("0.5,1,1,2,3,4\n0.6,2,1,2,3,4\n", 1, two),
-        ("0,1,2,9,4,0.00\n1,1,2,8,4,0.05\n", 1, two),
-        ("# a\n1,2,3,4,5,6,7\n", 2, "found 7 values, expected 4"),
-        ("1,2,3\n", 1, "found 3 values, expected 4"),
+}
+
+#[test]
+fn flags_name_the_time_and_the_label() {
+    let bare = "7,0,1,2,3,4\n8,50,5,6,7,8\n";
+    let named = "no,at,s0,s1,s2,s3\n7,0,1,2,3,4\n8,50,5,6,7,8\n";
+    let dated = "7;2024-05-01 12:00:00;1;2;3;4\n8;2024-05-01 12:00:00,05;5;6;7;8\n";
+    for (text, time, label) in [
+        (bare, "2:ms", "1"),
+        (named, "2:ms", "1"),
+        (named, "AT:ms", "no"),
+        (&dated.replace(",05", ".05"), "2", "1"),
     ] {
-        let found = recorded(text.as_bytes(), Some((2, 2)));
-        let expected = format!("line {line}: {expected}");
+        let found = with_columns(text, (2, 2), time, label);
+        assert!(found.error.is_none(), "{:?}", found.error);
+        let frame = &found.frames[1];
+        assert_eq!(
+            (frame.time, frame.label.clone()),
+            (Some(0.05), Some(8.into())),
+            "{text}"
+        );
+        assert_eq!(frame.values(), [5.0, 6.0, 7.0, 8.0]);
+    }
+    let text = "cup,1,2,3,4\npen,5,6,7,8\n";
+    let found = with_columns(text, (2, 2), "", "1");
+    assert_eq!(found.frames[0].label, Some("cup".into()));
+    for (time, label, expected) in [
+        ("7", "", "line 1: --time-column 7: the table has 6 columns"),
+        (
+            "",
+            "tim",
+            "line 1: --label-column tim: no column has this name",
+        ),
+    ] {
+        let found = with_columns(named, (2, 2), time, label);
+        assert!(error(&found).starts_with(expected), "{}", error(&found));
+    }
+}
+
+#[test]
+fn cells_are_found_by_the_numbers_in_their_names() {
+    let one = |text: &str| channels(text, None)[0].clone();
+    let sized =
+        |rows, columns, values: &[f64]| ("unnamed".to_owned(), (rows, columns), values.to_vec());
+    for (text, expected) in [
+        (
+            "r0c0,r0c1,r1c0,r1c1\n1,2,3,4\n",
+            sized(2, 2, &[1.0, 2.0, 3.0, 4.0]),
+        ),
+        ("r1c1,r1c2,r1c3\n1,2,3\n", sized(1, 3, &[1.0, 2.0, 3.0])),
+        (
+            "row_1_col_0,row_1_col_1,row_0_col_0,row_0_col_1\n3,4,1,2\n",
+            sized(2, 2, &[1.0, 2.0, 3.0, 4.0]),
+        ),
+        (
+            "\"(0, 0)\",\"(0, 1)\",\"(1, 0)\",\"(1, 1)\"\n1,2,3,4\n",
+            sized(2, 2, &[1.0, 2.0, 3.0, 4.0]),
+        ),
+        (
+            "p[0][0],p[0][1],p[0][2]\n1,2,3\n",
+            sized(1, 3, &[1.0, 2.0, 3.0]),
+        ),
+        (
+            "ch10,ch2,ch3,ch1\n4,2,3,1\n",
+            sized(2, 2, &[1.0, 2.0, 3.0, 4.0]),
+        ),
+        ("S0_0\n5\n6\n", sized(1, 1, &[5.0])),
+        ("t,S0_0\n0,5\n1,6\n", sized(1, 1, &[5.0])),
+    ] {
+        assert_eq!(one(text), expected, "{text}");
+    }
+    let feet = "time_ms,R_ch0,R_ch1,R_ch2,R_ch3,L_ch0,L_ch1,L_ch2,L_ch3\n0,9,0,0,1,0,0,2,8\n";
+    let named = |name: &str, values: [f64; 4]| (name.to_owned(), (2, 2), values.to_vec());
+    let both = [
+        named("R", [9.0, 0.0, 0.0, 1.0]),
+        named("L", [0.0, 0.0, 2.0, 8.0]),
+    ];
+    assert_eq!(channels(feet, None), both);
+    assert_eq!(channels(feet, Some((2, 2))), both);
+    let all = [sized(4, 2, &[9.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 8.0])];
+    assert_eq!(channels(feet, Some((4, 2))), all);
+    let axes = "r0c0 fz,r0c0 on,r0c1 fz,r0c1 on,r1c0 fz,r1c0 on,r1c1 fz,r1c1 on\n7,1,0,0,0,0,6,1\n";
+    let both = [
+        named("fz", [7.0, 0.0, 0.0, 6.0]),
+        named("on", [1.0, 0.0, 0.0, 1.0]),
+    ];
+    assert_eq!(channels(axes, None), both);
+    let letters = "A1,A2,A3,A4,B1,B2,B3,B4\n1,2,3,4,5,6,7,8\n";
+    let all = [sized(2, 4, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])];
+    assert_eq!(channels(letters, Some((2, 4))), all);
+    for (text, expected) in [
+        (
+            "s0,s1,s1,s2\n1,2,3,4\n",
+            "line 1: two columns for one cell: \"s1\" and \"s1\"",
+        ),
+        (
+            "r0c0,r0c1,r1c0\n1,2,3\n",
+            "line 1: 3 columns named by row and column, expected one for each cell of 2 × 2",
+        ),
+        (
+            "force,area\n1,2\n",
+            "line 1: no three columns have the names of cells",
+        ),
+    ] {
+        let found = recorded(text.as_bytes(), None);
+        assert!(error(&found).starts_with(expected), "{}", error(&found));
+    }
+}
+
+/// What a rule decides is said; it is no warning.
+#[test]
+fn the_columns_that_are_taken_and_left_out_are_said() {
+    let text = "time_ms,x,note,imu1_x,s0,s1,s2,s3\n0,1,a,7,1,2,3,4\n";
+    let mut said = Vec::new();
+    let options = ReadOptions::default();
+    let read = super::read(std::io::Cursor::new(text), &options, &mut |event| {
+        if let super::RecordingEvent::Note(note) = event {
+            said.push((note.is_plain(), note.to_string()));
+        }
+        std::ops::ControlFlow::Continue(())
+    });
+    assert!(read.is_ok(), "{read:?}");
+    let expected = [
+        (false, "4 numbers a frame, taken as 2 rows of 2 columns"),
+        (true, "times: \"time_ms\", in milliseconds"),
+        (
+            true,
+            "cells: in the order of the numbers in their names; a frame a line",
+        ),
+        (true, "left out: \"x\", \"imu1_x\""),
+    ];
+    assert_eq!(said, expected.map(|(plain, text)| (plain, text.to_owned())));
+}
+
+#[test]
+fn without_flags_there_must_be_only_one_way_to_arrange_a_table() {
+    let square = "1 2 3\n4 5 6\n7 8 9\n";
+    let wide = "1 2 3 4 5 6 7 8 9\n";
+    for (text, shape, count) in [
+        // As many lines as fields are one frame, n² numbers a line a frame each.
+        (square.to_owned(), (3, 3), 1),
+        (format!(",0,1,2\n{}", "0,1,2,3\n".repeat(3)), (3, 3), 1),
+        (wide.repeat(2), (3, 3), 2),
+        (wide.repeat(600), (3, 3), 600),
+        // Blocks.
+        ("1 2 3\n4 5 6\n\n1 2 3\n4 5 6\n".to_owned(), (2, 3), 2),
+        ("1 2 3\n4 5 6\n\n\n1 2 3\n4 5 6\n\n".to_owned(), (2, 3), 2),
+        (
+            "boot\nmatrix:\n1,2,\n3,4,\nmatrix:\n5,6,\n7,8,\n".to_owned(),
+            (2, 2),
+            2,
+        ),
+        (
+            "frame 1\n1 2 3\n4 5 6\nframe 2\n1 2 3\n4 5 6\n".to_owned(),
+            (2, 3),
+            2,
+        ),
+        (
+            "t,s0,s1,s2\n0,1,2,3\n0,4,5,6\n\n1,1,2,3\n1,4,5,6\n".to_owned(),
+            (2, 3),
+            2,
+        ),
+    ] {
+        let found = recorded(text.as_bytes(), None);
+        assert!(found.error.is_none(), "{text}: {:?}", found.error);
+        assert_eq!(channel_shape(&found.channels[0]), Some(shape), "{text}");
+        assert_eq!(found.frames.len(), count, "{text}");
+    }
+    for (text, ways) in [
+        (
+            "1 2 3\n4 5 6\n",
+            "--rows 1 --columns 3 for a frame a line, --rows 2 --columns 3 for a row a line",
+        ),
+        ("1 2 3\n4 5 6\n\n", "--rows 2 --columns 3 for a row a line"),
+        ("1,2\n\n3,4\n\n5,6\n\n", "--rows 1 --columns 2"),
+        (
+            "s0,s1,s2,s3,s4,s5\n1,2,3,4,5,6\n",
+            "--rows 2 --columns 3 for a frame a line",
+        ),
+    ] {
+        let found = recorded(text.as_bytes(), None);
+        let kind = found.error.as_ref().map(|error| error.kind);
+        assert_eq!(kind, Some(ReadErrorKind::Unsized), "{text}");
+        assert!(error(&found).contains(ways), "{text}: {}", error(&found));
+    }
+}
+
+#[test]
+fn with_rows_and_columns_a_line_is_a_frame_or_a_row() {
+    let both = [
+        vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+        vec![7.0, 8.0, 9.0, 1.0, 2.0, 3.0],
+    ];
+    for text in [
+        "1 2 3 4 5 6\n7 8 9 1 2 3\n",
+        "1 2 3\n4 5 6\n7 8 9\n1 2 3\n",
+        "1 2 3\n4 5 6\n\n7 8 9\n1 2 3\n\n",
+        "a,s1,s2,s3\nx,1,2,3\nx,4,5,6\nx,7,8,9\nx,1,2,3\n",
+    ] {
+        assert_eq!(values(text, Some((2, 3))), both, "{text}");
+    }
+    for (text, expected) in [
+        (
+            "1,2,3,4,5,6,7\n",
+            "line 1: 7 numbers a line, expected 6 (or 3 for a row): which is the time? --time-column N",
+        ),
+        (
+            "1,2\n3,4\n",
+            "line 1: 2 numbers a line, expected 6 (or 3 for a row)",
+        ),
+        ("2,3\n1,2,3,4,5,6\n", "line 1: 2 numbers a line, expected 6"),
+        (
+            "rows,2\ncols,3\ntime,s0\n1,2,3,4,5,6\n",
+            "line 1: 2 numbers a line, expected 6",
+        ),
+        (
+            "1,2,3,4,5,6\n1,2,3,4,5\n",
+            "line 2: found 5 values, expected 6",
+        ),
+        (
+            "1,2,3,4,5,6\n1,2,3,4,5,6,7\n",
+            "line 2: found 7 values, expected 6",
+        ),
+        (
+            "1,2,3,4,5,6\n1,2,x,4,5,6\n",
+            "line 2, column 3: found \"x\", expected a number",
+        ),
+        (
+            "1,2,3,4mV,5,6\n",
+            "line 1, column 4: found \"4mV\", expected a number",
+        ),
+        (
+            "cup,2,3,4,5,6\n",
+            "line 1, column 1: found \"cup\", expected a number; if it is the label: --label-column 1",
+        ),
+        (
+            "12:00:00,2,3,4,5,6\n",
+            "line 1, column 1: found \"12:00:00\", expected a number; if it is the time: --time-column 1",
+        ),
+        (
+            "1 2 3\n4 5 6\n\n7 8 9\n\n1 2 3\n4 5 6\n",
+            "line 5: the frame ends after 1 row, expected 2",
+        ),
+        (
+            "1 2 3\n4 5 6\n\n1 2 3\n4 5 6\n7 8 9\n",
+            "line 6: another row, expected an empty line after 2 of them",
+        ),
+        (
+            "1 2 3\n4 5 6\n7 8 9\n",
+            "line 4: the frame ends after 1 row, expected 2",
+        ),
+    ] {
+        let found = recorded(text.as_bytes(), Some((2, 3)));
         assert!(
-            error(&found).starts_with(&expected),
+            error(&found).starts_with(expected),
             "{text}: {}",
             error(&found)
         );
     }
-}
-
-#[test]
-fn a_comma_after_the_seconds_separates_fields() {
-    let text = "12:00:00,100,2,3,4\n12:00:01,110,2,3,4\n";
-    assert_eq!(values(text, Some((2, 2)))[1], [110.0, 2.0, 3.0, 4.0]);
-    // As a decimal sign, it makes one field too many.
-    let found = recorded(
-        b"12:00:00,100,1,2,3,4\n12:00:00,110,1,2,3,4\n",
-        Some((2, 2)),
+    let above = recorded(b"5 7\n1 2 3\n4 5 6\n", None);
+    assert_eq!(
+        error(&above),
+        "line 1: found 2 fields, but line 2 has 3: delete the lines above the table, or begin them with #"
     );
-    let expected = "line 1: found 1 number besides the 4 cells, and cannot tell which";
-    assert!(error(&found).starts_with(expected), "{}", error(&found));
-}
-
-#[test]
-fn a_first_line_that_counts_from_0_is_a_header() {
-    for text in [
-        "0,1,2,3\n5,6,7,8\n1,2,3,4\n\n",
-        "0,1,2,3\n5,6,7,8\n\n1,2,3,4\n",
-    ] {
-        assert_eq!(
-            values(text, None),
-            [[5.0, 6.0, 7.0, 8.0], [1.0, 2.0, 3.0, 4.0]]
-        );
-    }
-    // With other rows and columns than it has fields, it is a row.
-    let block = "0 1 2 3\n4 5 6 7\n\n";
-    assert_eq!(values(&block.repeat(3), Some((2, 4))).len(), 3);
 }
 
 /// Returns the times of the frames of a table, and its notes.
@@ -211,33 +449,15 @@ fn a_time_that_cannot_be_read_is_noted_once() {
 }
 
 #[test]
-fn a_time_in_two_columns_is_their_sum() {
-    for [seconds, rest] in [
-        ["header.stamp.secs", "header.stamp.nsecs"],
-        ["sec", "nanosec"],
-        ["secs", "nsecs"],
-    ] {
-        let rows = "1714564800,999999999,1,2\n1714564801,1,3,4\n1714564801,50000000,3,4\n";
-        let text = format!("{seconds},{rest},r0c0,r0c1\n{rows}");
-        let expected = [0.0, 2e-9, 0.050_000_001].map(Some).to_vec();
-        assert_eq!(times(&text), (expected.clone(), vec![]), "{text}");
-        // After the cells, and in the opposite order.
-        let rows = "1,2,999999999,1714564800\n3,4,1,1714564801\n3,4,50000000,1714564801\n";
-        let text = format!("r0c0,r0c1,{rest},{seconds}\n{rows}");
-        assert_eq!(times(&text), (expected, vec![]), "{text}");
-    }
-}
-
-#[test]
 fn times_since_1970_are_exact_and_their_size_shows_their_unit() {
     let start = 1_714_564_800_123_456_789_u64;
     for (name, unit, parts, noted) in [
         ("time_ns", 1, 1, ""),
         ("timestamp", 1, 1, "nanoseconds"),
         ("%time", 1, 1, "nanoseconds"),
-        ("ts", 1_000, 1, "microseconds"),
-        ("unix_time", 1_000_000, 1, "milliseconds"),
-        ("epoch", 1_000_000_000, 1_000_000_000, ""),
+        ("t", 1_000, 1, "microseconds"),
+        ("stamp", 1_000_000, 1, "milliseconds"),
+        ("Time", 1_000_000_000, 1_000_000_000, ""),
     ] {
         let row = |index: u64| {
             let time = start + 1_000_000 * index;
@@ -258,18 +478,29 @@ fn times_since_1970_are_exact_and_their_size_shows_their_unit() {
         };
         assert_eq!(notes, expected, "{text}");
     }
-    // With 20 digits they are as exact.
+    // A unit in the name takes precedence, and seconds may be counted from any moment.
     let text = "time_s,r0c0,r0c1\n1714564800.1234567890,1,2\n1714564800.1234567910,3,4\n";
     assert_eq!(times(text), (vec![Some(0.0), Some(2e-9)], vec![]));
-    let line = |step| format!("{{\"timestamp\":{},\"frame\":[[1,2]]}}\n", start + step);
-    let noted = "the times have no unit and are taken as nanoseconds since 1970".to_owned();
-    let found = times(&(line(0) + &line(1_000_001)));
-    assert_eq!(found, (vec![Some(0.0), Some(0.001_000_001)], vec![noted]));
-    // A unit in the name takes precedence, and seconds may be counted from any moment.
-    let text = "time_s,r0c0,r0c1\n1714564800123,1,2\n1714564800125,1,2\n";
-    assert_eq!(times(text), (vec![Some(0.0), Some(2.0)], vec![]));
     let text = "t,r0c0,r0c1\n12345,1,2\n12395,1,2\n";
     assert_eq!(times(text), (vec![Some(0.0), Some(50.0)], vec![]));
+    let midnight = "t,r0c0,r0c1\n23:59:59.5,1,2\n00:00:00.5,3,4\n00:00:00.25,5,6\n23:59:00,7,8\n00:01:00,9,1\n";
+    let expected = [0.0, 1.0, 0.75, 86_340.5, 86_460.5].map(Some).to_vec();
+    assert_eq!(times(midnight).0, expected);
+    let found = recorded(b"t,r0c0,r0c1\n12:00:00,1,2\n", None);
+    assert_eq!(found.channels[0].start.as_deref(), Some("12:00:00"));
+}
+
+#[test]
+fn a_line_with_too_many_fields_is_refused_early() {
+    let line = |fields: usize| format!("{}\n", "0,".repeat(fields));
+    assert_eq!(values(&line(512 * 512), Some((512, 512))).len(), 1);
+    for fields in [512 * 512 + 17, 4 << 20] {
+        let found = recorded(line(fields).as_bytes(), None);
+        assert_eq!(
+            error(&found),
+            "line 1: more than 262,160 fields, expected at most 512 × 512 cells and 16 beside them"
+        );
+    }
 }
 
 #[test]
@@ -284,66 +515,6 @@ fn words_for_a_missing_value_are_cells_without_a_value() {
         assert_eq!((found[0][1], found[1][0]), (1.0, 2.0), "{text}");
     }
     assert!(recorded(b"r0c0,r0c1\n1,-\n", None).error.is_some());
-}
-
-#[test]
-fn comments_and_units_are_not_frames() {
-    for comment in ["# a, b", "% a, b", "%% 1, 2", "%", "// 1, 2"] {
-        let text = format!("{comment}\n1 2\n3 4\n{comment}\n\n5 6\n7 8\n");
-        assert_eq!(values(&text, None).len(), 2, "{text}");
-    }
-    let text = "frame,time,r0c0,r0c1\n-,ms,[kPa],[kPa]\n7,10,1,2\n8,60,3,4\n";
-    let found = recorded(text.as_bytes(), None);
-    assert_eq!(found.channels[0].unit.as_deref(), Some("kPa"));
-    assert_eq!(frames(text, None)[1], (Some(8), Some(0.05), vec![3.0, 4.0]));
-    // The cells have different units; the name of the time contains one.
-    let text = "time_s,r0c0,r0c1\nms,kPa,N\n\n1,1,2\n3,3,4\n";
-    let found = recorded(text.as_bytes(), None);
-    assert_eq!(found.channels[0].unit, None);
-    assert_eq!(frames(text, None)[1].1, Some(2.0));
-    // A dash is not a unit.
-    let text = "time_s,r0c0,r0c1\ns,-,-\n1,1,2\n3,3,4\n";
-    assert_eq!(recorded(text.as_bytes(), None).channels[0].unit, None);
-    // A duration before the time is not the time.
-    let text = "latency_ms,timestamp,r0c0,r0c1\n3,0.5,1,2\n4,0.75,3,4\n";
-    assert_eq!(frames(text, None)[1].1, Some(0.25));
-    // A first frame without values is a frame.
-    for text in [
-        "time,r0c0,r0c1\n2024-05-01T12:00:00Z,,\n2024-05-01T12:00:01Z,1,2\n",
-        "label,r0c0,r0c1\ncup,NaN,NaN\npen,1,2\n",
-    ] {
-        let found = recorded(text.as_bytes(), None);
-        assert_eq!(found.frames.len(), 2, "{text}");
-        assert_eq!(found.channels[0].unit, None);
-    }
-    // An index of pandas may contain the times.
-    let text = ",r0c0,r0c1\n2024-05-01 12:00:00.000,1,2\n2024-05-01 12:00:00.050,5,6\n";
-    assert_eq!(frames(text, None)[1], (None, Some(0.05), vec![5.0, 6.0]));
-    // Two lines of words are not the header of a table.
-    assert!(recorded(b"a,b\nc,d\n1,2\n", None).error.is_some());
-}
-
-#[test]
-fn a_block_of_rows_may_begin_with_a_date_and_time() {
-    let blocks = "12:00:00.00 1 2\n3 4\n\n12:00:00.05 5 6\n7 8\n\n";
-    let both = "2024-05-01 23:59:59.95,1,2\n2024-05-02 00:00:00,3,4\n\n2024-05-02 00:00:00,5,6\n2024-05-02 00:00:01,7,8\n";
-    for (text, start) in [(blocks, "12:00:00.00"), (both, "2024-05-01 23:59:59.95")] {
-        for shape in [None, Some((2, 2))] {
-            let found = recorded(text.as_bytes(), shape);
-            assert!(found.error.is_none(), "{text}: {:?}", found.error);
-            assert_eq!(found.channels[0].start.as_deref(), Some(start));
-            let frames: Vec<_> = found
-                .frames
-                .iter()
-                .map(|own| (own.time, own.values().to_vec()))
-                .collect();
-            let expected = [
-                (Some(0.0), vec![1.0, 2.0, 3.0, 4.0]),
-                (Some(0.05), vec![5.0, 6.0, 7.0, 8.0]),
-            ];
-            assert_eq!(frames, expected, "{text}");
-        }
-    }
 }
 
 #[test]
@@ -364,16 +535,6 @@ fn a_separator_in_quotes_is_part_of_a_field() {
 }
 
 #[test]
-fn names_without_clear_rows_and_columns_are_only_counted() {
-    let found = recorded(b"t,S00,S01,S10,S11\n0.5,1,2,3,4\n", None);
-    assert!(
-        error(&found).starts_with("4 values a frame"),
-        "{}",
-        error(&found)
-    );
-}
-
-#[test]
 fn a_line_that_names_the_separator_is_skipped() {
     for named in ["sep=;", "SEP=;", "\"sep=;\"", "sep=;;;"] {
         let text = format!("{named}\r\ntime;r0c0;r0c1\r\n0,5;1,5;2\r\n1;3;4\r\n");
@@ -381,66 +542,6 @@ fn a_line_that_names_the_separator_is_skipped() {
     }
     let text = "sep=\t\ntime\tr0c0\tr0c1\n0.5\t1.5\t2\n1\t3\t4\n";
     assert_eq!(values(text, None), [[1.5, 2.0], [3.0, 4.0]]);
-}
-
-#[test]
-fn a_date_and_time_beside_the_cells_is_the_time() {
-    let times = |text: &str, shape| {
-        let found = recorded(text.as_bytes(), shape);
-        assert!(found.error.is_none(), "{text}: {:?}", found.error);
-        let times: Vec<Option<f64>> = found.frames.iter().map(|frame| frame.time).collect();
-        (found.channels[0].start.clone(), times)
-    };
-    for (text, shape, start, second) in [
-        // The time under any name, past midnight.
-        (
-            "when,note,r0c0,r0c1\n2024-05-01T23:59:59.5Z,a,1,2\n2024-05-02T00:00:00.25Z,b,3,4\n",
-            None,
-            "2024-05-01T23:59:59.5Z",
-            0.75,
-        ),
-        // A date alone is ignored, and so is a unit, which a moment does not need.
-        (
-            "date;time (ms);r0c0;r0c1\n2024-05-01;12:00:00.1;1;2\n2024-05-01;12:00:00.3;3;4\n",
-            None,
-            "12:00:00.1",
-            0.2,
-        ),
-        // Without names, beside a number that counts.
-        (
-            "0,2024-05-01 12:00:00+02:00,1,2\n1,2024-05-01 12:00:01+02:00,3,4\n",
-            Some((1, 2)),
-            "2024-05-01 12:00:00+02:00",
-            1.0,
-        ),
-    ] {
-        let expected = (Some(start.to_owned()), vec![Some(0.0), Some(second)]);
-        assert_eq!(times(text, shape), expected, "{text}");
-    }
-    // A column of numbers takes precedence over it; an unreadable text is not a time.
-    let numbers = "date,t,r0c0,r0c1\n2024-05-01 12:00:00,3,1,2\n2024-05-01 12:00:09,4.5,3,4\n";
-    assert_eq!(times(numbers, None), (None, vec![Some(0.0), Some(1.5)]));
-    let midnight = "t,r0c0,r0c1\n23:59:59.5,1,2\n00:00:00.5,3,4\n00:00:00.25,5,6\n23:59:00,7,8\n00:01:00,9,1\n";
-    let expected = [0.0, 1.0, 0.75, 86_340.5, 86_460.5].map(Some).to_vec();
-    assert_eq!(times(midnight, None).1, expected);
-    let gap = "t,r0c0,r0c1\n12:00:00,1,2\nlater,3,4\n12:00:02,5,6\n";
-    let expected = vec![Some(0.0), None, Some(2.0)];
-    assert_eq!(times(gap, None), (Some("12:00:00".to_owned()), expected));
-    let german = "time,r0c0,r0c1\n01.05.2024 12:00:00,1,2\n01.05.2024 12:00:01,3,4\n";
-    assert_eq!(times(german, None), (None, vec![None, None]));
-}
-
-#[test]
-fn a_line_with_too_many_fields_is_refused_early() {
-    let line = |fields: usize| format!("{}\n", "0,".repeat(fields));
-    assert_eq!(values(&line(512 * 512), Some((512, 512))).len(), 1);
-    for fields in [512 * 512 + 17, 4 << 20] {
-        let found = recorded(line(fields).as_bytes(), None);
-        assert_eq!(
-            error(&found),
-            "line 1: more than 262,160 fields, expected at most 512 × 512 cells and 16 beside them"
-        );
-    }
 }
 
 #[test]
@@ -542,17 +643,6 @@ fn the_time_of_a_line_of_json_may_come_after_many_other_keys() {
     let line = |time: &str| format!("{{{others}\"timestamp\":{time},\"frame\":[[1,2]]}}\n");
     let text = line("1.5") + &line("1.75");
     assert_eq!(frames(&text, None)[1].1, Some(0.25));
-}
-
-#[test]
-fn single_rows_between_empty_lines_need_given_rows_and_columns() {
-    let found = recorded(b"1,2\n\n3,4\n\n5,6\n\n", None);
-    assert!(
-        error(&found).contains("rows and columns of a frame are not stated"),
-        "{}",
-        error(&found)
-    );
-    assert_eq!(values("1,2\n\n3,4\n\n5,6\n\n", Some((1, 2))).len(), 3);
 }
 
 #[test]

@@ -23,7 +23,6 @@ mod record;
 pub mod recording;
 pub(crate) mod seconds;
 pub mod shape;
-pub mod stream;
 pub(crate) mod table;
 pub mod value;
 

@@ -1,11 +1,12 @@
 //! Recordings of sensors and streams of frames.
 
-use std::io::Cursor;
+use std::io::{BufRead, BufReader, Cursor, Read};
 use std::ops::ControlFlow;
 
 use taxel_core::frame::{FrameSize, Processing, Rule};
-use taxel_files::formats::recording::{ReadOptions, RecordingEvent, RecordingMetadata, read};
-use taxel_files::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
+use taxel_files::formats::recording::{
+    ReadOptions, RecordingEvent, RecordingMetadata, StreamCounts, StreamReader, read,
+};
 
 use super::{is_short, refused};
 
@@ -66,32 +67,34 @@ pub(crate) fn stream(bytes: &[u8]) -> bool {
     let Some((&first, bytes)) = bytes.split_first() else {
         return false;
     };
-    let options = StreamOptions {
-        from_start: first & 1 == 0,
+    let options = ReadOptions {
+        is_joined: first & 1 != 0,
         size: FrameSize::new(5, 4).ok().filter(|_| first & 2 != 0),
-        ..StreamOptions::default()
+        ..ReadOptions::default()
     };
-    let decoded = |pieces: &[&[u8]]| {
-        let mut decoder = StreamDecoder::new(options);
+    let decoded = |mut pieces: &mut dyn BufRead| {
         let mut frames = Vec::new();
-        let mut sink = |event: StreamEvent<'_>| {
-            if let StreamEvent::Frame(frame) = event {
+        let mut counts = StreamCounts::default();
+        let mut reader = StreamReader::new(&options);
+        let read = reader.read(&mut pieces, &mut |event| {
+            counts.note(&event);
+            if let RecordingEvent::Frame(frame) = event {
                 let values = frame.values().iter().map(|value| value.to_bits());
                 frames.push(values.collect::<Vec<_>>());
             }
-        };
-        for piece in pieces {
-            decoder.push(piece, &mut sink);
-        }
-        decoder.finish(&mut sink);
-        assert_eq!(decoder.counts().frames, frames.len() as u64);
-        assert_eq!(decoder.counts().bytes, bytes.len() as u64);
-        frames
+            ControlFlow::Continue(())
+        });
+        assert_eq!(counts.frames, frames.len() as u64);
+        (
+            frames,
+            counts.dropped,
+            read.err().map(|error| error.to_string()),
+        )
     };
-    let whole = decoded(&[bytes]);
+    let whole = decoded(&mut &bytes[..]);
     let start = bytes.len().min(usize::from(first) * 8);
     let (start, rest) = bytes.split_at(start);
-    let pieces: Vec<&[u8]> = std::iter::once(start).chain(rest.chunks(7)).collect();
-    assert!(decoded(&pieces) == whole, "decoded in pieces");
-    !whole.is_empty()
+    let mut pieces = start.chain(BufReader::with_capacity(7, rest));
+    assert!(decoded(&mut pieces) == whole, "decoded in pieces");
+    !whole.0.is_empty()
 }

@@ -1,16 +1,18 @@
 //! The events that a reader reports: the channels of a file, its frames one by one, and notes about oddities.
 
 use std::fmt;
+use std::io::BufRead;
 use std::ops::ControlFlow;
 use std::str::FromStr;
 
 use taxel_core::frame::{Frame, FrameSize, Label, Rule, RuleOrigin, SetRule, Tare, View};
 use taxel_core::parameter::number::{counted, short, time_in_words, to_decimals};
 
-use crate::error::ReadError;
+use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::recording::format::Format;
 use crate::formats::recording::metadata::{FrameMark, RecordingMetadata};
 use crate::formats::recording::table::TableLayout;
+use crate::formats::recording::text::TextLines;
 use crate::formats::recording::time::{FrameClock, TimeUnit};
 
 /// Options for reading a recording or a stream.
@@ -456,7 +458,6 @@ impl<'a> Sink<'a> {
     }
 
     /// Reports a frame that is not confirmed yet.
-    #[expect(dead_code, reason = "the boards follow")]
     pub(in crate::formats) fn provisional(
         &mut self,
         channel: usize,
@@ -486,6 +487,22 @@ impl<'a> Sink<'a> {
 
     pub(in crate::formats) fn note(&mut self, note: &RecordingNote) -> Result<(), Stop> {
         self.event(RecordingEvent::Note(note))
+    }
+
+    /// Reads the next line; one that is too long is a wrong frame.
+    pub(in crate::formats::recording) fn advance(
+        &mut self,
+        lines: &mut TextLines<impl BufRead>,
+        options: &ReadOptions,
+    ) -> Result<bool, Stop> {
+        loop {
+            match lines.advance() {
+                Err(error) if error.kind == ReadErrorKind::Invalid => {
+                    self.damage(options, error, b"")?;
+                }
+                read => return Ok(read?),
+            }
+        }
     }
 
     /// Reports a wrong frame that is left out, if it may be; otherwise it ends the reading.

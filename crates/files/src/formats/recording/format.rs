@@ -13,9 +13,9 @@ use crate::formats::recording::event::{ReadOptions, ReadState, RecordingSink, Si
 use crate::formats::recording::json as json_lines;
 use crate::formats::recording::numpy;
 use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
-use crate::formats::recording::table;
 use crate::formats::recording::text::is_parted_by_cr;
-use crate::formats::recording::vendor::{flexitac, tekscan, xsensor};
+use crate::formats::recording::vendor::{tekscan, xsensor};
+use crate::formats::recording::{boards, table};
 
 /// The most bytes at the beginning that decide the format.
 pub(super) const LOOKED_AT: usize = 1 << 16;
@@ -91,29 +91,29 @@ pub static FORMATS: [Format; 10] = [
         name: "jsonl",
         title: "JSON lines",
         stream: Some("jsonl"),
-        sniff: |head, _, _| is_json(head),
+        sniff: |head, options, _| is_json(head, options),
         read: Reader::Bytes(|input, options, sink| json_lines::read(input, options, sink)),
     },
     Format {
         name: "ros2",
         title: "ros2 topic echo",
         stream: Some("ros2"),
-        sniff: |head, _, _| is_text(head) && is_echo(head),
-        read: Reader::Bytes(|input, options, sink| echo::read(input, options, sink)),
+        sniff: |head, options, _| is_text(head) && echo::sniff(without_mark(head), options),
+        read: Reader::Bytes(echo::read),
     },
     Format {
         name: "flexitac",
         title: "FlexiTac",
         stream: Some("flexitac"),
-        sniff: |head, _, _| head.starts_with(&[0xaa, 0x55]),
-        read: Reader::Bytes(|input, options, sink| flexitac::read(input, options, sink)),
+        sniff: boards::is_flexitac,
+        read: Reader::Bytes(boards::flexitac),
     },
     Format {
         name: "matsense",
         title: "MatSense",
         stream: Some("matsense"),
-        sniff: |_, _, _| false,
-        read: Reader::Bytes(|input, options, sink| flexitac::read(input, options, sink)),
+        sniff: boards::is_matsense,
+        read: Reader::Bytes(boards::matsense),
     },
     Format {
         name: "csv",
@@ -164,7 +164,10 @@ pub(super) fn format_of_head(
     options: &ReadOptions,
     is_all: bool,
 ) -> Option<&'static Format> {
-    let mut formats = FORMATS.iter();
+    // Bytes that begin anywhere do not show what only a file is.
+    let mut formats = FORMATS
+        .iter()
+        .filter(|format| !options.is_joined || format.stream.is_some());
     formats.find(|format| (format.sniff)(head, options, is_all))
 }
 
@@ -219,7 +222,7 @@ pub fn read(
 }
 
 /// The error for a content of no known format.
-fn refused(head: &[u8]) -> ReadError {
+pub(super) fn refused(head: &[u8]) -> ReadError {
     let text = without_mark(head).trim_ascii();
     if is_parted_by_cr(head) {
         foreign("text whose lines end in CR alone (save it with LF or CR LF)")
@@ -271,15 +274,10 @@ fn is_xsensor(head: &[u8]) -> bool {
 }
 
 /// For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
-fn is_json(head: &[u8]) -> bool {
+fn is_json(head: &[u8], options: &ReadOptions) -> bool {
     let text = without_mark(head).trim_ascii_start();
     let inside = text.strip_prefix(b"[").map(<[u8]>::trim_ascii_start);
     let is_list = inside.is_some_and(|inside| inside.starts_with(b"{"));
-    !head.contains(&0) && (text.starts_with(b"{") || is_list)
-}
-
-fn is_echo(head: &[u8]) -> bool {
-    let text = echo::without_notices(without_mark(head).trim_ascii_start());
-    let first = lines(text).next().unwrap_or(b"");
-    echo::begins_message(first) || first.starts_with(b"[") && has(text, b"\n---")
+    let is_line = || lines(text).skip(1).any(|line| line.starts_with(b"{"));
+    !head.contains(&0) && (text.starts_with(b"{") || is_list || options.is_joined && is_line())
 }

@@ -66,6 +66,8 @@ pub(super) mod ros;
 
 mod vendor;
 
+mod boards;
+
 mod stream;
 
 mod format;

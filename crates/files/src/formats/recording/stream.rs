@@ -1,12 +1,12 @@
 //! A live stream of frames, read by the readers of recordings behind an input that waits.
 
-use std::io::{self, BufRead};
-use std::ops::ControlFlow;
+use std::io::{self, BufRead, Read};
 
 use crate::error::{ReadError, ReadErrorKind};
-use crate::formats::recording::event::{ReadOptions, RecordingEvent, RecordingSink};
-use crate::formats::recording::format::Format;
-use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamRefusal};
+use crate::formats::recording::event::{
+    ReadOptions, ReadState, RecordingEvent, RecordingSink, Sink, Stop,
+};
+use crate::formats::recording::format::{Format, LOOKED_AT, Reader, format_of_head, refused};
 
 /// The counts of a stream, made from its events by whoever takes them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -45,110 +45,134 @@ impl StreamCounts {
     }
 }
 
-/// Reads a stream, which may be interrupted: after a connection came back, [`Self::read`] is called again, and the
-/// format, the channels and the clock go on. The torn frame is dropped, as is what precedes the first boundary of a
-/// stream that was joined anywhere.
+/// Reads a stream with the readers of recordings. It may be interrupted: after a connection came back, [`Self::read`] is
+/// called again, and the format, the channels and the clock go on. The torn frame is dropped, as is what precedes the
+/// first boundary of a stream that was joined anywhere.
 #[derive(Debug)]
 pub struct StreamReader {
-    decoder: StreamDecoder,
+    options: ReadOptions,
+    format: Option<&'static Format>,
+    state: ReadState,
+    is_joined: bool,
 }
+
+/// The bytes after which the format is looked for again, if no line ends before.
+const STEP: usize = 64;
+
+/// The lines after each of which the format is looked for.
+const MOST_LINES: usize = 64;
 
 impl StreamReader {
     /// Prepares for the first byte. Wrong frames are always left out and reported as [`RecordingEvent::Damage`].
     pub fn new(options: &ReadOptions) -> Self {
-        let stream = StreamOptions {
-            format: options
-                .format
-                .and_then(|format| format.stream?.parse().ok()),
-            size: options.size.or(options.stream_size),
-            from_start: !options.is_joined,
+        let size = options.size.or(options.stream_size);
+        let options = ReadOptions {
+            size,
+            ..options.clone().leaving_out()
         };
-        let decoder = StreamDecoder::new(stream);
-        Self { decoder }
+        Self {
+            format: options.format,
+            is_joined: options.is_joined,
+            state: ReadState::default(),
+            options,
+        }
     }
 
     /// The format, once it is known.
     pub fn format(&self) -> Option<&'static Format> {
-        let found = self.decoder.format()?;
-        Format::of_stream(found.name()).ok()
+        self.format
     }
 
     /// Prepares for the first byte of other content, perhaps in another format: a file was replaced. The channels and
     /// the clock go on.
     pub fn begin_anew(&mut self) {
-        self.decoder.begin_anew();
+        self.format = self.options.format;
+        self.is_joined = false;
     }
 
     /// Reads until the input ends, or the consumer wants no more. An end by [`io::ErrorKind::UnexpectedEof`] may have cut
-    /// a line, which is then dropped; any other is that of the last line.
+    /// a line, which is then dropped; any other is that of the last line. At its end, the input must go on to end so.
     ///
     /// # Errors
-    /// If the input cannot be read, has no known format ([`ReadErrorKind::UnknownFormat`]), or does not say how its
-    /// values are arranged ([`ReadErrorKind::Unsized`]).
+    /// If the input cannot be read, has no known format or one that only a file has ([`ReadErrorKind::UnknownFormat`]),
+    /// or does not say how its values are arranged ([`ReadErrorKind::Unsized`]).
     pub fn read(
         &mut self,
         input: &mut dyn BufRead,
         consumer: &mut RecordingSink<'_>,
     ) -> Result<(), ReadError> {
+        let is_joined = std::mem::replace(&mut self.is_joined, true);
+        let options = ReadOptions {
+            is_joined,
+            ..self.options.clone()
+        };
+        let mut head = Vec::new();
+        let format = match self.format {
+            Some(format) => format,
+            None => match look(input, &options, &mut head)? {
+                Some(format) => *self.format.insert(format),
+                None => return Ok(()),
+            },
+        };
+        let sink = &mut Sink::new(consumer, &mut self.state);
+        let mut input = head.as_slice().chain(input);
+        let read = match format.read {
+            Reader::Bytes(read) if format.stream.is_some() => read(&mut input, &options, sink),
+            _ => return Err(not_a_stream(format)),
+        };
+        match read {
+            Ok(()) | Err(Stop::Enough) => Ok(()),
+            Err(Stop::Failed(error)) => Err(error),
+        }
+    }
+}
+
+fn not_a_stream(format: &Format) -> ReadError {
+    ReadError::new(format!("a recording ({}), not a stream", format.name))
+        .of_kind(ReadErrorKind::UnknownFormat)
+}
+
+/// Takes the first bytes of a stream until they show its format, which does not depend on the pieces in which they come;
+/// None if there are none.
+fn look(
+    input: &mut dyn BufRead,
+    options: &ReadOptions,
+    head: &mut Vec<u8>,
+) -> Result<Option<&'static Format>, ReadError> {
+    let (mut seen, mut lines) = (0, 0);
+    loop {
+        let found = match input.fill_buf() {
+            Ok(found) => found,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => &[],
+            Err(error) => return Err(error.into()),
+        };
+        let count = found.len();
+        head.extend_from_slice(found);
+        input.consume(count);
+        let is_all = count == 0 || head.len() >= LOOKED_AT;
         loop {
-            let mut flow = ControlFlow::Continue(());
-            let dropped = self.decoder.counts().dropped;
-            let mut sink = |event: StreamEvent<'_>| {
-                if flow.is_continue() {
-                    flow = consumer(match event {
-                        StreamEvent::Channel(info) => RecordingEvent::Channel(info),
-                        StreamEvent::Frame(frame) => RecordingEvent::Frame(frame),
-                        StreamEvent::Provisional(frame) => RecordingEvent::Provisional(frame),
-                        StreamEvent::Withdrawn => RecordingEvent::Withdrawn,
-                        StreamEvent::Note(note) => RecordingEvent::Note(note),
-                    });
-                }
+            let rest = &head[seen..];
+            let line = rest
+                .iter()
+                .position(|&byte| byte == b'\n')
+                .filter(|_| lines < MOST_LINES);
+            let step = line.map_or(STEP.max(seen / 8), |end| end + 1);
+            if rest.len() < step {
+                break;
+            }
+            seen += step;
+            lines += usize::from(line.is_some());
+            if let Some(format) = format_of_head(&head[..seen], options, false) {
+                return Ok(Some(format));
+            }
+        }
+        if is_all {
+            return match format_of_head(head, options, true) {
+                Some(format) => Ok(Some(format)),
+                None if head.is_empty() || options.is_joined && count == 0 => Ok(None),
+                None => Err(refused(head)),
             };
-            let ended = match input.fill_buf() {
-                Ok([]) => {
-                    self.decoder.finish(&mut sink);
-                    Some(Ok(()))
-                }
-                Ok(bytes) => {
-                    self.decoder.push(bytes, &mut sink);
-                    let count = bytes.len();
-                    input.consume(count);
-                    None
-                }
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => None,
-                Err(error) => {
-                    self.decoder.cut_off(&mut sink);
-                    let is_cut = error.kind() == io::ErrorKind::UnexpectedEof;
-                    Some(if is_cut { Ok(()) } else { Err(error.into()) })
-                }
-            };
-            let counts = self.decoder.counts();
-            for _ in dropped..counts.dropped {
-                let error = ReadError::new(counts.reason.as_deref().unwrap_or("garbled"));
-                let bytes = counts.sample.as_deref().unwrap_or("").as_bytes();
-                let damage = RecordingEvent::Damage {
-                    error: &error,
-                    bytes,
-                };
-                if flow.is_continue() {
-                    flow = consumer(damage);
-                }
-            }
-            if flow.is_break() {
-                return Ok(());
-            }
-            if let Some(refusal) = self.decoder.counts().refusal() {
-                let kind = match refusal {
-                    StreamRefusal::Unknown => ReadErrorKind::UnknownFormat,
-                    StreamRefusal::Cut => ReadErrorKind::Invalid,
-                    _ => ReadErrorKind::Unsized,
-                };
-                return Err(ReadError::new(refusal.to_string()).of_kind(kind));
-            }
-            if let Some(ended) = ended {
-                self.decoder.restart(&mut |_| ());
-                return ended;
-            }
         }
     }
 }

@@ -39,6 +39,9 @@ const MOST_HELD: usize = 16 << 20;
 #[derive(Clone, Debug)]
 pub(super) struct TableLayout {
     separator: Separator,
+    /// The number of fields if they have names: then the last one may be empty. Otherwise 0: a separator at the end is
+    /// none.
+    expected: usize,
     /// For each field, its channel and the index of its cell; None if it is not a cell.
     slots: Vec<Option<(usize, usize)>>,
     channels: Vec<(Option<String>, FrameSize)>,
@@ -58,6 +61,15 @@ pub(super) fn sniff(head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
         head
     } else {
         &head[..end.unwrap_or(0)]
+    };
+    // A stream that was joined anywhere begins with the rest of a line.
+    let first = whole
+        .iter()
+        .position(|&byte| byte == b'\n')
+        .filter(|_| options.is_joined);
+    let whole = match (options.is_joined, first) {
+        (true, None) => return false,
+        (_, first) => &whole[first.map_or(0, |end| end + 1)..],
     };
     let mut is_named = false;
     whole.split(|&byte| byte == b'\n').any(|line| {
@@ -179,7 +191,7 @@ enum Line<'a> {
 impl<'a> Line<'a> {
     /// Tells what a line of a table with this number of fields is. A text has another number of fields and no number
     /// in them; between blanks, it begins with a word.
-    fn of(line: &'a [u8], separator: Separator, expected: usize) -> Self {
+    fn of(line: &'a [u8], separator: Separator, count: usize) -> Self {
         let (time, fields) = bare(line);
         if is_blank(fields) {
             return Self::Break;
@@ -191,13 +203,13 @@ impl<'a> Line<'a> {
         if is_comment(fields) {
             return Self::Comment;
         }
-        let (mut count, mut numbers) = (0, 0);
-        for field in separator.fields_of(fields, expected) {
+        let (mut found, mut numbers) = (0, 0);
+        for field in separator.fields_of(fields, count) {
             let is_number = separator.is_numeric(field) && !field.is_empty();
-            numbers += usize::from(is_number && (count == 0 || separator != Separator::Spaces));
-            count += 1;
+            numbers += usize::from(is_number && (found == 0 || separator != Separator::Spaces));
+            found += 1;
         }
-        if count != expected && numbers == 0 {
+        if found != count && numbers == 0 {
             Self::Break
         } else {
             Self::Fields(time, fields)
@@ -230,7 +242,7 @@ impl Table<'_, '_> {
     fn read(mut self) -> Result<(), Stop> {
         // What was joined anywhere begins with the rest of a line.
         if self.options.is_joined {
-            self.lines.advance()?;
+            self.advance()?;
         }
         let layout = match self.earlier()? {
             Some(layout) => layout,
@@ -243,8 +255,13 @@ impl Table<'_, '_> {
         self.frames(&layout)
     }
 
+    /// Reads the next line; one that is too long is a wrong frame.
+    fn advance(&mut self) -> Result<bool, Stop> {
+        self.sink.advance(&mut self.lines, self.options)
+    }
+
     /// The layout of the lines before an interruption, if the next line continues them.
-    fn earlier(&mut self) -> Result<Option<TableLayout>, ReadError> {
+    fn earlier(&mut self) -> Result<Option<TableLayout>, Stop> {
         let Some(layout) = self.sink.state.layout.clone() else {
             return Ok(None);
         };
@@ -253,15 +270,15 @@ impl Table<'_, '_> {
         };
         let (_, fields) = bare(&line);
         let separator = layout.separator;
-        let fields: Vec<&[u8]> = separator.fields_of(fields, layout.slots.len()).collect();
+        let fields: Vec<&[u8]> = separator.fields_of(fields, layout.expected).collect();
         let goes_on = fields.len() == layout.slots.len() && !self.is_header(&fields, separator);
         self.lines.unread(number, line);
         Ok(Some(layout).filter(|_| goes_on))
     }
 
     /// The next line that is neither empty nor a comment.
-    fn next_content(&mut self) -> Result<Option<(u64, Vec<u8>)>, ReadError> {
-        while self.lines.advance()? {
+    fn next_content(&mut self) -> Result<Option<(u64, Vec<u8>)>, Stop> {
+        while self.advance()? {
             let (_, line) = bare(self.lines.line());
             if !is_blank(line) && !is_comment(line) {
                 return Ok(Some((self.lines.number(), self.lines.line().to_vec())));
@@ -295,7 +312,7 @@ impl Table<'_, '_> {
                 }
                 Ok(None) => {}
                 Err(Stop::Failed(error)) if is_live && error.kind == ReadErrorKind::Invalid => {
-                    self.lines.advance()?;
+                    self.advance()?;
                     self.drop_line(error)?;
                 }
                 Err(stop) => return Err(stop),
@@ -353,7 +370,7 @@ impl Table<'_, '_> {
     fn columns(&mut self) -> Result<Option<Columns>, Stop> {
         let mut comment = None;
         let mut above: Option<(u64, Vec<u8>)> = None;
-        while self.lines.advance()? {
+        while self.advance()? {
             let (number, line) = (self.lines.number(), self.lines.line());
             let (_, fields) = bare(line);
             if is_blank(fields) {
@@ -480,7 +497,7 @@ impl Table<'_, '_> {
             if is_wide || rows >= most || all >= 3 * most || bytes > MOST_HELD {
                 break None;
             }
-            if !self.lines.advance()? {
+            if !self.advance()? {
                 has_ended = true;
                 break Some(before).filter(|&before| before > 1 && rows > 0);
             }
@@ -488,9 +505,10 @@ impl Table<'_, '_> {
             bytes += line.len();
             let kind = Line::of(line, columns.separator, columns.count);
             let count = match kind {
-                Line::Fields(_, fields) => {
-                    columns.separator.fields_of(fields, columns.count).count()
-                }
+                Line::Fields(_, fields) => columns
+                    .separator
+                    .fields_of(fields, columns.expected())
+                    .count(),
                 _ => columns.count,
             };
             if count != columns.count && is_live && columns.names.is_none() {
@@ -605,7 +623,7 @@ impl Table<'_, '_> {
         let mut skipping = layout.in_rows && self.options.is_joined;
         let mut start = Start::default();
         loop {
-            let more = self.lines.advance()?;
+            let more = self.advance()?;
             let number = self.lines.number();
             if !is_blank(self.lines.torn()) {
                 let torn = self.lines.torn().to_vec();
@@ -753,7 +771,7 @@ impl TableLayout {
         if row == 0 {
             start.time = time.map(<[u8]>::to_vec);
         }
-        for field in self.separator.fields_of(line, self.slots.len()) {
+        for field in self.separator.fields_of(line, self.expected) {
             let column = found;
             found += 1;
             match self.slots.get(column) {
@@ -1074,6 +1092,11 @@ impl Columns {
         }
     }
 
+    /// See [`TableLayout::expected`].
+    fn expected(&self) -> usize {
+        self.names.as_ref().map_or(0, Vec::len)
+    }
+
     fn layout(&self) -> TableLayout {
         let mut slots = vec![None; self.count];
         for (channel, sensor) in self.sensors.iter().enumerate() {
@@ -1087,6 +1110,7 @@ impl Columns {
             .map(|sensor| (sensor.name.clone(), FrameSize::SMALLEST));
         TableLayout {
             separator: self.separator,
+            expected: self.expected(),
             slots,
             channels: channels.collect(),
             time: self.time,

@@ -3,5 +3,3 @@
 pub(super) mod tekscan;
 
 pub(super) mod xsensor;
-
-pub(super) mod flexitac;

@@ -1,0 +1,489 @@
+//! Frames of a byte per cell, as boards send them, in files and streams.
+//!
+//! | board | a frame is | |
+//! |---|---|---|
+//! | `FlexiTac` | `AA 55`, cells | the marker also occurs inside frames, and there is no checksum |
+//! | `MatSense` | cells, `FF` | cells are 0 to 254 |
+//! | `MatSense` | `5B`, cells, `5D` | `5C 00`, `5C 01`, `5C 02` stand for the cells `5C`, `5B`, `5D` |
+
+use std::io::{self, BufRead};
+
+use taxel_core::frame::{Frame, FrameSize};
+use taxel_core::parameter::number::counted;
+
+use crate::error::{ReadError, ReadErrorKind};
+use crate::formats::recording::error::unshaped;
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink, Stop,
+};
+
+/// The bytes before each frame of a `FlexiTac`.
+const MARKER: [u8; 2] = [0xaa, 0x55];
+
+/// Whether bytes begin like those of a `FlexiTac`, or three markers in succession have the same distance.
+pub(super) fn is_flexitac(head: &[u8], options: &ReadOptions, _: bool) -> bool {
+    if head.starts_with(&MARKER) && !options.is_joined {
+        return true;
+    }
+    let has_marker = |at: usize| head[at..].starts_with(&MARKER);
+    match options.size {
+        Some(size) => {
+            let period = MARKER.len() + size.cells();
+            let last = head.len().saturating_sub(2 * period);
+            (0..last).any(|at| (0..3).all(|frame| has_marker(at + frame * period)))
+        }
+        None => {
+            let markers: Vec<usize> = (0..head.len()).filter(|&at| has_marker(at)).collect();
+            let is_even = |three: &[usize]| three[1] - three[0] == three[2] - three[1];
+            markers
+                .windows(3)
+                .any(|three| is_even(three) && three[1] - three[0] > 2)
+        }
+    }
+}
+
+/// Whether these are frames of a `MatSense`; text has brackets, too.
+pub(super) fn is_matsense(head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
+    let is_text = str::from_utf8(head).map_or_else(|error| error.error_len().is_none(), |_| true);
+    let has_control = head.iter().any(|byte| *byte < b'\t');
+    let size = options.size.filter(|_| !is_text || has_control);
+    size.is_some_and(|size| framing(head, size.cells(), options, is_all).is_some())
+}
+
+/// Reads the frames of a `FlexiTac`.
+pub(super) fn flexitac(
+    input: &mut dyn BufRead,
+    options: &ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), Stop> {
+    let Some(size) = options.size else {
+        let head = input.fill_buf()?;
+        let has_marker = |at: &usize| head[*at..].starts_with(&MARKER);
+        let first = (0..head.len()).find(has_marker).unwrap_or(0);
+        let next = (first + 3..head.len())
+            .find(has_marker)
+            .unwrap_or(head.len());
+        return Err(unshaped((next - first).saturating_sub(MARKER.len()) as u64, None).into());
+    };
+    let mut frames = MarkedFrames {
+        board: Board::new(size, options, sink)?,
+        bytes: Vec::new(),
+        start: if options.is_joined {
+            Start::Anywhere
+        } else {
+            Start::Stream
+        },
+        has_frames: false,
+    };
+    let period = frames.period();
+    loop {
+        // A piece at a time, so that the buffer stays small however many bytes arrive at once.
+        let ended = take_bytes(input, period, &mut frames.bytes)?;
+        while frames.step(ended)? {}
+        if ended {
+            return frames.finish();
+        }
+    }
+}
+
+/// Appends at most `most` of the bytes that have come. Returns true at the end of the input.
+fn take_bytes(
+    input: &mut dyn BufRead,
+    most: usize,
+    bytes: &mut Vec<u8>,
+) -> Result<bool, ReadError> {
+    loop {
+        let count = match input.fill_buf() {
+            Ok(found) => {
+                let found = &found[..found.len().min(most)];
+                bytes.extend_from_slice(found);
+                found.len()
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => 0,
+            Err(error) => return Err(error.into()),
+        };
+        input.consume(count);
+        return Ok(count == 0);
+    }
+}
+
+/// What gives the frames of a board, and counts those that are none.
+struct Board<'a, 'b> {
+    options: &'a ReadOptions,
+    sink: &'a mut Sink<'b>,
+    channel: usize,
+    frame: Frame,
+    garbled: u64,
+}
+
+impl<'a, 'b> Board<'a, 'b> {
+    fn new(
+        size: FrameSize,
+        options: &'a ReadOptions,
+        sink: &'a mut Sink<'b>,
+    ) -> Result<Self, Stop> {
+        let info = || ChannelInfo {
+            size: Some(size),
+            ..ChannelInfo::default()
+        };
+        let channel = sink.channel(None, info)?;
+        let frame = Frame::new(size);
+        Ok(Self {
+            options,
+            sink,
+            channel,
+            frame,
+            garbled: 0,
+        })
+    }
+
+    fn fill(&mut self, cells: &[u8]) {
+        for (slot, &byte) in self.frame.values_mut().iter_mut().zip(cells) {
+            *slot = f64::from(byte);
+        }
+    }
+
+    fn give(&mut self, cells: &[u8]) -> Result<(), Stop> {
+        self.fill(cells);
+        self.sink.frame(self.channel, &mut self.frame)
+    }
+
+    /// Counts frames that are none. Without a checksum, a file cannot be refused for them.
+    fn lose(&mut self, frames: u64, bytes: &[u8], message: &str) -> Result<(), Stop> {
+        self.garbled += frames;
+        if self.options.leaves_out {
+            for _ in 0..frames {
+                self.sink
+                    .damage(self.options, ReadError::new(message), bytes)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), Stop> {
+        let frames = self.garbled;
+        if frames > 0 && !self.options.leaves_out {
+            self.sink.note(&RecordingNote::Garbled { frames })?;
+        }
+        Ok(())
+    }
+}
+
+/// Frames after markers. A frame counts once the marker after it has come, or if the input ends with its last byte. If a
+/// marker is not where it was due, the nearest one that the next confirms is taken: the first one would give frames from
+/// the middle of others.
+struct MarkedFrames<'a, 'b> {
+    board: Board<'a, 'b>,
+    /// The bytes that are not read yet: at most a few frames.
+    bytes: Vec<u8>,
+    start: Start,
+    has_frames: bool,
+}
+
+/// The place where the bytes that are not read yet begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Start {
+    Anywhere,
+    /// The first byte of the stream. A marker there cannot be the content of cells.
+    Stream,
+    Marker {
+        /// Whether the frame after it was shown before it was confirmed.
+        shown: bool,
+    },
+}
+
+const GARBLED: &str = "no marker AA 55 where it was due";
+
+impl MarkedFrames<'_, '_> {
+    fn period(&self) -> usize {
+        MARKER.len() + self.board.frame.size().cells()
+    }
+
+    fn has_marker(&self, at: usize) -> bool {
+        self.bytes.get(at..at + MARKER.len()) == Some(&MARKER[..])
+    }
+
+    fn finish(mut self) -> Result<(), Stop> {
+        if !self.bytes.is_empty() {
+            self.withdraw()?;
+            if matches!(self.start, Start::Marker { .. }) || self.has_frames {
+                self.board.lose(1, &self.bytes, "ends inside a frame")?;
+            }
+        }
+        self.board.finish()
+    }
+
+    /// Takes one frame, or drops bytes that are none; returns false if more bytes are needed.
+    fn step(&mut self, ended: bool) -> Result<bool, Stop> {
+        let period = self.period();
+        if self.start == Start::Stream && self.bytes.len() >= MARKER.len() {
+            self.start = if self.has_marker(0) {
+                Start::Marker { shown: false }
+            } else {
+                Start::Anywhere
+            };
+        }
+        if let Start::Marker { shown } = self.start {
+            let whole = self.bytes.len() == period;
+            if self.has_marker(period) || whole && ended {
+                self.board.give(&self.bytes[MARKER.len()..period])?;
+                self.has_frames = true;
+                self.bytes.drain(..period);
+                self.start = if ended && self.bytes.is_empty() {
+                    Start::Anywhere
+                } else {
+                    Start::Marker { shown: false }
+                };
+                return Ok(true);
+            }
+            let waits = whole || self.bytes.len() == period + 1 && self.bytes[period] == MARKER[0];
+            if !ended && (waits || self.bytes.len() < period) {
+                if whole && !shown && self.board.options.leaves_out {
+                    self.start = Start::Marker { shown: true };
+                    let board = &mut self.board;
+                    board.fill(&self.bytes[MARKER.len()..]);
+                    board.sink.provisional(board.channel, &mut board.frame)?;
+                }
+                return Ok(false);
+            }
+            self.withdraw()?;
+        }
+        self.search(ended)
+    }
+
+    fn withdraw(&mut self) -> Result<(), Stop> {
+        if let Start::Marker { shown } = &mut self.start
+            && std::mem::take(shown)
+        {
+            self.board.sink.event(RecordingEvent::Withdrawn)?;
+        }
+        Ok(())
+    }
+
+    /// Searches for the marker nearest to where it was due that the next one confirms; returns false if more bytes are
+    /// needed.
+    fn search(&mut self, ended: bool) -> Result<bool, Stop> {
+        let period = self.period();
+        let in_step = matches!(self.start, Start::Marker { .. });
+        let due = if in_step { period } else { 0 };
+        let reach = due + period;
+        // The last position is confirmed within these bytes; no marker is nearer than one where it was due.
+        let needed = reach + period + MARKER.len();
+        let in_place = self.has_marker(due) && self.has_marker(due + period);
+        if self.bytes.len() < needed && !ended && !in_place {
+            return Ok(false);
+        }
+        let length = self.bytes.len();
+        let first = usize::from(in_step);
+        let confirmed = (first..=reach.min(length)).filter(|&at| {
+            let next = at + period;
+            self.has_marker(at) && (self.has_marker(next) || ended && next == length)
+        });
+        let mut nearest = confirmed.min_by_key(|at| at.abs_diff(due));
+        // If a frame lacks more than half of its bytes, the marker after the next frame is nearer.
+        while let Some(at) = nearest
+            && at >= first + period
+            && self.has_marker(at - period)
+        {
+            nearest = Some(at - period);
+        }
+        let gone = match nearest {
+            Some(at) => at,
+            None if ended => return Ok(false),
+            None => reach.min(length),
+        };
+        if in_step {
+            let frames = (gone + period / 2) / period;
+            self.board.lose(
+                frames.max(1) as u64,
+                &self.bytes[..gone.min(length)],
+                GARBLED,
+            )?;
+        } else if nearest.is_none() && self.has_frames {
+            self.board.lose(1, &self.bytes, GARBLED)?;
+        }
+        self.bytes.drain(..gone);
+        self.start = if nearest.is_some() {
+            Start::Marker { shown: false }
+        } else {
+            Start::Anywhere
+        };
+        Ok(true)
+    }
+}
+
+/// How frames end, and begin if they do not end each other.
+struct Framing {
+    open: Option<u8>,
+    close: u8,
+    /// The byte before the number of a cell that would otherwise open, close or escape, and these cells.
+    escape: Option<(u8, [u8; 3])>,
+}
+
+const ENDED: Framing = Framing {
+    open: None,
+    close: 0xff,
+    escape: None,
+};
+
+const BRACKETED: Framing = Framing {
+    open: Some(0x5b),
+    close: 0x5d,
+    escape: Some((0x5c, [0x5c, 0x5b, 0x5d])),
+};
+
+/// Returns how the frames of a stream of this many cells are framed, from its first bytes; None if more are needed. The
+/// bytes between two cells of `FF` in a bracketed stream may have the right number by chance.
+fn framing(
+    head: &[u8],
+    cells: usize,
+    options: &ReadOptions,
+    is_all: bool,
+) -> Option<&'static Framing> {
+    let whole = |framing: &'static Framing| {
+        let mut frame = SplitFrame::new(framing, cells, options);
+        head.iter()
+            .filter(|&&byte| frame.take(byte) == Part::Whole)
+            .count()
+    };
+    let (ended, bracketed) = (whole(&ENDED), whole(&BRACKETED));
+    let enough = if is_all { 1 } else { 2 };
+    if bracketed >= enough && bracketed >= ended {
+        Some(&BRACKETED)
+    } else if ended >= enough && (bracketed == 0 || ended > 4) {
+        Some(&ENDED)
+    } else {
+        None
+    }
+}
+
+/// Reads the frames of a `MatSense`, in the framing that its first bytes show.
+pub(super) fn matsense(
+    input: &mut dyn BufRead,
+    options: &ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), Stop> {
+    let Some(size) = options.size else {
+        let message = "the rows and columns of a frame of bytes are not stated";
+        return Err(ReadError::new(message)
+            .of_kind(ReadErrorKind::Unsized)
+            .into());
+    };
+    let cells = size.cells();
+    let (mut bytes, mut ended) = (Vec::new(), false);
+    // As many bytes as 64 frames have show it, or nothing does.
+    let most = 128 * (cells + 2);
+    let found = loop {
+        let is_all = ended || bytes.len() >= most;
+        match framing(&bytes, cells, options, is_all) {
+            None if !is_all => ended = take_bytes(input, most, &mut bytes)?,
+            found => break found.unwrap_or(&ENDED),
+        }
+    };
+    let mut board = Board::new(size, options, sink)?;
+    let mut frame = SplitFrame::new(found, cells, options);
+    loop {
+        for &byte in &bytes {
+            match frame.take(byte) {
+                Part::More => {}
+                Part::Whole => board.give(&frame.values)?,
+                Part::Torn => {
+                    let found = counted(frame.found as u64, "byte");
+                    board.lose(
+                        1,
+                        &frame.values,
+                        &format!("a frame of {found}, expected {cells}"),
+                    )?;
+                }
+            }
+        }
+        if ended {
+            return board.finish();
+        }
+        bytes.clear();
+        ended = take_bytes(input, most, &mut bytes)?;
+    }
+}
+
+/// What a byte makes of a frame.
+#[derive(PartialEq)]
+enum Part {
+    More,
+    Whole,
+    Torn,
+}
+
+/// A frame between an end and the next one.
+struct SplitFrame {
+    framing: &'static Framing,
+    cells: usize,
+    /// The cells of the frame so far, at most as many as it has.
+    values: Vec<u8>,
+    found: usize,
+    /// Whether an end or a beginning has come: what precedes it may be the rest of a frame.
+    is_synced: bool,
+    is_inside: bool,
+    is_escaped: bool,
+    is_broken: bool,
+    /// Whether the frame has ended, so that the next byte begins another one.
+    is_over: bool,
+}
+
+impl SplitFrame {
+    fn new(framing: &'static Framing, cells: usize, options: &ReadOptions) -> Self {
+        Self {
+            framing,
+            cells,
+            values: Vec::new(),
+            found: 0,
+            is_synced: false,
+            is_inside: framing.open.is_none() && !options.is_joined,
+            is_escaped: false,
+            is_broken: false,
+            is_over: false,
+        }
+    }
+
+    fn take(&mut self, byte: u8) -> Part {
+        if std::mem::take(&mut self.is_over) {
+            self.values.clear();
+            (self.found, self.is_escaped, self.is_broken) = (0, false, false);
+        }
+        let opens = self.framing.open == Some(byte);
+        if opens || byte == self.framing.close {
+            let is_whole = !opens
+                && self.is_inside
+                && !self.is_broken
+                && !self.is_escaped
+                && self.found == self.cells;
+            let is_torn = self.is_synced && self.found > 0;
+            (self.is_synced, self.is_over) = (true, true);
+            self.is_inside = opens || self.framing.open.is_none();
+            return match (is_whole, is_torn) {
+                (true, _) => Part::Whole,
+                (false, true) => Part::Torn,
+                (false, false) => Part::More,
+            };
+        }
+        let escape = self.framing.escape.filter(|_| self.is_inside);
+        let value = match escape {
+            Some((_, cells)) if std::mem::take(&mut self.is_escaped) => {
+                cells.get(usize::from(byte)).copied()
+            }
+            Some((mark, _)) if mark == byte => {
+                self.is_escaped = true;
+                return Part::More;
+            }
+            // A board may end its frames as lines.
+            _ if !self.is_inside && b"\r\n".contains(&byte) => return Part::More,
+            _ => Some(byte),
+        };
+        self.is_broken |= value.is_none();
+        self.found += 1;
+        if self.values.len() < self.cells {
+            self.values.extend(value);
+        }
+        Part::More
+    }
+}
