@@ -48,10 +48,6 @@ impl ChannelTable {
         Ok(self.channels.len() - 1)
     }
 
-    pub(in crate::formats) fn has_names(&self) -> bool {
-        self.channels.iter().any(|info| info.name.is_some())
-    }
-
     pub(super) fn number(&mut self, channel: usize, frame: &mut Frame) {
         frame.channel = channel;
         frame.number = self.frames[channel];

@@ -113,11 +113,6 @@ impl JsonFrames {
     pub(in crate::formats) fn frame(&self) -> &Frame {
         &self.frame
     }
-
-    /// Forgets the rows and columns of the channels: after a gap, the sensors may have been reconfigured.
-    pub(in crate::formats) fn forget_sizes(&mut self) {
-        self.sizes.fill(StreamSize::new(self.line.named));
-    }
 }
 
 #[derive(Debug)]
@@ -546,11 +541,6 @@ impl JsonClock {
         };
         let (text, number) = number(line.value(rest)?)?;
         Some(time.plus(Time::read(text.as_bytes(), number, *unit)))
-    }
-
-    /// Forgets the key of the time: another file may have another one.
-    pub(in crate::formats) fn forget_key(&mut self) {
-        self.key = None;
     }
 }
 

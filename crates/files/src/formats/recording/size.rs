@@ -92,21 +92,6 @@ impl StreamSize {
         }
     }
 
-    /// Sets the rows and columns, if none are known yet.
-    pub(in crate::formats) fn begin(&mut self, own: FrameSize) {
-        self.present.get_or_insert(own);
-    }
-
-    /// Returns the current rows and columns; None before the first frame if none were given.
-    pub(in crate::formats) fn present(&self) -> Option<FrameSize> {
-        self.present
-    }
-
-    /// Returns the rows and columns if they were given.
-    pub(in crate::formats) fn named(&self) -> Option<FrameSize> {
-        self.present.filter(|_| self.is_named)
-    }
-
     pub(in crate::formats) fn admit(&mut self, own: FrameSize) -> Result<(), String> {
         let size = *self.present.get_or_insert(own);
         if own == size {
