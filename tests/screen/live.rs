@@ -234,7 +234,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     page.frames(3);
     shows(
         &page,
-        &["frame 2", "4 × noise", "tare: 3 of 6 frames", "max  "],
+        &["frame 2", "4 × noise", "tare: 3 of 6 frames", "raw   "],
     );
     hides(&page, &["no frame yet", "needs a tare"]);
     let not_yet = "! no imprint before the tare: 3 of 6 frames";
@@ -242,7 +242,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     page.frames(3);
     shows(&page, &["frame 5", "tare       6 frames"]);
     let needed = "! a threshold from noise needs a tare of at least two frames";
-    then(&mut page, "T<Left>", &["frame 4", "max  ", needed]);
+    then(&mut page, "T<Left>", &["frame 4", "raw   ", needed]);
     let refused = "! no imprint: a threshold from noise needs a tare";
     then(&mut page, "<Enter>", &[refused]);
     then(&mut page, "m", &["frame 4: marked"]);
@@ -409,16 +409,16 @@ fn a_frozen_frame_is_the_shown_one_even_if_it_is_not_confirmed() {
         then(
             &mut page,
             "<Space>",
-            &["frame 2", "frozen", "sum        256"],
+            &["frame 2", "frozen", "raw        sum 256"],
         );
         page
     };
     let mut confirmed = frozen();
     report(&mut confirmed, &[1.0], ProvisionalChange::Gone);
-    shows(&confirmed, &["frame 2", "frozen", "sum        256"]);
+    shows(&confirmed, &["frame 2", "frozen", "raw        sum 256"]);
     let mut replaced = frozen();
     report(&mut replaced, &[2.0], ProvisionalChange::Gone);
-    shows(&replaced, &["frame 2", "frozen", "sum        512"]);
+    shows(&replaced, &["frame 2", "frozen", "raw        sum 512"]);
     let mut withdrawn = frozen();
     report(&mut withdrawn, &[], ProvisionalChange::Gone);
     shows(&withdrawn, &["frame 1", "frozen"]);
@@ -435,12 +435,42 @@ fn sum_and_maximum_are_those_before_the_tare_as_taxel_frames_prints_them() {
     page.frames(1);
     then(&mut page, "t", &["tare of 1 frame"]);
     page.frames(1);
-    shows(&page, &["tared", "sum        16", "max        9 at 1, 0"]);
+    shows(
+        &page,
+        &[
+            "tared",
+            "force      5 on 2 taxels",
+            "raw        sum 16, max 9 at 1, 0",
+        ],
+    );
     then(
         &mut page,
         "vv",
-        &["raw", "sum        16", "max        9 at 1, 0"],
+        &["raw", "raw        sum 16, max 9 at 1, 0"],
     );
+}
+
+#[test]
+fn force_and_contact_are_plotted_over_the_history_and_follow_the_threshold() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.csv");
+    let frames: String = (0..8).map(|own| format!("{own},{}\n", 10 - own)).collect();
+    std::fs::write(&path, format!("r0c0,r0c1\n{frames}")).expect("written");
+    let mut page = session(&format!(":watch {}<Enter>", path.display()));
+    page.frames(8);
+    let full = "\n████████";
+    shows(
+        &page,
+        &["force  0 to 10", "force      10 on 2 taxels", full],
+    );
+    // One value in each frame reaches 5, and both in frame 5.
+    then(
+        &mut page,
+        "f:at-least<Space>5<Enter>",
+        &["contact  0 to 2 taxels"],
+    );
+    shows(&page, &["force      7 on 1 taxel", "\n▄▄▄▄▄█▄▄  "]);
+    then(&mut page, "<Left><Left>f", &["frame 5", "force  0 to 10"]);
 }
 
 #[test]
@@ -607,10 +637,15 @@ fn watch_accepts_the_flags_of_the_command_line() {
         |flags: &str| format!(":watch {}{flags}<Enter>", file.display()).replace(' ', "<Space>");
     let mut page = session(&line(""));
     page.frames(1);
-    shows(
-        &page,
-        &["rows and columns", "after Esc, add them to :watch"],
+    shows(&page, &["rows and columns", ":size COLUMNSxROWS"]);
+    then(
+        &mut page,
+        ":size<Space>3x<Enter>",
+        &["! size takes columns and rows"],
     );
+    then(&mut page, "<Esc>:size<Space>3x2<Enter>", &["no frame yet"]);
+    page.frames(3);
+    shows(&page, &["frame 2", "size       3 × 2"]);
     then(&mut page, "<Esc>", &[]);
     then(&mut page, &line(" --rows 2 --columns 3 --at-least 4"), &[]);
     page.frames(3);
@@ -620,7 +655,7 @@ fn watch_accepts_the_flags_of_the_command_line() {
             "two by three.csv",
             "frame 2",
             "threshold  4",
-            "max        7 at 2, 1",
+            "max 7 at 2, 1",
         ],
     );
 }
@@ -682,7 +717,7 @@ fn values_far_below_1_have_shades_and_fine_steps() {
     std::fs::write(&path, "time,r0c0,r0c1\n0.0,0.000001,0.0000042\n").expect("written");
     let mut page = session(&format!(":watch {}<Enter>", path.display()));
     page.frames(1);
-    shows(&page, &["5e-6", "max        0.0000042 at 1, 0"]);
+    shows(&page, &["5e-6", "max 0.0000042", "force  0 to 0.00001"]);
     then(&mut page, "+", &["threshold  2.5e-6"]);
 }
 

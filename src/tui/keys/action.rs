@@ -53,6 +53,7 @@ pub enum Arguments {
     Seed,
     FrameSource,
     Threshold,
+    FrameSize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,6 +97,7 @@ impl Arguments {
             Self::Seed => "NUMBER",
             Self::FrameSource => "SOURCE --baud 9600 ...",
             Self::Threshold => "VALUE",
+            Self::FrameSize => "COLUMNSxROWS",
         }
     }
 
@@ -269,6 +271,7 @@ actions! {
         FREEZE "freeze" [] Message::Live(LiveMessage::Freeze);
         PEAK_HOLD "peak-hold" [] Message::Live(LiveMessage::PeakHold);
         NEXT_LAYER "next-layer" [] Message::Live(LiveMessage::NextLayer);
+        PLOT "plot" [] Message::Live(LiveMessage::Plot);
         NUMBERS "numbers" [] Message::Live(LiveMessage::Numbers);
         OWN_RANGE "own-range" [] Message::Live(LiveMessage::OwnRange);
         WINDOW_LEFT "window-left" [] Message::Live(LiveMessage::Window(Arrow::Left));
@@ -299,6 +302,7 @@ actions! {
         "save" Arguments::Name;
         "seed" Arguments::Seed, "set the seed of random touches";
         "sensor" Arguments::Sensor;
+        "size" Arguments::FrameSize, "Watch: the sensor's columns and rows, if the source does not state them";
         "turn" Arguments::Degrees, "turn the shape right; negative degrees: left";
         "watch" Arguments::FrameSource, "Watch: frames, live or recorded";
         "write" Arguments::File(FilePurpose::Write), "write an imprint, shape or drawing, by file extension";

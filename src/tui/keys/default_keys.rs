@@ -325,6 +325,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('c') => FOLLOW_CONTACT] "" "scroll back to the contact";
         [Char('p') => PEAK_HOLD] "hold" "hold the largest value of each cell, or release it";
         [Char('v') => NEXT_LAYER] "view" "raw values, tared values, the imprint";
+        [Char('f') => PLOT] "" "plot contact over time, or force";
         [Char('#') => NUMBERS] "" "values as numbers, or in shades";
         [Char('g') => OWN_RANGE] "" "scale the shades to this frame, or to all so far";
         [Char('i') => PANEL] "" "only the numbers, or the taxels as well";

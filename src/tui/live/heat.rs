@@ -19,6 +19,7 @@ use taxel_files::formats::value::measured;
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
+use crate::tui::live::trend;
 use crate::tui::matrix::layout::{AxisWindow, RULER};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::thumbnail;
@@ -422,6 +423,15 @@ impl HeatGrid {
         u16::from(self.columns.count) * u16::from(self.rows.count)
     }
 
+    fn height(&self) -> u16 {
+        let rows = u16::from(self.rows.count);
+        self.rulers.1
+            + match self.form {
+                CellForm::Half => rows.div_ceil(2),
+                _ => rows * self.form.size().1,
+            }
+    }
+
     fn width(&self) -> u16 {
         self.rulers.0 + u16::from(self.columns.count) * self.form.size().0
     }
@@ -447,6 +457,8 @@ pub(super) struct LivePanes {
     pub(super) map: Rect,
     /// The numbers; a low screen shows only the first of them.
     pub(super) panel: Rect,
+    /// The lines below the title that the taxels take.
+    pub(super) taxels: u16,
 }
 
 impl LivePanes {
@@ -462,6 +474,7 @@ impl LivePanes {
                 title,
                 map,
                 panel: rest,
+                taxels: rest.height,
             };
         };
         let narrow = rest.width < 2 * PANEL;
@@ -481,6 +494,7 @@ impl LivePanes {
                 title,
                 map: map_above,
                 panel: below(rest, map_above.height),
+                taxels: rest.height,
             };
         }
         let large = grid(room(WIDE_PANEL));
@@ -489,11 +503,34 @@ impl LivePanes {
             (_, CellForm::Wide(_)) => 2 * u16::from(size.0),
             _ => beside.width(),
         };
+        let map = Rect { width, ..rest };
         Self {
             title,
-            map: Rect { width, ..rest },
+            map,
             panel: right_of(rest, rest.x + width + GAP),
+            taxels: grid(map).height(),
         }
+    }
+
+    /// Returns the part below the taxels for a plot, and the part that is left of the panel: the plot is as wide as the
+    /// page if this number of lines fits beside the taxels. None if there is no room.
+    pub(super) fn plot(&self, lines: usize) -> Option<(Rect, Rect)> {
+        let below_taxels = below(self.map, self.taxels);
+        if below_taxels.height < trend::LEAST {
+            return None;
+        }
+        if lines > self.taxels.into() {
+            return Some((below_taxels, self.panel));
+        }
+        let plot = Rect {
+            width: self.title.width,
+            ..below_taxels
+        };
+        let panel = Rect {
+            height: self.taxels,
+            ..self.panel
+        };
+        Some((plot, panel))
     }
 }
 

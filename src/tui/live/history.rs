@@ -147,6 +147,12 @@ impl FrameCursor {
         self.history.next_number()
     }
 
+    /// Returns the number of frames in the history.
+    pub(super) fn frames(&self) -> u64 {
+        let next = self.history.next_number();
+        self.history.oldest().map_or(0, |oldest| next - oldest)
+    }
+
     /// Returns the frames per second; see [`FrameHistory::rate`].
     pub(super) fn rate(&self) -> Option<f64> {
         self.history.rate()

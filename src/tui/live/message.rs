@@ -33,11 +33,15 @@ pub enum LiveMessage {
     NoTare,
     Threshold(i8),
     AtLeast(Rule),
+    /// Watches the source again, with this size of a frame.
+    Size(FrameSize),
     Percent,
     Freeze,
     PeakHold,
     /// Shows the next layer: raw values, tared values or imprint.
     NextLayer,
+    /// Plots contact instead of force over the history, or force again.
+    Plot,
     Numbers,
     OwnRange,
     Window(Arrow),

@@ -6,6 +6,7 @@
 //! reading          values, imprint and descriptors of one frame
 //! tare             the values that are subtracted, and how they are determined
 //! state            the state of the page: how the shown frame is processed
+//! trend            force and contact over the history
 //! heat             the heat map, with the edge of the imprint
 //! view             draws the page: the heat map, and beside it the numbers
 //! update           handles messages
@@ -22,6 +23,8 @@ pub mod tare;
 pub mod state;
 
 mod heat;
+
+pub mod trend;
 
 pub mod view;
 

@@ -52,7 +52,10 @@ pub struct LiveReading {
     pub frame: Arc<Frame>,
     /// The shown values; NaN if there is no cell.
     pub values: Matrix<f64>,
+    /// The sum of the values before tare and gain.
     pub sum: f64,
+    pub force: f64,
+    pub contact: u32,
     /// The largest value before tare and gain, and its column and row; None without cells.
     pub max: Option<(f64, (u8, u8))>,
     /// The largest shown value, and its column and row; None without cells.
@@ -86,6 +89,8 @@ impl LiveReading {
         let empty = || Imprint::empty(values.size());
         Ok(Self {
             sum: processed.sum,
+            force: processed.force,
+            contact: processed.contact,
             max: largest(processed.raw),
             shown_max: largest(values),
             tared_max: largest(processed.tared).map(|(largest, _)| largest),

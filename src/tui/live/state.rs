@@ -16,12 +16,14 @@ use crate::tui::live::message::{
 };
 use crate::tui::live::reading::{HeatLayer, LiveDisplay, LiveReading, ShadeRange};
 use crate::tui::live::tare::{self, LiveTare};
+use crate::tui::live::trend::{Plotted, Trend};
 use crate::tui::live::update::LiveRefusal;
 use crate::tui::widget::write::other;
 
 const TARED: usize = 30;
 
-/// The maximum number of frames that the range is computed from after a tare. It is limited because a key waits for
+/// The maximum number of frames that range and plot are computed from after a change of the tare or, for the plot, of the
+/// threshold. It is limited because a key waits for
 /// it.
 const RANGED: usize = 1000;
 
@@ -47,6 +49,8 @@ pub struct Live {
     not_drawn: u64,
     pub(in crate::tui) recording: RecordingState,
     pub(super) marks: FrameMarks,
+    pub(super) trend: Trend,
+    pub(super) plotted: Plotted,
     pub names: ShapeNames,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
     reading: Option<LiveReading>,
@@ -72,6 +76,8 @@ impl Live {
             not_drawn: 0,
             recording: RecordingState::default(),
             marks: FrameMarks::default(),
+            trend: Trend::default(),
+            plotted: Plotted::default(),
             names: ShapeNames::new(&request, number),
             reading: None,
             error: None,
@@ -281,11 +287,33 @@ impl Live {
     }
 
     fn add(&mut self, frame: &Arc<Frame>) {
+        self.measure(frame);
+        self.cursor.push(frame);
+        self.trend.keep(self.cursor.frames());
+        self.retare(|tare, processing| tare.add(frame, processing));
+    }
+
+    /// Adds the values of a frame to the range, and its force and contact to the plot.
+    fn measure(&mut self, frame: &Frame) {
+        if let Ok(processed) = self.processing.run(frame) {
+            self.range.add([processed.raw, processed.tared]);
+            self.trend.push(Some(&processed));
+            return;
+        }
+        // Without the tare that a threshold by noise needs there are values, but no force.
         if let Ok(values) = self.processing.values(frame) {
             self.range.add(values);
         }
-        self.cursor.push(frame);
-        self.retare(|tare, processing| tare.add(frame, processing));
+        self.trend.push(None);
+    }
+
+    /// Measures the last frames again, because the tare or the threshold has changed.
+    fn measure_again(&mut self) {
+        self.trend.clear();
+        let frames: Vec<_> = self.cursor.newest(RANGED).cloned().collect();
+        for frame in frames.iter().rev() {
+            self.measure(frame);
+        }
     }
 
     /// Changes the tare. If another tare is subtracted afterwards, the range is computed again from the last frames.
@@ -295,11 +323,7 @@ impl Live {
         if self.tare.origin() != before {
             self.is_viewed_anew = true;
             self.range.begin_anew();
-            for frame in self.cursor.newest(RANGED) {
-                if let Ok(values) = self.processing.values(frame) {
-                    self.range.add(values);
-                }
-            }
+            self.measure_again();
         }
         done
     }
@@ -318,8 +342,11 @@ impl Live {
     }
 
     fn set_rule(&mut self, rule: Option<SetRule>) {
-        self.is_viewed_anew |= self.rule() != rule;
-        self.processing.apply_rule(rule);
+        if self.rule() != rule {
+            self.is_viewed_anew = true;
+            self.processing.apply_rule(rule);
+            self.measure_again();
+        }
     }
 
     /// Returns true if neither a tare nor a gain changes the values.
@@ -452,6 +479,7 @@ impl Live {
         if self.is_recording() {
             self.cursor = FrameCursor::new(self.request.history_bytes);
             self.not_drawn = 0;
+            self.trend.clear();
         }
         self.restart(number);
     }

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use taxel_core::frame::{FrameError, Rule};
+use taxel_core::frame::{FrameError, FrameSize, Rule};
 use taxel_files::acquire::SourceName;
 use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::formats::value::{counted, grouped};
@@ -38,6 +38,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> 
             set_threshold(app, *rule);
             None
         }
+        LiveMessage::Size(size) => watch_with(app, *size),
         _ => None,
     }
 }
@@ -51,6 +52,22 @@ fn set_threshold(app: &mut App, rule: Rule) {
     let value = tare::text(rule, &page.unit());
     let text = format!("{}: threshold {value}", page.request().name());
     inform(app, text);
+}
+
+/// Watches the source of the page from its start, with this size of a frame, and with the threshold of the page.
+fn watch_with(app: &mut App, size: FrameSize) -> Option<Effect> {
+    let Some(page) = page(app) else {
+        refuse(app, NO_SOURCE);
+        return None;
+    };
+    if page.request().source == SourceName::Standard {
+        refuse(app, LiveRefusal::ReadOnce.to_string());
+        return None;
+    }
+    let mut request = WatchRequest::clone(page.request());
+    request.options.size = Some(size);
+    request.rule = page.rule();
+    Some(watch(app, &Arc::new(request)))
 }
 
 /// Handles a message over the page. Closing ends the source and keeps the page; Enter keeps both, because users often
@@ -118,6 +135,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Freeze => page.freeze(),
         LiveMessage::PeakHold => page.switch_peak(),
         LiveMessage::NextLayer => next_layer(app, page),
+        LiveMessage::Plot => page.plotted = page.plotted.other(),
         LiveMessage::Numbers => page.display.numbers ^= true,
         LiveMessage::OwnRange => {
             let own = page.switch_range();
@@ -146,7 +164,10 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Again => return watch_again(app, page),
         LiveMessage::Source(source) => return check_source(app, source),
         // These are typed after `:`, and reach the page from there.
-        LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::AtLeast(_) => {}
+        LiveMessage::Open
+        | LiveMessage::Watch(_)
+        | LiveMessage::AtLeast(_)
+        | LiveMessage::Size(_) => {}
     }
     None
 }

@@ -3,8 +3,9 @@
 //! ```text
 //! mat.csv  frame 65 (label 66)  6.5 s  frozen, 3 frames behind
 //! ░░▒▒▓▓██          range      0 ░▒▓█ 100 kPa
-//! ░░▒▒▓▓••          sum        1234 kPa
-//!                   NA, NAE, P, F, CG …
+//! ░░▒▒▓▓••          force      1234 kPa on 5 taxels
+//! force  0 to 2000  NA, NAE, P, F, CG …
+//! ▄▄▄███▄
 //! ```
 
 use std::path::Path;
@@ -28,6 +29,7 @@ use crate::tui::live::message::{LiveMessage, NamedImprint, Naming, RecordedFrame
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
 use crate::tui::live::tare::{self, progress_text};
+use crate::tui::live::trend;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -84,7 +86,12 @@ impl Page for Live {
             marks = map.legend();
         }
         let lines = lines(self, theme, keymap, marks);
-        draw_lines(&lines, theme, buffer, panes.panel);
+        let mut panel = panes.panel;
+        if let Some((plot, rest)) = panes.plot(lines.len()).filter(|_| shown.is_some()) {
+            trend::draw(self, theme, buffer, plot);
+            panel = rest;
+        }
+        draw_lines(&lines, theme, buffer, panel);
         None
     }
 
@@ -271,21 +278,22 @@ fn of_values(
     marks: Option<String>,
 ) -> Vec<PanelLine> {
     let unit = live.unit();
-    let mut lines = Vec::new();
-    let mut say = |label, text: String| lines.push(PanelLine::new(label, text));
-    say("range", scale(theme, live.range(), &unit));
-    if let Some(marks) = marks {
-        say("legend", marks);
-    }
     // Small sums of large values are rounding errors, not measured values.
     let is_small = live.range().1 < 0.1;
     let value = if is_small { measured } else { fitting };
-    say("sum", format!("{}{unit}", value(reading.sum, 9)));
-    let max = reading
-        .max
-        .map(|(largest, (column, row))| format!("{}{unit} at {column}, {row}", value(largest, 9)));
-    let max = max.unwrap_or_else(|| theme.none().to_owned());
-    lines.push(PanelLine::up_to("max", max, " at "));
+    let contact = counted(reading.contact, "taxel");
+    let force = format!("{}{unit} on {contact}", value(reading.force, 9));
+    let mut lines = vec![
+        PanelLine::up_to("force", force, " on "),
+        PanelLine::new("range", scale(theme, live.range(), &unit)),
+    ];
+    lines.extend(marks.map(|marks| PanelLine::new("legend", marks)));
+    let mut raw = format!("sum {}{unit}", value(reading.sum, 9));
+    if let Some((largest, (column, row))) = reading.max {
+        let largest = value(largest, 9);
+        raw += &format!(", max {largest}{unit} at {column}, {row}");
+    }
+    lines.push(PanelLine::up_to("raw", raw, " at "));
     let cells = counted(cells(&reading.values) as u64, "cell");
     let (columns, rows) = (reading.values.columns(), reading.values.rows());
     let size = format!("{columns} × {rows}, {cells}");

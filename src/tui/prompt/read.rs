@@ -13,7 +13,7 @@
 //! their defaults; those of the sensor keep their values.
 
 use taxel_core::figure::{Figure, FigureKind};
-use taxel_core::frame::{FrameError, Rule};
+use taxel_core::frame::{FrameError, FrameSize, MAX_FRAME_SIDE, Rule};
 use taxel_core::parameter::{Parameter, UnknownName, number};
 use taxel_core::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
 use taxel_core::quote::{did_you_mean, joined, shortened};
@@ -101,6 +101,7 @@ fn with_arguments(
             Ok(Message::Live(LiveMessage::Source(source)))
         }
         (Arguments::Threshold, _) => threshold(rest),
+        (Arguments::FrameSize, _) => frame_size(rest),
         (Arguments::Degrees, _) => degrees(rest),
         (Arguments::Taxel, [column, row]) => taxel(column, row, &app.shown().sensor),
         (Arguments::Distance, [dx, dy]) => distance(dx, dy).ok_or_else(unexpected),
@@ -130,6 +131,21 @@ fn threshold(text: &str) -> Result<Message, String> {
         error => error.to_string(),
     })?;
     Ok(Message::Live(LiveMessage::AtLeast(rule)))
+}
+
+/// Reads columns and rows, as in `16x16`.
+fn frame_size(text: &str) -> Result<Message, String> {
+    let sides = text.split_once(['x', '×']).and_then(|(columns, rows)| {
+        let side = |text: &str| text.trim().parse().ok();
+        FrameSize::of_sides(side(columns), side(rows))
+    });
+    let size = sides.ok_or_else(|| {
+        let found = shortened(text);
+        format!(
+            "size takes columns and rows from 1 to {MAX_FRAME_SIDE}, as in 16x16, found {found:?}"
+        )
+    });
+    Ok(Message::Live(LiveMessage::Size(size?)))
 }
 
 /// Reads an angle in degrees: any number, also a negative one.

@@ -93,9 +93,7 @@ pub(super) fn reason(source: &FrameSource, error: &ReadError) -> String {
         (ReadErrorKind::Unsized, FrameSource::Standard) => {
             "; start again in the shell, with --rows R --columns C"
         }
-        (ReadErrorKind::Unsized, _) => {
-            "; after Esc, add them to :watch, as in --rows R --columns C"
-        }
+        (ReadErrorKind::Unsized, _) => "; :size COLUMNSxROWS sets them",
         _ => "",
     };
     format!("{error}{hint}")
