@@ -72,13 +72,6 @@ impl MatrixSize {
         }
     }
 
-    pub(crate) fn transposed(self) -> Self {
-        Self {
-            columns: self.rows,
-            rows: self.columns,
-        }
-    }
-
     #[cfg(test)]
     pub(crate) fn of(columns: u8, rows: u8) -> Self {
         Self::new(columns, rows).expect("1 to 64")

@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_feature() {
+    fn features_are_the_descriptors_and_their_parts_in_order() {
         use crate::atlas::features;
         let keys: Vec<&str> = features()
             .iter()

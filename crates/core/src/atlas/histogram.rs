@@ -35,37 +35,34 @@ impl Histogram {
     /// possible number. `values` are those of the feature, one per imprint ([`Atlas::values`]). If all are
     /// whole, the width is at least 1. A value that is missing, not finite or beyond ±1e300 counts as none.
     pub fn of(atlas: &Atlas, feature: &Feature, values: &[Option<f64>], most: usize) -> Self {
-        let is_value = |value: &f64| value.abs() <= LARGEST;
-        let found = values.iter().copied().flatten().filter(is_value);
-        let (low, high) = found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        let usable = |value: Option<f64>| value.filter(|value| value.abs() <= LARGEST);
+        let found = || values.iter().filter_map(|&value| usable(value));
+        let (low, high) = found().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
             (low.min(value), high.max(value))
         });
         let most = most.min(MOST_INTERVALS);
-        let (start, width, bins) = if feature.circular {
-            around(most)
-        } else if low <= high {
-            let mut found = values.iter().flatten().filter(|value| is_value(value));
-            let least = if found.all(|value| value.fract() == 0.0) {
-                1.0
+        let (start, width, bins) = if low > high {
+            let (start, width, _) = if feature.circular {
+                around(most)
             } else {
-                0.0
+                (0.0, 1.0, 0)
             };
-            straight(low, high, least, most)
+            (start, width, 0)
+        } else if feature.circular {
+            around(most)
         } else {
-            (0.0, 1.0, 0)
+            let whole = found().all(|value| value.fract() == 0.0);
+            straight(low, high, if whole { 1.0 } else { 0.0 }, most)
         };
         let mut histogram = Self {
             start,
             width,
-            poses: vec![0; if low <= high { bins } else { 0 }],
+            poses: vec![0; bins],
             without: 0,
         };
         let values = values.iter().copied().chain(std::iter::repeat(None));
         for (value, count) in values.zip(atlas.counts()) {
-            let bin = value.filter(is_value).and_then(|value| {
-                let last = histogram.poses.len().checked_sub(1)?;
-                Some(interval(value - start, width).min(last))
-            });
+            let bin = usable(value).map(|value| interval(value - start, width).min(bins - 1));
             match bin {
                 Some(bin) => histogram.poses[bin] += count,
                 None => histogram.without += count,

@@ -40,20 +40,48 @@ impl ImprintKey {
 
     /// Makes this the key of another imprint.
     pub fn set(&mut self, imprint: &Imprint) {
-        self.bits.clear();
-        let Some(bounds) = imprint.bounds() else {
-            (self.height, self.width) = (0, 0);
-            return;
-        };
-        self.width = bounds.right - bounds.left;
-        self.height = bounds.bottom - bounds.top;
-        self.bits.resize(words(self.width, self.height), 0);
-        let mut place = 0;
-        for row in bounds.rows() {
-            let row = imprint.words()[usize::from(row)] >> bounds.left;
-            or_bits(&mut self.bits, place, row);
-            place += usize::from(self.width);
+        match imprint.bounds() {
+            Some(bounds) => {
+                let rows = bounds.words(imprint).iter().map(|row| row >> bounds.left);
+                self.pack(bounds.right - bounds.left, bounds.bottom - bounds.top, rows);
+            }
+            None => self.pack(0, 0, std::iter::empty()),
         }
+    }
+
+    fn pack(&mut self, width: u8, height: u8, rows: impl Iterator<Item = u64>) {
+        (self.width, self.height) = (width, height);
+        self.bits.clear();
+        self.bits.resize(words(width, height), 0);
+        for (index, row) in rows.enumerate() {
+            or_bits(&mut self.bits, index * usize::from(width), row);
+        }
+    }
+
+    /// Returns the key of the image whose rows come first in order, among the images under quarter turns and mirroring
+    /// that are at least as wide as high.
+    pub(crate) fn first_image(&self) -> Self {
+        let rows: Vec<u64> = self.borrowed().rows().collect();
+        let mut turned = vec![0; self.width.into()];
+        for (row, word) in rows.iter().enumerate() {
+            for (column, turned) in turned.iter_mut().enumerate() {
+                *turned |= (word >> column & 1) << row;
+            }
+        }
+        let (width, height) = (self.width.max(self.height), self.width.min(self.height));
+        let mut images = vec![rows, turned];
+        images.retain(|rows| rows.len() == usize::from(height));
+        let mirrored = |row: &u64| row.reverse_bits() >> (64 - width);
+        for index in 0..images.len() {
+            images.push(images[index].iter().map(mirrored).collect());
+        }
+        for index in 0..images.len() {
+            images.push(images[index].iter().rev().copied().collect());
+        }
+        let first = images.into_iter().min().unwrap_or_default();
+        let mut key = Self::default();
+        key.pack(width, height, first.into_iter());
+        key
     }
 
     /// Returns the imprint, on a matrix of exactly its size; None for the empty key.
@@ -251,5 +279,34 @@ mod tests {
         let (sorted, order) = table.sorted();
         assert_eq!(order, [0, 1, 2, 3, 4, 5, 6]);
         assert!((1..sorted.len()).all(|index| sorted.get(index - 1) < sorted.get(index)));
+    }
+
+    /// The imprint looks like none of its images.
+    #[test]
+    fn the_images_of_an_imprint_have_one_first_image() {
+        let read = |text: &str| ImprintKey::of(&text.parse().expect("rows"));
+        let images = [
+            ".#..\n####\n#...",
+            "..#.\n####\n...#",
+            "#...\n####\n.#..",
+            "...#\n####\n..#.",
+            "##.\n.##\n.#.\n.#.",
+            ".##\n##.\n.#.\n.#.",
+            ".#.\n.#.\n.##\n##.",
+            ".#.\n.#.\n##.\n.##",
+        ]
+        .map(read);
+        let first = images[0].first_image();
+        assert_eq!((first.width(), first.height()), (4, 3));
+        for (index, image) in images.iter().enumerate() {
+            assert_eq!(image.first_image(), first, "{image:?}");
+            assert!(images[..index].iter().all(|other| other != image));
+        }
+        assert_eq!(first.first_image(), first);
+        let square = |text: &str| read(text).first_image();
+        assert_eq!(square("##\n#."), square(".#\n##"));
+        assert_ne!(square("##\n#."), square("##\n##"));
+        let nothing = ImprintKey::default();
+        assert_eq!(nothing.first_image(), nothing);
     }
 }

@@ -150,6 +150,21 @@ impl UnknownName {
 #[macro_export]
 #[doc(hidden)]
 macro_rules! named {
+    ($type:ident, $what:literal, [$($variant:ident $name:literal),+ $(,)?]) => {
+        impl $type {
+            /// All of them, in order.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// Returns the name used on the command line, in JSON and on the screen.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name),+
+                }
+            }
+        }
+
+        $crate::parameter::named!($type, $what, $type::ALL);
+    };
     ($type:ident, $what:literal, $all:expr) => {
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -22,29 +22,17 @@ pub enum AnswerState {
     Unknown,
 }
 
-impl AnswerState {
-    /// All states, the most definite first.
-    pub const ALL: &'static [Self] = &[
-        Self::Certain,
-        Self::Likely,
-        Self::Tied,
-        Self::Rejected,
-        Self::Unknown,
-    ];
-
-    /// Returns the name used in JSON and on the screen.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Certain => "certain",
-            Self::Likely => "likely",
-            Self::Tied => "tied",
-            Self::Rejected => "rejected",
-            Self::Unknown => "unknown",
-        }
-    }
-}
-
-named!(AnswerState, "state", AnswerState::ALL);
+named!(
+    AnswerState,
+    "state",
+    [
+        Certain "certain",
+        Likely "likely",
+        Tied "tied",
+        Rejected "rejected",
+        Unknown "unknown",
+    ]
+);
 
 /// The evidence: imprints of one shape in independent poses, how often taxels fail, and the least probability that is
 /// enough for an answer.
@@ -209,12 +197,8 @@ impl Model {
 
     /// Returns the probabilities of the shapes that leave all of the touches.
     fn possible(&self, touches: &[Imprint]) -> Posterior {
-        let weights = self
-            .head()
-            .shapes
-            .iter()
-            .map(|shape| vec![shape.weight.into()]);
-        let mut factors: Vec<Vec<u64>> = weights.collect();
+        let shapes = self.shapes().iter();
+        let mut factors: Vec<Vec<u64>> = shapes.map(|shape| vec![shape.weight.into()]).collect();
         for touch in touches {
             let mut counts = self.counts_of(touch).iter().peekable();
             for (shape, factors) in factors.iter_mut().enumerate() {
@@ -223,10 +207,8 @@ impl Model {
             }
         }
         let odds = factors.into_iter().map(Odds::of).enumerate();
-        Posterior::of_odds(
-            odds.filter_map(|(shape, odds)| Some((shape, odds?)))
-                .collect(),
-        )
+        let odds = odds.filter_map(|(shape, odds)| Some((shape, odds?)));
+        Posterior::of_odds(odds.collect())
     }
 
     /// Returns the imprint of the model that is nearest to the first touch that no shape leaves, or to the last touch

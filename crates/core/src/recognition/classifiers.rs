@@ -41,21 +41,11 @@ pub enum Classifier {
     Template,
 }
 
-impl Classifier {
-    /// All classifiers.
-    pub const ALL: &'static [Self] = &[Self::Z, Self::Knn, Self::Template];
-
-    /// Returns the name used on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Z => "z",
-            Self::Knn => "knn",
-            Self::Template => "template",
-        }
-    }
-}
-
-named!(Classifier, "classifier", Classifier::ALL);
+named!(
+    Classifier,
+    "classifier",
+    [Z "z", Knn "knn", Template "template"]
+);
 
 /// The settings of classifiers: which descriptors and how many samples they use.
 #[derive(Clone, Debug, PartialEq)]
@@ -255,18 +245,12 @@ impl FeatureTable {
         let descriptions = GivenTable::new(model).descriptions;
         let (mut names, mut dropped) = (Vec::new(), Vec::new());
         let mut kept: Vec<(Vec<f64>, f64, f64)> = Vec::new();
-        let wanted = ShapeDescriptor::all()
-            .filter(|own| descriptors.is_none_or(|given| given.contains(own)))
-            .map(ShapeDescriptor::key);
-        let own = |key| {
-            features()
-                .iter()
-                .filter(move |own| own.descriptor.key == key)
+        let is_wanted = |feature: &&Feature| {
+            let own = ShapeDescriptor::all().find(|own| own.key() == feature.descriptor.key);
+            own.is_some_and(|own| descriptors.is_none_or(|given| given.contains(&own)))
         };
-        let columns = wanted
-            .flat_map(own)
-            .flat_map(|own| columns(own, &descriptions));
-        for (name, column) in columns {
+        let wanted = features().iter().filter(is_wanted);
+        for (name, column) in wanted.flat_map(|own| columns(own, &descriptions)) {
             let (mean, variance) = moments(model, &column);
             let reason = if column.iter().any(|value| value.is_nan()) {
                 "does not exist for some imprints"

@@ -41,6 +41,19 @@ impl ShapeDescriptor {
     pub fn key(self) -> &'static str {
         self.descriptor().key
     }
+
+    /// Returns the value in a description, in steps if it is rounded. An empty imprint has no description; its counts
+    /// are 0, so in large steps they equal small ones.
+    fn value(self, roundings: &[Rounding], description: Option<&Description>) -> ExactValue {
+        let own = self.descriptor();
+        match roundings
+            .iter()
+            .find(|rounding| rounding.descriptor == self)
+        {
+            Some(rounding) => rounding.rounded(description.map_or(own.of_nothing, own.measure)),
+            None => (own.exact)(description?),
+        }
+    }
 }
 
 impl std::str::FromStr for ShapeDescriptor {
@@ -199,30 +212,9 @@ impl GivenDescriptors {
     }
 
     fn values(&self, description: Option<&Description>) -> Vec<ExactValue> {
-        let value = |&descriptor: &ShapeDescriptor| {
-            let rounding = Rounding::of(descriptor, &self.roundings);
-            known(descriptor, rounding, description)
-        };
-        self.descriptors.iter().map(value).collect()
-    }
-}
-
-/// Returns the value of one descriptor in a description, in steps if it is rounded. An empty imprint has no
-/// description; its counts are 0, so in large steps they equal small ones.
-fn known(
-    descriptor: ShapeDescriptor,
-    rounding: Option<&Rounding>,
-    description: Option<&Description>,
-) -> ExactValue {
-    let Descriptor {
-        measure,
-        exact,
-        of_nothing,
-        ..
-    } = descriptor.descriptor();
-    match rounding {
-        Some(rounding) => rounding.rounded(description.map_or(*of_nothing, measure)),
-        None => exact(description?),
+        let own = self.descriptors.iter();
+        own.map(|own| own.value(&self.roundings, description))
+            .collect()
     }
 }
 
@@ -273,14 +265,12 @@ impl<'a> GivenTable<'a> {
         descriptor: ShapeDescriptor,
         roundings: &[Rounding],
     ) -> Classes {
-        let rounding = Rounding::of(descriptor, roundings);
-        let value =
-            |description: &Option<Description>| known(descriptor, rounding, description.as_ref());
         let mut numbers = HashMap::new();
         let members = classes.iter().zip(&self.descriptions);
         let number = members.map(|(&class, description)| {
             let next = narrow(numbers.len());
-            *numbers.entry((class, value(description))).or_insert(next)
+            let value = descriptor.value(roundings, description.as_ref());
+            *numbers.entry((class, value)).or_insert(next)
         });
         number.collect()
     }
@@ -304,10 +294,6 @@ impl Rounding {
     /// Returns the descriptor that is measured in steps.
     pub fn descriptor(&self) -> ShapeDescriptor {
         self.descriptor
-    }
-
-    fn of(descriptor: ShapeDescriptor, all: &[Self]) -> Option<&Self> {
-        all.iter().find(|own| own.descriptor == descriptor)
     }
 
     /// Returns the number of steps that is nearest to a number. Directions of 180° and −180° are the same one, if a

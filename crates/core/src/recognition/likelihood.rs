@@ -27,21 +27,11 @@ pub enum SearchMethod {
     Scan,
 }
 
-impl SearchMethod {
-    /// All methods.
-    pub const ALL: &'static [Self] = &[Self::Exact, Self::OneFlip, Self::Scan];
-
-    /// Returns the name used in JSON.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::OneFlip => "one-flip",
-            Self::Scan => "scan",
-        }
-    }
-}
-
-named!(SearchMethod, "method", SearchMethod::ALL);
+named!(
+    SearchMethod,
+    "method",
+    [Exact "exact", OneFlip "one-flip", Scan "scan"]
+);
 
 /// The number of touches of each shape at each distance from an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,27 +52,15 @@ impl Model {
     /// takes longer.
     pub fn posterior_under(&self, imprint: &Imprint, noise: &Noise) -> Option<Vec<f64>> {
         let distances = self.distances(imprint, noise)?;
-        let likelihoods = self.likelihoods(imprint, &distances, noise);
+        let totals = self.touches_on(imprint.size());
+        let own = self.shapes().iter().zip(&distances.touches).zip(totals);
+        let likelihoods = own.map(|((shape, touches), total)| match total {
+            0 => 0.0,
+            total => weighed(touches, noise) / float(total) * f64::from(shape.weight),
+        });
+        let likelihoods: Vec<f64> = likelihoods.collect();
         let sum: f64 = likelihoods.iter().sum();
         (sum > 0.0).then(|| likelihoods.into_iter().map(|own| own / sum).collect())
-    }
-
-    pub(super) fn likelihoods(
-        &self,
-        imprint: &Imprint,
-        distances: &Distances,
-        noise: &Noise,
-    ) -> Vec<f64> {
-        let likelihood = |(touches, total): (&Vec<u64>, u64)| match total {
-            0 => 0.0,
-            total => weighed(touches, noise) / float(total),
-        };
-        let totals = self.touches_on(imprint.size());
-        let weights = self.shapes().iter().map(|shape| shape.weight);
-        let own = distances.touches.iter().zip(totals).map(likelihood);
-        own.zip(weights)
-            .map(|(own, weight)| own * f64::from(weight))
-            .collect()
     }
 
     /// Returns a lower and an upper bound of ln P(imprint | s) for each shape, plus a common number: without and with
@@ -547,7 +525,8 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_likelihood() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_square_with_two_wrong_taxels_is_still_a_square_under_noise()
+    -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         use crate::recognition::{NamedShape, Training};
         let sensor = Sensor::default();

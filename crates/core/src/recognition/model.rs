@@ -224,15 +224,12 @@ impl Model {
             let start = counts.len();
             counts.extend(counts_of(index));
             let own: &[ShapeCount] = &counts[start..];
-            check(
-                own.iter()
-                    .all(|count| usize::from(count.shape) < shapes && count.poses > 0),
-                "a count of a shape that is not in the set",
-            )?;
-            check(
-                !own.is_empty() && own.windows(2).all(|pair| pair[0].shape < pair[1].shape),
-                "counts that are not in the order of the shapes",
-            )?;
+            let known = |count: &ShapeCount| usize::from(count.shape) < shapes && count.poses > 0;
+            let what = "a count of a shape that is not in the set";
+            check(own.iter().all(known), what)?;
+            let ordered = own.windows(2).all(|pair| pair[0].shape < pair[1].shape);
+            let what = "counts that are not in the order of the shapes";
+            check(!own.is_empty() && ordered, what)?;
             for count in own {
                 let sum = &mut sums[usize::from(count.shape)];
                 *sum = sum
@@ -241,18 +238,12 @@ impl Model {
             }
             starts.push(counts.len());
         }
-        check(
-            sums.iter().all(|&sum| sum == head.poses),
-            "counts that do not sum up to the number of poses",
-        )?;
-        check(
-            poses(&head.ranges, head.shard) == Some(head.poses),
-            "a number of poses that is not that of the ranges",
-        )?;
-        check(
-            head.cut.iter().all(|&cut| cut <= head.poses),
-            "more poses cut off than there are",
-        )?;
+        let summed = sums.iter().all(|&sum| sum == head.poses);
+        check(summed, "counts that do not sum up to the number of poses")?;
+        let ranged = poses(&head.ranges, head.shard) == Some(head.poses);
+        check(ranged, "a number of poses that is not that of the ranges")?;
+        let cut = head.cut.iter().all(|&cut| cut <= head.poses);
+        check(cut, "more poses cut off than there are")?;
         Ok(Self {
             head,
             keys,
@@ -386,12 +377,8 @@ impl Model {
     }
 
     pub(super) fn weights(&self) -> u128 {
-        let weights = self
-            .head
-            .shapes
-            .iter()
-            .map(|shape| u128::from(shape.weight));
-        weights.sum()
+        let shapes = self.head.shapes.iter();
+        shapes.map(|shape| u128::from(shape.weight)).sum()
     }
 }
 

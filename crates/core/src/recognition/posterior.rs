@@ -121,29 +121,13 @@ impl Odds {
         if difference.abs() > 1e-9 * (1.0 + self.logarithm.abs()) {
             return difference.total_cmp(&0.0);
         }
-        let [own, others] = without_common(&self.factors, &other.factors).map(|own| digits(&own));
+        if self.factors == other.factors {
+            return Ordering::Equal;
+        }
+        let [own, others] = [&self.factors, &other.factors].map(|factors| digits(factors));
         let by_length = own.len().cmp(&others.len());
         by_length.then_with(|| own.iter().rev().cmp(others.iter().rev()))
     }
-}
-
-/// Returns the factors of two products without those that they share. Factors are in ascending order.
-fn without_common(one: &[u64], other: &[u64]) -> [Vec<u64>; 2] {
-    let (mut one, mut other) = (one.iter().peekable(), other.iter().peekable());
-    let mut rest = [Vec::new(), Vec::new()];
-    while let (Some(own), Some(others)) = (one.peek(), other.peek()) {
-        match own.cmp(others) {
-            Ordering::Less => rest[0].extend(one.next()),
-            Ordering::Greater => rest[1].extend(other.next()),
-            Ordering::Equal => {
-                one.next();
-                other.next();
-            }
-        }
-    }
-    rest[0].extend(one);
-    rest[1].extend(other);
-    rest
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "this is its purpose")]

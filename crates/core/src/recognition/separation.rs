@@ -25,17 +25,6 @@ pub enum SizeAxis {
 }
 
 impl SizeAxis {
-    /// Both axes.
-    pub const ALL: &'static [Self] = &[Self::Scale, Self::Pitch];
-
-    /// Returns the name used in JSON and in tables.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Scale => "scale",
-            Self::Pitch => "pitch_mm",
-        }
-    }
-
     /// Returns the values of a range, from the smallest size to the largest. Pitches are reversed: the largest pitch
     /// gives the smallest size.
     pub fn smallest_first(self, values: &DecimalRange) -> Vec<f64> {
@@ -55,7 +44,7 @@ impl SizeAxis {
     }
 }
 
-named!(SizeAxis, "axis", SizeAxis::ALL);
+named!(SizeAxis, "axis", [Scale "scale", Pitch "pitch_mm"]);
 
 /// A set of shapes whose limit is computed at several sizes and thresholds.
 ///

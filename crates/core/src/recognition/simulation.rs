@@ -138,9 +138,8 @@ impl NoisyTouches {
     /// with different dead taxels differ. The same seed draws the same dead taxels for any noise.
     #[must_use]
     pub fn with_random_dead(self, count: u32) -> Self {
-        let random_dead = count;
         Self {
-            random_dead,
+            random_dead: count,
             ..self
         }
     }
@@ -191,10 +190,10 @@ impl Model {
         progress: &dyn Progress,
     ) -> Option<RecognitionRate> {
         let judge = |touch: &Imprint, dead: &Imprint| {
-            let known = match assumed.dead() {
-                Some(known) => known.resized(dead.size()).union(dead),
-                None => *dead,
-            };
+            let known = assumed
+                .dead()
+                .map(|known| known.resized(dead.size()).union(dead));
+            let known = known.unwrap_or(*dead);
             let posterior = self.posterior_under(touch, &assumed.with_dead(known));
             Judgement {
                 is_held: self.keys().find(&ImprintKey::of(touch)).is_some(),
