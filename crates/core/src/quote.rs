@@ -56,6 +56,13 @@ pub fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -
     }
 }
 
+/// Returns the message about a name that is not one of `names`: which they are, and which one was probably meant.
+pub fn unknown_name(found: &str, names: &[&str]) -> String {
+    let meant = did_you_mean(found, names.iter().copied());
+    let (found, names) = (shortened(found), names.join(", "));
+    format!("{found:?} is unknown, expected one of {names}{meant}")
+}
+
 /// Writes a word as it is typed on a command line: in single quotes if a shell would otherwise interpret it.
 pub fn as_argument(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=@%+".contains(c);

@@ -11,8 +11,7 @@ use taxel_core::picture::PICTURE_PARAMETERS;
 use taxel_core::quote::joined;
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_core::source::Source;
-use taxel_files::formats::file::has_ending;
-use taxel_files::formats::{ImprintFormat, Name};
+use taxel_files::formats::{ExportFormat, Name};
 use taxel_files::storage::Existing;
 
 use crate::cli::arguments::flags::{
@@ -151,39 +150,15 @@ pub(super) fn format_flag() -> Arg {
         .hide_possible_values(true)
 }
 
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum ExportFormat {
-    Imprint(&'static ImprintFormat),
-    Svg,
-}
-
-impl ExportFormat {
-    fn of(name: &str) -> Option<Self> {
-        let mut formats = ImprintFormat::ALL.iter();
-        match name {
-            "svg" => Some(Self::Svg),
-            name => formats
-                .find(|format| format.name == name)
-                .map(Self::Imprint),
-        }
-    }
-
-    fn of_ending(path: &Path) -> Option<Self> {
-        let format = ImprintFormat::of_path(path).map(Self::Imprint);
-        format.or_else(|| has_ending(path, "svg").then_some(Self::Svg))
-    }
-}
-
 pub(crate) fn names() -> Vec<&'static str> {
-    let imprints = ImprintFormat::ALL.iter().map(|format| format.name);
-    imprints.chain(["svg"]).collect()
+    ExportFormat::ALL.iter().map(|format| format.name).collect()
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Export {
     /// Its path; None for standard output.
     pub(crate) path: Option<PathBuf>,
-    pub(crate) format: ExportFormat,
+    pub(crate) format: &'static ExportFormat,
     pub(crate) existing: Existing,
 }
 
@@ -194,8 +169,8 @@ impl Export {
         existing: Existing,
     ) -> Result<Self, String> {
         let format = match format {
-            Some(name) => ExportFormat::of(name),
-            None => ExportFormat::of_ending(path),
+            Some(name) => ExportFormat::ALL.iter().find(|format| format.name == name),
+            None => ExportFormat::of_path(path),
         };
         let is_standard = path.as_os_str() == "-";
         let format = format.ok_or_else(|| {
@@ -250,7 +225,7 @@ impl Export {
     }
 
     pub(crate) fn is_drawing(&self) -> bool {
-        matches!(self.format, ExportFormat::Svg)
+        self.format.name == ExportFormat::SVG
     }
 }
 

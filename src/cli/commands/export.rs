@@ -13,7 +13,7 @@ use taxel_core::source::Source;
 use taxel_files::formats::{Content, Drawing, Name, StoredShape};
 use taxel_files::storage::{self, Existing, NewFile, check_writable};
 
-use crate::cli::arguments::touch::{Export, ExportFormat, Kept, Saving};
+use crate::cli::arguments::touch::{Export, Kept, Saving};
 use crate::cli::error::CliError;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
@@ -51,16 +51,14 @@ impl Export {
         title: &str,
         pitch: Option<f64>,
     ) -> Result<Begun, CliError> {
-        self.begin_with(imprint, || {
-            let mut drawing = Drawing::new(imprint).with_title(title);
-            if let Some(values) = heat {
-                drawing = drawing.with_heat(values);
-            }
-            match pitch {
-                Some(pitch) => drawing.with_pitch(pitch),
-                None => drawing,
-            }
-        })
+        let mut drawing = Drawing::new(imprint).with_title(title);
+        if let Some(values) = heat {
+            drawing = drawing.with_heat(values);
+        }
+        if let Some(pitch) = pitch {
+            drawing = drawing.with_pitch(pitch);
+        }
+        self.begin_with(&drawing)
     }
 
     /// Writes the file completely, but does not give it its name yet.
@@ -74,29 +72,23 @@ impl Export {
         title: &str,
         pitch: Option<f64>,
     ) -> Result<Begun, CliError> {
-        self.begin_with(imprint, || {
-            let mut drawing = Drawing::new(imprint);
-            if let Some(source) = source {
-                drawing = drawing.with_outline(source);
-            }
-            match (source, pitch) {
-                // The title describes the source, which is always in cells.
-                (Some(_), Some(pitch)) => drawing
-                    .with_pitch(pitch)
-                    .with_title(&format!("{title} (in cells)")),
-                (None, Some(pitch)) => drawing.with_pitch(pitch).with_title(title),
-                (_, None) => drawing.with_title(title),
-            }
+        let mut drawing = Drawing::new(imprint);
+        if let Some(source) = source {
+            drawing = drawing.with_outline(source);
+        }
+        self.begin_with(&match (source, pitch) {
+            // The title describes the source, which is always in cells.
+            (Some(_), Some(pitch)) => drawing
+                .with_pitch(pitch)
+                .with_title(&format!("{title} (in cells)")),
+            (None, Some(pitch)) => drawing.with_pitch(pitch).with_title(title),
+            (_, None) => drawing.with_title(title),
         })
     }
 
-    /// Makes the content and writes the file, which gets its name only in [`Begun::end`]. `draw` is called only for
-    /// drawings.
-    fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
-        let content = match self.format {
-            ExportFormat::Imprint(format) => (format.write)(imprint),
-            ExportFormat::Svg => draw().svg().into_bytes(),
-        };
+    /// Makes the content and writes the file, which gets its name only in [`Begun::end`].
+    fn begin_with(&self, drawing: &Drawing) -> Result<Begun, CliError> {
+        let content = (self.format.write)(drawing);
         match &self.path {
             None => Ok(Begun::Content(content)),
             Some(path) => Ok(Begun::File(NewFile::with_content(

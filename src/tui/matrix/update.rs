@@ -14,7 +14,7 @@ use taxel_core::picture::Picture;
 use taxel_core::quote::shortened;
 use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
-use taxel_files::formats::{Drawing, ImprintFormat, Name, StoredShape, value};
+use taxel_files::formats::{Drawing, ExportFormat, Name, StoredShape, value};
 use taxel_files::storage::{Existing, ShapeOrigin, UNNAMED};
 
 use crate::tui::app::change::{
@@ -483,11 +483,8 @@ pub(in crate::tui) fn overwrite(name: String, content: Vec<u8>) -> Effect {
 
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     let reading = app.reading();
-    if let Some(format) = ImprintFormat::of_path(name) {
-        return Ok((format.write)(&reading.imprint));
-    }
-    if has_ending(name, "svg") {
-        return Ok(drawing(app).svg().into_bytes());
+    if let Some(format) = ExportFormat::of_path(name) {
+        return Ok((format.write)(&drawing(app)));
     }
     if !has_ending(name, "json") {
         return Err(format!(

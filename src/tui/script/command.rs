@@ -18,7 +18,7 @@ use std::path::PathBuf;
 
 use regex_lite::{Regex, RegexBuilder};
 use taxel_core::parameter::{Parameter, ParameterError};
-use taxel_core::quote::{did_you_mean, shortened};
+use taxel_core::quote::{did_you_mean, shortened, unknown_name};
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_files::formats::{StoredShape, json};
 
@@ -153,15 +153,7 @@ pub fn read(script: &str) -> Result<Vec<(usize, ScriptCommand)>, ScriptError> {
 fn command(line: &str) -> Result<ScriptCommand, String> {
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let command = COMMANDS.iter().find(|(name, _)| *name == word);
-    let (_, read) = command.ok_or_else(|| {
-        let names = COMMANDS.map(|(name, _)| name);
-        format!(
-            "{:?} is unknown, expected one of {}{}",
-            shortened(word),
-            names.join(", "),
-            did_you_mean(word, names)
-        )
-    })?;
+    let (_, read) = command.ok_or_else(|| unknown_name(word, &COMMANDS.map(|(name, _)| name)))?;
     read(rest.trim())
 }
 
@@ -204,12 +196,7 @@ fn signal(name: &str) -> Result<ScriptCommand, String> {
     if SIGNALS.contains(&name) {
         return Ok(ScriptCommand::Signal(name.to_owned()));
     }
-    Err(format!(
-        "signal {:?} is unknown, expected one of {}{}",
-        shortened(name),
-        SIGNALS.join(", "),
-        did_you_mean(name, SIGNALS)
-    ))
+    Err(format!("signal {}", unknown_name(name, &SIGNALS)))
 }
 
 fn frames(text: &str) -> Result<usize, String> {
@@ -265,12 +252,7 @@ fn style(name: &str) -> Result<char, String> {
     let style = STYLES.iter().find(|(style, _)| *style == name);
     style.map(|(_, letter)| *letter).ok_or_else(|| {
         let names = STYLES.map(|(style, _)| style);
-        format!(
-            "style {:?} is unknown, expected one of {}{}",
-            shortened(name),
-            names.join(", "),
-            did_you_mean(name, names)
-        )
+        format!("style {}", unknown_name(name, &names))
     })
 }
 

@@ -5,7 +5,7 @@ use std::fmt;
 use crate::figure::FigureKind;
 use crate::parameter::number::{complaint, short};
 use crate::parameter::table::{Parameter, Range, Unit};
-use crate::quote::{did_you_mean, joined, shortened};
+use crate::quote::{joined, unknown_name};
 
 /// The error for a value that is not allowed. The message names the parameter, the value, and what is expected.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,14 +134,9 @@ impl UnknownName {
         let one = all.iter().find(|&&one| name(one) == found);
         one.copied().ok_or_else(|| {
             let names: Vec<_> = all.iter().map(|&one| name(one)).collect();
-            let meant = match FigureKind::of_other_name(found) {
-                Some(known) => format!("; {known}"),
-                None => did_you_mean(found, names.iter().copied()),
-            };
-            let (found, names) = (shortened(found), names.join(", "));
-            Self(format!(
-                "{what} {found:?} is unknown, expected one of {names}{meant}"
-            ))
+            let other = FigureKind::of_other_name(found).map(|known| format!("; {known}"));
+            let unknown = unknown_name(found, &names);
+            Self(format!("{what} {unknown}{}", other.unwrap_or_default()))
         })
     }
 }

@@ -3,13 +3,10 @@
 //! When a file is read, its content decides the format; when it is written, the ending of its name does.
 //!
 //! ```
-//! use taxel_files::formats::imprint_file::{ImprintFormat, read};
-//! let cup = read(b"P1\n3 2\n101\n111\n")?;
-//! let format = ImprintFormat::of_path("imprint.csv").unwrap();
-//! assert_eq!((format.write)(&cup), b"1,0,1\n1,1,1\n");
-//! for format in ImprintFormat::ALL {
-//!     assert_eq!(read(&(format.write)(&cup))?, cup);
-//! }
+//! use taxel_files::formats::{Drawing, ExportFormat, read_imprint};
+//! let cup = read_imprint(b"P1\n3 2\n101\n111\n")?;
+//! let format = ExportFormat::of_path("imprint.csv").unwrap();
+//! assert_eq!((format.write)(&Drawing::new(&cup)), b"1,0,1\n1,1,1\n");
 //! # Ok::<(), taxel_files::ReadError>(())
 //! ```
 
@@ -18,6 +15,7 @@ use std::path::Path;
 use taxel_core::imprint::Imprint;
 
 use crate::error::{ReadError, ReadErrorKind};
+use crate::formats::drawing::Drawing;
 use crate::formats::file::{has_ending, without_mark};
 use crate::formats::shape::StoredShape;
 use crate::formats::{numpy, pbm, table};
@@ -25,68 +23,73 @@ use crate::formats::{numpy, pbm, table};
 /// The size limit of an imprint's file in bytes, 1 MiB; a larger file is refused unread.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// A format of imprints.
+/// A format in which an imprint is written, or drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct ImprintFormat {
+pub struct ExportFormat {
     /// The name on the command line.
     pub name: &'static str,
-    /// The extension of files that are written in this format, if it has one of its own.
+    /// The extension of files in this format; None if another format has the same.
     pub ending: Option<&'static str>,
-    /// Whether a file of this format may begin like this.
-    begins: fn(&[u8]) -> bool,
-    read: fn(&[u8]) -> Result<Imprint, ReadError>,
-    /// Returns the content of a file.
-    pub write: fn(&Imprint) -> Vec<u8>,
+    /// Returns the content of a file. Only a drawing shows more than the imprint.
+    pub write: fn(&Drawing) -> Vec<u8>,
 }
 
-impl ImprintFormat {
+impl ExportFormat {
     /// All formats.
     pub const ALL: &'static [Self] = &[
         Self {
             name: "txt",
             ending: Some("txt"),
-            begins: is_text,
-            read: read_text,
-            write: |imprint| format!("{imprint}\n").into_bytes(),
+            write: |drawing| format!("{}\n", drawing.imprint).into_bytes(),
         },
         Self {
             name: "pbm",
             ending: Some("pbm"),
-            begins: |bytes| bytes.starts_with(b"P4"),
-            read: pbm::read,
-            write: pbm::raw,
+            write: |drawing| pbm::raw(&drawing.imprint),
         },
         Self {
             name: "pbm-plain",
             ending: None,
-            begins: |bytes| bytes.starts_with(b"P1"),
-            read: pbm::read,
-            write: pbm::plain,
+            write: |drawing| pbm::plain(&drawing.imprint),
         },
         Self {
             name: "csv",
             ending: Some("csv"),
-            begins: table::begins,
-            read: table::read,
-            write: table::write,
+            write: |drawing| table::write(&drawing.imprint),
         },
         Self {
             name: "npy",
             ending: Some("npy"),
-            begins: |bytes| bytes.starts_with(b"\x93"),
-            read: |bytes| numpy::imprint::read(bytes).map_err(|error| error.of_key("NPY")),
-            write: numpy::imprint::write,
+            write: |drawing| numpy::imprint::write(&drawing.imprint),
+        },
+        Self {
+            name: Self::SVG,
+            ending: Some(Self::SVG),
+            write: |drawing| drawing.svg().into_bytes(),
         },
     ];
+
+    /// The name of the only format that is a drawing.
+    pub const SVG: &'static str = "svg";
 
     /// The format for the extension of a file's name, in upper or lower case; None if no format has it.
     pub fn of_path(path: impl AsRef<Path>) -> Option<&'static Self> {
         let has_ending = |ending| has_ending(&path, ending);
-        Self::ALL
-            .iter()
-            .find(|format| format.ending.is_some_and(has_ending))
+        let mut formats = Self::ALL.iter();
+        formats.find(|format| format.ending.is_some_and(has_ending))
     }
 }
+
+/// How each format begins, and how it is read.
+const READERS: [(fn(&[u8]) -> bool, fn(&[u8]) -> Result<Imprint, ReadError>); 4] = [
+    (is_text, read_text),
+    (pbm::begins, pbm::read),
+    (table::begins, table::read),
+    (
+        |bytes| bytes.starts_with(b"\x93"),
+        |bytes| numpy::imprint::read(bytes).map_err(|error| error.of_key("NPY")),
+    ),
+];
 
 /// Reads an imprint from any bytes, in any of the formats. A byte order mark before them is skipped.
 ///
@@ -99,9 +102,8 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ReadError> {
         return Err(ReadError::new(text));
     }
     let bytes = without_mark(bytes);
-    let formats = ImprintFormat::ALL;
-    match formats.iter().find(|format| (format.begins)(bytes)) {
-        Some(format) => (format.read)(bytes),
+    match READERS.iter().find(|(begins, _)| begins(bytes)) {
+        Some((_, read)) => read(bytes),
         None => Err(unknown()),
     }
 }
@@ -128,36 +130,12 @@ fn read_text(bytes: &[u8]) -> Result<Imprint, ReadError> {
     Ok(Imprint::from_rows(rows)?)
 }
 
-/// Decides which of two values is active: masks of other programs consist of 0 and 1, 0 and 255, or 0 and any other
-/// number.
-pub(crate) struct Mask<T> {
-    other: Option<T>,
-    zero: bool,
-}
-
-impl<T: Copy + PartialEq> Mask<T> {
-    pub(crate) fn new() -> Self {
-        Self {
-            other: None,
-            zero: false,
-        }
-    }
-
-    /// Takes the next value, `None` for 0, and returns true if its taxel is active. The error for a third value is the
-    /// second one, which is not 0.
-    pub(crate) fn take(&mut self, value: Option<T>) -> Result<bool, T> {
-        let Some(value) = value else {
-            self.zero = true;
-            return Ok(false);
-        };
-        let other = *self.other.get_or_insert(value);
-        if value == other { Ok(true) } else { Err(other) }
-    }
-
-    /// The mask's only value, if it is not 0 and not among `active`, the values that are known to mean active.
-    pub(crate) fn unclear(&self, active: &[T]) -> Option<T> {
-        self.other
-            .filter(|other| !self.zero && !active.contains(other))
+/// Whether a number in a table or an array means an active taxel; None for a number that means neither.
+pub(super) fn is_active(number: f64) -> Option<bool> {
+    match number {
+        0.0 => Some(false),
+        1.0 | 255.0 => Some(true),
+        _ => None,
     }
 }
 

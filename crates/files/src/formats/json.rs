@@ -13,9 +13,22 @@ use taxel_core::quote::{did_you_mean, is_invisible, shortened_message};
 
 use crate::error::ReadError;
 
+/// Why no value of these crates fails to be written.
+const WRITABLE: &str = "keys are texts, and memory takes every byte";
+
 /// Returns a value as JSON on one line.
 pub fn text(value: &(impl Serialize + ?Sized)) -> String {
-    serde_json::to_string(value).unwrap_or_else(|error| failure(&error))
+    serde_json::to_string(value).expect(WRITABLE)
+}
+
+/// Returns a value as JSON over several lines.
+pub fn pretty(value: &(impl Serialize + ?Sized)) -> String {
+    serde_json::to_string_pretty(value).expect(WRITABLE)
+}
+
+/// Returns what was written as JSON in memory, for a file.
+pub fn written(text: serde_json::Result<Vec<u8>>) -> Vec<u8> {
+    text.expect(WRITABLE)
 }
 
 /// Returns a value as JSON on one line, with everything except ASCII escaped: the same bytes in every locale, and
@@ -28,12 +41,8 @@ pub fn ascii(value: &(impl Serialize + ?Sized)) -> String {
 
 /// Appends a value to a text, as [`ascii`] writes it.
 pub fn extend_ascii(text: &mut Vec<u8>, value: &(impl Serialize + ?Sized)) {
-    let start = text.len();
-    let mut writer = serde_json::Serializer::with_formatter(&mut *text, AsciiFormatter);
-    if let Err(error) = value.serialize(&mut writer) {
-        text.truncate(start);
-        text.extend(failure(&error).bytes());
-    }
+    let mut writer = serde_json::Serializer::with_formatter(text, AsciiFormatter);
+    value.serialize(&mut writer).expect(WRITABLE);
 }
 
 /// Writes JSON in ASCII. Other characters occur only inside strings, where `\u` can replace them.
@@ -64,23 +73,6 @@ impl serde_json::ser::Formatter for AsciiFormatter {
     ) -> io::Result<()> {
         self.write_string_fragment(writer, fragment)
     }
-}
-
-/// Returns a value as JSON over several lines.
-pub fn pretty(value: &(impl Serialize + ?Sized)) -> String {
-    serde_json::to_string_pretty(value).unwrap_or_else(|error| failure(&error))
-}
-
-/// Returns what was written as JSON in memory, for a file. It cannot fail: the keys of all values of this crate are texts.
-pub fn written(text: serde_json::Result<Vec<u8>>) -> Vec<u8> {
-    text.expect("keys are texts, and memory takes every byte")
-}
-
-/// Returns an object with the error, for a value that cannot be written as JSON. All values of this crate can be
-/// written: their keys are texts and their numbers finite. If one ever fails, the error takes its place, as in the
-/// answers of a batch, so nobody mistakes it for an empty answer.
-fn failure(error: &serde_json::Error) -> String {
-    format!("{{\"error\":{:?}}}", error.to_string())
 }
 
 /// A line in which each `NaN` is replaced by `null`: Python writes it, although JSON has no such number.
@@ -240,14 +232,6 @@ impl Serialize for RegionRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeMap;
-
-    #[test]
-    fn a_value_without_a_json_form_is_an_error_object() {
-        let no_text_key = BTreeMap::from([((1, 2), 3)]);
-        assert_eq!(text(&no_text_key), r#"{"error":"key must be a string"}"#);
-        assert_eq!(text(&[1, 2]), "[1,2]");
-    }
 
     #[test]
     fn a_list_is_not_an_object() {

@@ -30,7 +30,7 @@ pub use drawing::{axis_ends, axis_marks};
 pub use json::DescribedImprint;
 
 pub use drawing::{ConfusionMap, Drawing, Plot, PoseMap};
-pub use imprint_file::{Content, ImprintFormat, read as read_imprint, read_content};
+pub use imprint_file::{Content, ExportFormat, read as read_imprint, read_content};
 pub use name::Name;
 
 pub use job::Job;

@@ -9,6 +9,10 @@ use taxel_core::sensor::MatrixSize;
 
 use crate::error::ReadError;
 
+pub(super) fn begins(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"P1") || bytes.starts_with(b"P4")
+}
+
 pub(super) fn read(bytes: &[u8]) -> Result<Imprint, ReadError> {
     let wrong = |message: &str| ReadError::new(message).of_key("PBM");
     let (magic, mut rest) = bytes.split_at(2);

@@ -8,7 +8,7 @@ use taxel_core::imprint::{Imprint, ImprintRows};
 use taxel_core::quote::shortened;
 
 use crate::error::ReadError;
-use crate::formats::imprint_file::text;
+use crate::formats::imprint_file::{is_active, text};
 
 pub(super) fn begins(bytes: &[u8]) -> bool {
     let Ok(text) = text(bytes) else { return false };
@@ -69,11 +69,7 @@ fn active(field: &str) -> Option<bool> {
     match field.to_ascii_lowercase().as_str() {
         "true" => Some(true),
         "false" => Some(false),
-        number => match number.parse() {
-            Ok(0.0) => Some(false),
-            Ok(1.0 | 255.0) => Some(true),
-            _ => None,
-        },
+        number => is_active(number.parse().ok()?),
     }
 }
 

@@ -39,7 +39,7 @@ const LEAST_PITCH: f64 = 1e-9;
 /// A drawing of an imprint. One region is described: the main one, unless another is chosen.
 #[derive(Clone, Debug)]
 pub struct Drawing {
-    imprint: Imprint,
+    pub(in crate::formats) imprint: Imprint,
     regions: Vec<Region<'static>>,
     chosen: Option<usize>,
     /// The path of the shape's outline.

@@ -1,7 +1,6 @@
 //! An imprint as a numpy array (`numpy.load`): rows × columns, true for an active taxel.
 //!
-//! An array of `bool` is written. Arrays of two axes and any real numbers are read if their values are 0 and one other
-//! number.
+//! An array of `bool` is written. Arrays of two axes and any real numbers are read if their values are 0, 1 and 255.
 
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::counted;
@@ -9,7 +8,7 @@ use taxel_core::quote::shortened;
 use taxel_core::sensor::MatrixSize;
 
 use crate::error::ReadError;
-use crate::formats::imprint_file::Mask;
+use crate::formats::imprint_file::is_active;
 use crate::formats::numpy::{self, Elements, Header, Number};
 
 pub(in crate::formats) fn read(mut bytes: &[u8]) -> Result<Imprint, ReadError> {
@@ -41,29 +40,23 @@ pub(in crate::formats) fn read(mut bytes: &[u8]) -> Result<Imprint, ReadError> {
         )));
     }
     let mut imprint = Imprint::empty(size);
-    let mut mask = Mask::new();
-    let taxels = (0..size.rows()).flat_map(|row| (0..size.columns()).map(move |own| (row, own)));
-    for (row, column) in taxels {
-        let (slow, fast, sides) = if header.fortran_order {
-            (column, row, size.rows())
-        } else {
-            (row, column, size.columns())
-        };
-        let at = (usize::from(slow) * usize::from(sides) + usize::from(fast)) * number.size();
-        let value = number.value(&bytes[at..at + number.size()]);
-        match mask.take(Some(value).filter(|&value| value != 0.0)) {
-            Ok(active) if value.is_finite() => imprint.set(column, row, active),
-            _ => {
-                let expected = "expected 0, or the one other value of active taxels";
+    for row in 0..size.rows() {
+        for column in 0..size.columns() {
+            let (slow, fast, sides) = if header.fortran_order {
+                (column, row, size.rows())
+            } else {
+                (row, column, size.columns())
+            };
+            let at = (usize::from(slow) * usize::from(sides) + usize::from(fast)) * number.size();
+            let value = number.value(&bytes[at..at + number.size()]);
+            let active = is_active(value).ok_or_else(|| {
                 let (row, column) = (row + 1, column + 1);
-                let message = format!("row {row}, column {column}: {expected}");
-                return Err(ReadError::new(message));
-            }
+                ReadError::new(format!(
+                    "row {row}, column {column}: found {value}, expected 0, 1 or 255"
+                ))
+            })?;
+            imprint.set(column, row, active);
         }
-    }
-    if mask.unclear(&[1.0, 255.0]).is_some() {
-        let message = "one value everywhere, expected 0, 1 or 255, or two of which one is 0";
-        return Err(ReadError::new(message));
     }
     Ok(imprint)
 }
@@ -107,13 +100,13 @@ mod tests {
             ("|i1", vec![1, 0, 1]),
             ("<u2", vec![1, 0, 0, 0, 1, 0]),
             ("|u1", vec![255, 0, 255]),
-            ("<i2", vec![255, 255, 0, 0, 255, 255]),
+            ("<i2", vec![255, 0, 0, 0, 255, 0]),
             // 1, a negative zero and 1 in halves.
             ("<f2", vec![0x00, 0x3c, 0x00, 0x80, 0x00, 0x3c]),
             (">f2", vec![0x5b, 0xf8, 0x00, 0x00, 0x5b, 0xf8]),
             (
                 "<f4",
-                row([&0.5_f32.to_le_bytes(), &[0; 4], &0.5_f32.to_le_bytes()]),
+                row([&255_f32.to_le_bytes(), &[0; 4], &255_f32.to_le_bytes()]),
             ),
             (">i2", vec![0, 1, 0, 0, 0, 1]),
             ("<f4", row([&one, &(-0_f32).to_le_bytes(), &one])),
@@ -186,22 +179,18 @@ mod tests {
             &small("|b1", "(1, 2)", b"\x01"),
             "found 1 byte of numbers, expected 2",
         );
-        let third = "expected 0, or the one other value of active taxels";
-        wrong(
-            &small("|u1", "(1, 2)", b"\x01\xff"),
-            &format!("row 1, column 2: {third}"),
-        );
-        // Infinity and NaN.
-        for high in [0x7c, 0xfc, 0x7e] {
+        for (number, value) in [
+            (&b"\x07\0"[..], "7"),
+            // Infinity and NaN in halves.
+            (b"\0\x7c", "inf"),
+            (b"\0\x7e", "NaN"),
+        ] {
+            let code = if value == "7" { "<u2" } else { "<f2" };
             wrong(
-                &small("<f2", "(1, 1)", &[0, high]),
-                &format!("row 1, column 1: {third}"),
+                &small(code, "(1, 1)", number),
+                &format!("row 1, column 1: found {value}, expected 0, 1 or 255"),
             );
         }
-        wrong(
-            &small("|u1", "(1, 2)", b"\x07\x07"),
-            "one value everywhere, expected 0, 1 or 255, or two of which one is 0",
-        );
         wrong(
             &small("<f16", "(1, 1)", &[0; 16]),
             "type \"<f16\", expected bool, whole numbers or floats",
