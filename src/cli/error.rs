@@ -19,7 +19,7 @@ use taxel_files::formats::Name;
 use taxel_files::formats::file::{system_reason, write_reason};
 use taxel_files::formats::recording::RecordingNote;
 use taxel_files::formats::value::counted;
-use taxel_files::storage::{ArchiveFileError, FileError, LibraryError};
+use taxel_files::storage::{FileError, LibraryError};
 use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::input::content::InputError;
@@ -138,7 +138,7 @@ pub(crate) enum CliError {
     #[error("{name}: {}", shortened_message(.message))]
     Frames { name: String, message: String },
     #[error(transparent)]
-    SweepFile(ArchiveFileError),
+    Archive(ReadError),
     #[error("{}: {reason}", shortened_message(&path.to_string_lossy()))]
     Shard { path: PathBuf, reason: String },
     #[error("{count} of {of} shards are missing: {numbers}")]
@@ -173,12 +173,6 @@ impl From<FileError> for CliError {
             let error = error.error;
             Self::File { name, error }
         }
-    }
-}
-
-impl From<ArchiveFileError> for CliError {
-    fn from(error: ArchiveFileError) -> Self {
-        Self::SweepFile(error)
     }
 }
 

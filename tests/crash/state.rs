@@ -49,7 +49,7 @@ impl State {
                 shape("any", version).write().as_bytes(),
             );
         }
-        put("new.txt", b"0,1\n2,3\n\n4,5\n6,7\n\n8,9\n1,2\n\n");
+        put("new.txt", b"5,1\n2,3\n\n4,5\n6,7\n\n8,9\n1,2\n\n");
         put(
             "touch.npy",
             &array::array("(1, 2, 2)", false, &[1.0, 2.0, 3.0, 4.0]),

@@ -17,12 +17,13 @@ use taxel_core::recognition::{
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::sweep::Shard;
+use taxel_files::ReadError;
 use taxel_files::formats::value::{counted, grouped, percent};
 use taxel_files::formats::{Name, json};
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
-    ArchiveFileError, ModelCache, ModelChoice, ModelFolder, cached_or_trained, check_writable,
-    load_model, load_whole_model, model_hash, save_model, unknown_set,
+    ModelCache, ModelChoice, ModelFolder, cached_or_trained, check_writable, load_model,
+    load_whole_model, model_hash, save_model, unknown_set,
 };
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
@@ -201,7 +202,7 @@ pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<FoundModel, CliError>
 fn found(
     which: &OsStr,
     shelf: &Shelf,
-    load: &dyn Fn(&Path) -> Result<Model, ArchiveFileError>,
+    load: &dyn Fn(&Path) -> Result<Model, ReadError>,
 ) -> Result<FoundModel, CliError> {
     let path = match choice(which, shelf)? {
         ModelChoice::Stored(name) => {
@@ -214,7 +215,9 @@ fn found(
             return Ok(FoundModel::BuiltIn(training?));
         }
     };
-    Ok(FoundModel::Read(Box::new(load(&path)?)))
+    Ok(FoundModel::Read(Box::new(
+        load(&path).map_err(CliError::Archive)?,
+    )))
 }
 
 pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliError> {

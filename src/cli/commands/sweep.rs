@@ -25,8 +25,8 @@ use taxel_files::formats::value::{counted, grouped};
 use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
-    self, ArchiveFileError, FileError, NewFile, PoseFile, check_writable, load_atlas, load_model,
-    save_model, write_atlas,
+    self, FileError, NewFile, PoseFile, check_writable, load_atlas, load_model, save_model,
+    write_atlas,
 };
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
@@ -183,10 +183,13 @@ struct Part {
 }
 
 impl Part {
-    fn of(path: &Path) -> Result<Self, ArchiveFileError> {
-        let refused = |error| ArchiveFileError::new(path, error);
-        let file = storage::open(path)?;
-        let kind = archive_kind(BufReader::new(file)).map_err(refused)?;
+    fn of(path: &Path) -> Result<Self, CliError> {
+        let read = |error: FileError| CliError::Archive(error.into());
+        let kind = archive_kind(BufReader::new(storage::open(path).map_err(read)?));
+        let kind = kind.map_err(|error| CliError::Shard {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })?;
         Ok(Self {
             path: path.to_owned(),
             format: kind.format,
@@ -318,7 +321,7 @@ fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
 fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError> {
     let mut merge = SweepMerge::default();
     for part in parts {
-        let shard = load_atlas(&part.path)?;
+        let shard = load_atlas(&part.path).map_err(CliError::Archive)?;
         merge.add(shard).map_err(|error| match error {
             MergeError::Foreign { .. } if part.shard.of() != parts[0].shard.of() => {
                 part.other_study(&parts[0])
@@ -340,7 +343,7 @@ fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError>
 fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model, CliError> {
     let mut merge = ModelMerge::default();
     for part in parts {
-        let model = load_model(&part.path)?;
+        let model = load_model(&part.path).map_err(CliError::Archive)?;
         if wanted.json {
             fits_in_table("confusion matrix", model.shapes().len())?;
         }

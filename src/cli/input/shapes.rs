@@ -218,7 +218,8 @@ impl Shelf {
             saved => saved,
         };
         saved.map_err(|error| self.refused(error))?;
-        Ok(library.stored_name(&shape.name)?)
+        let stored = library.own_name(&shape.name).map_err(LibraryError::from)?;
+        Ok(stored.unwrap_or_else(|| shape.name.to_string()))
     }
 }
 

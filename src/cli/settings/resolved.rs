@@ -13,7 +13,7 @@ use clap::ArgMatches;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_files::formats::file::{is_missing, system_reason};
-use taxel_files::storage::{LIBRARY_VARIABLE, below_home, library_folder};
+use taxel_files::storage::{LIBRARY_VARIABLE, below_home, usual_folder};
 
 use crate::cli::arguments::flags::Given;
 use crate::cli::error::CliError;
@@ -128,7 +128,7 @@ impl Effective {
             .or_else(|| set(LIBRARY_VARIABLE).map(PathBuf::from));
         let library = library.or_else(|| match &config.library {
             Some(own) => below_home(own),
-            None => library_folder(None, None).ok(),
+            None => usual_folder(),
         });
         let sensor = chosen.sensor.sensor(*config.sensor())?;
         let is_pitched = chosen.sensor.has(Parameter::Pitch)

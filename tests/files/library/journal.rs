@@ -128,27 +128,6 @@ fn a_figure_with_an_empty_imprint_is_also_offered() {
     assert_eq!(offered_soon(&scratch), [work]);
 }
 
-/// The names begin with numbers of processes, which do not grow with time.
-#[test]
-fn the_work_of_the_newest_hundred_programs_is_offered_the_newest_last() {
-    let scratch = Scratch::new();
-    let folder = scratch.path(".journal");
-    std::fs::create_dir(&folder).expect("made");
-    let now = std::time::SystemTime::now();
-    for number in 0..101_u32 {
-        let path = folder.join(format!("{}-0.json", 9999 - number));
-        let content = format!("[{}]", shape(&format!("w{number}"), 1).write());
-        std::fs::write(&path, content).expect("written");
-        let file = std::fs::File::options().write(true).open(&path);
-        let changed = now + Duration::from_secs(number.into());
-        file.expect("opened").set_modified(changed).expect("set");
-    }
-    let names = offered(&scratch).into_iter().map(|work| work.name);
-    let names: Vec<String> = names.map(|name| name.to_string()).collect();
-    let newest: Vec<String> = (1..101).map(|number| format!("w{number}")).collect();
-    assert_eq!(names, newest);
-}
-
 #[test]
 fn unreadable_work_stays_where_it_is() {
     let scratch = Scratch::new();

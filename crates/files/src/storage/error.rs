@@ -1,9 +1,9 @@
-//! The errors of files, of archives and of a library: which file, which operation, what was expected.
+//! The errors of files and of a library: which file, which operation, what was expected.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::error::ReadError;
+use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::file::{is_missing, system_reason, write_reason};
 
 /// The error for an operation on a file that the system refused.
@@ -46,27 +46,10 @@ impl FileError {
     }
 }
 
-/// The error for a file of a sweep or a model that cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub enum ArchiveFileError {
-    /// The system refused.
-    #[error(transparent)]
-    System(#[from] FileError),
-    /// The content is wrong.
-    #[error("{}: {error}", path.display())]
-    Content {
-        /// The file.
-        path: PathBuf,
-        /// The problem with the content.
-        error: ReadError,
-    },
-}
-
-impl ArchiveFileError {
-    /// Creates an error about the content of a file.
-    pub fn new(path: &Path, error: ReadError) -> Self {
-        let path = path.to_owned();
-        Self::Content { path, error }
+impl From<FileError> for ReadError {
+    fn from(error: FileError) -> Self {
+        let kind = ReadErrorKind::Io(error.error.kind());
+        Self::new(error.to_string()).of_kind(kind)
     }
 }
 

@@ -6,6 +6,7 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
+use std::fmt::Display;
 use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -15,6 +16,7 @@ use std::time::Duration;
 use taxel_core::lock::locked;
 use tempfile::{Builder, TempPath};
 
+use crate::error::ReadError;
 use crate::formats::file::is_missing;
 use crate::storage::error::FileError;
 
@@ -157,10 +159,8 @@ fn remove_abandoned(folder: &Path) {
         return;
     }
     for file in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let is_temporary = file
-            .file_name()
-            .as_encoded_bytes()
-            .starts_with(PREFIX.as_bytes());
+        let name = file.file_name();
+        let is_temporary = name.as_encoded_bytes().starts_with(PREFIX.as_bytes());
         let age = || file.metadata().ok()?.modified().ok()?.elapsed().ok();
         if is_temporary && age().is_some_and(|age| age > ABANDONED) {
             // What cannot be removed does no harm.
@@ -195,6 +195,11 @@ pub fn open(path: &Path) -> Result<File, FileError> {
     opened.map_err(|error| FileError::new("read", path, error))
 }
 
+/// The error for a file whose content is wrong.
+pub(crate) fn wrong(path: &Path, error: impl Display) -> ReadError {
+    ReadError::new(format!("{}: {error}", path.display()))
+}
+
 /// The names of everything in a folder; none if the folder does not exist, or if a file is where a folder above it
 /// would be.
 pub(crate) fn names_in(folder: &Path) -> Result<Vec<OsString>, FileError> {
@@ -225,18 +230,15 @@ pub fn folder_of(path: &Path) -> &Path {
 
 /// Syncs a folder, so that files renamed in it stay renamed.
 pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
-    match File::open(folder).and_then(|folder| folder.sync_all()) {
-        Err(error)
-            if !matches!(
-                error.kind(),
-                // Of a folder that may be written to but not read, and of file systems that cannot sync any.
-                ErrorKind::PermissionDenied | ErrorKind::InvalidInput | ErrorKind::Unsupported
-            ) =>
-        {
+    use ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    let synced = File::open(folder).and_then(|folder| folder.sync_all());
+    match synced.map_err(|error| (error.kind(), error)) {
+        // A folder that may be written to but not read cannot be synced; some file systems cannot sync any.
+        Ok(()) | Err((PermissionDenied | InvalidInput | Unsupported, _)) => Ok(()),
+        Err((_, error)) => {
             let doing = "sync the folder; it was changed, but a power cut may undo that";
             Err(FileError::new(doing, folder, error))
         }
-        _ => Ok(()),
     }
 }
 

@@ -6,24 +6,20 @@
 
 use std::fs::{self, File};
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde_json::value::RawValue;
 use taxel_core::lock::locked;
 
-use crate::formats::file::is_missing;
+use crate::formats::file::{has_ending, is_missing};
 use crate::formats::shape::StoredShape;
 use crate::storage::error::FileError;
 use crate::storage::file::{Existing, FileId, NewFile, folder_of, make_folder, names_in, open};
 use crate::storage::library::Library;
 
 pub(super) const FOLDER: &str = ".journal";
-
-/// The largest number of journals that are offered at once. Each keeps a file open, and a program may have about a
-/// thousand; the others wait for the next start.
-const MOST_JOURNALS: usize = 100;
 
 /// The size, in bytes, beyond which a journal is not read.
 const MOST_BYTES: u64 = 1 << 28;
@@ -47,7 +43,7 @@ impl Journal {
     pub fn new(library: &Library) -> Self {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         let now = now.map_or(0, |now| now.as_nanos());
-        let name = format!("{}-{now}.json", std::process::id());
+        let name = format!("{now}-{}.json", std::process::id());
         Self {
             path: library.folder().join(FOLDER).join(name),
             file: None,
@@ -61,20 +57,17 @@ impl Journal {
     /// The system's error. What was kept before is still there.
     pub fn keep(&mut self, works: Vec<StoredShape>) -> Result<(), FileError> {
         let path = &self.path;
-        let existing = match self.file {
-            Some(_) if works.is_empty() => {
-                let removed = fs::remove_file(path).or_else(|error| {
-                    if is_missing(&error) {
-                        Ok(())
-                    } else {
-                        Err(error)
-                    }
-                });
-                removed.map_err(|error| FileError::new("remove", path, error))?;
-                self.file = None;
-                return Ok(());
+        if works.is_empty() {
+            if self.file.is_some()
+                && let Err(error) = fs::remove_file(path)
+                && !is_missing(&error)
+            {
+                return Err(FileError::new("remove", path, error));
             }
-            None if works.is_empty() => return Ok(()),
+            self.file = None;
+            return Ok(());
+        }
+        let existing = match self.file {
             Some(_) => Existing::Replaced,
             None => Existing::Kept,
         };
@@ -108,23 +101,16 @@ pub struct Orphan {
 }
 
 impl Orphan {
-    /// The work that waits in a library, of at most 100 programs, the newest last. Work that is identical to the saved
-    /// shape of its name is left out. Leaves a journal alone if it cannot be read: it may be of a later version.
+    /// The work that waits in a library, that of the newest program last. Work that is identical to the saved shape of
+    /// its name is left out. Leaves a journal alone if it cannot be read: it may be of a later version.
     pub fn all(library: &Library) -> Vec<Self> {
         let folder = library.folder().join(FOLDER);
         // A folder that cannot be read must not keep the program from starting.
-        let names = names_in(&folder).unwrap_or_default().into_iter();
-        let paths = names.map(|name| folder.join(name));
-        let mut journals: Vec<(Option<SystemTime>, PathBuf)> = paths
-            .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
-            .map(|path| (written(&path), path))
-            .collect();
-        journals.sort();
-        let older = journals.len().saturating_sub(MOST_JOURNALS);
-        let newest = journals.drain(older..);
-        newest
-            .flat_map(|(_, path)| Self::of(library, path).unwrap_or_default())
-            .collect()
+        let mut names = names_in(&folder).unwrap_or_default();
+        names.sort();
+        let journals = names.into_iter().filter(|name| has_ending(name, "json"));
+        let works = journals.map(|name| Self::of(library, folder.join(name)));
+        works.flatten().flatten().collect()
     }
 
     /// The work in a journal, if its program is dead and the work would be lost. Removes a journal without such work.
@@ -143,7 +129,7 @@ impl Orphan {
             .map(|text| StoredShape::read(text.get().as_bytes()));
         let mut works: Vec<StoredShape> = works.collect::<Result<_, _>>().ok()?;
         works.retain(|work| !is_saved(library, work));
-        let written = written(&path);
+        let written = file.metadata().and_then(|found| found.modified()).ok();
         let journal = Arc::new(Mutex::new(Journal {
             path,
             file: Some(file),
@@ -174,10 +160,6 @@ impl Orphan {
         let others = others.cloned().collect();
         journal.keep(others).is_ok()
     }
-}
-
-fn written(path: &Path) -> Option<SystemTime> {
-    path.symlink_metadata().ok()?.modified().ok()
 }
 
 /// Whether a library holds exactly this work under its name, or there is nothing to hold.

@@ -29,21 +29,11 @@ pub const TRASH_KEPT: usize = 50;
 /// The environment variable that names the folder of the library.
 pub const LIBRARY_VARIABLE: &str = "TAXEL_LIBRARY";
 
-/// The folder of the library: the one asked for, else that of the variable, else `taxel/library` in the user's data
-/// folder.
-///
-/// # Errors
-/// [`LibraryError::NoPlace`] if there is none of these.
-pub fn library_folder(
-    asked: Option<PathBuf>,
-    variable: Option<OsString>,
-) -> Result<PathBuf, LibraryError> {
-    let variable = variable.filter(|value| !value.is_empty());
-    let own = || {
-        directories::ProjectDirs::from("", "", "taxel").map(|own| own.data_dir().join("library"))
-    };
-    let named = asked.or_else(|| variable.map(PathBuf::from));
-    named.or_else(own).ok_or(LibraryError::NoPlace)
+/// The folder of the library if none is named: `taxel/library` in the user's data folder; None if the system does not
+/// say where that is.
+pub fn usual_folder() -> Option<PathBuf> {
+    let own = directories::ProjectDirs::from("", "", "taxel")?;
+    Some(own.data_dir().join("library"))
 }
 
 /// Replaces `~/` at the start of a path by the user's home folder; None if that is not known.
@@ -171,7 +161,10 @@ impl Library {
     }
 
     /// The name of the user's shape, spelled as in its file; None if the user has none of that name.
-    fn own_name(&self, name: &Name) -> Result<Option<String>, FileError> {
+    ///
+    /// # Errors
+    /// If the folder cannot be read.
+    pub fn own_name(&self, name: &Name) -> Result<Option<String>, FileError> {
         // The usual case needs no search.
         if self.path(name.as_str()).symlink_metadata().is_ok() {
             return Ok(Some(name.to_string()));
@@ -213,15 +206,6 @@ impl Library {
             stamp: xxh3_64(&content),
             origin,
         })
-    }
-
-    /// The name under which a shape of that name is or would be stored: the name of its file, which may differ in
-    /// case.
-    ///
-    /// # Errors
-    /// If the folder cannot be read.
-    pub fn stored_name(&self, name: &Name) -> Result<String, LibraryError> {
-        Ok(self.own_name(name)?.unwrap_or_else(|| name.to_string()))
     }
 
     /// Saves a shape under its name, and returns the stamp of its file.
@@ -412,8 +396,7 @@ impl Library {
             });
         };
         if let Some(name) = self.own_name(&Name::new(&name)?)? {
-            let stamp = xxh3_64(&read(&self.path(&name))?);
-            return Err(LibraryError::Exists { name, stamp });
+            self.check_replaceable(&name, Expected::Nothing)?;
         }
         let from = self.in_trash(time, &name);
         fs::rename(&from, self.path(&name))

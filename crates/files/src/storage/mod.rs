@@ -17,7 +17,7 @@
 //! FOLDER/.lock                              held while writing
 //! FOLDER/.taxel-4fQx0ZmW                    being written; the ending is random
 //! FOLDER/.trash/washer-1764370000123.json   deleted at that time, in milliseconds since 1970
-//! FOLDER/.journal/4711-1764370000123.json   unsaved work of a running program, which holds its lock, or of one that died
+//! FOLDER/.journal/1764370000123-4711.json   unsaved work of a running program, which holds its lock, or of one that died
 //! ```
 
 mod error;
@@ -28,11 +28,11 @@ mod models;
 pub mod shipped;
 mod sweep_file;
 
-pub use error::{ArchiveFileError, FileError, LibraryError};
+pub use error::{FileError, LibraryError};
 pub use file::{Existing, FileId, NewFile, check_writable, folder_of, open, write};
 pub use journal::{Journal, Orphan, UNNAMED};
 pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin, TRASH_KEPT};
-pub use library::{LIBRARY_VARIABLE, RememberedFile, below_home, library_folder};
+pub use library::{LIBRARY_VARIABLE, RememberedFile, below_home, usual_folder};
 pub use models::{
     ModelCache, ModelChoice, ModelFolder, cached_or_trained, load_model, load_whole_model,
     model_hash, save_model, unknown_set,

@@ -20,9 +20,9 @@ use crate::error::ReadError;
 use crate::formats::file::without_mark;
 use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape, model_header, read_model, write_model};
-use crate::storage::error::{ArchiveFileError, FileError};
+use crate::storage::error::FileError;
 use crate::storage::file::{
-    self, Existing, check_writable, make_folder, names_in, open, sync_folder,
+    self, Existing, check_writable, make_folder, names_in, open, sync_folder, wrong,
 };
 use crate::storage::shipped;
 
@@ -42,7 +42,7 @@ const COUNTING: u32 = 1;
 ///
 /// # Errors
 /// Returns an error with the file's name if the file cannot be read or is not a model.
-pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
+pub fn load_model(path: &Path) -> Result<Model, ReadError> {
     let mut file = BufReader::new(open(path)?);
     let is_set = |start: &[u8]| without_mark(start).trim_ascii_start().starts_with(b"{");
     let read = match file.fill_buf() {
@@ -52,21 +52,21 @@ pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
         )),
         _ => read_model(&mut file),
     };
-    read.map_err(|error| ArchiveFileError::new(path, error))
+    read.map_err(|error| wrong(path, error))
 }
 
 /// Reads a whole model from a file, so that it can answer touches.
 ///
 /// # Errors
 /// The errors of [`load_model`]; also for a shard, which knows some of the poses only.
-pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
+pub fn load_whole_model(path: &Path) -> Result<Model, ReadError> {
     let model = load_model(path)?;
     let shard = model.shard();
     if shard == Shard::WHOLE {
         return Ok(model);
     }
     let part = format!("shard {shard} of a model only; 'taxel merge' puts shards together");
-    Err(ArchiveFileError::new(path, ReadError::new(part)))
+    Err(wrong(path, part))
 }
 
 /// Writes a model to a file: all of it or nothing.

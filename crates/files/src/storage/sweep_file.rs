@@ -12,11 +12,12 @@ use taxel_core::pose::PoseGrid;
 use taxel_core::progress::stop_if;
 use taxel_core::sweep::SweepResult;
 
+use crate::error::ReadError;
 use crate::formats::atlas::{self, write_csv, write_jsonl};
 use crate::formats::file::has_ending;
 use crate::formats::numpy::{self, Number};
-use crate::storage::error::{ArchiveFileError, FileError};
-use crate::storage::file::{Existing, NewFile, open};
+use crate::storage::error::FileError;
+use crate::storage::file::{Existing, NewFile, open, wrong};
 
 /// The path of an atlas; its extension gives the format.
 ///
@@ -63,9 +64,9 @@ pub fn write_atlas(
 ///
 /// # Errors
 /// Returns an error with the file's name if the file cannot be read or is not an atlas.
-pub fn load_atlas(path: &Path) -> Result<SweepResult, ArchiveFileError> {
+pub fn load_atlas(path: &Path) -> Result<SweepResult, ReadError> {
     let file = open(path)?;
-    atlas::read(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
+    atlas::read(BufReader::new(file)).map_err(|error| wrong(path, error))
 }
 
 /// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in upper or lower
