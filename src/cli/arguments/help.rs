@@ -237,7 +237,7 @@ pub(crate) const MODEL_EXAMPLES: &str = "\
 A model holds every imprint that its shapes can leave, and in how many poses
 each shape leaves it. The best answer to a touch is the shape that leaves its
 imprint in the most poses: no method names a smaller share of touches wrong.
-MODEL is a file, the name of a model beside the library, or the name of a
+MODEL is a file, the name of one of your models, or the name of a
 built-in model: figures, figures-30 or shapes.
 
 Examples:
@@ -273,8 +273,8 @@ Examples:
 
 /// `taxel model list`: where models are.
 pub(crate) const MODEL_LIST_EXAMPLES: &str = "\
-Your models are files in the folder 'models' beside the library. The built-in
-ones are trained when first used; --json leaves them out.
+Your models are files in the folder 'models' of the library. The built-in ones
+are trained when first used; --json leaves them out.
 
 Examples:
   taxel model list --json";

@@ -1,7 +1,7 @@
 //! The flags of `taxel model` and its subcommands.
 //!
 //! A model is named as in `taxel recognise --model`: a built-in set such as `figures` ([`DEFAULT_MODEL`]) takes
-//! precedence over a model beside the library, and that over a file.
+//! precedence over a model of the library, and that over a file.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -181,7 +181,7 @@ fn train() -> Command {
     let name = option(
         "name",
         "NAME",
-        "Keep the model under this name, beside the library",
+        "Keep the model under this name, in the library",
     )
     .value_parser(Name::new);
     let allow_cut = switch("allow-cut", "Also take poses that the sensor cuts off");
