@@ -464,7 +464,7 @@ assert x0[0] == 5.0 and x0.max() <= 5.9 and numpy.isnan(atlas['cg_cd_direction']
     );
 }
 
-/// A sweep that would need more memory than it may use is refused or stopped, with advice.
+/// A sweep that would need more memory than it may use is stopped, with advice.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_sweep_respects_the_memory_limit() {
@@ -477,21 +477,14 @@ fn a_sweep_respects_the_memory_limit() {
         );
         taxel(&line, "")
     };
-    let all = "--x0 0:6:0.01 --y0 0:8:0.01 --angle 0:359.9:0.1";
-    let refused = run(all, "1G");
-    assert_eq!((refused.status, refused.stdout.as_str()), (Some(1), ""));
-    assert!(
-        refused.stderr.starts_with("error: about ") && refused.stderr.contains("--shard 1/8"),
-        "{refused:?}"
-    );
-    // This sweep is smaller, so the estimate alone does not refuse it.
     let stopped = run("--x0 0:3:0.05 --y0 0:3:0.05 --angle 0:45:1", "20M");
     assert_eq!(
         (stopped.status, stopped.stdout.as_str()),
         (Some(1), ""),
         "{stopped:?}"
     );
-    assert!(stopped.stderr.contains("memory"), "{stopped:?}");
+    let told = stopped.stderr.contains("memory") && stopped.stderr.contains("--shard 1/8");
+    assert!(told, "{stopped:?}");
     assert_eq!(
         fs::read_dir(folder.path()).expect("read").count(),
         0,
@@ -499,7 +492,7 @@ fn a_sweep_respects_the_memory_limit() {
     );
     let done = run("--x0 0:1:0.5 --y0 0:1:0.5 --angle 0", "4G");
     assert_eq!(done.status, Some(0), "{done:?}");
-    let wrong = run(all, "much");
+    let wrong = run("", "much");
     assert_eq!(wrong.status, Some(2));
     assert!(
         wrong
