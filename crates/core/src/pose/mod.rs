@@ -16,5 +16,6 @@ pub use default_ranges::{
 };
 pub(crate) use grid::Boundary;
 pub use grid::{GridError, MAX_POSES, Placed, PoseGrid};
+pub(crate) use range::ONE;
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
 pub(crate) use symmetry::{AngleClasses, exact_period, period};

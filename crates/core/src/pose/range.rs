@@ -18,6 +18,9 @@ pub const MAX_VALUES: u64 = 1_000_000;
 /// The largest number of decimals of a number. In units of the last of them, [`MAX_UNITS`] is just below 1000.
 const MAX_PLACES: u32 = 12;
 
+/// One, in units of the last decimal that a number can have.
+pub(crate) const ONE: i128 = 10_i128.pow(MAX_PLACES);
+
 /// The largest number in units of the last decimal. Every decimal of 15 digits has a distinct `f64`, which is written
 /// as the same decimal again.
 const MAX_UNITS: f64 = 999_999_999_999_999.0;
@@ -115,19 +118,10 @@ impl DecimalRange {
         (0..narrow(self.count)).map(|index| self.value(index.into()))
     }
 
-    /// Returns the first value and the step, exactly, in units of the last decimal. Symmetries are decided with them.
-    pub(crate) fn units(&self) -> [i128; 2] {
-        [i128::from(self.start), i128::from(self.step)]
-    }
-
-    pub(crate) fn one(&self) -> i128 {
-        10_i128.pow(self.places)
-    }
-
-    /// Returns value `index` modulo a whole number, exactly, in units of the last decimal.
-    pub(crate) fn residue(&self, index: u64, modulus: u32) -> i128 {
-        let units = i128::from(self.start) + i128::from(index) * i128::from(self.step);
-        units.rem_euclid(i128::from(modulus) * self.one())
+    /// Returns the first value and the step, exactly, in units of 1 / [`ONE`]. Symmetries are decided with them.
+    pub(crate) fn exact(&self) -> [i128; 2] {
+        let unit = ONE / 10_i128.pow(self.places);
+        [self.start, self.step].map(|units| i128::from(units) * unit)
     }
 }
 

@@ -11,7 +11,7 @@
 //! mirror image is at 180° minus the angle.
 
 use crate::pose::axis::{Axis, Ranges};
-use crate::pose::range::DecimalRange;
+use crate::pose::range::{DecimalRange, ONE};
 use crate::source::Source;
 
 /// Returns the smallest rotation in whole degrees after which a shape looks the same under any zooms (360 for a
@@ -51,16 +51,19 @@ impl AngleClasses {
         }
     }
 
+    /// Returns the class of an angle: the angle modulo the period, exactly.
     pub(crate) fn class(&self, index: u64) -> i128 {
-        self.period
-            .map_or(0, |period| self.angles.residue(index, period))
+        let [start, step] = self.angles.exact();
+        self.period.map_or(0, |period| {
+            (start + i128::from(index) * step).rem_euclid(i128::from(period) * ONE)
+        })
     }
 
     /// Returns the class that shows the mirror image of a class, with right and left exchanged; None if there is none,
     /// or if it is the class itself.
     pub(crate) fn mirrored(&self, class: i128) -> Option<i128> {
-        let (mirror, period, one) = (self.mirror?, self.period?, self.angles.one());
-        let image = (i128::from(mirror) * one - class).rem_euclid(i128::from(period) * one);
+        let (mirror, period) = (i128::from(self.mirror?), i128::from(self.period?));
+        let image = (mirror * ONE - class).rem_euclid(period * ONE);
         (image != class).then_some(image)
     }
 }

@@ -6,7 +6,6 @@ use std::ops::ControlFlow;
 use crate::atlas::{ImprintCounter, Layout};
 use crate::imprint::Imprint;
 use crate::index::wide;
-use crate::sweep::plan::SweepDetail;
 use crate::sweep::run::Sweep;
 
 /// The distinct imprints of a grid, counted.
@@ -68,35 +67,28 @@ pub struct PoseRun {
 impl Sweep<'_> {
     /// Counts the imprints without describing them. Returns None if the sweep was stopped.
     pub fn count(self) -> Option<CountedImprints> {
-        let sensor = *self.grid.sensor();
-        let layout = Layout::new(sensor.size());
+        let layout = Layout::new(self.grid.sensor().size());
         let mut counted = CountedImprints {
             counter: ImprintCounter::new(layout.words()),
             layout,
             poses: 0,
             partly_off: 0,
         };
-        let CountedImprints {
-            layout,
-            counter,
-            poses,
-            partly_off,
-        } = &mut counted;
-        let width = self.grid.row_length();
-        let complete = self.each_portion(layout, SweepDetail::Counts, |portion| {
+        let grid = self.grid;
+        let complete = self.each_portion(&counted.layout, false, |portion| {
             for found in portion {
-                let orientations = found.orientations.len() as u64;
                 let own = &found.counter;
                 for (index, tally) in own.tallies().iter().enumerate() {
-                    let count = tally.count * orientations;
-                    counter.add(own.key(index), own.hash(index), count, tally.first);
+                    let count = tally.count * found.multiplicity();
+                    let (key, hash) = (own.key(index), own.hash(index));
+                    counted.counter.add(key, hash, count, tally.first);
                 }
-                *poses += (found.rows.end - found.rows.start) * width * orientations;
-                *partly_off += found.partly_off * orientations;
+                counted.poses += found.poses(grid);
+                counted.partly_off += found.partly_off * found.multiplicity();
             }
             ControlFlow::Continue(())
         });
-        counter.sort_by_first_pose();
+        counted.counter.sort_by_first_pose();
         complete.then_some(counted)
     }
 
@@ -105,10 +97,9 @@ impl Sweep<'_> {
     /// The order of the runs does not depend on the number of threads.
     pub fn poses_where(self, wanted: &(dyn Fn(&Imprint) -> bool + Sync)) -> Option<Vec<PoseRun>> {
         let (width, height) = (self.grid.row_length(), self.grid.rows_per_orientation());
-        let sensor = self.grid.sensor();
-        let layout = Layout::new(sensor.size());
+        let layout = Layout::new(self.grid.sensor().size());
         let mut runs = Vec::new();
-        self.each_portion(&layout, SweepDetail::Runs, |portion| {
+        self.each_portion(&layout, true, |portion| {
             for found in portion {
                 let wanted: Vec<bool> = (0..found.counter.len())
                     .map(|index| wanted(&layout.imprint(found.counter.key(index))))
@@ -120,7 +111,7 @@ impl Sweep<'_> {
                             runs.push(PoseRun {
                                 first,
                                 poses: u64::from(length),
-                                orientations: found.orientations.len() as u64,
+                                orientations: found.multiplicity(),
                             });
                         }
                         first += u64::from(length);

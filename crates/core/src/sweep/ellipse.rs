@@ -15,6 +15,7 @@ use crate::geometry::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;
 use crate::sweep::flips::{DOUBT, Level, NEAR, STEEP, Spans};
 
+/// Where the coverage by the outer ellipse rises and falls, and where that by the hole does.
 type Tracks = [Track; 4];
 
 #[derive(Clone, Debug)]
@@ -59,86 +60,30 @@ impl Elliptic {
         let Some(tracks) = self.tracks.get_mut(row) else {
             return self.ellipse.isolate_all(spans);
         };
-        let Some(found) = follow(&self.ellipse, tracks) else {
+        let Some(([from, to], hole)) = self.ellipse.follow(tracks) else {
             self.ellipse.isolate_all(spans);
             return learn(spans, tracks);
         };
-        spans.set_level(found.from, Level::Above);
-        if let Some((hole, end)) = found.hole {
+        spans.set_level(from, Level::Above);
+        if let Some([hole, end]) = hole {
             spans.set_level(hole, Level::Below);
             spans.set_level(end, Level::Above);
         }
-        spans.set_level(found.to, Level::Below);
+        spans.set_level(to, Level::Below);
     }
-}
-
-struct Passages {
-    /// The beginning of the span: the column of the cell relative to the shape's anchor, in cell sides.
-    from: f64,
-    to: f64,
-    hole: Option<(f64, f64)>,
-}
-
-fn follow(ellipse: &HollowEllipse, tracks: &mut Tracks) -> Option<Passages> {
-    let [from, to, hole, end] = tracks;
-    let (outer, threshold) = (&ellipse.outer, ellipse.threshold);
-    let (from, to) = (
-        from.follow(outer, threshold, Passage::Rising)?,
-        to.follow(outer, threshold, Passage::Falling)?,
-    );
-    let solid = Passages {
-        from,
-        to,
-        hole: None,
-    };
-    let Some(inner) = ellipse.inner.as_ref().filter(|inner| inner.is_here()) else {
-        return Some(solid);
-    };
-    // Between these places the cell reaches the hole.
-    let (first, last) = (inner.reach().0 - 1.0, inner.reach().1);
-    if first <= from + 2.0 * NEAR || last >= to - 2.0 * NEAR {
-        return None;
-    }
-    let covered = |band: &EllipseBand, u: f64| band.coverage(&band.at(u), &band.at(u + 1.0));
-    let least = covered(outer, first).min(covered(outer, last));
-    // The hole is nowhere high enough to matter.
-    if least - inner.highest > threshold + DOUBT {
-        return Some(solid);
-    }
-    let (hole, end) = (
-        hole.follow(inner, 1.0 - threshold, Passage::Rising)?,
-        end.follow(inner, 1.0 - threshold, Passage::Falling)?,
-    );
-    let (full, full_end) = outer.full()?;
-    let apart = full < hole - NEAR && full_end > end + NEAR;
-    // Up to `full` both areas rise, from `full_end` on both fall.
-    let left = first >= full || covered(outer, first) - covered(inner, full) > threshold + DOUBT;
-    let right =
-        last <= full_end || covered(outer, last) - covered(inner, full_end) > threshold + DOUBT;
-    (apart && left && right).then_some(Passages {
-        hole: Some((hole, end)),
-        ..solid
-    })
 }
 
 fn learn(spans: &Spans, tracks: &mut Tracks) {
-    let all = spans.all();
-    match (spans.sharp, all) {
-        (true, [only]) => {
-            tracks[0].note(only.from);
-            tracks[1].note(only.to);
-            tracks[2].forget();
-            tracks[3].forget();
+    let places = match (spans.sharp, spans.all()) {
+        (true, [only]) => [Some(only.from), Some(only.to), None, None],
+        (true, [left, right]) => [left.from, right.to, left.to, right.from].map(Some),
+        _ => [None; 4],
+    };
+    for (track, place) in tracks.iter_mut().zip(places) {
+        match place {
+            Some(place) => track.note(place),
+            None => track.known = 0,
         }
-        (true, [left, right]) => {
-            for (track, place) in tracks
-                .iter_mut()
-                .zip([left.from, right.to, left.to, right.from])
-            {
-                track.note(place);
-            }
-        }
-        _ => tracks.iter_mut().for_each(Track::forget),
     }
 }
 
@@ -152,11 +97,11 @@ const SLACK: f64 = 1e-12;
 
 /// An ellipse prepared for bands; see `geometry::ellipse` for the formulas.
 #[derive(Clone, Debug)]
-pub(crate) struct EllipseBand {
-    pub(crate) x: f64,
+struct EllipseBand {
+    x: f64,
     y: f64,
     /// Half of the extent along x.
-    pub(crate) reach_x: f64,
+    reach_x: f64,
     /// Half of the extent along y.
     reach_y: f64,
     /// The slope, y by x, of the line through the middles of the vertical sections.
@@ -172,7 +117,7 @@ pub(crate) struct EllipseBand {
     count: usize,
     /// The places between which the section is highest; `highest` is its height there.
     peak: (f64, f64),
-    pub(crate) highest: f64,
+    highest: f64,
     /// The area of the ellipse in the band.
     total: f64,
 }
@@ -190,9 +135,9 @@ struct EllipseStretch {
 
 /// The section at a place: its height, the area on the left of it, and half of the ellipse's own section.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Section {
+struct Section {
     /// The height of the shape here, inside the band.
-    pub(crate) height: f64,
+    height: f64,
     /// The area on the left of the place.
     area: f64,
     half: f64,
@@ -201,7 +146,7 @@ pub(crate) struct Section {
 }
 
 impl EllipseBand {
-    pub(crate) fn new(ellipse: &Ellipse<f64>) -> Self {
+    fn new(ellipse: &Ellipse<f64>) -> Self {
         let (centre, reach) = (ellipse.centre, ellipse.reach());
         let (x_square, y_square) = (reach.x * reach.x, reach.y * reach.y);
         let (mixed, area) = (ellipse.skew(), ellipse.span());
@@ -235,7 +180,7 @@ impl EllipseBand {
     }
 
     /// Prepares the band from `top` to `top + 1`. Returns false if the ellipse does not reach it.
-    pub(crate) fn cut(&mut self, top: f64) -> bool {
+    fn cut(&mut self, top: f64) -> bool {
         let (top, bottom) = (top - self.y, top - self.y + 1.0);
         (self.top, self.count, self.total, self.highest) = (top, 0, 0.0, -1.0);
         if top >= self.reach_y || bottom <= -self.reach_y {
@@ -339,7 +284,7 @@ impl EllipseBand {
         ((middle + half).min(self.top + 1.0) - (middle - half).max(self.top)).max(0.0)
     }
 
-    pub(crate) fn height(&self, x: f64) -> f64 {
+    fn height(&self, x: f64) -> f64 {
         let d = x - self.x;
         if d.abs() >= self.reach_x {
             return 0.0;
@@ -347,7 +292,7 @@ impl EllipseBand {
         self.clipped(d, self.half(d))
     }
 
-    pub(crate) fn at(&self, x: f64) -> Section {
+    fn at(&self, x: f64) -> Section {
         let d = x - self.x;
         let stretches = &self.stretches[..self.count];
         let outside = |area: f64| Section {
@@ -378,7 +323,7 @@ impl EllipseBand {
         }
     }
 
-    pub(crate) fn coverage(&self, left: &Section, right: &Section) -> f64 {
+    fn coverage(&self, left: &Section, right: &Section) -> f64 {
         match (left.stretch, right.stretch) {
             // Between the lines all along: full, without any rounding.
             (Some(first), Some(last)) if first == last && self.stretches[first].round == 0.0 => 1.0,
@@ -386,12 +331,16 @@ impl EllipseBand {
         }
     }
 
+    fn covered(&self, u: f64) -> f64 {
+        self.coverage(&self.at(u), &self.at(u + 1.0))
+    }
+
     /// Returns how much `w` may change within `way` of a place.
     ///
     /// Half of the ellipse's own section is `√((R − d)(R + d))`, with slope `d / half`; within `way` of `d` it stays
     /// above 0.7 of itself where `half² ≥ 4·R·way`. Near an end of the ellipse it changes by the root of `2·R·way` at
     /// most. Clipping by the band's lines only makes a change smaller.
-    pub(crate) fn change(&self, place: &Section, way: f64) -> f64 {
+    fn change(&self, place: &Section, way: f64) -> f64 {
         let reach = self.reach_x;
         let half = if place.half * place.half >= 4.0 * reach * way {
             1.5 * reach / place.half * way
@@ -402,7 +351,7 @@ impl EllipseBand {
     }
 
     /// Returns bounds of `w` from `x` to `end`: it is concave where it is not 0, so it is least at an end.
-    pub(crate) fn bounds(&self, x: f64, end: f64) -> (f64, f64) {
+    fn bounds(&self, x: f64, end: f64) -> (f64, f64) {
         if self.count == 0 {
             return (0.0, 0.0);
         }
@@ -419,11 +368,7 @@ impl EllipseBand {
         (least.max(0.0), most.min(1.0))
     }
 
-    pub(crate) fn is_here(&self) -> bool {
-        self.count > 0
-    }
-
-    pub(crate) fn reach(&self) -> (f64, f64) {
+    fn reach(&self) -> (f64, f64) {
         let stretches = &self.stretches[..self.count];
         match (stretches.first(), stretches.last()) {
             (Some(first), Some(last)) => (self.x + first.left, self.x + last.right),
@@ -432,7 +377,7 @@ impl EllipseBand {
     }
 
     /// Returns the places between which a cell is full; None if no cell is.
-    pub(crate) fn full(&self) -> Option<(f64, f64)> {
+    fn full(&self) -> Option<(f64, f64)> {
         let full =
             |stretch: &&EllipseStretch| stretch.round == 0.0 && stretch.right - stretch.left > 1.0;
         let stretch = self.stretches[..self.count].iter().find(full)?;
@@ -464,17 +409,49 @@ const NARROW: f64 = 1e-6;
 
 /// An ellipse and perhaps a hole, both cut to the band.
 #[derive(Clone, Debug)]
-pub(crate) struct HollowEllipse {
-    pub(crate) threshold: f64,
-    pub(crate) outer: EllipseBand,
-    pub(crate) inner: Option<EllipseBand>,
+struct HollowEllipse {
+    threshold: f64,
+    outer: EllipseBand,
+    inner: Option<EllipseBand>,
 }
 
 /// A place, and the coverage there minus the threshold.
 type Sample = (f64, f64);
 
 impl HollowEllipse {
-    pub(crate) fn isolate_all(&self, spans: &mut Spans) {
+    /// Follows the passages from the previous rows: the beginning and the end of the span, as columns of the cell
+    /// relative to the shape's anchor, and those of the gap in it. None if they are not certain.
+    #[expect(clippy::type_complexity, reason = "two ends, and perhaps two more")]
+    fn follow(&self, tracks: &mut Tracks) -> Option<([f64; 2], Option<[f64; 2]>)> {
+        let [from, to, hole, end] = tracks;
+        let (outer, threshold) = (&self.outer, self.threshold);
+        let from = from.follow(outer, threshold, true)?;
+        let to = to.follow(outer, threshold, false)?;
+        let Some(inner) = self.inner.as_ref().filter(|inner| inner.count > 0) else {
+            return Some(([from, to], None));
+        };
+        // Between these places the cell reaches the hole.
+        let (first, last) = (inner.reach().0 - 1.0, inner.reach().1);
+        if first <= from + 2.0 * NEAR || last >= to - 2.0 * NEAR {
+            return None;
+        }
+        let least = outer.covered(first).min(outer.covered(last));
+        // The hole is nowhere high enough to matter.
+        if least - inner.highest > threshold + DOUBT {
+            return Some(([from, to], None));
+        }
+        let hole = hole.follow(inner, 1.0 - threshold, true)?;
+        let end = end.follow(inner, 1.0 - threshold, false)?;
+        let (full, full_end) = outer.full()?;
+        let apart = full < hole - NEAR && full_end > end + NEAR;
+        // Up to `full` both areas rise, from `full_end` on both fall.
+        let enough = |place, full| outer.covered(place) - inner.covered(full) > threshold + DOUBT;
+        let left = first >= full || enough(first, full);
+        let right = last <= full_end || enough(last, full_end);
+        (apart && left && right).then_some(([from, to], Some([hole, end])))
+    }
+
+    fn isolate_all(&self, spans: &mut Spans) {
         let (left, right) = self.outer.reach();
         let ends = ((left - 1.0, -self.threshold), (right, -self.threshold));
         self.isolate(ends.0, ends.1, spans);
@@ -482,9 +459,8 @@ impl HollowEllipse {
     }
 
     fn excess(&self, u: f64) -> f64 {
-        let covered = |band: &EllipseBand| band.coverage(&band.at(u), &band.at(u + 1.0));
-        let outer = covered(&self.outer);
-        let inner = self.inner.as_ref().map_or(0.0, covered);
+        let outer = self.outer.covered(u);
+        let inner = self.inner.as_ref().map_or(0.0, |inner| inner.covered(u));
         if outer == 1.0 && inner == 0.0 {
             // Full without any doubt, even where the threshold is 1.
             return (1.0 - self.threshold).max(2.0 * DOUBT);
@@ -587,13 +563,9 @@ impl HollowEllipse {
     }
 
     fn slope(&self, u: f64) -> f64 {
-        let outer = self.outer.height(u + 1.0) - self.outer.height(u);
-        let inner = self
-            .inner
-            .as_ref()
-            .filter(|inner| inner.is_here())
-            .map_or(0.0, |inner| inner.height(u + 1.0) - inner.height(u));
-        outer - inner
+        let slope = |band: &EllipseBand| band.height(u + 1.0) - band.height(u);
+        let inner = self.inner.as_ref().filter(|inner| inner.count > 0);
+        slope(&self.outer) - inner.map_or(0.0, slope)
     }
 }
 
@@ -608,16 +580,9 @@ impl HollowEllipse {
 // cannot change by more than `c` ([`EllipseBand::change`]). Then the distance to the passage is between `e/(m + c)`
 // and `e/(m − c)`. The passage counts as known once this interval is narrower than [`NEAR`] requires.
 
-/// A direction in which the coverage passes through a level, from left to right.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Passage {
-    Rising,
-    Falling,
-}
-
 /// The positions of a passage in the last rows.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Track {
+struct Track {
     positions: [f64; 3],
     known: usize,
 }
@@ -634,28 +599,19 @@ impl Track {
         }
     }
 
-    pub(crate) fn note(&mut self, position: f64) {
+    fn note(&mut self, position: f64) {
         self.positions = [position, self.positions[0], self.positions[1]];
         self.known = (self.known + 1).min(3);
     }
 
-    pub(crate) fn forget(&mut self) {
-        self.known = 0;
-    }
-
-    /// Finds the passage through a level in the present band; None if it is not certain.
-    pub(crate) fn follow(
-        &mut self,
-        band: &EllipseBand,
-        level: f64,
-        passage: Passage,
-    ) -> Option<f64> {
+    /// Finds the rising or the falling passage through a level in the present band; None if it is not certain.
+    fn follow(&mut self, band: &EllipseBand, level: f64, is_rising: bool) -> Option<f64> {
         let mut u = self.expected()?;
         for _ in 0..4 {
             let (left, right) = (band.at(u), band.at(u + 1.0));
             let excess = band.coverage(&left, &right) - level;
             let slope = right.height - left.height;
-            if (slope > 0.0) != (passage == Passage::Rising) {
+            if (slope > 0.0) != is_rising {
                 return None;
             }
             let way = excess / slope;

@@ -22,40 +22,58 @@ fn floor(place: f64) -> i32 {
     Real::floor(place.clamp(-1e9, 1e9))
 }
 
-pub(crate) struct FlipWriter<'s, 'e, 'a> {
-    pub(crate) steps: Steps,
-    pub(crate) row: usize,
-    pub(crate) y: u64,
-    /// The events that are written.
-    pub(crate) events: RowEvents<'s, 'e>,
-    pub(crate) exact: &'s mut Exact<'a>,
+/// Writes the events of a row of the sensor.
+pub(crate) struct FlipWriter<'s, 'a> {
+    steps: Steps,
+    row: usize,
+    y: u64,
+    /// The word of the row in a key, its place in the word, and the hashes of its taxels.
+    word: u32,
+    shift: usize,
+    numbers: &'a [u64],
+    events: &'s mut Events<'a>,
+    exact: &'s mut Exact<'a>,
 }
 
-impl FlipWriter<'_, '_, '_> {
+impl<'s, 'a> FlipWriter<'s, 'a> {
+    pub(crate) fn new(
+        (steps, row, y): (Steps, usize, u64),
+        events: &'s mut Events<'a>,
+        exact: &'s mut Exact<'a>,
+    ) -> Self {
+        let layout = events.layout;
+        let (word, shift) = layout.slot(row);
+        Self {
+            steps,
+            row,
+            y,
+            word: narrow(word),
+            shift,
+            numbers: layout.numbers(row),
+            events,
+            exact,
+        }
+    }
+
     pub(crate) fn spans(&mut self, spans: &Spans) {
         // The fast path needs span ends that are known more precisely than the grid step.
         if spans.sharp && NEAR * self.steps.per_cell < 0.25 {
             for span in spans.all() {
-                self.span(span);
+                let (left, right) = (self.end(span.from, false), self.end(span.to, true));
+                if left < right {
+                    let ones = u64::MAX >> (64 - (right - left));
+                    self.start(ones << left);
+                }
             }
         } else {
             self.each_taxel(spans.all());
         }
     }
 
-    /// Marks the events that a span with two sharp ends causes in all columns.
-    fn span(&mut self, span: &Span) {
-        let left = self.end(span.from, SpanEnd::Left);
-        let right = self.end(span.to, SpanEnd::Right);
-        if left < right {
-            let ones = u64::MAX >> (64 - (right - left));
-            self.events.start(ones << left);
-        }
-    }
-
-    /// Marks where the taxels of the row pass an end of a span. Returns the first taxel that does so after the first x0, or the number of columns.
-    fn end(&mut self, at: f64, end: SpanEnd) -> usize {
-        let columns = self.events.columns();
+    /// Marks where the taxels of the row pass the left or the right end of a span. Returns the first taxel that does so
+    /// after the first x0, or the number of columns.
+    fn end(&mut self, at: f64, is_right: bool) -> usize {
+        let columns = self.numbers.len();
         let start = at + self.steps.first;
         let near = NEAR * self.steps.per_cell;
         let last = f64::from(self.steps.count - 1) + near;
@@ -67,11 +85,11 @@ impl FlipWriter<'_, '_, '_> {
             if place > last {
                 return first.unwrap_or(column);
             }
-            let step = self.passing(column, place, end);
+            let step = self.passing(column, place, is_right);
             if step > 0 {
                 first = first.or(Some(column));
                 if step < self.steps.count {
-                    self.events.flip(column, step.unsigned_abs());
+                    self.flip(column, step.unsigned_abs());
                 }
             }
             column += 1;
@@ -81,7 +99,7 @@ impl FlipWriter<'_, '_, '_> {
 
     /// Returns the first step at which a taxel is past an end. `place` is where it passes the end, counted in steps;
     /// it is at most [`NEAR`] before the first step or after the last.
-    fn passing(&mut self, column: usize, place: f64, end: SpanEnd) -> i32 {
+    fn passing(&mut self, column: usize, place: f64, is_right: bool) -> i32 {
         let nearest = nearest(place);
         let after = place - f64::from(nearest);
         if after.abs() > NEAR * self.steps.per_cell {
@@ -91,8 +109,7 @@ impl FlipWriter<'_, '_, '_> {
             return nearest;
         }
         // At exactly this step: past a right end the taxel is active, past a left end it is not.
-        let active = self.active(column, nearest);
-        nearest + i32::from(active != (end == SpanEnd::Right))
+        nearest + i32::from(self.active(column, nearest) != is_right)
     }
 
     fn active(&mut self, column: usize, step: i32) -> bool {
@@ -109,72 +126,72 @@ impl FlipWriter<'_, '_, '_> {
             per_cell,
             count,
         } = self.steps;
-        for column in 0..self.events.columns() {
+        for column in 0..self.numbers.len() {
             let place = |at: f64| (column as f64 - at - first) * per_cell;
-            let mut taxel = Taxel {
-                column,
-                active: false,
-                next: 0,
-            };
+            // Whether the taxel is active after the steps that are done, those below `next`.
+            let (mut active, mut next) = (false, 0);
             // From right to left, since the taxel moves that way along the spans.
             for span in spans.iter().rev() {
-                let from = (-floor(-place(span.to + NEAR))).max(taxel.next);
+                let from = (-floor(-place(span.to + NEAR))).max(next);
                 let to = floor(place(span.from - NEAR)).min(count - 1);
                 let sure = (floor(place(span.to - NEAR)) + 1)..floor(place(span.from + NEAR));
                 if from > to {
                     continue;
                 }
-                if from > taxel.next {
-                    taxel.set(taxel.next, false, &mut self.events);
+                if from > next {
+                    self.set(column, next, &mut active, false);
                 }
                 let mut step = from;
                 while step <= to && !self.exact.stopped() {
                     if span.sharp && sure.contains(&step) {
-                        taxel.set(step, true, &mut self.events);
+                        self.set(column, step, &mut active, true);
                         step = sure.end.min(to + 1);
                     } else {
-                        let active = self.active(column, step);
-                        taxel.set(step, active, &mut self.events);
+                        let now = self.active(column, step);
+                        self.set(column, step, &mut active, now);
                         step += 1;
                     }
                 }
-                taxel.next = to + 1;
+                next = to + 1;
             }
-            if taxel.next < count {
-                taxel.set(taxel.next, false, &mut self.events);
+            if next < count {
+                self.set(column, next, &mut active, false);
             }
         }
     }
-}
 
-/// An end of a span. The taxels of a row pass it from right to left.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum SpanEnd {
-    Left,
-    Right,
-}
-
-/// A taxel that moves along the range of x0.
-struct Taxel {
-    column: usize,
-    /// Whether it is active after the steps that are done.
-    active: bool,
-    /// Steps below this one are done.
-    next: i32,
-}
-
-impl Taxel {
-    /// Sets whether the taxel is active from a step on, which is not negative.
-    fn set(&mut self, step: i32, active: bool, events: &mut RowEvents<'_, '_>) {
-        if active == self.active {
+    /// Marks whether a taxel is active from a step on, which is not negative.
+    fn set(&mut self, column: usize, step: i32, active: &mut bool, now: bool) {
+        if now == std::mem::replace(active, now) {
             return;
         }
-        self.active = active;
         if step == 0 {
-            events.start(1 << self.column);
+            self.start(1 << column);
         } else {
-            events.flip(self.column, step.unsigned_abs());
+            self.flip(column, step.unsigned_abs());
         }
+    }
+
+    /// Marks taxels that are active at the first step; a bit for each.
+    fn start(&mut self, taxels: u64) {
+        self.events.key[wide(self.word)] ^= taxels << self.shift;
+        self.events.hash ^= self.events.layout.hash(self.row, taxels);
+    }
+
+    /// Marks that a taxel switches at a step, from 1 to the last.
+    #[inline]
+    fn flip(&mut self, column: usize, step: u32) {
+        let events = &mut *self.events;
+        let step = wide(step);
+        let event = narrow(events.list.len());
+        events.marked[step / 64] |= 1 << (step % 64);
+        let before = std::mem::replace(&mut events.last[step], event);
+        events.list.push(Event {
+            mask: 1 << (self.shift + column),
+            number: self.numbers[column],
+            word: self.word,
+            before,
+        });
     }
 }
 
@@ -334,7 +351,7 @@ impl Spans {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Events<'a> {
-    pub(crate) layout: &'a Layout,
+    layout: &'a Layout,
     count: u64,
     key: Vec<u64>,
     /// The hash of that imprint.
@@ -380,17 +397,6 @@ impl<'a> Events<'a> {
         self.list.clear();
     }
 
-    pub(crate) fn row(&mut self, row: usize) -> RowEvents<'_, 'a> {
-        let (word, shift) = self.layout.slot(row);
-        RowEvents {
-            row,
-            word: narrow(word),
-            shift,
-            numbers: self.layout.numbers(row),
-            events: self,
-        }
-    }
-
     /// Calls `run` with the key, the hash, the first step and the step after the last of each run in turn, and clears
     /// the marks.
     pub(crate) fn play(&mut self, mut run: impl FnMut(&[u64], u64, u64, u64)) {
@@ -411,42 +417,6 @@ impl<'a> Events<'a> {
             }
         }
         run(&self.key, self.hash, from, self.count);
-    }
-}
-
-pub(crate) struct RowEvents<'e, 'a> {
-    row: usize,
-    word: u32,
-    shift: usize,
-    numbers: &'a [u64],
-    events: &'e mut Events<'a>,
-}
-
-impl RowEvents<'_, '_> {
-    pub(crate) fn columns(&self) -> usize {
-        self.numbers.len()
-    }
-
-    /// Marks taxels that are active at the first step; a bit for each.
-    pub(crate) fn start(&mut self, taxels: u64) {
-        self.events.key[wide(self.word)] ^= taxels << self.shift;
-        self.events.hash ^= self.events.layout.hash(self.row, taxels);
-    }
-
-    /// Marks that a taxel switches at a step, from 1 to the last.
-    #[inline]
-    pub(crate) fn flip(&mut self, column: usize, step: u32) {
-        let events = &mut *self.events;
-        let step = wide(step);
-        let event = narrow(events.list.len());
-        events.marked[step / 64] |= 1 << (step % 64);
-        let before = std::mem::replace(&mut events.last[step], event);
-        events.list.push(Event {
-            mask: 1 << (self.shift + column),
-            number: self.numbers[column],
-            word: self.word,
-            before,
-        });
     }
 }
 

@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use crate::pose::{Anchor, AngleClasses, Axis, DecimalRange, PoseGrid, period};
+use crate::pose::{Anchor, AngleClasses, Axis, DecimalRange, ONE, PoseGrid, period};
 use crate::quote::shortened;
 
 /// A shard of a grid: piece `number` of `of` nearly equal pieces, counted from 1; as text, `2/3`.
@@ -141,21 +141,14 @@ pub enum ShardOrderError {
     },
 }
 
-/// The detail in which a sweep reports each row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SweepDetail {
-    Counts,
-    /// The runs of poses with the same imprint, too.
-    Runs,
-}
-
 /// Some rows of a group of orientations, and of the group of their mirror images.
 #[derive(Clone, Debug)]
 pub(crate) struct Task {
     /// One group, or two groups that are mirror images of each other, with right and left exchanged.
     pub(crate) groups: Arc<[Arc<[u64]>]>,
     pub(crate) rows: Range<u64>,
-    pub(crate) detail: SweepDetail,
+    /// Whether the runs of poses with the same imprint are wanted, not only counts.
+    pub(crate) with_runs: bool,
 }
 
 impl Task {
@@ -180,7 +173,7 @@ pub(crate) fn tasks(
     grid: &PoseGrid,
     shard: &Range<u64>,
     block: u64,
-    detail: SweepDetail,
+    with_runs: bool,
 ) -> impl Iterator<Item = Task> + use<> {
     let (angles, height) = (
         grid.ranges()[Axis::Angle].count(),
@@ -189,7 +182,7 @@ pub(crate) fn tasks(
     let first_row = block * angles * height;
     let clipped = |row: u64| row.clamp(first_row, first_row + angles * height) - first_row;
     let rows = clipped(shard.start)..clipped(shard.end);
-    let pieces = pieces(grid, rows, detail);
+    let pieces = pieces(grid, rows, with_runs);
     let length = task_rows(grid, pieces.len() as u64);
     pieces.into_iter().flat_map(move |(groups, rows)| {
         let orientations = |group: Vec<u64>| {
@@ -201,7 +194,7 @@ pub(crate) fn tasks(
         starts.map(move |start| Task {
             groups: Arc::clone(&groups),
             rows: rows.start + start..rows.end.min(rows.start + start + length),
-            detail,
+            with_runs,
         })
     })
 }
@@ -211,34 +204,25 @@ type Piece = (Vec<Vec<u64>>, Range<u64>);
 
 /// Gathers the angles of a block by the symmetries of the shape. `rows` are the rows of the block that a shard holds.
 /// Angles of which it holds only a part are pieces of their own.
-fn pieces(grid: &PoseGrid, rows: Range<u64>, detail: SweepDetail) -> Vec<Piece> {
+fn pieces(grid: &PoseGrid, rows: Range<u64>, with_runs: bool) -> Vec<Piece> {
     let height = grid.rows_per_orientation();
-    let full = rows.start.div_ceil(height)..rows.end / height;
     let mut pieces: Vec<Piece> = Vec::new();
-    let partial = |angle: u64| {
-        let start = angle * height;
-        let part = rows.start.max(start)..rows.end.min(start + height);
-        (
-            vec![vec![angle]],
-            part.start.saturating_sub(start)..part.end.saturating_sub(start),
-        )
-    };
-    if rows.start < full.start * height {
-        pieces.push(partial(full.start - 1));
-    }
     let classes = AngleClasses::of(grid.source(), grid.ranges()[Axis::Angle]);
     // The piece that the group of a class belongs to, and the group's index in it.
     let mut places: HashMap<i128, (usize, usize)> = HashMap::new();
-    for angle in full.clone() {
+    for angle in rows.start / height..rows.end.div_ceil(height) {
+        let start = angle * height;
+        let part = rows.start.max(start) - start..rows.end.min(start + height) - start;
+        if part != (0..height) {
+            pieces.push((vec![vec![angle]], part));
+            continue;
+        }
         let class = classes.class(angle);
-        let image = classes.mirrored(class);
-        let image = image.filter(|_| detail == SweepDetail::Counts);
-        let (piece, group) = match (
-            places.get(&class),
-            image.and_then(|image| places.get(&image)),
-        ) {
-            (Some(&place), _) => place,
-            (None, Some(&(piece, _))) => (piece, 1),
+        let image = classes.mirrored(class).filter(|_| !with_runs);
+        let place = |class: i128| places.get(&class).copied();
+        let (piece, group) = match (place(class), image.and_then(place)) {
+            (Some(place), _) => place,
+            (None, Some((piece, _))) => (piece, 1),
             (None, None) => {
                 pieces.push((Vec::new(), 0..height));
                 (pieces.len() - 1, 0)
@@ -248,9 +232,6 @@ fn pieces(grid: &PoseGrid, rows: Range<u64>, detail: SweepDetail) -> Vec<Piece> 
         let groups = &mut pieces[piece].0;
         groups.resize(groups.len().max(group + 1), Vec::new());
         groups[group].push(angle);
-    }
-    if full.start <= full.end && full.end * height < rows.end {
-        pieces.push(partial(full.end));
     }
     pieces
 }
@@ -294,26 +275,21 @@ impl PointSymmetry {
         if period(grid.source()).is_some_and(|period| 180 % period != 0) {
             return None;
         }
-        let [width, height] = twice_to_centre(grid)?;
+        let ranges = grid.ranges();
+        let is_unzoomed = |axis: &Axis| ranges[*axis] == DecimalRange::whole(1);
+        // Twice the distance from the anchor to the centre.
+        let [width, height] = match grid.anchor() {
+            Anchor::Centre => [0.0; 2],
+            Anchor::Corner if [Axis::ZoomX, Axis::ZoomY].iter().all(is_unzoomed) => {
+                grid.source().box_sides()?
+            }
+            Anchor::Corner => return None,
+        };
         Some(Self {
-            x: IndexReflection::of(&grid.ranges()[Axis::X0], width)?,
-            y: IndexReflection::of(&grid.ranges()[Axis::Y0], height)?,
+            x: IndexReflection::of(&ranges[Axis::X0], width)?,
+            y: IndexReflection::of(&ranges[Axis::Y0], height)?,
         })
     }
-}
-
-/// Returns twice the distance from the anchor to the centre along x and along y, in cells; None if it is not a
-/// decimal.
-fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
-    if grid.anchor() == Anchor::Centre {
-        return Some([0.0; 2]);
-    }
-    let unzoomed = DecimalRange::whole(1);
-    let ranges = grid.ranges();
-    let is_zoomed = [Axis::ZoomX, Axis::ZoomY]
-        .iter()
-        .any(|&axis| ranges[axis] != unzoomed);
-    grid.source().box_sides().filter(|_| !is_zoomed)
 }
 
 /// A mapping of the values of a range onto each other: value `i` to value `last − i`, or to `last − i + count` if
@@ -331,28 +307,21 @@ impl IndexReflection {
     /// mapped onto each other.
     fn of(range: &DecimalRange, extent: f64) -> Option<Self> {
         // The shortest decimal that reads back as the number is the one that was given.
-        let extent = DecimalRange::try_from(extent).ok()?;
-        let (mut numbers, mut one) = (range.units(), range.one());
-        let (mut extent, extent_one) = (extent.units()[0], extent.one());
-        // Both are powers of ten.
-        let all = one.max(extent_one);
-        numbers = numbers.map(|number| number * (all / one));
-        extent *= all / extent_one;
-        one = all;
-        let [start, step] = numbers;
+        let [extent, _] = DecimalRange::try_from(extent).ok()?.exact();
+        let [start, step] = range.exact();
         let whole = i128::from(range.count()) * step;
         // Two centres that are images of each other sum up to a whole number of cells.
         let way = (-2 * start - extent).rem_euclid(whole);
-        if whole % one != 0 || way % step != 0 {
+        if whole % ONE != 0 || way % step != 0 {
             return None;
         }
-        let cells = (2 * start + extent + way) / one;
+        let cells = (2 * start + extent + way) / ONE;
         Some(Self {
             count: range.count(),
             last: u64::try_from(way / step).ok()?,
             cells: [
                 i32::try_from(cells).ok()?,
-                i32::try_from(cells + whole / one).ok()?,
+                i32::try_from(cells + whole / ONE).ok()?,
             ],
         })
     }
@@ -382,8 +351,7 @@ mod tests {
     use crate::source::Source;
 
     #[test]
-    fn examples_of_plan() {
-        use crate::sweep::Shard;
+    fn a_shard_is_a_part_of_the_rows() {
         let shard: Shard = "2/3".parse().expect("a shard");
         assert_eq!(shard.rows(10), 3..6);
         assert!("4/3".parse::<Shard>().is_err());

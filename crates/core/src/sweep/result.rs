@@ -12,7 +12,7 @@ use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid, PoseIndex};
 use crate::progress::ToTheEnd;
 use crate::source::Source;
-use crate::sweep::plan::{Shard, ShardOrderError, SweepDetail, Task};
+use crate::sweep::plan::{Shard, ShardOrderError, Task};
 use crate::sweep::runs;
 
 /// The result of a sweep.
@@ -64,26 +64,34 @@ impl SweepResult {
         self.poses == self.shard.poses(&self.grid)
     }
 
-    pub(crate) fn new(
-        grid: PoseGrid,
-        shard: Shard,
-        (poses, partly_off): (u64, u64),
-        atlas: Atlas,
-        table: &Table,
-        variance_parts: VarianceParts,
-    ) -> Self {
-        let ideal = Ideal::of(grid.source());
-        let counts: Vec<u64> = atlas.counts().collect();
-        let statistics = statistics(table, &counts, &variance_parts, |key| ideal?.get(key));
+    /// Creates the result of a sweep that has not begun.
+    pub(crate) fn empty(grid: PoseGrid, shard: Shard) -> Self {
+        let poses = grid.row_length() * grid.rows_per_orientation();
         Self {
+            atlas: Atlas::new(grid.sensor().size()),
+            variance_parts: VarianceParts::new(poses),
             grid,
             shard,
-            poses,
-            partly_off,
-            atlas,
-            statistics,
-            variance_parts,
+            poses: 0,
+            partly_off: 0,
+            statistics: Vec::new(),
         }
+    }
+
+    /// Computes the statistics. `table` holds the features of the imprints, in the order of the atlas.
+    pub(crate) fn with_statistics(self, table: &Table) -> Self {
+        let ideal = Ideal::of(self.grid.source());
+        let counts: Vec<u64> = self.atlas.counts().collect();
+        let ideal = |key: &str| ideal?.get(key);
+        let statistics = statistics(table, &counts, &self.variance_parts, ideal);
+        Self { statistics, ..self }
+    }
+
+    /// Computes the features of the imprints, and the statistics from them.
+    fn described(self) -> Self {
+        let mut table = Table::default();
+        table.extend(self.atlas.summaries());
+        self.with_statistics(&table)
     }
 
     /// Returns the atlas numbers of the poses with these indices of x0 and y0, row after row, at the angle and the
@@ -92,21 +100,18 @@ impl SweepResult {
     /// A number is None if the atlas does not have the imprint, because the sweep was stopped before. The result is
     /// empty if a range leaves the grid. It takes as long as sweeping these poses.
     pub fn ids(&self, orientation: PoseIndex, x0: Range<u64>, y0: Range<u64>) -> Vec<Option<u32>> {
-        let rows = y0.end.saturating_sub(y0.start);
+        let [columns, rows] = [&x0, &y0].map(|range| range.end.saturating_sub(range.start));
         let from = orientation
             .with(Axis::X0, x0.start)
             .with(Axis::Y0, y0.start);
-        let columns = x0.end.saturating_sub(x0.start);
-        let Some(part) = self
-            .grid
-            .part(from, PoseIndex::new([columns, rows, 1, 1, 1]))
-        else {
+        let counts = PoseIndex::new([columns, rows, 1, 1, 1]);
+        let Some(part) = self.grid.part(from, counts) else {
             return Vec::new();
         };
         let task = Task {
             groups: Arc::from([Arc::from([0])]),
             rows: 0..rows,
-            detail: SweepDetail::Runs,
+            with_runs: true,
         };
         let found = runs::sweep_task(&part, self.atlas.layout(), &task, &ToTheEnd);
         let Some(found) = found.as_deref().and_then(<[_]>::first) else {
@@ -116,13 +121,12 @@ impl SweepResult {
         let ids: Vec<Option<u32>> = (0..counter.len())
             .map(|index| self.atlas.number(counter.key(index), counter.hash(index)))
             .collect();
-        let rows = 0..index(rows);
-        let runs = rows.flat_map(|row| found.runs.row(row));
-        let runs = runs.flat_map(|&(imprint, length)| {
+        let runs = (0..index(rows)).flat_map(|row| found.runs.row(row));
+        let numbers = runs.flat_map(|&(imprint, length)| {
             let id = ids.get(wide(imprint)).copied().flatten();
             std::iter::repeat_n(id, wide(length))
         });
-        runs.collect()
+        numbers.collect()
     }
 
     /// Returns the numbers that the result consists of.
@@ -152,11 +156,7 @@ impl SweepResult {
         let same = parts.counts.len() == parts.first_poses.len()
             && parts.counts.len().checked_mul(height) == Some(parts.rows.len());
         check(same, "arrays of different lengths")?;
-        let sum = parts
-            .counts
-            .iter()
-            .map(|&count| u128::from(count))
-            .sum::<u128>();
+        let sum: u128 = parts.counts.iter().map(|&count| u128::from(count)).sum();
         check(sum == u128::from(parts.poses), "counts that do not add up")?;
         let own = shard.rows(grid.rows());
         let width = grid.row_length();
@@ -169,8 +169,10 @@ impl SweepResult {
         let inside = first.is_none_or(|&first| first >= own.start * width)
             && last.is_none_or(|&last| last < own.end * width);
         check(ascending && inside, "first poses out of order")?;
-        let mut atlas = Atlas::new(size);
-        let mut counter = ImprintCounter::new(atlas.layout().words());
+        let mut result = Self::empty(grid, shard);
+        (result.poses, result.partly_off) = (parts.poses, parts.partly_off);
+        let layout = result.atlas.layout();
+        let mut counter = ImprintCounter::new(layout.words());
         let entries = parts.counts.iter().zip(&parts.first_poses);
         for (words, (&count, &first)) in parts.rows.chunks_exact(height).zip(entries) {
             let mut imprint = Imprint::empty(size);
@@ -179,22 +181,19 @@ impl SweepResult {
             }
             check(imprint.words() == words, "taxels beyond the sensor")?;
             check(count > 0, "an imprint that no pose leaves")?;
-            let (key, hash) = atlas.layout().key(&imprint);
+            let (key, hash) = layout.key(&imprint);
             let known = counter.len();
             counter.add(&key, hash, count, first);
             check(counter.len() > known, "an imprint that is there twice")?;
         }
-        let variance_parts =
-            VarianceParts::from_words(width * grid.rows_per_orientation(), &parts.variance_words)
-                .ok_or(PartsError(
+        let orientation = width * result.grid.rows_per_orientation();
+        result.variance_parts = VarianceParts::from_words(orientation, &parts.variance_words)
+            .ok_or(PartsError(
                 "sums that contradict each other, or of another version",
             ))?;
-        atlas.add(&counter, 1);
-        atlas.describe();
-        let mut table = Table::default();
-        table.extend(atlas.summaries());
-        let poses = (parts.poses, parts.partly_off);
-        let result = Self::new(grid, shard, poses, atlas, &table, variance_parts);
+        result.atlas.add(&counter, 1);
+        result.atlas.describe();
+        let result = result.described();
         let is_possible = result.statistics.iter().all(Statistic::has_possible_parts);
         check(is_possible, "sums that contradict the imprints")?;
         Ok(result)
@@ -228,33 +227,9 @@ pub struct PartsError(&'static str);
 // Shards are merged in the order of the grid, so first poses stay the first, and imprints have the same numbers as in
 // a single sweep. Memory holds only what is already merged and one shard.
 
-/// The shards of a sweep that were added so far.
+/// The shards of a sweep that were added so far: their result, with the last of them as its shard.
 #[derive(Debug, Default)]
-pub struct SweepMerge(Option<Merged>);
-
-#[derive(Debug)]
-struct Merged {
-    grid: PoseGrid,
-    last: Shard,
-    atlas: Atlas,
-    variance_parts: VarianceParts,
-    poses: u64,
-    partly_off: u64,
-}
-
-impl Merged {
-    fn of(first: &SweepResult) -> Self {
-        let (grid, sensor) = (first.grid.clone(), first.grid.sensor());
-        Self {
-            last: first.shard,
-            atlas: Atlas::new(sensor.size()),
-            variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
-            grid,
-            poses: 0,
-            partly_off: 0,
-        }
-    }
-}
+pub struct SweepMerge(Option<SweepResult>);
 
 impl SweepMerge {
     /// Adds the next shard: the first, then the second, and so on.
@@ -266,7 +241,7 @@ impl SweepMerge {
         let shard = result.shard;
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
         if let Some(merged) = &self.0 {
-            let difference = if shard.of() == merged.last.of() {
+            let difference = if shard.of() == merged.shard.of() {
                 difference(&result.grid, &merged.grid)
             } else {
                 Some("the number of shards")
@@ -275,12 +250,15 @@ impl SweepMerge {
                 return Err(MergeError::Foreign { shard, difference });
             }
         }
-        shard.check_after(self.0.as_ref().map(|merged| merged.last))?;
+        shard.check_after(self.0.as_ref().map(|merged| merged.shard))?;
         if !result.complete() {
             return Err(MergeError::Incomplete { shard });
         }
-        let merged = self.0.get_or_insert_with(|| Merged::of(&result));
-        merged.last = shard;
+        let Some(merged) = &mut self.0 else {
+            self.0 = Some(result);
+            return Ok(());
+        };
+        merged.shard = shard;
         merged.atlas.add_all(&result.atlas);
         merged.variance_parts.merge(result.variance_parts);
         merged.poses += result.poses;
@@ -293,26 +271,10 @@ impl SweepMerge {
     /// # Errors
     /// Returns an error if some are missing.
     pub fn finish(self) -> Result<SweepResult, MergeError> {
-        let Merged {
-            grid,
-            last,
-            atlas,
-            variance_parts,
-            poses,
-            partly_off,
-        } = self.0.ok_or(ShardOrderError::Nothing)?;
-        last.check_last()?;
-        let mut table = Table::default();
-        table.extend(atlas.summaries());
-        let poses = (poses, partly_off);
-        Ok(SweepResult::new(
-            grid,
-            Shard::WHOLE,
-            poses,
-            atlas,
-            &table,
-            variance_parts,
-        ))
+        let mut merged = self.0.ok_or(ShardOrderError::Nothing)?;
+        merged.shard.check_last()?;
+        merged.shard = Shard::WHOLE;
+        Ok(merged.described())
     }
 }
 
@@ -572,7 +534,8 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_result() -> Result<(), Box<dyn std::error::Error>> {
+    fn neighbouring_poses_have_the_numbers_of_their_imprints()
+    -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let square = Source::Figure(Figure::default_of(
             FigureKind::Rectangle,

@@ -14,11 +14,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::atlas::{Atlas, Layout, OrientationSums, Table, VarianceParts};
+use crate::atlas::{Layout, OrientationSums, Table};
 use crate::index::{index, wide};
 use crate::pose::{AngleClasses, Axis, PoseGrid, PoseIndex};
 use crate::progress::{Progress, ToTheEnd, stop_if};
-use crate::sweep::plan::{Shard, SweepDetail, Task, tasks};
+use crate::sweep::plan::{Shard, Task, tasks};
 use crate::sweep::result::SweepResult;
 use crate::sweep::runs::{self, GroupResult};
 
@@ -93,46 +93,28 @@ impl<'a> Sweep<'a> {
     }
 
     fn run_to(self, rows: Option<&mut TakeRow<'_>>) -> SweepResult {
-        let (grid, shard) = (self.grid, self.shard);
-        let sensor = grid.sensor();
+        let with_runs = rows.is_some();
         let mut done = Accumulator {
-            grid,
-            atlas: Atlas::new(sensor.size()),
+            result: SweepResult::empty(self.grid.clone(), self.shard),
             table: Table::default(),
-            variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
-            poses: 0,
-            partly_off: 0,
             rows,
         };
-        let detail = match done.rows {
-            Some(_) => SweepDetail::Runs,
-            None => SweepDetail::Counts,
-        };
-        let layout = done.atlas.layout().clone();
-        self.each_portion(&layout, detail, |portion| done.add(portion));
-        let poses = (done.poses, done.partly_off);
-        let (table, variance_parts) = (&done.table, done.variance_parts);
-        let mut result = SweepResult::new(
-            grid.clone(),
-            shard,
-            poses,
-            done.atlas,
-            table,
-            variance_parts,
-        );
-        if detail == SweepDetail::Counts {
+        let layout = done.result.atlas.layout().clone();
+        self.each_portion(&layout, with_runs, |portion| done.add(portion));
+        let mut result = done.result.with_statistics(&done.table);
+        if !with_runs {
             result.atlas.sort_by_first_pose();
         }
         result
     }
 
     /// Sweeps portion after portion. `take` receives the results of each portion while the next one is being swept;
-    /// if runs are found, the portions come in the order of the grid. If `progress` stops a portion, its results are
+    /// `with_runs`, the portions come in the order of the grid. If `progress` stops a portion, its results are
     /// lost; `take` stops the sweep, too. Returns true if nothing did.
     pub(super) fn each_portion(
         self,
         layout: &Layout,
-        detail: SweepDetail,
+        with_runs: bool,
         mut take: impl FnMut(&Portion) -> ControlFlow<()> + Send,
     ) -> bool {
         let Self {
@@ -156,7 +138,7 @@ impl<'a> Sweep<'a> {
         };
         let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
         let blocks = rows.start / block_rows..rows.end.div_ceil(block_rows);
-        let mut tasks = blocks.flat_map(|block| tasks(grid, &rows, block, detail));
+        let mut tasks = blocks.flat_map(|block| tasks(grid, &rows, block, with_runs));
         let mut before = Portion::new();
         loop {
             let next = portion(&mut tasks, grid.row_length());
@@ -194,49 +176,39 @@ fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
     portion
 }
 
-/// The results of a sweep so far.
-struct Accumulator<'a, 'w, 'r> {
-    grid: &'a PoseGrid,
-    atlas: Atlas,
+/// The result of a sweep so far, without statistics.
+struct Accumulator<'w, 'r> {
+    result: SweepResult,
+    /// The features of the imprints.
     table: Table,
-    variance_parts: VarianceParts,
-    poses: u64,
-    partly_off: u64,
     rows: Option<&'w mut TakeRow<'r>>,
 }
 
-impl Accumulator<'_, '_, '_> {
+impl Accumulator<'_, '_> {
     fn add(&mut self, portion: &Portion) -> ControlFlow<()> {
-        let width = self.grid.row_length();
-        let ids: Vec<Vec<u32>> = portion
+        let result = &mut self.result;
+        let ids = portion
             .iter()
-            .map(|found| {
-                self.atlas
-                    .add(&found.counter, found.orientations.len() as u64)
-            })
-            .collect();
-        self.atlas.describe();
-        self.table.extend(self.atlas.summaries());
+            .map(|found| result.atlas.add(&found.counter, found.multiplicity()));
+        let ids: Vec<Vec<u32>> = ids.collect();
+        result.atlas.describe();
+        self.table.extend(result.atlas.summaries());
         let table = &self.table;
-        let sums: Vec<OrientationSums> = portion
-            .par_iter()
-            .zip(&ids)
-            .map(|(found, ids)| {
-                let counts = found.counter.tallies().iter().map(|tally| tally.count);
-                let counted = ids.iter().copied().zip(counts);
-                OrientationSums::of(table, found.orientations.len() as u64, counted)
-            })
-            .collect();
+        let sums = portion.par_iter().zip(&ids).map(|(found, ids)| {
+            let counts = found.counter.tallies().iter().map(|tally| tally.count);
+            let counted = ids.iter().copied().zip(counts);
+            OrientationSums::of(table, found.multiplicity(), counted)
+        });
+        let sums: Vec<OrientationSums> = sums.collect();
         let mut flow = ControlFlow::Continue(());
         for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
-            let multiplicity = found.orientations.len() as u64;
-            self.variance_parts.add(found.orientations[0], sums);
-            self.poses += (found.rows.end - found.rows.start) * width * multiplicity;
-            self.partly_off += found.partly_off * multiplicity;
+            result.variance_parts.add(found.orientations[0], sums);
+            result.poses += found.poses(&result.grid);
+            result.partly_off += found.partly_off * found.multiplicity();
             if let Some(rows) = &mut self.rows
                 && flow.is_continue()
             {
-                flow = show_rows(self.grid, found, ids, rows);
+                flow = show_rows(&result.grid, found, ids, rows);
             }
         }
         flow
@@ -288,22 +260,15 @@ impl TimingSample {
         let middle = PoseIndex::new([0, 0, angles / 2, zooms_x / 2, zooms_y / 2]);
         let part = grid.part(middle, PoseIndex::new([width, height, 1, 1, 1]));
         let part = part.unwrap_or_else(|| grid.clone());
-        let distinct = distinct_angles(grid) as f64 / angles as f64;
+        // The angles at which the shape looks different.
+        let classes = AngleClasses::of(grid.source(), grid.ranges()[Axis::Angle]);
+        let distinct: HashSet<i128> = (0..angles).map(|angle| classes.class(angle)).collect();
+        let distinct = distinct.len() as f64 / angles as f64;
         Self {
             factor: grid.poses() as f64 * distinct / part.poses() as f64,
             grid: part,
         }
     }
-}
-
-/// Returns the number of angles at which the shape looks different.
-fn distinct_angles(grid: &PoseGrid) -> u64 {
-    let angles = grid.ranges()[Axis::Angle];
-    let classes = AngleClasses::of(grid.source(), angles);
-    let distinct: HashSet<i128> = (0..angles.count())
-        .map(|index| classes.class(index))
-        .collect();
-    distinct.len() as u64
 }
 
 #[cfg(test)]

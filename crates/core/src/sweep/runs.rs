@@ -13,7 +13,7 @@ use crate::pose::{Boundary, PoseGrid};
 use crate::progress::Progress;
 use crate::sweep::ellipse::Elliptic;
 use crate::sweep::flips::{Events, Exact, FlipWriter, Spans, Steps, effort};
-use crate::sweep::plan::{PointSymmetry, SweepDetail, Task};
+use crate::sweep::plan::{PointSymmetry, Task};
 use crate::sweep::polygon::Polygonal;
 use crate::touch::DOUBTFUL;
 
@@ -27,6 +27,18 @@ pub(crate) struct GroupResult {
     /// The number of poses of one orientation that reach beyond the sensor.
     pub(crate) partly_off: u64,
     pub(crate) runs: Runs,
+}
+
+impl GroupResult {
+    /// The number of orientations.
+    pub(crate) fn multiplicity(&self) -> u64 {
+        self.orientations.len() as u64
+    }
+
+    /// The number of poses of all orientations.
+    pub(crate) fn poses(&self, grid: &PoseGrid) -> u64 {
+        (self.rows.end - self.rows.start) * grid.row_length() * self.multiplicity()
+    }
 }
 
 /// The number of poses of an orientation between two reports of progress, for a shape with few edges.
@@ -56,7 +68,17 @@ pub(crate) fn sweep_task(
             return None;
         }
     }
-    let found = sweeper.finish(task.detail);
+    let mut found: Vec<_> = sweeper
+        .groups
+        .into_iter()
+        .map(|group| group.found)
+        .collect();
+    if !task.with_runs {
+        // Kept for images only.
+        found
+            .iter_mut()
+            .for_each(|found| found.runs = Runs::default());
+    }
     let flow = progress.add(unreported * orientations);
     flow.is_continue().then_some(found)
 }
@@ -94,8 +116,8 @@ struct Sweeper<'a> {
     shape: Shape,
     /// The number of poses of an orientation between two reports of progress.
     report_every: u64,
-    /// The top and the bottom of the shape at the origin; None if it has no boundary.
-    height: Option<[f64; 2]>,
+    /// The top and the bottom of the shape at the origin.
+    height: [f64; 2],
     steps: Steps,
     spans: Spans,
     /// The spans of the mirror image.
@@ -124,9 +146,10 @@ impl<'a> Sweeper<'a> {
             grid,
             shape: Shape::new(&boundary),
             report_every: REPORT_EVERY / effort(boundary.edges.len()),
+            // Without a boundary there is no row between them.
             height: grid
                 .extent(orientation)
-                .map(|extent| [extent.top, extent.bottom]),
+                .map_or([0.0, -1.0], |extent| [extent.top, extent.bottom]),
             steps: Steps {
                 first,
                 // For a range of one value, any number will do.
@@ -161,9 +184,7 @@ impl<'a> Sweeper<'a> {
 
     /// Finds the events of a row. Returns `false` if the sweep was stopped before its end.
     fn sweep(&mut self, y: u64) -> bool {
-        let Some([top, bottom]) = self.height else {
-            return true;
-        };
+        let [top, bottom] = self.height;
         let orientation = self.groups[0].orientation();
         let offset = self.grid.offset::<f64>(orientation, 0, y).y;
         let threshold = self.grid.sensor().threshold();
@@ -186,18 +207,6 @@ impl<'a> Sweeper<'a> {
             }
         }
         true
-    }
-
-    fn finish(self, detail: SweepDetail) -> Vec<GroupResult> {
-        let groups = self.groups.into_iter();
-        let found = groups.map(|group| GroupResult {
-            runs: match detail {
-                SweepDetail::Counts => Runs::default(),
-                SweepDetail::Runs => group.found.runs,
-            },
-            ..group.found
-        });
-        found.collect()
     }
 }
 
@@ -243,7 +252,7 @@ impl<'a> Group<'a> {
             due: false,
             exact: Exact::new(grid, orientation, go_on),
             images: half_turn.map(|half_turn| ReflectedRows::new(layout, half_turn)),
-            keep_runs: task.detail == SweepDetail::Runs || half_turn.is_some(),
+            keep_runs: task.with_runs || half_turn.is_some(),
             found: GroupResult {
                 orientations: Arc::clone(orientations),
                 rows: task.rows.clone(),
@@ -268,7 +277,7 @@ impl<'a> Group<'a> {
         self.events.clear();
         self.found.runs.begin();
         let known = self.images.as_mut().and_then(|images| {
-            let (source, round) = images.source(y);
+            let (source, round) = images.half_turn.y.image(y);
             let row = usize::try_from(source.checked_sub(self.found.rows.start)?).ok()?;
             (source < y).then_some((images, (row, round)))
         });
@@ -285,14 +294,7 @@ impl<'a> Group<'a> {
         if !self.due {
             return;
         }
-        FlipWriter {
-            steps,
-            row,
-            y,
-            events: self.events.row(row),
-            exact: &mut self.exact,
-        }
-        .spans(spans);
+        FlipWriter::new((steps, row, y), &mut self.events, &mut self.exact).spans(spans);
     }
 
     fn end(&mut self, y: u64) {
@@ -367,11 +369,6 @@ impl<'a> ReflectedRows<'a> {
             key: vec![0; layout.words()],
             row: Vec::new(),
         }
-    }
-
-    /// Returns the row whose image this one is, and whether y0 wraps around on the way.
-    pub(crate) fn source(&self, y: u64) -> (u64, bool) {
-        self.half_turn.y.image(y)
     }
 
     /// Counts the image of a row; `first` is the number of its first pose.
