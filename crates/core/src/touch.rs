@@ -85,12 +85,6 @@ impl Plane {
     /// takes a noticeable part of the time of a touch.
     pub fn touched(&mut self, solid: &impl Solid) -> &Imprint {
         self.imprint.words_mut().fill(0);
-        self.activate(solid);
-        &self.imprint
-    }
-
-    /// Activates the taxels of the empty imprint that a shape covers enough.
-    fn activate(&mut self, solid: &impl Solid) {
         self.drawn = Drawn::default();
         let mut pen = TouchPen {
             overlap: &mut self.overlap,
@@ -98,15 +92,17 @@ impl Plane {
         };
         solid.draw(&mut pen);
         if pen.finite {
-            self.activate_by_areas(solid);
+            self.activate(solid);
         } else {
             // Clears everything, since the extent of such a shape is not known.
-            self.overlap.wipe();
+            self.overlap.grid.wipe();
         }
+        &self.imprint
     }
 
-    fn activate_by_areas(&mut self, solid: &impl Solid) {
-        let grid = self.overlap.grid_mut();
+    /// Activates the taxels of the empty imprint that the shape covers enough, which is drawn.
+    fn activate(&mut self, solid: &impl Solid) {
+        let grid = &mut self.overlap.grid;
         let drawn = grid.drawn();
         if drawn.is_empty() {
             grid.clear();
@@ -143,41 +139,31 @@ impl Plane {
         columns.clone().zip(areas.map(move |pair| pair[lane]))
     }
 
+    /// Computes the coverages that are nearer to the threshold than `doubt` again.
     #[cold]
     fn decide_doubtful(&mut self, solid: &impl Solid, doubt: f64) {
-        let threshold = self.sensor.threshold();
-        for row in self.drawn.rows.clone() {
+        let (threshold, columns) = (self.sensor.threshold(), self.sensor.columns());
+        let least = least(threshold);
+        for index in self.drawn.rows.clone() {
             let near = |&(_, area): &(usize, f64)| (area - threshold).abs() < doubt;
-            let near = self.computed(row).filter(near);
-            let doubtful = near.fold(0, |word, (column, _)| word | 1 << column);
-            if doubtful != 0 {
-                let active = self.imprint.words()[row];
-                self.imprint.words_mut()[row] = self.decide(solid, row, active, doubtful);
-            }
-        }
-    }
-
-    /// Returns the active taxels of a row, after computing those in doubt again.
-    #[cold]
-    fn decide(&self, solid: &impl Solid, row: usize, mut active: u64, doubtful: u64) -> u64 {
-        let Ok(row) = u8::try_from(row) else {
-            return active;
-        };
-        let least = least(self.sensor.threshold());
-        // If several cells of a row are in doubt, such as full cells at a threshold of 1, the shape is drawn once for
-        // all of them.
-        let areas = (doubtful.count_ones() > 1)
-            .then(|| row_areas::<Double>(solid, self.sensor.columns(), row));
-        for column in 0..self.sensor.columns() {
-            if doubtful >> column & 1 == 1 {
+            let near = self.computed(index).filter(near);
+            let doubtful = near.fold(0_u64, |word, (column, _)| word | 1 << column);
+            let (Ok(row), true) = (u8::try_from(index), doubtful != 0) else {
+                continue;
+            };
+            // If several cells of a row are in doubt, such as full cells at a threshold of 1, the shape is drawn once
+            // for all of them.
+            let areas =
+                (doubtful.count_ones() > 1).then(|| row_areas::<Double>(solid, columns, row));
+            let word = &mut self.imprint.words_mut()[index];
+            for column in (0..columns).filter(|column| doubtful >> column & 1 == 1) {
                 let area = match &areas {
                     Some(areas) => areas[usize::from(column)],
                     None => cell_area(solid, column, row),
                 };
-                active = active & !(1 << column) | u64::from(area >= least) << column;
+                *word = *word & !(1 << column) | u64::from(area >= least) << column;
             }
         }
-        active
     }
 
     /// Returns the share of each taxel's cell that the shape of the last touch covers, 0 to 1.
@@ -291,7 +277,7 @@ pub fn reaches_beyond(solid: &impl Solid, sensor: &Sensor) -> bool {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples_of_touch() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_ring_leaves_a_piece_and_a_hole() -> Result<(), Box<dyn std::error::Error>> {
         use crate::prelude::*;
         let mut plane = Plane::new(Sensor::default());
         let ring = Figure::ellipse(4.0, 4.0)

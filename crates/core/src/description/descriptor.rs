@@ -57,44 +57,6 @@ pub enum Dimension {
     Share,
 }
 
-/// The changes of a whole imprint on its matrix under which a descriptor changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ChangesUnder {
-    /// Whether a shift by whole taxels changes it.
-    pub shift: bool,
-    /// Whether a rotation by 90° changes it.
-    pub quarter_turn: bool,
-    /// Whether mirroring left to right changes it.
-    pub mirror: bool,
-}
-
-impl ChangesUnder {
-    /// For a descriptor that is the same for every position and orientation of the imprint.
-    const NOTHING: Self = Self {
-        shift: false,
-        quarter_turn: false,
-        mirror: false,
-    };
-    /// For a descriptor that depends on the orientation of the imprint, but is the same for its mirror image.
-    const QUARTER_TURNS: Self = Self {
-        shift: false,
-        quarter_turn: true,
-        mirror: false,
-    };
-    /// For a descriptor that depends on the orientation of the imprint, and differs for its mirror image.
-    const QUARTER_TURNS_AND_MIRRORING: Self = Self {
-        shift: false,
-        quarter_turn: true,
-        mirror: true,
-    };
-    /// For a descriptor that depends on the position of the imprint.
-    const SHIFTS: Self = Self {
-        shift: true,
-        quarter_turn: true,
-        mirror: true,
-    };
-}
-
 /// A row of [`DESCRIPTORS`].
 #[derive(Clone, Copy, Debug)]
 pub struct Descriptor {
@@ -114,9 +76,8 @@ pub struct Descriptor {
     /// Whether it is part of the JSON answers. Their form is fixed; the other descriptors can be computed from those in
     /// them.
     pub in_answer: bool,
-    /// The changes of the imprint that change its value. A descriptor that changes under shifts says where an imprint
-    /// lies, not which shape it has.
-    pub changes_under: ChangesUnder,
+    /// Whether a shift of the whole imprint changes its value: it says where an imprint lies, not which shape it has.
+    pub of_place: bool,
     /// The value if there is no region: 0 for counts and sums of taxels, and [`Value::None`] for the others.
     pub of_nothing: Value,
     /// Computes the value from the counts and sums.
@@ -143,7 +104,7 @@ impl Descriptor {
             dimension,
             parts: &[""],
             in_answer: true,
-            changes_under: ChangesUnder::NOTHING,
+            of_place: false,
             of_nothing: Value::None,
             measure,
             exact,
@@ -164,7 +125,7 @@ impl Descriptor {
     /// Marks a descriptor of the imprint's position.
     const fn of_place(self) -> Self {
         Self {
-            changes_under: ChangesUnder::SHIFTS,
+            of_place: true,
             ..self
         }
     }
@@ -172,13 +133,6 @@ impl Descriptor {
     const fn zero_of_nothing(self, zero: Value) -> Self {
         Self {
             of_nothing: zero,
-            ..self
-        }
-    }
-
-    const fn of_orientation(self, changes_under: ChangesUnder) -> Self {
-        Self {
-            changes_under,
             ..self
         }
     }
@@ -329,8 +283,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Pair(d.diagonals()),
         |d| direction(d.whole_sides().map(i64::from)),
     )
-    .with_parts(&["_1", "_2"])
-    .of_orientation(ChangesUnder::QUARTER_TURNS),
+    .with_parts(&["_1", "_2"]),
     Descriptor::new(
         "side_ratio",
         "Ratio",
@@ -370,8 +323,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         Dimension::Direction,
         |d| d.cg_cd_direction().map_or(Value::None, Value::Number),
         |d| direction(d.exact_cg_to_cd()),
-    )
-    .of_orientation(ChangesUnder::QUARTER_TURNS_AND_MIRRORING),
+    ),
 ];
 
 #[cfg(test)]
@@ -420,8 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn examples_of_descriptor() {
-        use crate::description::{DESCRIPTORS, Descriptor, RegionKind, Value};
+    fn a_descriptor_tells_its_parts_its_place_and_its_value_of_nothing() {
         assert_eq!(
             (Value::Count(3).number(), Value::None.number()),
             (Some(3.0), None)
@@ -437,8 +388,9 @@ mod tests {
         let na = Descriptor::from_key("na").expect("in the table");
         assert_eq!(na.name_of(RegionKind::Exterior), "active taxels");
         assert_eq!(na.name_of(RegionKind::Hole), "inactive taxels");
-        let direction = Descriptor::from_key("cg_cd_direction").expect("in the table");
-        assert!(direction.changes_under.mirror && !direction.changes_under.shift);
+        let of_place = DESCRIPTORS.iter().filter(|descriptor| descriptor.of_place);
+        let of_place: Vec<&str> = of_place.map(|descriptor| descriptor.key).collect();
+        assert_eq!(of_place, ["num_x", "num_y", "cg", "rect", "cd"]);
         assert!(Descriptor::from_key("colour").is_none());
     }
 }

@@ -10,7 +10,7 @@ mod measures;
 
 mod descriptor;
 
-pub use descriptor::{ChangesUnder, DESCRIPTORS, Descriptor, Dimension, Value};
+pub use descriptor::{DESCRIPTORS, Descriptor, Dimension, Value};
 pub use measures::{ChainSteps, Description, ExactValue};
 pub(crate) use region::is_main;
 pub use region::{Region, RegionKind, each_region, main_region, regions};

@@ -26,21 +26,6 @@ impl RegionKind {
             Self::Hole => "hole",
         }
     }
-
-    fn connectivity(self) -> Connectivity {
-        match self {
-            Self::Exterior => Connectivity::Eight,
-            Self::Hole => Connectivity::Four,
-        }
-    }
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Connectivity {
-    /// The four taxels that share a side.
-    Four,
-    /// The eight taxels that share a side or a corner.
-    Eight,
 }
 
 named!(
@@ -185,9 +170,8 @@ fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
 
 /// Calls `visit` with the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
 fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
-    let connectivity = kind.connectivity();
     let none = || Imprint::empty(matrix.size());
-    let [apart, gaps] = breaks(bounds.words(matrix), connectivity);
+    let [apart, gaps] = breaks(bounds.words(matrix), kind);
     if !apart {
         if gaps {
             show_filled(kind, matrix, bounds, &mut none(), visit);
@@ -204,7 +188,7 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
             let open = &mut rest.words_mut()[top..bottom];
             let seeds = &mut piece.words_mut()[top..bottom];
             seeds[0] = spread(open[0] & open[0].wrapping_neg(), open[0]);
-            let end = flood(seeds, open, 1, connectivity);
+            let end = flood(seeds, open, 1, kind);
             // A single pass computes everything that is needed of the piece. A processor predicts the number of rows
             // badly, so several passes would cost more.
             let (mut across, mut runs) = (0, true);
@@ -247,22 +231,23 @@ fn show_filled(
 /// Returns whether some rows may be apart, and whether a row has gaps. They hang together if the first row is one run,
 /// and every run of another row meets the row above: this holds for nearly every imprint of one figure, and for most
 /// holes. So all rows are examined in one pass without branches.
-fn breaks(rows: &[u64], connectivity: Connectivity) -> [bool; 2] {
+fn breaks(rows: &[u64], kind: RegionKind) -> [bool; 2] {
     let mut above = rows.first().map_or(0, |first| first & first.wrapping_neg());
     let (mut missed, mut gaps) = (0, 0);
     for &word in rows {
-        missed |= missed_runs(near(above, connectivity) & word, word);
+        missed |= missed_runs(near(above, kind) & word, word);
         gaps |= behind_gap(word);
         above = word;
     }
     [missed != 0, gaps != 0]
 }
 
-/// Returns the columns of the next row that are neighbours of a row's taxels.
-fn near(word: u64, connectivity: Connectivity) -> u64 {
-    match connectivity {
-        Connectivity::Four => word,
-        Connectivity::Eight => word | word << 1 | word >> 1,
+/// Returns the columns of the next row that are neighbours of a row's taxels: a piece is 8-connected, a hole
+/// 4-connected.
+fn near(word: u64, kind: RegionKind) -> u64 {
+    match kind {
+        RegionKind::Hole => word,
+        RegionKind::Exterior => word | word << 1 | word >> 1,
     }
 }
 
@@ -296,10 +281,10 @@ fn spread(mut seeds: u64, open: u64) -> u64 {
 
 /// Grows the seeds through the open taxels as far as they reach, row by row. The seeds are whole runs, and none are in
 /// row `end` or below. Returns the first row from which on there are none after growing.
-fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, connectivity: Connectivity) -> usize {
+fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, kind: RegionKind) -> usize {
     // Passes down through the rows, then up, and so on, until no taxel is left to reach.
     loop {
-        let mut wave = Wave::new(connectivity);
+        let mut wave = Wave::new(kind);
         for (row, (seeds, &open)) in seeds.iter_mut().zip(open).enumerate() {
             wave.enter(seeds, open);
             if row >= end {
@@ -312,7 +297,7 @@ fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, connectivity: Connecti
         if wave.left == 0 {
             return end;
         }
-        let mut wave = Wave::new(connectivity);
+        let mut wave = Wave::new(kind);
         for (seeds, &open) in seeds[..end].iter_mut().zip(&open[..end]).rev() {
             wave.enter(seeds, open);
         }
@@ -324,7 +309,7 @@ fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, connectivity: Connecti
 
 /// A flood that moves through the rows in one direction.
 struct Wave {
-    connectivity: Connectivity,
+    kind: RegionKind,
     /// The seeds of the previous row.
     seeds: u64,
     /// The open taxels of the previous row that are not seeds.
@@ -335,9 +320,9 @@ struct Wave {
 }
 
 impl Wave {
-    fn new(connectivity: Connectivity) -> Self {
+    fn new(kind: RegionKind) -> Self {
         Self {
-            connectivity,
+            kind,
             seeds: 0,
             dry: 0,
             left: 0,
@@ -345,7 +330,7 @@ impl Wave {
     }
 
     fn enter(&mut self, seeds: &mut u64, open: u64) {
-        let entered = (*seeds | near(self.seeds, self.connectivity)) & open;
+        let entered = (*seeds | near(self.seeds, self.kind)) & open;
         if entered != *seeds {
             *seeds = if missed_runs(entered, open) == 0 {
                 open
@@ -353,7 +338,7 @@ impl Wave {
                 spread(entered, open)
             };
         }
-        self.left |= near(*seeds, self.connectivity) & self.dry;
+        self.left |= near(*seeds, self.kind) & self.dry;
         (self.seeds, self.dry) = (*seeds, open & !*seeds);
     }
 }
@@ -384,7 +369,7 @@ fn fill(piece: &Imprint, bounds: Bounds, filled: &mut Imprint) -> bool {
         let met = inner[row] & (far(row.wrapping_sub(1)) | far(row + 1));
         outside[row] = spread(met, inner[row]);
     }
-    flood(outside, inner, words.len(), Connectivity::Four);
+    flood(outside, inner, words.len(), RegionKind::Hole);
     let mut enclosed = 0;
     for ((filled, outside), inner) in filled.iter_mut().zip(outside).zip(inner) {
         *filled &= !*outside;
@@ -404,7 +389,7 @@ fn span(word: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn examples_of_region() {
+    fn taxels_apart_are_regions_of_their_own() {
         use crate::prelude::*;
         let two: Imprint = "##.#".parse().expect("a row");
         let mut counts = Vec::new();

@@ -260,20 +260,27 @@ impl Solid for Polygon {
 
 /// The smallest upright rectangle around a shape; in cell sides, in the frame of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub struct Extent<T = f64> {
     /// The smallest x.
-    pub left: f64,
+    pub left: T,
     /// The smallest y.
-    pub top: f64,
+    pub top: T,
     /// The largest x.
-    pub right: f64,
+    pub right: T,
     /// The largest y.
-    pub bottom: f64,
+    pub bottom: T,
 }
 
 impl Extent {
     /// Returns the extent of a shape; None if the shape has no boundary.
     pub fn of(solid: &impl Solid) -> Option<Self> {
+        Self::drawn(solid)
+    }
+}
+
+impl<T: Real> Extent<T> {
+    /// Returns the extent of a shape in numbers of any precision.
+    pub(crate) fn drawn(solid: &impl Solid) -> Option<Self> {
         let mut pen = ExtentPen(None);
         solid.draw(&mut pen);
         pen.0
@@ -291,10 +298,10 @@ impl Extent {
 }
 
 /// A pen that draws nothing, but notes how far the boundary reaches.
-struct ExtentPen(Option<Extent>);
+struct ExtentPen<T>(Option<Extent<T>>);
 
-impl ExtentPen {
-    fn cover(&mut self, low: Point<f64>, high: Point<f64>) {
+impl<T: Real> ExtentPen<T> {
+    fn cover(&mut self, low: Point<T>, high: Point<T>) {
         let own = Extent {
             left: low.x,
             top: low.y,
@@ -305,12 +312,12 @@ impl ExtentPen {
     }
 }
 
-impl Pen<f64> for ExtentPen {
-    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
+impl<T: Real> Pen<T> for ExtentPen<T> {
+    fn edge(&mut self, from: Point<T>, to: Point<T>) {
         self.cover(from, from);
         self.cover(to, to);
     }
-    fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
+    fn ellipse(&mut self, ellipse: &Ellipse<T>, _material: Side) {
         let (centre, reach) = (ellipse.centre, ellipse.reach());
         let opposite = Point::new(-reach.x, -reach.y);
         self.cover(centre.moved(opposite), centre.moved(reach));

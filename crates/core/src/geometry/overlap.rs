@@ -18,7 +18,7 @@ use crate::index::from_first;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Overlap<T> {
-    grid: CellGrid<T>,
+    pub(crate) grid: CellGrid<T>,
     arcs: Arcs<T>,
 }
 
@@ -28,23 +28,6 @@ impl<T: Real> Overlap<T> {
             grid: CellGrid::new(columns, rows),
             arcs: Arcs::new(columns, rows),
         }
-    }
-
-    pub(crate) fn clear(&mut self) {
-        self.grid.clear();
-    }
-
-    /// Clears a grid on which coordinates that are not finite may have been drawn.
-    pub(crate) fn wipe(&mut self) {
-        self.grid.wipe();
-    }
-
-    pub(crate) fn grid(&self) -> &CellGrid<T> {
-        &self.grid
-    }
-
-    pub(crate) fn grid_mut(&mut self) -> &mut CellGrid<T> {
-        &mut self.grid
     }
 
     /// Draws an edge with the material on the right for a `sign` of +1, on the left for −1. `whole` says that the edge
@@ -274,7 +257,7 @@ pub(crate) fn row_areas<T: Real>(solid: &impl Solid, columns: u8, row: u8) -> Ve
         by: start,
         pen: &mut overlap,
     });
-    let grid = overlap.grid();
+    let grid = overlap.grid;
     let mut areas = vec![T::ZERO; columns.into()];
     let Drawn { rows, columns } = grid.drawn();
     if rows.contains(&0) && !columns.is_empty() {
@@ -293,7 +276,7 @@ pub fn cell_area<T: Real>(solid: &impl Solid, column: u8, row: u8) -> T {
         by: corner,
         pen: &mut overlap,
     });
-    overlap.grid().first()
+    overlap.grid.first()
 }
 
 // A grid of cells that sums up the boundary drawn on it, and computes areas from the sums.

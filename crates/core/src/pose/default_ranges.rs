@@ -199,15 +199,15 @@ impl Reach {
         anchor: Anchor,
         given: &GivenRanges,
     ) -> Result<Self, GridError> {
-        // The position does not matter, but a given one must be in range.
-        let still = given[Axis::X0].or(Some(DecimalRange::whole(0)));
-        let given = given.with(Axis::X0, still);
-        let still = given[Axis::Y0].or(Some(DecimalRange::whole(0)));
-        let ranges = filled(&given.with(Axis::Y0, still));
+        let ranges = Ranges::from_fn(|axis| match axis {
+            // The position does not matter, but a given one must be in range.
+            Axis::X0 | Axis::Y0 => given[axis].unwrap_or(DecimalRange::whole(0)),
+            _ => filled(given)[axis],
+        });
         let grid = PoseGrid::new(source.clone(), Sensor::LARGEST, anchor, ranges)?;
         let mut reaches: Vec<(Extent, [f64; 2])> = Vec::new();
         for orientation in 0..grid.orientations() {
-            let Some(extent) = grid.extent(orientation) else {
+            let Some(extent) = Extent::of(&grid.at_origin(orientation)) else {
                 continue;
             };
             let zooms = grid.zooms_of_anchor(orientation);

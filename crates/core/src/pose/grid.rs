@@ -179,43 +179,23 @@ impl PoseGrid {
     /// Returns the shape in a pose, which may lie between those of the grid. A centre may lie anywhere, and an angle may be
     /// of any size; any other value beyond the range of its parameter is ignored.
     pub fn placed_in(&self, pose: Pose) -> Placed {
-        match self.anchor {
-            Anchor::Corner => Placed {
-                source: self.source_in(pose),
-                centre: None,
-            },
-            Anchor::Centre => Placed {
-                source: self.source_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)),
-                centre: Some([pose[Axis::X0], pose[Axis::Y0]]),
-            },
-        }
-    }
-
-    /// Returns the shape with the values of a pose, except those beyond the range of their parameter. An angle is
-    /// reduced to less than a turn.
-    fn source_in(&self, pose: Pose) -> Source {
+        let is_centred = self.anchor == Anchor::Centre;
+        let mut corner = if is_centred { at_origin(pose) } else { pose };
+        corner[Axis::Angle] = within_a_turn(pose[Axis::Angle]);
         let mut source = self.source.clone();
-        let pose = pose.with(Axis::Angle, within_a_turn(pose[Axis::Angle]));
         for axis in self.axes() {
-            if let Ok(value) = self.sensor.check(axis.parameter(), pose[axis]) {
+            if let Ok(value) = self.sensor.check(axis.parameter(), corner[axis]) {
                 source.put(axis.parameter(), value);
             }
         }
-        source
+        let centre = is_centred.then(|| [pose[Axis::X0], pose[Axis::Y0]]);
+        Placed { source, centre }
     }
 
     /// Returns the point about which the shape turns, in pose `number` and for any anchor: x and y in cells. Numbers
     /// beyond the last pose start again at the first.
     pub fn centre(&self, number: u64) -> [f64; 2] {
-        self.centre_in(self.pose(number))
-    }
-
-    fn centre_in(&self, pose: Pose) -> [f64; 2] {
-        if self.anchor == Anchor::Centre {
-            return [pose[Axis::X0], pose[Axis::Y0]];
-        }
-        let centre = centre::<f64>(&self.source_in(pose));
-        [centre.x, centre.y]
+        self.placed(number).centre()
     }
 
     /// Returns the shape in a pose, placed by its corner as in forms and files. The pose may lie between those of the
@@ -229,7 +209,7 @@ impl PoseGrid {
     pub fn source_at(&self, pose: Pose) -> Result<Source, ParameterError> {
         let mut corner = pose;
         if self.anchor == Anchor::Centre {
-            let at_origin = self.source_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0));
+            let at_origin = self.placed_in(pose).source;
             let centre = centre::<f64>(&at_origin);
             for (axis, zoom, from) in [
                 (Axis::X0, Parameter::ZoomX, centre.x),
@@ -256,30 +236,13 @@ impl PoseGrid {
         (own.size(), own.threshold()) == (sensor.size(), sensor.threshold()) && posed == self.source
     }
 
-    pub(super) fn first_pose(&self, orientation: u64) -> Pose {
+    fn first_pose(&self, orientation: u64) -> Pose {
         self.pose(orientation * self.rows_per_orientation() * self.row_length())
     }
 
     /// Returns the shape in an orientation, with its anchor at the origin.
-    fn at_origin(&self, orientation: u64) -> Placed {
-        let pose = self.first_pose(orientation);
-        self.placed_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
-    }
-
-    /// Returns the boundary of the shape in an orientation, with its anchor at the origin.
-    pub(crate) fn boundary<T: Real>(&self, orientation: u64) -> Boundary<T> {
-        Boundary::of(&self.at_origin(orientation))
-    }
-
-    /// Returns the smallest upright rectangle around the shape in an orientation, with its anchor at the origin.
-    pub(crate) fn extent(&self, orientation: u64) -> Option<Extent> {
-        Extent::of(&self.at_origin(orientation))
-    }
-
-    /// Returns the point about which the shape turns, in an orientation, with the anchor at the origin.
-    pub(crate) fn centre_from_anchor(&self, orientation: u64) -> [f64; 2] {
-        let pose = self.first_pose(orientation);
-        self.centre_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
+    pub(crate) fn at_origin(&self, orientation: u64) -> Placed {
+        self.placed_in(at_origin(self.first_pose(orientation)))
     }
 
     /// Returns the factors by which the position of the anchor is multiplied: the corner of a picture is zoomed with it.
@@ -302,6 +265,10 @@ impl PoseGrid {
             [zoom_x, zoom_y] => Point::new(x * T::decimal(zoom_x), y * T::decimal(zoom_y)),
         }
     }
+}
+
+fn at_origin(pose: Pose) -> Pose {
+    pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)
 }
 
 /// Returns the same angle, from 0° to below 360°. The difference is rounded, since that of two numbers that are nearest to
@@ -347,6 +314,16 @@ pub struct Placed {
     centre: Option<[f64; 2]>,
 }
 
+impl Placed {
+    /// Returns the point about which the shape turns.
+    pub(crate) fn centre(&self) -> [f64; 2] {
+        self.centre.unwrap_or_else(|| {
+            let centre = centre::<f64>(&self.source);
+            [centre.x, centre.y]
+        })
+    }
+}
+
 impl Solid for Placed {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
         let Some([x, y]) = self.centre else {
@@ -360,15 +337,24 @@ impl Solid for Placed {
 
 /// Returns the centre of rotation of a shape, in cells: the middle of a figure, or that of the bounding rectangle of
 /// another shape.
-pub(crate) fn centre<T: Real>(source: &Source) -> Point<T> {
+pub(super) fn centre<T: Real>(source: &Source) -> Point<T> {
     let mut upright = source.clone();
     upright.put(Parameter::Angle, 0.0);
-    let boundary = Boundary::of(&upright);
-    if source.kind().is_some() {
-        boundary.mean()
-    } else {
-        boundary.middle()
+    let zero = Point::new(T::ZERO, T::ZERO);
+    if source.kind().is_none() {
+        return Extent::drawn(&upright).map_or(zero, |extent: Extent<T>| {
+            let (x, y) = (extent.left + extent.right, extent.top + extent.bottom);
+            Point::new(x * T::HALF, y * T::HALF)
+        });
     }
+    let Boundary { edges, ellipses } = Boundary::of(&upright);
+    if let Some((ellipse, _)) = ellipses.first() {
+        return ellipse.centre;
+    }
+    // The mean of the corners. A concentric hole does not change it.
+    let sum = edges.iter().fold(zero, |sum, &(from, _)| sum.moved(from));
+    let count = T::whole(i32::try_from(edges.len()).unwrap_or(i32::MAX));
+    Point::new(sum.x / count, sum.y / count)
 }
 
 // The stored boundary of a shape: drawn once, and used for all positions that differ by a shift.
@@ -403,34 +389,6 @@ impl<T: Real> Boundary<T> {
             pen.ellipse(ellipse, *material);
         }
     }
-
-    /// Returns the centre of a figure: that of its ellipse, or the mean of its corners. A concentric hole does not
-    /// change it.
-    pub(crate) fn mean(&self) -> Point<T> {
-        if let Some((ellipse, _)) = self.ellipses.first() {
-            return ellipse.centre;
-        }
-        let (mut sum, mut count) = (Point::new(T::ZERO, T::ZERO), 0);
-        for &(from, _) in &self.edges {
-            sum = sum.moved(from);
-            count += 1;
-        }
-        let count = T::whole(count.max(1));
-        Point::new(sum.x / count, sum.y / count)
-    }
-
-    /// Returns the middle of the bounding rectangle of the edges; the origin if there are none.
-    pub(crate) fn middle(&self) -> Point<T> {
-        let Some(&(first, _)) = self.edges.first() else {
-            return Point::new(T::ZERO, T::ZERO);
-        };
-        let (mut low, mut high) = (first, first);
-        for &(from, _) in &self.edges {
-            low = Point::new(low.x.min(from.x), low.y.min(from.y));
-            high = Point::new(high.x.max(from.x), high.y.max(from.y));
-        }
-        Point::new((low.x + high.x) * T::HALF, (low.y + high.y) * T::HALF)
-    }
 }
 
 impl<T: Real> Pen<T> for Boundary<T> {
@@ -457,7 +415,7 @@ impl PoseGrid {
     ///
     /// Takes time in proportion to the number of orientations.
     pub fn reach(&self) -> Option<Extent> {
-        let extents = (0..self.orientations()).filter_map(|orientation| self.extent(orientation));
+        let extents = (0..self.orientations()).filter_map(|own| Extent::of(&self.at_origin(own)));
         extents.reduce(Extent::union)
     }
 
@@ -477,7 +435,7 @@ impl PoseGrid {
     /// y0 at which it keeps within the upper and the lower one, or reaches beyond by no more than `margin`.
     pub(crate) fn positions_inside(&self, orientation: u64, margin: f64) -> [Range<u64>; 2] {
         let counts = [self.row_length(), self.rows_per_orientation()];
-        let Some(extent) = self.extent(orientation) else {
+        let Some(extent) = Extent::of(&self.at_origin(orientation)) else {
             return counts.map(|count| 0..count);
         };
         // Positions grow with their index.

@@ -490,15 +490,15 @@ impl<'a> Exact<'a> {
         );
         let boundary = self
             .boundary
-            .get_or_insert_with(|| self.grid.boundary(self.orientation));
+            .get_or_insert_with(|| Boundary::of(&self.grid.at_origin(self.orientation)));
         self.unasked += effort(boundary.edges.len());
         if self.unasked >= ASK_EVERY {
             self.unasked = 0;
             self.stopped |= !(self.go_on)();
         }
-        self.cell.clear();
+        self.cell.grid.clear();
         boundary.draw(by, &mut self.cell);
-        self.cell.grid().first() >= self.least
+        self.cell.grid.first() >= self.least
     }
 
     /// Returns the position of the anchor at a value of x0, or of y0 if `down`. Looking it up is faster than reading

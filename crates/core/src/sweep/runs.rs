@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::atlas::{ImprintCounter, Layout};
-use crate::geometry::Real;
+use crate::geometry::{Extent, Real};
 use crate::index::{from_first, narrow, wide};
 use crate::pose::{Boundary, PoseGrid};
 use crate::progress::Progress;
@@ -135,7 +135,8 @@ impl<'a> Sweeper<'a> {
         go_on: &'a dyn Fn() -> bool,
     ) -> Self {
         let orientation = task.groups[0][0];
-        let boundary = grid.boundary::<f64>(orientation);
+        let at_origin = grid.at_origin(orientation);
+        let boundary = Boundary::of(&at_origin);
         let count = grid.row_length();
         let place = |x: u64| grid.offset::<f64>(orientation, x, 0).x;
         let (first, last) = (place(0), place(count - 1));
@@ -147,8 +148,7 @@ impl<'a> Sweeper<'a> {
             shape: Shape::new(&boundary),
             report_every: REPORT_EVERY / effort(boundary.edges.len()),
             // Without a boundary there is no row between them.
-            height: grid
-                .extent(orientation)
+            height: Extent::of(&at_origin)
                 .map_or([0.0, -1.0], |extent| [extent.top, extent.bottom]),
             steps: Steps {
                 first,
@@ -162,7 +162,7 @@ impl<'a> Sweeper<'a> {
             },
             spans: Spans::default(),
             mirrored: Spans::default(),
-            mirror_sum: 2.0 * grid.centre_from_anchor(orientation)[0],
+            mirror_sum: 2.0 * at_origin.centre()[0],
             groups: groups.collect(),
         }
     }
