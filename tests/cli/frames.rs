@@ -1111,3 +1111,58 @@ fn a_table_has_force_contact_and_descriptors_of_each_frame() {
     let all = format!("0,7,0,,4,1,4,4,1,1{}\n", ",".repeat(23));
     assert_eq!(run.stdout, [header, &all].concat());
 }
+
+/// Tables as people have them, rebuilt after public reports, with the frames that must come out.
+#[test]
+fn public_tables_are_read_as_expected_or_refused() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/reference/tables");
+    let Ok(cases) = std::fs::read_to_string(format!("{folder}/tables.json")) else {
+        super::skip::skipped(&format!("there are no tables at {folder}"));
+        return;
+    };
+    let cases: Vec<Value> = serde_json::from_str(&cases).expect("JSON");
+    assert!(cases.len() > 20, "the file is cut short");
+    for case in &cases {
+        let file = case["file"].as_str().expect("a name");
+        let words = |key: &str| -> Vec<&str> {
+            let words = case[key].as_array().into_iter().flatten();
+            words.map(|word| word.as_str().expect("a text")).collect()
+        };
+        let flags = words("args").join(" ");
+        let run = taxel(
+            &format!("frames {folder}/{file} --all --at-least 5 --json {flags}"),
+            "",
+        );
+        let refused = [words("refused"), words("or_refused")].concat();
+        if !refused.is_empty() && run.status == Some(1) {
+            let says = |word: &&str| run.stderr.contains(word);
+            assert!(refused.iter().all(says), "{file}: {}", run.stderr);
+            continue;
+        }
+        assert_eq!(run.status, Some(0), "{file} {flags}: {}", run.stderr);
+        let found = answers(&run);
+        let Some(expected) = case["frames"].as_array() else {
+            assert!(words("refused").is_empty() && !found.is_empty(), "{file}");
+            continue;
+        };
+        assert_eq!(found.len(), expected.len(), "{file} {flags}");
+        for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
+            for (key, value) in expected.as_object().expect("an object") {
+                // 0,5 + 0,7 + 0,5 + 0,5 + 9,7 + 0,5 are 12.4, not the 12.6 in the file.
+                if key == "sum" && file != "tab-decimal-comma.txt" {
+                    let [own, value] = [&found[key], value].map(|sum| sum.as_f64().expect("a sum"));
+                    assert!((own - value).abs() < 1e-9, "{file} {flags}: {own}");
+                } else if key != "sum" {
+                    assert_eq!(&found[key], value, "{file} {flags}, frame {index}");
+                }
+            }
+            if let Some(times) = case["time"].as_array() {
+                let close = |time: f64| (found["time"].as_f64().unwrap_or(f64::NAN) - time).abs();
+                assert!(
+                    close(times[index].as_f64().expect("a time")) < 1e-9,
+                    "{file}"
+                );
+            }
+        }
+    }
+}

@@ -103,8 +103,7 @@ pub fn acquire(
             None
         });
         session.play(metadata);
-        // Tables are followed once they are read as they come.
-        if options.playback != Playback::Live || format.stream.is_none() || format.name == "csv" {
+        if options.playback != Playback::Live || format.stream.is_none() {
             return play(&mut session, file, format);
         }
     }
@@ -113,12 +112,9 @@ pub fn acquire(
         is_joined: source.comes_back(),
         ..options.of_recording()
     };
-    match &recording {
-        Some((_, _, format)) => reading.format = Some(format),
-        None => {
-            reading.stream_size = options.stream_size;
-            reading.format = options.format.or(options.stream_format);
-        }
+    if recording.is_none() {
+        reading.stream_size = options.stream_size;
+        reading.format = options.format.or(options.stream_format);
     }
     let opened = recording.map(|(path, file, _)| OpenSource::file(path, file));
     stream(source, opened, &reading, &RefCell::new(session))

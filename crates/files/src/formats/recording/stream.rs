@@ -52,6 +52,8 @@ impl StreamCounts {
 pub struct StreamReader {
     options: ReadOptions,
     format: Option<&'static Format>,
+    /// The format of the content before.
+    before: Option<&'static Format>,
     state: ReadState,
     is_joined: bool,
 }
@@ -72,6 +74,7 @@ impl StreamReader {
         };
         Self {
             format: options.format,
+            before: None,
             is_joined: options.is_joined,
             state: ReadState::default(),
             options,
@@ -84,8 +87,9 @@ impl StreamReader {
     }
 
     /// Prepares for the first byte of other content, perhaps in another format: a file was replaced. The channels and
-    /// the clock go on.
+    /// the clock go on, and so may what was written there before.
     pub fn begin_anew(&mut self) {
+        self.before = self.format.or(self.before);
         self.format = self.options.format;
         self.is_joined = false;
     }
@@ -109,7 +113,7 @@ impl StreamReader {
         let mut head = Vec::new();
         let format = match self.format {
             Some(format) => format,
-            None => match look(input, &options, &mut head)? {
+            None => match look(input, &options, self.before, &mut head)? {
                 Some(format) => *self.format.insert(format),
                 None => return Ok(()),
             },
@@ -137,9 +141,18 @@ fn not_a_stream(format: &Format) -> ReadError {
 fn look(
     input: &mut dyn BufRead,
     options: &ReadOptions,
+    before: Option<&'static Format>,
     head: &mut Vec<u8>,
 ) -> Result<Option<&'static Format>, ReadError> {
     let (mut seen, mut lines) = (0, 0);
+    let joined = ReadOptions {
+        is_joined: true,
+        ..options.clone()
+    };
+    let format_of = |head: &[u8], is_all| {
+        let goes_on = before.filter(|before| before.is_begun_in(head, &joined, is_all));
+        goes_on.or_else(|| format_of_head(head, options, is_all))
+    };
     loop {
         let found = match input.fill_buf() {
             Ok(found) => found,
@@ -163,12 +176,12 @@ fn look(
             }
             seen += step;
             lines += usize::from(line.is_some());
-            if let Some(format) = format_of_head(&head[..seen], options, false) {
+            if let Some(format) = format_of(&head[..seen], false) {
                 return Ok(Some(format));
             }
         }
         if is_all {
-            return match format_of_head(head, options, true) {
+            return match format_of(head, true) {
                 Some(format) => Ok(Some(format)),
                 None if head.is_empty() || options.is_joined && count == 0 => Ok(None),
                 None => Err(refused(head)),

@@ -31,6 +31,9 @@ const MOST_FIELDS: usize = MAX_FRAME_CELLS + 16;
 /// The most rows that are waited for until it is clear how a live stream is arranged: more than a sensor has.
 const MOST_LIVE_ROWS: usize = 65;
 
+/// The most lines above those that continue a table after an interruption.
+const MOST_ABOVE: usize = 8;
+
 /// The most bytes of the lines that are waited for.
 const MOST_HELD: usize = 16 << 20;
 
@@ -260,31 +263,34 @@ impl Table<'_, '_> {
         self.sink.advance(&mut self.lines, self.options)
     }
 
-    /// The layout of the lines before an interruption, if the next line continues them.
+    /// The layout before an interruption, if one of the next lines continues it: the first ones may be torn, or messages.
+    /// A header right above says otherwise.
     fn earlier(&mut self) -> Result<Option<TableLayout>, Stop> {
         let Some(layout) = self.sink.state.layout.clone() else {
             return Ok(None);
         };
-        let Some((number, line)) = self.next_content()? else {
-            return Ok(Some(layout));
-        };
-        let (_, fields) = bare(&line);
-        let separator = layout.separator;
-        let fields: Vec<&[u8]> = separator.fields_of(fields, layout.expected).collect();
-        let goes_on = fields.len() == layout.slots.len() && !self.is_header(&fields, separator);
-        self.lines.unread(number, line);
-        Ok(Some(layout).filter(|_| goes_on))
-    }
-
-    /// The next line that is neither empty nor a comment.
-    fn next_content(&mut self) -> Result<Option<(u64, Vec<u8>)>, Stop> {
-        while self.advance()? {
-            let (_, line) = bare(self.lines.line());
-            if !is_blank(line) && !is_comment(line) {
-                return Ok(Some((self.lines.number(), self.lines.line().to_vec())));
+        let mut held: Vec<(u64, Vec<u8>)> = Vec::new();
+        let (mut header, mut goes_on) = (None, false);
+        while held.len() < MOST_ABOVE && !goes_on && self.advance()? {
+            let number = self.lines.number();
+            let line = self.lines.line();
+            let fields = layout.separator.fields_of(bare(line).1, layout.expected);
+            let fields: Vec<&[u8]> = fields.collect();
+            let is_header = self.is_header(&fields, layout.separator);
+            goes_on = !is_header && fields.len() == layout.slots.len();
+            if goes_on && header == Some((number - 1, fields.len())) {
+                goes_on = false;
+                held.push((number, line.to_vec()));
+                break;
             }
+            header = is_header.then_some((number, fields.len()));
+            held.push((number, line.to_vec()));
         }
-        Ok(None)
+        let is_empty = held.is_empty();
+        for (number, line) in held.into_iter().rev() {
+            self.lines.unread(number, line);
+        }
+        Ok(Some(layout).filter(|_| goes_on || is_empty))
     }
 
     /// Finds out how the table is arranged. In a live stream, lines that do not fit are dropped until some do; None if
