@@ -105,14 +105,14 @@ fn bad_lines_are_answered_in_their_places() {
         error("6: column 12: invalid unicode code point"),
         error("7: not a JSON object"),
         error(
-            "9: column 20: figure \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",
+            "9: column 21: figure \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",
         ),
         POINT_ANSWER.to_owned(),
-        error("11: column 20: row 2: found 1 taxel, expected 2 as in the first row"),
+        error("11: column 22: row 2: found 1 taxel, expected 2 as in the first row"),
         error("12: column 26: duplicate key `imprint`"),
         error("13: column 66: expected value"),
         error("14: column 25: invalid value: integer `-1`, expected a nonzero u32"),
-        error("15: column 19: invalid type: string \\\"washer\\\", expected rows of '#' and '.'"),
+        error("15: column 19: invalid type: string \\\"washer\\\", expected a sequence"),
         error("16: column 26: unknown key \\\"sied\\\"; did you mean \\\"side\\\"?"),
         error(
             "17: column 18: figure \\\"circle\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon; a circle is an ellipse with equal radii",

@@ -176,7 +176,7 @@ fn a_bad_shape_is_reported_with_line_and_column() {
     bad(
         "#..",
         "#.x",
-        "line 6, column 26: row 2, column 3: found 'x', expected '#' or '.'",
+        "line 6, column 27: row 2, column 3: found 'x', expected '#' or '.'",
     );
     bad(
         "\"side\": 2",

@@ -169,7 +169,7 @@ impl Imprint {
 
 /// A rectangle of whole taxels, given by its edges: columns `left..right`, rows `top..bottom`.
 // Aligned, because the four bytes at an odd address (as in an enum) would be copied in parts, which takes longer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
 #[repr(align(4))]
 pub struct Bounds {
     /// First column.
@@ -259,67 +259,39 @@ impl Imprint {
     /// Returns an error if a row differs in length from the first, contains another character, or a side is not from 1
     /// to 64.
     pub fn from_rows<'a>(rows: impl IntoIterator<Item = &'a str>) -> Result<Self, ImprintError> {
-        let mut read = ImprintRows::default();
-        for row in rows {
-            read.push(row)?;
+        let (mut read, mut count) = (None, 0_u8);
+        for text in rows {
+            let wrong = |column, message| ImprintError {
+                row: Some(u64::from(count) + 1),
+                column,
+                message,
+            };
+            if count == MAX_SIDE {
+                return Err(ImprintError::rows());
+            }
+            let foreign = |character: char| !matches!(character, '#' | '.');
+            if let Some((column, found)) = text.chars().enumerate().find(|(_, own)| foreign(*own)) {
+                let found = quoted_character(found);
+                let message = format!("found {found}, expected '#' or '.'");
+                return Err(wrong(Some(column as u64 + 1), message));
+            }
+            let found = || counted(text.len() as u64, "taxel");
+            let size = MatrixSize::of_sides(text.len(), MAX_SIDE)
+                .ok_or_else(|| wrong(None, format!("found {}, expected 1 to 64", found())))?;
+            let imprint = read.get_or_insert_with(|| Self::empty(size));
+            if imprint.size != size {
+                let expected = imprint.columns();
+                let message = format!("found {}, expected {expected} as in the first row", found());
+                return Err(wrong(None, message));
+            }
+            let active = text.bytes().map(|byte| u64::from(byte == b'#'));
+            imprint.words[usize::from(count)] =
+                active.rev().fold(0, |word, active| word << 1 | active);
+            count += 1;
         }
-        read.imprint()
-    }
-}
-
-/// Reads an imprint row by row.
-#[derive(Debug, Default)]
-pub struct ImprintRows {
-    imprint: Option<Imprint>,
-    count: u8,
-}
-
-impl ImprintRows {
-    /// Adds the next row.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Imprint::from_rows`].
-    pub fn push(&mut self, text: &str) -> Result<(), ImprintError> {
-        let row = u64::from(self.count) + 1;
-        let wrong = |column, message| ImprintError {
-            row: Some(row),
-            column,
-            message,
-        };
-        if self.count == MAX_SIDE {
-            return Err(ImprintError::rows());
-        }
-        let foreign = |character: char| !matches!(character, '#' | '.');
-        if let Some((column, found)) = text.chars().enumerate().find(|(_, own)| foreign(*own)) {
-            let found = quoted_character(found);
-            let message = format!("found {found}, expected '#' or '.'");
-            return Err(wrong(Some(column as u64 + 1), message));
-        }
-        let found = || counted(text.len() as u64, "taxel");
-        let size = MatrixSize::of_sides(text.len(), MAX_SIDE)
-            .ok_or_else(|| wrong(None, format!("found {}, expected 1 to 64", found())))?;
-        let active = text.bytes().map(|byte| u64::from(byte == b'#'));
-        let word = active.rev().fold(0, |word, active| word << 1 | active);
-        let imprint = self.imprint.get_or_insert_with(|| Imprint::empty(size));
-        if imprint.size != size {
-            let expected = imprint.columns();
-            let message = format!("found {}, expected {expected} as in the first row", found());
-            return Err(wrong(None, message));
-        }
-        imprint.words[usize::from(self.count)] = word;
-        self.count += 1;
-        Ok(())
-    }
-
-    /// The imprint of all rows.
-    ///
-    /// # Errors
-    /// Returns an error if there are none.
-    pub fn imprint(self) -> Result<Imprint, ImprintError> {
-        let Self { imprint, count } = self;
-        let imprint = imprint.ok_or_else(ImprintError::rows)?;
+        let imprint = read.ok_or_else(ImprintError::rows)?;
         let size = MatrixSize::new(imprint.columns(), count).map_err(|_| ImprintError::rows())?;
-        Ok(Imprint { size, ..imprint })
+        Ok(Self { size, ..imprint })
     }
 }
 

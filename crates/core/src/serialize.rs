@@ -2,15 +2,16 @@
 //! and descriptors. Imprints and the kinds of figures are read, too. Sources, sensors and rules cannot be read by
 //! themselves: which values are in range depends on the sensor, so files and lines are read as a whole.
 
-use std::fmt;
+use std::borrow::Cow;
 
-use serde::de::{self, Deserialize, DeserializeSeed, Deserializer, SeqAccess, Visitor};
-use serde::ser::{Error, Serialize, SerializeMap, Serializer};
+use serde::de::{self, Deserializer};
+use serde::ser::{Error, SerializeMap, Serializer};
+use serde::{Deserialize, Serialize};
 
 use crate::description::Value;
 use crate::figure::FigureKind;
 use crate::frame::{Label, Rule, SetRule};
-use crate::imprint::{Imprint, ImprintRows};
+use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -22,14 +23,7 @@ impl Serialize for Value {
             Self::Number(number) => serializer.serialize_f64(number),
             Self::Point(point) => [point.x, point.y].serialize(serializer),
             Self::Pair(pair) => pair.serialize(serializer),
-            Self::Rect(rect) => {
-                let mut map = serializer.serialize_map(Some(4))?;
-                map.serialize_entry("left", &rect.left)?;
-                map.serialize_entry("top", &rect.top)?;
-                map.serialize_entry("right", &rect.right)?;
-                map.serialize_entry("bottom", &rect.bottom)?;
-                map.end()
-            }
+            Self::Rect(rect) => rect.serialize(serializer),
         }
     }
 }
@@ -143,71 +137,22 @@ impl Serialize for ImprintRow {
     }
 }
 
-/// An imprint is read from a list of its rows; an error is reported at its row.
+/// A text, which is borrowed unless it has escapes.
+#[derive(Deserialize)]
+struct Text<'a>(#[serde(borrow)] Cow<'a, str>);
+
+/// An imprint is read from a list of its rows.
 impl<'de> Deserialize<'de> for Imprint {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_seq(RowsVisitor)
-    }
-}
-
-struct RowsVisitor;
-
-/// The form of an imprint, for messages.
-const ROWS: &str = "rows of '#' and '.'";
-
-impl<'de> Visitor<'de> for RowsVisitor {
-    type Value = Imprint;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(ROWS)
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Imprint, A::Error> {
-        let mut rows = ImprintRows::default();
-        while list.next_element_seed(NextRow(&mut rows))?.is_some() {}
-        rows.imprint().map_err(de::Error::custom)
-    }
-}
-
-struct NextRow<'a>(&'a mut ImprintRows);
-
-impl<'de> DeserializeSeed<'de> for NextRow<'_> {
-    type Value = ();
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        deserializer.deserialize_str(self)
-    }
-}
-
-impl Visitor<'_> for NextRow<'_> {
-    type Value = ();
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(ROWS)
-    }
-
-    fn visit_str<E: de::Error>(self, row: &str) -> Result<(), E> {
-        self.0.push(row).map_err(E::custom)
+        let rows = Vec::<Text<'_>>::deserialize(deserializer)?;
+        Self::from_rows(rows.iter().map(|Text(row)| &**row)).map_err(de::Error::custom)
     }
 }
 
 /// A kind of figure is read from its name.
 impl<'de> Deserialize<'de> for FigureKind {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_str(NameVisitor)
-    }
-}
-
-struct NameVisitor;
-
-impl Visitor<'_> for NameVisitor {
-    type Value = FigureKind;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the name of a figure")
-    }
-
-    fn visit_str<E: de::Error>(self, name: &str) -> Result<FigureKind, E> {
-        name.parse().map_err(E::custom)
+        let Text(name) = Text::deserialize(deserializer)?;
+        name.parse().map_err(de::Error::custom)
     }
 }

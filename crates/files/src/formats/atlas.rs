@@ -177,7 +177,7 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> io::Result<
 
 fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
     let (grid, ranges) = (&result.grid, result.grid.ranges());
-    json::written(serde_json::to_vec(&ArchiveHeader {
+    json::text(&ArchiveHeader {
         format: FORMAT.to_owned(),
         source: grid.source(),
         sensor: grid.sensor(),
@@ -190,7 +190,8 @@ fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
         shard: result.shard.to_string(),
         poses: parts.poses,
         partly_off: parts.partly_off,
-    }))
+    })
+    .into_bytes()
 }
 
 fn regions_of_each(atlas: &Atlas, number: fn(&ImprintSummary) -> u16) -> Vec<u8> {

@@ -26,11 +26,6 @@ pub fn pretty(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string_pretty(value).expect(WRITABLE)
 }
 
-/// Returns what was written as JSON in memory, for a file.
-pub fn written(text: serde_json::Result<Vec<u8>>) -> Vec<u8> {
-    text.expect(WRITABLE)
-}
-
 /// Returns a value as JSON on one line, with everything except ASCII escaped: the same bytes in every locale, and
 /// safe to print even if it quotes text from files.
 pub fn ascii(value: &(impl Serialize + ?Sized)) -> String {

@@ -119,7 +119,7 @@ fn row_type(columns: u8) -> Number {
 pub fn header(head: &ModelHead) -> Vec<u8> {
     let ranges = &head.ranges;
     let shapes = head.shapes.iter().zip(&head.cut);
-    json::written(serde_json::to_vec(&ModelHeader {
+    json::text(&ModelHeader {
         format: FORMAT.to_owned(),
         shapes: shapes
             .map(|(shape, &cut)| ShapeHeader {
@@ -138,7 +138,8 @@ pub fn header(head: &ModelHead) -> Vec<u8> {
         zoom_y: ranges[Axis::ZoomY].to_string(),
         shard: head.shard.to_string(),
         poses: head.poses,
-    }))
+    })
+    .into_bytes()
 }
 
 /// Reads a model that [`write_model`](crate::formats::write_model) has written.

@@ -4,7 +4,8 @@
 //! write these numbers: `1.0`, `1.000e+00`, `255`, `true`. Comments begin with `#`. Anything else is refused: a table of
 //! other numbers would need a threshold, and names or numbers of rows would have to be guessed.
 
-use taxel_core::imprint::{Imprint, ImprintRows};
+use taxel_core::imprint::Imprint;
+use taxel_core::index::index;
 use taxel_core::quote::shortened;
 
 use crate::error::ReadError;
@@ -17,22 +18,28 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Imprint, ReadError> {
-    let mut rows = ImprintRows::default();
-    for (number, line) in lines(text(bytes)?) {
-        let mut row = String::new();
-        for (field, column) in fields(line).zip(1..) {
-            let active = active(field).ok_or_else(|| {
-                let found = shortened(field);
-                ReadError::new(format!("found {found:?}, expected 0, 1 or 255"))
-                    .in_line(number)
-                    .in_column(column)
-            })?;
-            row.push(if active { '#' } else { '.' });
+    let lines: Vec<_> = lines(text(bytes)?).collect();
+    let rows: Vec<String> = lines.iter().map(row).collect::<Result<_, _>>()?;
+    Imprint::from_rows(rows.iter().map(String::as_str)).map_err(|error| {
+        let line = error.row.and_then(|row| lines.get(index(row) - 1));
+        ReadError {
+            line: line.map(|(number, _)| *number),
+            ..error.into()
         }
-        rows.push(&row)
-            .map_err(|error| ReadError::from(error).in_line(number))?;
-    }
-    Ok(rows.imprint()?)
+    })
+}
+
+/// Returns a row of an imprint.
+fn row((number, line): &(u64, &str)) -> Result<String, ReadError> {
+    let taxels = fields(line).zip(1..).map(|(field, column)| {
+        let active = active(field).ok_or_else(|| {
+            let found = shortened(field);
+            let error = ReadError::new(format!("found {found:?}, expected 0, 1 or 255"));
+            error.in_line(*number).in_column(column)
+        })?;
+        Ok(if active { '#' } else { '.' })
+    });
+    taxels.collect()
 }
 
 /// The lines that are neither blank nor comments, with their numbers.
@@ -84,22 +91,6 @@ pub(super) fn write(imprint: &Imprint) -> Vec<u8> {
         text.push('\n');
     }
     text.into_bytes()
-}
-
-/// Returns the separator that a line `sep=;` names, as spreadsheet programs write it, also in quotes, or with the
-/// separators of empty fields behind it. None for any other line.
-pub(crate) fn named_separator(line: &[u8]) -> Option<u8> {
-    let line = line.trim_ascii();
-    let quoted = line.strip_prefix(b"\"").unwrap_or(line);
-    let (key, marks) = quoted.split_at_checked(4)?;
-    if !key.eq_ignore_ascii_case(b"sep=") {
-        return None;
-    }
-    let marks = marks.strip_suffix(b"\"").unwrap_or(marks);
-    // A tab at the end of the line was trimmed as a blank.
-    let mark = marks.first().copied().unwrap_or(b'\t');
-    let is_usual = matches!(mark, b',' | b';' | b'\t' | b'|');
-    (is_usual && marks.iter().all(|&byte| byte == mark)).then_some(mark)
 }
 
 #[cfg(test)]

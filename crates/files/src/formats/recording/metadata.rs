@@ -250,7 +250,7 @@ impl RecordingMetadata {
     /// Returns the metadata as the text of a file.
     pub fn text(&self) -> Vec<u8> {
         let tare = self.tare.as_ref();
-        json::written(serde_json::to_vec_pretty(&Described {
+        json::pretty(&Described {
             format: FORMAT.to_owned(),
             source: self.source.clone(),
             unit: self.unit.clone(),
@@ -264,7 +264,8 @@ impl RecordingMetadata {
             marks: self.marks.clone(),
             ended: self.ended,
             ended_by: self.ended_by.clone(),
-        }))
+        })
+        .into_bytes()
     }
 }
 

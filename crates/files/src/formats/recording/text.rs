@@ -19,7 +19,6 @@ use taxel_core::quote::shortened;
 use crate::error::ReadError;
 use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::job::too_large;
-use crate::formats::table::named_separator;
 
 /// Powers of ten that are exact in f64.
 const POWERS: [f64; 23] = [
@@ -330,6 +329,22 @@ pub(in crate::formats) fn is_comment(line: &[u8]) -> bool {
         [b's' | b'S' | b'"', ..] => named_separator(line).is_some(),
         _ => false,
     }
+}
+
+/// Returns the separator that a line `sep=;` names, as spreadsheet programs write it, also in quotes, or with the
+/// separators of empty fields behind it. None for any other line.
+fn named_separator(line: &[u8]) -> Option<u8> {
+    let line = line.trim_ascii();
+    let quoted = line.strip_prefix(b"\"").unwrap_or(line);
+    let (key, marks) = quoted.split_at_checked(4)?;
+    if !key.eq_ignore_ascii_case(b"sep=") {
+        return None;
+    }
+    let marks = marks.strip_suffix(b"\"").unwrap_or(marks);
+    // A tab at the end of the line was trimmed as a blank.
+    let mark = marks.first().copied().unwrap_or(b'\t');
+    let is_usual = matches!(mark, b',' | b';' | b'\t' | b'|');
+    (is_usual && marks.iter().all(|&byte| byte == mark)).then_some(mark)
 }
 
 pub(in crate::formats) fn unquoted(field: &[u8]) -> &[u8] {
