@@ -72,7 +72,7 @@ impl ListedChannel {
         let cells = present.clone().count();
         self.cells = self.cells.max(cells);
         if cells > 0 {
-            self.peak.add(frame.number, present.sum());
+            self.peak.add(frame.number, Some(present.sum()));
         }
         if let Some(time) = frame.time {
             let begun = self.times.unwrap_or(FrameTimes {

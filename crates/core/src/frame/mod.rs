@@ -8,6 +8,8 @@
 //! 3. Gain: multiply each cell by its own factor, if there are factors.
 //! 4. [`Rule`]: decide which values make a taxel active, then drop pieces that are too small.
 //!
+//! [`Processed`] then has the imprint, and the force, the contact and the centre of pressure of the touch.
+//!
 //! Nothing is interpolated, smoothed or normalised. A cell without a value is NaN in memory and never active.
 //!
 //! ```
@@ -17,8 +19,9 @@
 //! let mut processing = Processing::default();
 //! processing.rule = Some(Rule::at_least(10.0)?);
 //! let processed = processing.run(&frame)?;
-//! assert_eq!((processed.sum, processed.max, processed.cells), (25.0, Some(12.0), 5));
+//! assert_eq!((processed.sum, processed.max), (25.0, Some(12.0)));
 //! assert_eq!(processed.imprint.map(|imprint| imprint.to_string()).as_deref(), Some(".#.\n.#."));
+//! assert_eq!((processed.force, processed.contact, processed.cop), (22.0, 2, Some([1.5, 21.0 / 22.0])));
 //! # Ok::<(), taxel_core::frame::FrameError>(())
 //! ```
 

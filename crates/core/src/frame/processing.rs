@@ -38,10 +38,8 @@ pub struct Processed<'a> {
     pub sum: f64,
     /// The largest raw value; None if there are none.
     pub max: Option<f64>,
-    /// The number of cells that have a value.
-    pub cells: u32,
-    /// The sum of the values after tare and gain, by which peaks are compared; NaN if no cell has a value then.
-    pub tared_sum: f64,
+    /// The sum of the values after tare and gain, by which peaks are compared; None if there are none.
+    pub tared_sum: Option<f64>,
     /// The imprint; None if there is no rule.
     pub imprint: Option<Imprint>,
     /// The sum of the values in contact; 0 without contact.
@@ -111,8 +109,7 @@ impl Processing {
             tared,
             sum: sum.unwrap_or(0.0),
             max: max.filter(|max| !max.is_nan()),
-            cells: raw.values().iter().map(|v| u32::from(!v.is_nan())).sum(),
-            tared_sum: tared_sum.unwrap_or(f64::NAN),
+            tared_sum,
             imprint,
             force,
             contact,
@@ -127,7 +124,8 @@ impl Processing {
 /// Returns the sum of the values; None if there are none.
 fn sum(values: &Matrix<f64>) -> Option<f64> {
     let values = values.values().iter().copied();
-    values.filter(|value| !value.is_nan()).reduce(|a, b| a + b)
+    let values = values.filter(|value| !value.is_nan());
+    values.fold(None, |sum, value| Some(sum.unwrap_or(0.0) + value))
 }
 
 /// Returns the force, the number of cells in contact, and the centre of pressure.
@@ -171,10 +169,10 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Takes the sum of another frame; a sum that is NaN is never the peak.
-    pub fn add(&mut self, number: u64, sum: f64) {
-        if !sum.is_nan() && self.best.is_none_or(|(_, best)| sum > best) {
-            self.best = Some((number, sum));
+    /// Takes the sum of another frame; a frame without one is never the peak.
+    pub fn add(&mut self, number: u64, sum: Option<f64>) {
+        if sum.is_some() && self.best.is_none_or(|(_, best)| sum > Some(best)) {
+            self.best = sum.map(|sum| (number, sum));
         }
     }
 
@@ -218,7 +216,7 @@ mod tests {
         let processed = processing.run(&touched).expect("it fits");
         assert_eq!((processed.sum, processed.max), (33.0, Some(18.0)));
         assert_eq!(processed.tared.values(), [8.0, 9.0]);
-        assert_eq!(processed.tared_sum, 17.0);
+        assert_eq!(processed.tared_sum, Some(17.0));
         let imprint = processed.imprint.map(|imprint| imprint.to_string());
         assert_eq!(imprint.as_deref(), Some(".#"));
         assert_eq!((processed.force, processed.contact), (9.0, 1));
@@ -233,8 +231,7 @@ mod tests {
         };
         let empty = Frame::new(FrameSize::of(3, 3));
         let processed = processing.run(&empty).expect("it fits");
-        let (sum, cells) = (processed.sum, processed.cells);
-        assert_eq!((sum, processed.max, cells), (0.0, None, 0));
+        assert_eq!((processed.sum, processed.max), (0.0, None));
         assert!(processed.imprint.is_some_and(|imprint| imprint.is_empty()));
         let (force, contact) = (processed.force, processed.contact);
         assert_eq!((force, contact, processed.cop), (0.0, 0, None));
@@ -307,12 +304,14 @@ mod tests {
             let processed = processing.run(&touched).expect("it fits");
             (processed.sum, processed.tared_sum)
         };
-        assert_eq!(sums(None, None), (22.0, 22.0));
-        assert_eq!(sums(tare_of(&frame(2, &[4.0; 2])), None), (22.0, 14.0));
-        assert_eq!(sums(None, gain(2, &[0.5; 2])), (22.0, 11.0));
+        assert_eq!(sums(None, None), (22.0, Some(22.0)));
+        assert_eq!(
+            sums(tare_of(&frame(2, &[4.0; 2])), None),
+            (22.0, Some(14.0))
+        );
+        assert_eq!(sums(None, gain(2, &[0.5; 2])), (22.0, Some(11.0)));
         // Cells without a tare have no sum to compare.
-        let (sum, tared) = sums(tare_of(&frame(2, &[f64::NAN; 2])), None);
-        assert!(sum == 22.0 && tared.is_nan());
+        assert_eq!(sums(tare_of(&frame(2, &[f64::NAN; 2])), None), (22.0, None));
     }
 
     #[test]
@@ -344,10 +343,11 @@ mod tests {
     fn a_frame_without_a_sum_is_no_peak() {
         let mut peak = Peak::default();
         for (number, sum, expected) in [
-            (3, f64::NAN, None),
-            (4, 1.0, Some(4)),
-            (5, f64::NAN, Some(4)),
-            (6, 1.0, Some(4)),
+            (3, None, None),
+            (4, Some(-1.0), Some(4)),
+            (5, None, Some(4)),
+            (6, Some(-1.0), Some(4)),
+            (7, Some(1.0), Some(7)),
         ] {
             peak.add(number, sum);
             assert_eq!(peak.number(), expected);
