@@ -5,13 +5,14 @@ use std::num::NonZeroU32;
 
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
-use taxel_core::frame::{FrameError, Rule, RuleOrigin, SetRule, Tare};
+use taxel_core::frame::{Rule, RuleOrigin, SetRule, Tare};
 use taxel_core::matrix::Matrix;
 use taxel_core::quote::shortened_message;
 
+use crate::error::ReadError;
 use crate::formats::job::{FrameRows, RuleRecord, matrix};
 use crate::formats::json;
-use crate::formats::recording::size::{LengthUnit, pitches_in_mm};
+use crate::formats::recording::size::LengthUnit;
 use crate::formats::recording::time::TimeUnit;
 
 const FORMAT: &str = "taxel-touch/1";
@@ -76,15 +77,15 @@ pub struct RecordingMetadata {
     pub ended_by: Option<String>,
 }
 
-#[derive(Debug, Default, Serialize, Deserialize)]
-#[serde(default, expecting = "an object")]
+/// The text of the file, key by key.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "an object")]
 struct Described {
     format: String,
     source: String,
     unit: Option<String>,
     pitch_mm: Option<[f64; 2]>,
     seconds_per_frame: Option<f64>,
-    #[serde(serialize_with = "rule_or_null")]
     rule: Option<DescribedRule>,
     tare_frames: Option<u64>,
     tare: Option<FrameRows>,
@@ -97,7 +98,7 @@ struct Described {
 }
 
 /// A rule. It is written with its origin, but once it is read, its origin is the file.
-#[derive(Debug, Deserialize)]
+#[derive(Deserialize)]
 #[serde(untagged)]
 enum DescribedRule {
     #[serde(skip)]
@@ -109,56 +110,32 @@ enum DescribedRule {
     Other(RuleRecord),
 }
 
-/// Writes the rule as an object, or null if there is none.
-#[expect(clippy::ref_option, reason = "serde calls it so")]
-fn rule_or_null<S: Serializer>(
-    rule: &Option<DescribedRule>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    match rule {
-        Some(DescribedRule::Set(rule)) => rule.serialize(serializer),
-        _ => serializer.serialize_none(),
+impl Serialize for DescribedRule {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Set(rule) => rule.serialize(serializer),
+            _ => serializer.serialize_none(),
+        }
     }
 }
 
-/// The error for metadata that cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MetadataError {
-    /// The metadata is not JSON, or the value of a key has the wrong type.
-    #[error("line {line}, column {column}: {message}")]
-    Json {
-        /// The line number, from 1.
-        line: usize,
-        /// The column number, from 1.
-        column: usize,
-        /// A description of the error.
-        message: String,
-    },
-    /// The metadata has a rule or a tare that is not valid.
-    #[error("{key}: {message}")]
-    Value {
-        /// The key of the format, the rule or the tare.
-        key: &'static str,
-        /// A description of the error.
-        message: String,
-    },
+impl DescribedRule {
+    fn set(self) -> Result<SetRule, ReadError> {
+        let (rule, least) = match self {
+            Self::Set(rule) => return Ok(rule),
+            Self::Noise { noise, least } => (Rule::noise(noise).map_err(wrong)?, least),
+            Self::Other(record) => (record.rule()?, record.least),
+        };
+        Ok(SetRule {
+            rule,
+            least: least.map_or(0, NonZeroU32::get),
+            from: RuleOrigin::File,
+        })
+    }
 }
 
-impl MetadataError {
-    fn json(error: &serde_json::Error) -> Self {
-        Self::Json {
-            line: error.line().max(1),
-            column: error.column().max(1),
-            message: json::message(error),
-        }
-    }
-
-    fn of_key<E: ToString>(key: &'static str) -> impl FnOnce(E) -> Self {
-        move |error| Self::Value {
-            key,
-            message: error.to_string(),
-        }
-    }
+fn wrong(error: impl ToString) -> ReadError {
+    ReadError::new(error.to_string())
 }
 
 impl RecordingMetadata {
@@ -167,80 +144,47 @@ impl RecordingMetadata {
     ///
     /// # Errors
     /// Returns an error if the metadata is damaged, or of another version; it names the line and column, or the key.
-    pub fn read(bytes: &[u8]) -> Option<Result<Self, MetadataError>> {
+    pub fn read(bytes: &[u8]) -> Option<Result<Self, ReadError>> {
         #[derive(Deserialize)]
-        #[serde(expecting = "an object")]
         struct Format {
             format: String,
         }
-        let is_own = match json::object::<Format>(bytes) {
-            Ok(own) if own.format != FORMAT && own.format.starts_with(FAMILY) => {
-                let found = shortened_message(&own.format);
-                return Some(Err(MetadataError::Value {
-                    key: "format",
-                    message: format!(
-                        "{found:?} is unknown to this version, which reads {FORMAT:?}"
-                    ),
-                }));
+        let mut words = bytes.windows(FAMILY.len());
+        if !words.any(|word| word == FAMILY.as_bytes()) {
+            return None;
+        }
+        Some(match json::object::<Format>(bytes) {
+            Ok(Format { format }) if !format.starts_with(FAMILY) => return None,
+            Ok(Format { format }) if format != FORMAT => {
+                let found = shortened_message(&format);
+                let message =
+                    format!("{found:?} is unknown to this version, which reads {FORMAT:?}");
+                Err(ReadError::new(message).of_key("format"))
             }
-            Ok(own) => own.format == FORMAT,
-            Err(_) => bytes
-                .windows(FAMILY.len())
-                .any(|text| text == FAMILY.as_bytes()),
-        };
-        is_own.then(|| {
-            let described = json::object::<Described>(bytes);
-            described
-                .map_err(|error| MetadataError::json(&error))
-                .and_then(Self::of)
+            _ => json::object(bytes)
+                .map_err(ReadError::from)
+                .and_then(Self::of),
         })
     }
 
-    fn of(described: Described) -> Result<Self, MetadataError> {
-        let rule = match described.rule {
-            None => None,
-            Some(DescribedRule::Set(rule)) => Some(rule),
-            Some(DescribedRule::Noise { noise, least }) => Some(SetRule {
-                rule: Rule::noise(noise).map_err(MetadataError::of_key("rule"))?,
-                least: least.map_or(0, NonZeroU32::get),
-                from: RuleOrigin::File,
-            }),
-            Some(DescribedRule::Other(record)) => Some(SetRule {
-                rule: record.rule().map_err(MetadataError::of_key("rule"))?,
-                least: record.least.map_or(0, NonZeroU32::get),
-                from: RuleOrigin::File,
-            }),
-        };
-        let tare = match described.tare {
-            Some(rows) => {
-                let frames = described.tare_frames.filter(|&frames| frames > 0);
-                let baseline = matrix(&rows).map_err(MetadataError::of_key("tare"))?;
-                let spread = described.tare_spread.as_ref();
-                let spread = spread.map(|rows| matrix(rows)).transpose();
-                let spread = spread.map_err(MetadataError::of_key("tare_spread"))?;
-                let step = described.tare_step;
-                let tare = Tare::from_parts(baseline, spread, step, frames.unwrap_or(1));
-                Some(tare.map_err(|error| match error {
-                    FrameError::Rule {
-                        what,
-                        found,
-                        allowed,
-                    } => MetadataError::Value {
-                        key: what,
-                        message: format!("{found} is out of range (allowed: {allowed})"),
-                    },
-                    error => MetadataError::of_key("tare")(error),
-                })?)
-            }
-            None => None,
-        };
+    fn of(described: Described) -> Result<Self, ReadError> {
+        let in_key = |key| move |error| wrong(error).of_key(key);
+        let rule = described.rule.map(DescribedRule::set).transpose();
+        let tare = described.tare.map(|rows| {
+            let spread = described.tare_spread.map(|rows| matrix(&rows)).transpose();
+            let spread = spread.map_err(in_key("tare_spread"))?;
+            let baseline = matrix(&rows).map_err(in_key("tare"))?;
+            let frames = described.tare_frames.filter(|&frames| frames > 0);
+            let tare = Tare::from_parts(baseline, spread, described.tare_step, frames.unwrap_or(1));
+            tare.map_err(|error| wrong(error).of_key("tare"))
+        });
         Ok(Self {
             source: shortened_message(&described.source),
             unit: described.unit.as_deref().map(shortened_message),
             pitch_mm: pitch(described.pitch_mm),
             seconds_per_frame: step(described.seconds_per_frame),
-            rule,
-            tare,
+            rule: rule.map_err(|error| error.of_key("rule"))?,
+            tare: tare.transpose()?,
             marks: described.marks,
             ended: described.ended,
             ended_by: described.ended_by.as_deref().map(shortened_message),
@@ -271,7 +215,8 @@ impl RecordingMetadata {
 
 /// Returns the pitch unless a side is out of range. JSON has no number for NaN, so it could not be read again.
 fn pitch(pitch_mm: Option<[f64; 2]>) -> Option<[f64; 2]> {
-    pitches_in_mm(pitch_mm?.map(Some), LengthUnit::Millimetres)
+    let [x, y] = pitch_mm?.map(|side| LengthUnit::Millimetres.pitch_in_mm(side));
+    Some([x?, y?])
 }
 
 /// Returns the time from one frame to the next unless it is out of range.
@@ -280,12 +225,8 @@ fn step(seconds: Option<f64>) -> Option<f64> {
 }
 
 fn rows(matrix: &Matrix<f64>) -> FrameRows {
-    let row = |row| {
-        let values = matrix.row(row).iter();
-        values
-            .map(|&value| (!value.is_nan()).then_some(value))
-            .collect()
-    };
+    let cell = |&value: &f64| (!value.is_nan()).then_some(value);
+    let row = |row| matrix.row(row).iter().map(cell).collect();
     (0..matrix.rows()).map(row).collect()
 }
 
@@ -421,6 +362,6 @@ mod tests {
         let list = format!("[\"{FORMAT}\",\"a source\"]");
         let read = RecordingMetadata::read(list.as_bytes()).expect("it names the format");
         let error = read.expect_err("a list").to_string();
-        assert_eq!(error, "line 1, column 1: not a JSON object");
+        assert_eq!(error, "not a JSON object");
     }
 }

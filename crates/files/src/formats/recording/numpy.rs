@@ -35,12 +35,12 @@ use crate::formats::numpy::{Elements, Field, Header, Number};
 use crate::formats::recording::error::{foreign, unshaped};
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingNote, Sink, Stop};
 use crate::formats::recording::size::frame_size;
-use crate::formats::recording::time::field_role::{FieldRole, role};
-use crate::formats::recording::time::{FrameClock, Time, TimeUnit};
+use crate::formats::recording::table::is_label;
+use crate::formats::recording::time::{FrameClock, Time, TimeUnit, time_name};
 
 /// The size limit of an array in Fortran order, 256 MiB: it is read as a whole, since the values of a frame are
 /// spread over the file.
-const LARGEST_FORTRAN: u64 = 1 << 28;
+const LARGEST_FORTRAN: usize = 1 << 28;
 
 /// The size limit of a record in bytes; it may have frames of several channels.
 const LARGEST_RECORD: usize = 1 << 26;
@@ -55,20 +55,16 @@ const MOST_ARRAYS: usize = 256;
 #[derive(Default)]
 struct Layout {
     frames: u64,
+    /// The number of bytes of a record: of a frame, or of a frame of each channel and what is beside them.
+    record: usize,
     channels: Vec<Cells>,
-    /// Numbers of records that are none of the others: perhaps cells.
-    others: Vec<(usize, Number)>,
     time: Option<(usize, TimeType)>,
     label: Option<(usize, Number)>,
-    /// The number of bytes that are read at once: a frame or a record; in Fortran order, the whole array.
-    block: usize,
-    /// The number of bytes from one frame to the next, if there are several in a block.
-    step: usize,
     /// The number of records that the header of taxel's own recordings counts; there may be more or fewer.
     own: Option<u64>,
 }
 
-/// The cells of a channel: where each value is in the first block.
+/// The cells of a channel: where in a record the value of each is.
 struct Cells {
     name: Option<String>,
     size: FrameSize,
@@ -77,141 +73,78 @@ struct Cells {
 
 impl Layout {
     fn of(header: &Header, asked: Option<FrameSize>) -> Result<Self, ReadError> {
-        let mut layout = Self::default();
-        let numbers;
-        let fields = match &header.descr {
-            Elements::Record(fields) => fields,
+        let shape = header.shape_in_words();
+        let names = ["time", "number", "values"];
+        let is_own = matches!(&header.descr, Elements::Record(fields) if fields.iter().map(|field| &*field.name).eq(names));
+        if header.shape.contains(&0) && !is_own {
+            let message = format!("an empty array of shape {shape}, expected frames");
+            return Err(ReadError::new(message));
+        }
+        let (counted, fields) = match &header.descr {
+            Elements::Record(fields) => (header.shape.iter().product(), fields.clone()),
             Elements::Code(code) => {
                 let (frames, size) = frames_of_axes(header, asked)?;
-                layout.frames = frames;
-                numbers = [Field {
-                    name: String::new(),
-                    code: code.clone(),
-                    sides: [size.rows(), size.columns()].map(u64::from).to_vec(),
-                }];
-                &numbers[..]
+                let sides = [size.rows(), size.columns()].map(u64::from).to_vec();
+                let (name, code) = (String::new(), code.clone());
+                (frames, vec![Field { name, code, sides }])
             }
         };
-        let is_own = fields
-            .iter()
-            .map(|field| &*field.name)
-            .eq(["time", "number", "values"]);
-        if let Elements::Record(_) = header.descr {
-            let [frames] = header.shape[..] else {
-                return Err(unexpected_shape(header, None));
-            };
-            layout.own = Some(frames).filter(|_| is_own);
-            layout.frames = if is_own { u64::MAX } else { frames };
-        }
-        if header.shape.contains(&0) && !is_own {
-            let shape = header.shape_in_words();
-            return Err(ReadError::new(format!(
-                "an empty array of shape {shape}, expected frames"
-            )));
-        }
-        for field in fields {
-            layout.add(field)?;
-        }
-        if let Some(size) = asked.filter(|size| size.cells() == layout.others.len())
-            && layout.channels.is_empty()
-        {
-            let places = layout.others.clone();
-            layout.channels.push(Cells {
-                name: None,
-                size,
-                places,
-            });
+        let mut layout = Self {
+            frames: if is_own { u64::MAX } else { counted },
+            own: Some(counted).filter(|_| is_own),
+            ..Self::default()
+        };
+        let mut others = Vec::new();
+        for field in &fields {
+            others.extend(layout.add(field)?);
         }
         if layout.channels.is_empty() {
-            return Err(unshaped(layout.others.len() as u64, asked));
-        }
-        if header.fortran_order && header.shape.len() > 1 {
-            layout.turn(header)?;
+            let size = asked.filter(|size| size.cells() == others.len());
+            let size = size.ok_or_else(|| unshaped(others.len() as u64, asked))?;
+            let (name, places) = (None, others);
+            layout.channels.push(Cells { name, size, places });
         }
         Ok(layout)
     }
 
-    /// Adds a field: the cells of a channel, the time, the label or something else.
-    fn add(&mut self, field: &Field) -> Result<(), ReadError> {
-        let name = shortened(&field.name);
-        let start = self.block;
-        let number = Number::of(&field.code);
+    /// Adds a field: the cells of a channel, the time or the label. Returns any other number, which may be a cell.
+    fn add(&mut self, field: &Field) -> Result<Option<(usize, Number)>, ReadError> {
+        let (name, start) = (shortened(&field.name), self.record);
+        let (number, code) = (Number::of(&field.code), shortened(&field.code));
+        let not_real = || ReadError::new(format!("numbers of type {code:?}, expected real ones"));
         let end = field.bytes().and_then(|bytes| start.checked_add(bytes));
-        let Some(end) = end.filter(|&end| end <= LARGEST_RECORD) else {
-            return Err(not_real(&field.code));
-        };
-        self.block = end;
-        let time = match role(&field.name) {
-            // Taxel writes seconds.
-            _ if self.own.is_some() && field.name == "time" => Some(Some(TimeUnit::Seconds)),
-            Some(FieldRole::Time(unit)) => Some(unit),
-            _ => None,
-        };
-        let is_label = field.name == "number" || role(&field.name) == Some(FieldRole::Label);
+        let end = end.filter(|&end| end <= LARGEST_RECORD);
+        self.record = end.ok_or_else(not_real)?;
         match (&field.sides[..], number) {
-            ([], _) if time.is_some() && self.time.is_none() => {
-                let own = TimeType::of(&field.code, time.flatten());
-                self.time = Some((start, own.ok_or_else(|| {
-                    let found = shortened(&field.code);
-                    ReadError::new(format!("{name}: times of type {found:?}, expected numbers, or datetime64 in s, ms, us or ns"))
-                })?));
+            ([], _) if self.time.is_none() && time_name(&field.name).is_some() => {
+                // Taxel writes seconds.
+                let seconds = self.own.map(|_| TimeUnit::Seconds);
+                let unit = seconds.or(time_name(&field.name).flatten());
+                let expected = "expected numbers, or datetime64 in s, ms, us or ns";
+                let message = || format!("{name}: times of type {code:?}, {expected}");
+                let time = TimeType::of(&field.code, unit);
+                self.time = Some((start, time.ok_or_else(|| ReadError::new(message()))?));
             }
-            ([], Some(number)) if is_label => self.label = Some((start, number)),
-            ([], Some(number)) => self.others.push((start, number)),
+            ([], Some(number)) if field.name == "number" || is_label(&field.name) => {
+                self.label = Some((start, number));
+            }
+            ([], _) => return Ok(number.map(|number| (start, number))),
             (&[rows, columns], _) => {
-                let number = number.ok_or_else(|| not_real(&field.code))?;
+                let number = number.ok_or_else(not_real)?;
                 let size = frame_size(columns, rows).ok_or_else(|| {
-                    ReadError::new(format!(
-                        "{name}: {rows} × {columns} values, expected 1 to 512 rows and columns"
-                    ))
+                    let expected = "expected 1 to 512 rows and columns";
+                    ReadError::new(format!("{name}: {rows} × {columns} values, {expected}"))
                 })?;
                 let place = |cell| (start + cell * number.size(), number);
-                self.channels.push(Cells {
-                    name: Some(field.name.clone())
-                        .filter(|name| self.own.is_none() && !name.is_empty()),
-                    size,
-                    places: (0..size.cells()).map(place).collect(),
-                });
+                let places = (0..size.cells()).map(place).collect();
+                let is_named = self.own.is_none() && !name.is_empty();
+                let name = is_named.then(|| field.name.clone());
+                self.channels.push(Cells { name, size, places });
             }
             _ => {}
         }
-        Ok(())
+        Ok(None)
     }
-
-    /// Turns the layout of an array of numbers into that of Fortran: the first axis is the fastest.
-    fn turn(&mut self, header: &Header) -> Result<(), ReadError> {
-        let all = self.frames.checked_mul(self.block as u64);
-        let Some(all) = all.filter(|&bytes| bytes <= LARGEST_FORTRAN) else {
-            return Err(ReadError::new(
-                "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it",
-            ));
-        };
-        for Cells { size, places, .. } in &mut self.channels {
-            let (rows, columns) = (usize::from(size.rows()), usize::from(size.columns()));
-            let is_flat = header.shape == [self.frames, size.cells() as u64];
-            for (cell, (place, number)) in places.iter_mut().enumerate() {
-                let across = cell / columns + rows * (cell % columns);
-                self.step = number.size();
-                *place = index(self.frames) * number.size() * if is_flat { cell } else { across };
-            }
-        }
-        self.block = index(all);
-        Ok(())
-    }
-}
-
-fn not_real(code: &str) -> ReadError {
-    let found = shortened(code);
-    ReadError::new(format!("numbers of type {found:?}, expected real ones"))
-}
-
-fn unexpected_shape(header: &Header, asked: Option<FrameSize>) -> ReadError {
-    let shape = header.shape_in_words();
-    let asked = asked.map(|asked| format!(", and {} were named", asked.in_words()));
-    ReadError::new(format!(
-        "an array of shape {shape}, expected frames, rows and columns, at most 512 rows and columns{}",
-        asked.unwrap_or_default()
-    ))
 }
 
 /// The number and the size of the frames in an array of numbers.
@@ -230,16 +163,52 @@ fn frames_of_axes(
         [rows, columns] if frame_size(columns, rows).is_some() => {
             frame_size(columns, rows).map(|size| (1, size))
         }
-        [values] | [_, values] if cells.is_none() && !header.shape.contains(&0) => {
-            return Err(unshaped(values, None));
-        }
-        // An array of no values has no frames, whatever their size.
-        _ if header.shape.contains(&0) => Some((0, asked.unwrap_or(FrameSize::SMALLEST))),
+        [values] | [_, values] if cells.is_none() => return Err(unshaped(values, None)),
         _ => None,
     };
-    found
-        .filter(|&(_, size)| asked.is_none_or(|asked| asked == size))
-        .ok_or_else(|| unexpected_shape(header, asked))
+    let found = found.filter(|&(_, size)| asked.is_none_or(|asked| asked == size));
+    found.ok_or_else(|| {
+        let (shape, expected) = (header.shape_in_words(), "expected frames, rows and columns");
+        let asked = asked.map(|asked| format!(", and {} were named", asked.in_words()));
+        let asked = asked.unwrap_or_default();
+        let most = "at most 512 rows and columns";
+        ReadError::new(format!(
+            "an array of shape {shape}, {expected}, {most}{asked}"
+        ))
+    })
+}
+
+/// Reads the numbers of an array in Fortran order, in which the first axis is the fastest, and returns them in that of
+/// C.
+fn in_order_of_c(header: &Header, input: &mut dyn Read) -> Result<Vec<u8>, ReadError> {
+    let size = header.number().map_or(1, Number::size);
+    let sides: Vec<usize> = header.shape.iter().map(|&side| index(side)).collect();
+    let count = sides
+        .iter()
+        .fold(1_usize, |count, &side| count.saturating_mul(side));
+    let length = count.saturating_mul(size);
+    if length > LARGEST_FORTRAN {
+        let message =
+            "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it";
+        return Err(ReadError::new(message));
+    }
+    let mut bytes = Vec::new();
+    input.take(length as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() != length {
+        let message = format!("{} bytes of numbers, expected {length}", bytes.len());
+        return Err(ReadError::new(message));
+    }
+    let mut ordered = Vec::with_capacity(length);
+    for element in 0..count {
+        let (mut rest, mut step, mut place) = (element, count, 0);
+        for side in sides.iter().rev() {
+            step /= side;
+            place += rest % side * step;
+            rest /= side;
+        }
+        ordered.extend_from_slice(&bytes[place * size..][..size]);
+    }
+    Ok(ordered)
 }
 
 /// The type of times in a field or an array.
@@ -295,7 +264,7 @@ pub(super) fn read_array(
     let header = Header::read(input)?;
     let layout = Layout::of(&header, options.size)?;
     let channels = report(&header, &layout, None, options, sink)?;
-    frames(input, &layout, &channels, &[], sink)
+    frames(input, &header, &layout, &channels, &[], sink)
 }
 
 /// Reports the channels of an array, and returns their numbers.
@@ -309,9 +278,8 @@ fn report(
     let mut channels = Vec::new();
     for cells in &layout.channels {
         let name = array.or(cells.name.as_deref());
-        let size = Some(cells.size);
         channels.push(sink.channel(name, || ChannelInfo {
-            size,
+            size: Some(cells.size),
             ..ChannelInfo::default()
         })?);
         let (rows, columns) = (cells.size.rows(), cells.size.columns());
@@ -327,34 +295,41 @@ fn report(
 /// Reads all frames of an array. `times` are in seconds, one a frame, or empty.
 fn frames(
     input: &mut dyn Read,
+    header: &Header,
     layout: &Layout,
     channels: &[usize],
     times: &[Option<f64>],
     sink: &mut Sink<'_>,
 ) -> Result<(), Stop> {
+    let ordered = if header.fortran_order {
+        in_order_of_c(header, input)?
+    } else {
+        Vec::new()
+    };
+    let mut input = ordered.as_slice().chain(input);
     let mut clock = FrameClock::default();
     clock.set_unit(layout.time.as_ref().and_then(|(_, time)| time.unit));
-    let mut frame = Frame::default();
-    let (mut block, mut start) = (Vec::new(), 0);
+    let (mut frame, mut record) = (Frame::default(), Vec::new());
     for number in 0..layout.frames {
-        if number == 0 || layout.step == 0 {
-            block.clear();
-            Read::take(&mut *input, layout.block as u64).read_to_end(&mut block)?;
-        }
-        if block.len() < layout.block {
-            let Some(counted) = layout.own else {
-                let frames = layout.frames;
-                let message =
-                    format!("the file ends inside frame {number}, expected {frames} frames");
-                return Err(ReadError::new(message).into());
-            };
-            if number < counted {
-                let records = number;
-                sink.note(&RecordingNote::Cut { records, counted })?;
+        record.clear();
+        let length = layout.record as u64;
+        input.by_ref().take(length).read_to_end(&mut record)?;
+        if record.len() < layout.record {
+            let (records, frames) = (number, layout.frames);
+            match layout.own {
+                Some(counted) if records < counted => {
+                    sink.note(&RecordingNote::Cut { records, counted })?;
+                }
+                Some(_) => {}
+                None => {
+                    let expected = counted(frames, "frame");
+                    let message = format!("ends inside frame {number}, expected {expected}");
+                    return Err(ReadError::new(message).into());
+                }
             }
             return Ok(());
         }
-        let bytes = |at: usize, number: Number| &block[start + at..][..number.size()];
+        let bytes = |at: usize, number: Number| &record[at..at + number.size()];
         frame.time = match &layout.time {
             Some((at, time)) => time.seconds(bytes(*at, time.number), &mut clock),
             None => times.get(index(number)).copied().flatten(),
@@ -362,43 +337,32 @@ fn frames(
         if let Some(note) = clock.take_note() {
             sink.note(&note)?;
         }
-        let label = layout
-            .label
-            .and_then(|(at, number)| number.whole(bytes(at, number)));
-        frame.label = label
-            .and_then(|label| i64::try_from(label).ok())
-            .map(Label::from);
+        let label = layout.label;
+        let label = label.and_then(|(at, number)| number.whole(bytes(at, number))?.try_into().ok());
+        frame.label = label.map(Label::Number);
         for (&channel, cells) in channels.iter().zip(&layout.channels) {
             frame.reset(cells.size);
-            for (slot, &(at, number)) in frame.values_mut().iter_mut().zip(&cells.places) {
-                *slot = number.value(bytes(at, number));
+            let values = frame.values_mut().iter_mut().zip(&cells.places);
+            for (cell, (slot, &(at, own))) in values.enumerate() {
+                *slot = own.value(bytes(at, own));
+                if slot.abs() > LARGEST_VALUE {
+                    let columns = usize::from(cells.size.columns());
+                    let (row, column, found) = (cell / columns, cell % columns, too_large(*slot));
+                    let place = format!("frame {number}, row {row}, column {column}");
+                    let message = format!("{place}: {found}, or NaN where there is no cell");
+                    return Err(ReadError::new(message).into());
+                }
             }
-            check(&frame, number)?;
             sink.frame(channel, &mut frame)?;
         }
-        start += layout.step;
     }
     // For an array of an archive, only the attempt to read on verifies the checksum.
-    if input.take(1).read_to_end(&mut block)? > 0 {
+    if input.take(1).read_to_end(&mut record)? > 0 {
         let frames = counted(layout.frames, "frame");
         let message = format!("more bytes than the header states for {frames}");
         return Err(ReadError::new(message).into());
     }
     Ok(())
-}
-
-/// Refuses a frame with values that are neither finite nor NaN.
-fn check(frame: &Frame, number: u64) -> Result<(), ReadError> {
-    let mut values = frame.values().iter();
-    let Some(index) = values.position(|value| value.abs() > LARGEST_VALUE) else {
-        return Ok(());
-    };
-    let columns = usize::from(frame.columns());
-    let (row, column) = (index / columns, index % columns);
-    let found = too_large(frame.values()[index]);
-    Err(ReadError::new(format!(
-        "frame {number}, row {row}, column {column}: {found}, or NaN where there is no cell"
-    )))
 }
 
 struct ArchiveArray {
@@ -437,9 +401,10 @@ pub(super) fn read_archive(
             sink.note(&note)?;
             noted = Some(note);
         }
-        let mut file = archive.by_index(array.index).map_err(refused)?;
-        Header::read(&mut file)?;
-        frames(&mut file, layout, numbers, &times, sink).map_err(|stop| match stop {
+        let file = &mut archive.by_index(array.index).map_err(refused)?;
+        Header::read(file)?;
+        let read = frames(file, &array.header, layout, numbers, &times, sink);
+        read.map_err(|stop| match stop {
             Stop::Failed(error) => in_array(&array.name, error).into(),
             Stop::Enough => stop,
         })?;
@@ -514,8 +479,8 @@ fn times<R: Read + Seek>(
     frames: u64,
 ) -> Result<(Vec<Option<f64>>, Option<RecordingNote>), ReadError> {
     let fitting = arrays.iter().filter(|array| array.header.shape == [frames]);
-    let named = fitting.filter_map(|array| match role(&array.name) {
-        Some(FieldRole::Time(unit)) => Some((true, array, unit)),
+    let named = fitting.filter_map(|array| match time_name(&array.name) {
+        Some(unit) => Some((true, array, unit)),
         // `temperature` begins with a t, too, so a time has precedence.
         _ => array
             .name

@@ -164,16 +164,6 @@ impl LengthUnit {
     }
 }
 
-/// Returns the distances along x and along y, each rounded and checked; None if one of them is unknown or cannot be a
-/// pitch.
-pub(in crate::formats::recording) fn pitches_in_mm(
-    distances: [Option<f64>; 2],
-    unit: LengthUnit,
-) -> Option<[f64; 2]> {
-    let [x, y] = distances.map(|distance| unit.pitch_in_mm(distance?));
-    Some([x?, y?])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1155,7 +1155,7 @@ const MOST_GROUPS: usize = 256;
 
 const LABELS: [&str; 5] = ["label", "class", "name", "frame", "index"];
 
-fn is_label(name: &str) -> bool {
+pub(super) fn is_label(name: &str) -> bool {
     LABELS
         .iter()
         .any(|label| name.trim().eq_ignore_ascii_case(label))
