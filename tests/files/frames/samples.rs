@@ -174,7 +174,7 @@ fn damage_is_reported_with_its_place_after_the_frames_before_it() {
         "[0, 5, 14, 2, 0]",
         "[0, 5, 14, 2]",
         1,
-        "line 2, column 57: row 2 has 4 values, expected 5",
+        "line 2: row 2 has 4 values, expected 5",
     );
     damaged(
         "named.csv",

@@ -1,65 +1,8 @@
-//! The channels of a recording or a stream, as they appear, and the choice of one of them by its name.
+//! The choice of a channel by its name.
 
-use taxel_core::frame::Frame;
 use taxel_core::quote::did_you_mean;
 
 use crate::formats::recording::event::{ChannelInfo, UNNAMED_CHANNEL};
-
-/// The channels so far, in the order of their first frames. A limit keeps names that change with every frame from
-/// filling the memory.
-#[derive(Debug)]
-pub(in crate::formats) struct ChannelTable {
-    /// The channels, as their first frames describe them.
-    channels: Vec<ChannelInfo>,
-    frames: Vec<u64>,
-    reported: usize,
-    most: (usize, &'static str),
-}
-
-impl ChannelTable {
-    pub(super) fn new(most: usize, called: &'static str) -> Self {
-        Self {
-            channels: Vec::new(),
-            frames: Vec::new(),
-            reported: 0,
-            most: (most, called),
-        }
-    }
-
-    /// Returns the index of the channel of that name. If it is new, it is added with the other fields of `info`.
-    pub(super) fn index_of(
-        &mut self,
-        name: Option<&str>,
-        info: impl FnOnce() -> ChannelInfo,
-    ) -> Result<usize, String> {
-        let mut names = self.channels.iter().map(|known| known.name.as_deref());
-        if let Some(known) = names.position(|known| known == name) {
-            return Ok(known);
-        }
-        let (most, called) = self.most;
-        if self.channels.len() == most {
-            return Err(format!("more than {most} {called}"));
-        }
-        self.channels.push(ChannelInfo {
-            name: name.map(str::to_owned),
-            ..info()
-        });
-        self.frames.push(0);
-        Ok(self.channels.len() - 1)
-    }
-
-    pub(super) fn number(&mut self, channel: usize, frame: &mut Frame) {
-        frame.channel = channel;
-        frame.number = self.frames[channel];
-        self.frames[channel] += 1;
-    }
-
-    /// Returns the channels that were added since the last call, to report them.
-    pub(in crate::formats) fn take_new(&mut self) -> &[ChannelInfo] {
-        let reported = std::mem::replace(&mut self.reported, self.channels.len());
-        &self.channels[reported..]
-    }
-}
 
 /// A choice of the requested channel, or else of the first one. If the stream has no channels, all frames are taken.
 #[derive(Clone, Debug, Default)]

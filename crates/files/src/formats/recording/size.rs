@@ -65,61 +65,6 @@ pub(super) fn stated(key: &str, mark: char, value: &str, line: u64) -> Result<u1
     })
 }
 
-/// The number of successive frames after which another size becomes the size, if none was given.
-const AGAIN: u8 = 3;
-
-/// The size of the frames of a stream of text: the given one, or that of its first frame.
-///
-/// A frame of another size is dropped and counted, like a torn one. However, the first frame may have been something
-/// else, such as a version number, or the sensor may have been reconfigured: if no size was given, a size that
-/// arrives three times in succession becomes the size.
-#[derive(Clone, Debug)]
-pub(in crate::formats) struct StreamSize {
-    /// The current rows and columns: the given ones, otherwise those of the first whole frame, until others arrive
-    /// repeatedly.
-    present: Option<FrameSize>,
-    is_named: bool,
-    other: Option<(FrameSize, u8)>,
-}
-
-impl StreamSize {
-    /// Starts with the given rows and columns, if any.
-    pub(in crate::formats) fn new(named: Option<FrameSize>) -> Self {
-        Self {
-            present: named,
-            is_named: named.is_some(),
-            other: None,
-        }
-    }
-
-    pub(in crate::formats) fn admit(&mut self, own: FrameSize) -> Result<(), String> {
-        let size = *self.present.get_or_insert(own);
-        if own == size {
-            self.other = None;
-            return Ok(());
-        }
-        if self.is_named {
-            self.other = None;
-            return Err(other_than(own, size));
-        }
-        let times = match self.other {
-            Some((other, times)) if other == own => times + 1,
-            _ => 1,
-        };
-        if times < AGAIN {
-            self.other = Some((own, times));
-            return Err(changed(own, size));
-        }
-        (self.present, self.other) = (Some(own), None);
-        Ok(())
-    }
-
-    /// Notes a frame that is not whole, which interrupts a succession of frames of another size.
-    pub(in crate::formats) fn pass_torn(&mut self) {
-        self.other = None;
-    }
-}
-
 /// The decimals of a distance in mm: a picometre is smaller than any atom.
 const DECIMALS: i32 = 9;
 

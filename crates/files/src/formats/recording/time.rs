@@ -1,4 +1,4 @@
-//! Reads the times of frames. Names of fields with times are found by [`field_role`].
+//! Reads the times of frames.
 //!
 //! Nanoseconds since 1970 have more digits than a float, so numbers are subtracted as they are written: in whole
 //! picoseconds. A number with an exponent, or with more than 20 digits, is taken as the nearest float.
@@ -8,8 +8,6 @@
 //! 2024-05-01T12:00:00.125Z      2024/05/01 12:00:00+02:00     12:00:00.125
 //! ```
 //! Dates that begin with the day or the month are not read, because 01.02. and 02/01 may be the same day.
-
-pub(super) mod field_role;
 
 use std::ops::Range;
 
@@ -31,8 +29,6 @@ pub enum TimeUnit {
     Milliseconds,
     /// s
     Seconds,
-    /// min
-    Minutes,
 }
 
 impl TimeUnit {
@@ -53,7 +49,6 @@ impl TimeUnit {
             Self::Microseconds => "microseconds",
             Self::Milliseconds => "milliseconds",
             Self::Seconds => "seconds",
-            Self::Minutes => "minutes",
         }
     }
 
@@ -63,7 +58,6 @@ impl TimeUnit {
             Self::Microseconds => 1_000_000,
             Self::Milliseconds => 1_000_000_000,
             Self::Seconds => 1_000_000_000_000,
-            Self::Minutes => 60_000_000_000_000,
         }
     }
 
@@ -75,7 +69,6 @@ impl TimeUnit {
             Self::Microseconds => number / 1e6,
             Self::Milliseconds => number / 1e3,
             Self::Seconds => number,
-            Self::Minutes => number * 60.0,
         }
     }
 
@@ -374,7 +367,7 @@ mod tests {
             (1.0, TimeUnit::Nanoseconds, Some(1e-9)),
             (1e-10, TimeUnit::Milliseconds, None),
             (1e-10, TimeUnit::Seconds, None),
-            (1e308, TimeUnit::Minutes, None),
+            (1e308, TimeUnit::Seconds, None),
             (0.0, TimeUnit::Seconds, None),
             (-0.1, TimeUnit::Seconds, None),
             (f64::NAN, TimeUnit::Seconds, None),
