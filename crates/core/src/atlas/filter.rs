@@ -316,26 +316,21 @@ impl SortDirection {
 /// of their first poses, and those without a value come last.
 pub fn sorted(atlas: &Atlas, by: SortKey<'_>, direction: SortDirection) -> Vec<u32> {
     let count = narrow(atlas.len());
-    let summaries = |of: fn(&ImprintSummary) -> u16| -> Vec<u64> {
+    let summaries = |of: fn(&ImprintSummary) -> u16| -> Vec<Option<f64>> {
         let all = atlas.summaries().iter();
-        all.map(|summary| of(summary).into()).collect()
+        all.map(|summary| Some(of(summary).into())).collect()
     };
+    #[expect(clippy::cast_precision_loss, reason = "poses are below 2⁵³")]
     let keys = match by {
-        SortKey::FirstPose => (0..count).map(u64::from).collect(),
-        SortKey::Poses => atlas.counts().collect(),
+        SortKey::FirstPose => (0..count).map(|id| Some(f64::from(id))).collect(),
+        SortKey::Poses => atlas.counts().map(|count| Some(count as f64)).collect(),
         SortKey::Pieces => summaries(|summary| summary.pieces),
         SortKey::Holes => summaries(|summary| summary.holes),
-        SortKey::Value(values) => return by_value(count, values, direction),
+        SortKey::Value(values) => values.to_vec(),
     };
-    let mut ids: Vec<(u64, u32)> = keys.into_iter().zip(0..count).collect();
+    let keys = keys.into_iter().chain(std::iter::repeat(None));
+    let mut ids: Vec<(Option<f64>, u32)> = keys.zip(0..count).collect();
     // The sort is stable, and the numbers are in order already. Many keys are equal, which makes a stable sort faster.
-    ids.sort_by(|(one, _), (other, _)| direction.apply(one.cmp(other)));
-    ids.into_iter().map(|(_, id)| id).collect()
-}
-
-fn by_value(count: u32, values: &[Option<f64>], direction: SortDirection) -> Vec<u32> {
-    let values = values.iter().copied().chain(std::iter::repeat(None));
-    let mut ids: Vec<(Option<f64>, u32)> = values.zip(0..count).collect();
     ids.sort_by(|(one, _), (other, _)| match (one, other) {
         (Some(one), Some(other)) => direction.apply(one.total_cmp(other)),
         (Some(_), None) => Ordering::Less,

@@ -254,8 +254,8 @@ impl Model {
 /// A confusion matrix: how many touches of each shape are named as which shape.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ConfusionMatrix {
-    /// For each shape, the names that its touches are given, in the order of the set, with the number of touches.
-    rows: Vec<Vec<(usize, u128)>>,
+    /// For each shape, the names that its touches are given, with the number of touches.
+    rows: Vec<BTreeMap<usize, u128>>,
     /// The sum of each column.
     named: Vec<u128>,
 }
@@ -263,18 +263,14 @@ pub struct ConfusionMatrix {
 impl ConfusionMatrix {
     pub(super) fn new(shapes: usize) -> Self {
         Self {
-            rows: vec![Vec::new(); shapes],
+            rows: vec![BTreeMap::new(); shapes],
             named: vec![0; shapes],
         }
     }
 
     pub(super) fn add(&mut self, touched: usize, named: usize, touches: u128) {
         self.named[named] += touches;
-        let row = &mut self.rows[touched];
-        match row.binary_search_by_key(&named, |&(name, _)| name) {
-            Ok(index) => row[index].1 += touches,
-            Err(index) => row.insert(index, (named, touches)),
-        }
+        *self.rows[touched].entry(named).or_default() += touches;
     }
 
     /// Returns the number of shapes.
@@ -284,20 +280,19 @@ impl ConfusionMatrix {
 
     /// Returns how many touches of one shape are named as another one; 0 if there is no such shape.
     pub fn get(&self, touched: usize, named: usize) -> u128 {
-        let row = self.rows.get(touched).map_or(&[][..], Vec::as_slice);
-        let found = row.binary_search_by_key(&named, |&(name, _)| name);
-        found.map_or(0, |index| row[index].1)
+        let row = self.rows.get(touched);
+        row.and_then(|row| row.get(&named).copied())
+            .unwrap_or_default()
     }
 
     /// Returns how many touches of a shape got any name; 0 if there is no such shape.
     pub fn touches_of(&self, shape: usize) -> u128 {
-        let row = self.rows.get(shape).into_iter().flatten();
-        row.map(|&(_, touches)| touches).sum()
+        self.rows.get(shape).map_or(0, |row| row.values().sum())
     }
 
     /// Returns how many touches are named as a shape; 0 if there is no such shape.
     pub fn touches_named(&self, shape: usize) -> u128 {
-        self.named.get(shape).into_iter().sum()
+        self.named.get(shape).copied().unwrap_or_default()
     }
 
     /// Iterates over the cells above 0, row by row: (touched shape, named shape, touches).
@@ -305,7 +300,7 @@ impl ConfusionMatrix {
         let rows = self.rows.iter().enumerate();
         rows.flat_map(|(touched, row)| {
             let cells = row.iter();
-            cells.map(move |&(named, touches)| (touched, named, touches))
+            cells.map(move |(&named, &touches)| (touched, named, touches))
         })
     }
 
@@ -314,7 +309,7 @@ impl ConfusionMatrix {
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = Vec<u128>> + ExactSizeIterator {
         self.rows.iter().map(|row| {
             let mut cells = vec![0; self.shapes()];
-            for &(named, touches) in row {
+            for (&named, &touches) in row {
                 cells[named] = touches;
             }
             cells

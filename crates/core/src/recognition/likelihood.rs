@@ -102,36 +102,32 @@ impl Model {
 
     /// Returns the index of the first shape of the set none of whose imprints fits on a matrix of this size.
     pub fn first_too_large(&self, size: MatrixSize) -> Option<usize> {
-        self.touches_on(size)
-            .iter()
-            .position(|&touches| touches == 0)
+        let touches = self.touches_on(size);
+        touches.iter().position(|&touches| touches == 0)
     }
 
     /// Returns, for each shape of the set, how many of its poses leave an imprint that does not fit on a matrix of
     /// this size. [`Self::recognition_rate`] draws no such touches.
     pub fn poses_too_large(&self, size: MatrixSize) -> Vec<u64> {
-        let mut too_large = vec![0; self.shapes().len()];
-        for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
-            if own.width > size.columns() || own.height > size.rows() {
-                for (sum, poses) in too_large.iter_mut().zip(poses) {
-                    *sum += poses;
-                }
-            }
-        }
-        too_large
+        self.sums_by_shape(size, |shifts| u64::from(shifts == 0))
     }
 
     /// Returns the number of touches of each shape on a matrix of this size: its poses, in every place where they
     /// fit.
     fn touches_on(&self, size: MatrixSize) -> Vec<u64> {
-        let mut totals = vec![0; self.shapes().len()];
+        self.sums_by_shape(size, |shifts| shifts)
+    }
+
+    /// Adds up the poses of each shape; one whose key has this number of places on a matrix counts `times`.
+    fn sums_by_shape(&self, size: MatrixSize, times: fn(u64) -> u64) -> Vec<u64> {
+        let mut sums = vec![0; self.shapes().len()];
         for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
-            let shifts = shift_count((own.width, own.height), size);
-            for (total, poses) in totals.iter_mut().zip(poses) {
-                *total += poses * shifts;
+            let times = times(shift_count((own.width, own.height), size));
+            for (sum, poses) in sums.iter_mut().zip(poses) {
+                *sum += poses * times;
             }
         }
-        totals
+        sums
     }
 
     /// Returns the number of pairs of a key and a place on a matrix of this size.

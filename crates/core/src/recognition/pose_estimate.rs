@@ -175,12 +175,10 @@ struct SeenPose {
 /// at most `most` of them. Distances are in units of the standard deviation of x, y and angle.
 fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<SeenPose> {
     let distance = |own: &SeenPose| {
+        // In units of the deviation; 0 if there is none.
         let over = |from: f64, deviation: f64| {
-            if deviation > 0.0 {
-                from / deviation
-            } else {
-                0.0
-            }
+            let share = from / deviation;
+            if deviation > 0.0 { share } else { 0.0 }
         };
         let [x, y, angle] = own.place;
         let dx = over(x - estimate.position[0], estimate.standard_deviation[0]);
@@ -193,7 +191,8 @@ fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<
         let da = turned.unwrap_or_default();
         dx * dx + dy * dy + da * da
     };
-    seen.sort_by_cached_key(|own| (ordered(distance(own)), own.number));
+    // The bits of numbers that are not negative are in the order of the numbers.
+    seen.sort_by_cached_key(|own| (distance(own).max(0.0).to_bits(), own.number));
     let (mut held, mut count) = (0_u128, 0);
     while count < seen.len() && (count == 0 || held * 100 < u128::from(estimate.poses) * 95) {
         held += u128::from(seen[count].weight);
@@ -212,11 +211,6 @@ fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<
     });
     seen.truncate(most);
     seen
-}
-
-/// Maps distances to integers in the same order.
-fn ordered(distance: f64) -> u64 {
-    distance.max(0.0).to_bits()
 }
 
 #[expect(
