@@ -139,7 +139,7 @@ impl Begun {
         match self {
             Self::Content(content) => Ok(Exported::Content(content)),
             Self::File(file) => {
-                let said = written(file.path());
+                let said = written(&file.path);
                 file.persist()?;
                 Ok(Exported::Said(said))
             }

@@ -5,7 +5,6 @@
 //! that is killed leaves its temporary file; a program that writes into the folder a day later removes it.
 
 use std::collections::BTreeSet;
-use std::ffi::OsString;
 use std::fmt::Display;
 use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -57,7 +56,8 @@ pub fn check_writable(path: &Path, existing: Existing) -> Result<(), FileError> 
 #[derive(Debug)]
 #[must_use = "only `persist` gives the file its name"]
 pub struct NewFile {
-    path: PathBuf,
+    /// The path that the file will have.
+    pub path: PathBuf,
     existing: Existing,
     /// What is written here is the content.
     pub output: BufWriter<File>,
@@ -113,11 +113,6 @@ impl NewFile {
         written.map_err(|error| FileError::new("write", path, error))?;
         file.finish()?;
         Ok(file)
-    }
-
-    /// The path that the file will have.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Writes out and syncs the content, so that naming the file hardly ever fails.
@@ -200,14 +195,16 @@ pub(crate) fn wrong(path: &Path, error: impl Display) -> ReadError {
     ReadError::new(format!("{}: {error}", path.display()))
 }
 
-/// The names of everything in a folder; none if the folder does not exist, or if a file is where a folder above it
-/// would be.
-pub(crate) fn names_in(folder: &Path) -> Result<Vec<OsString>, FileError> {
-    let files = match fs::read_dir(folder) {
+/// The paths of everything in a folder, sorted; none if the folder does not exist, or if a file is where a folder above
+/// it would be.
+pub(crate) fn paths_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let paths: io::Result<Vec<PathBuf>> = match fs::read_dir(folder) {
         Err(error) if is_missing(&error) && !folder.exists() => return Ok(Vec::new()),
-        files => files.and_then(|files| files.map(|file| Ok(file?.file_name())).collect()),
+        files => files.and_then(|files| files.map(|file| Ok(file?.path())).collect()),
     };
-    files.map_err(|error| FileError::new("read the folder", folder, error))
+    let mut paths = paths.map_err(|error| FileError::new("read the folder", folder, error))?;
+    paths.sort();
+    Ok(paths)
 }
 
 /// Makes a folder and the folders above it, and syncs the one that it is in.

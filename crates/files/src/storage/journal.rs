@@ -16,7 +16,7 @@ use taxel_core::lock::locked;
 use crate::formats::file::{has_ending, is_missing};
 use crate::formats::shape::StoredShape;
 use crate::storage::error::FileError;
-use crate::storage::file::{Existing, FileId, NewFile, folder_of, make_folder, names_in, open};
+use crate::storage::file::{Existing, FileId, NewFile, folder_of, make_folder, open, paths_in};
 use crate::storage::library::Library;
 
 pub(super) const FOLDER: &str = ".journal";
@@ -41,8 +41,7 @@ impl Journal {
     /// Creates a journal in a library, under a name that no program has used, also none of the same process number that
     /// has died.
     pub fn new(library: &Library) -> Self {
-        let now = SystemTime::now().duration_since(UNIX_EPOCH);
-        let now = now.map_or(0, |now| now.as_nanos());
+        let now = UNIX_EPOCH.elapsed().map_or(0, |now| now.as_nanos());
         let name = format!("{now}-{}.json", std::process::id());
         Self {
             path: library.folder().join(FOLDER).join(name),
@@ -104,12 +103,10 @@ impl Orphan {
     /// The work that waits in a library, that of the newest program last. Work that is identical to the saved shape of
     /// its name is left out. Leaves a journal alone if it cannot be read: it may be of a later version.
     pub fn all(library: &Library) -> Vec<Self> {
-        let folder = library.folder().join(FOLDER);
         // A folder that cannot be read must not keep the program from starting.
-        let mut names = names_in(&folder).unwrap_or_default();
-        names.sort();
-        let journals = names.into_iter().filter(|name| has_ending(name, "json"));
-        let works = journals.map(|name| Self::of(library, folder.join(name)));
+        let paths = paths_in(&library.folder().join(FOLDER)).unwrap_or_default();
+        let journals = paths.into_iter().filter(|path| has_ending(path, "json"));
+        let works = journals.map(|path| Self::of(library, path));
         works.flatten().flatten().collect()
     }
 

@@ -2,13 +2,12 @@
 //! restoring.
 
 use std::collections::HashSet;
-use std::ffi::OsString;
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::UNIX_EPOCH;
 
 use taxel_core::quote::did_you_mean;
 use xxhash_rust::xxh3::xxh3_64;
@@ -16,7 +15,7 @@ use xxhash_rust::xxh3::xxh3_64;
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::{MAX_BYTES, StoredShape};
 use crate::storage::error::{FileError, LibraryError};
-use crate::storage::file::{self, Existing, make_folder, names_in, open, sync_folder};
+use crate::storage::file::{self, Existing, make_folder, open, paths_in, sync_folder, wrong};
 use crate::storage::{models, shipped};
 
 const TRASH: &str = ".trash";
@@ -155,9 +154,8 @@ impl Library {
     }
 
     fn own_names(&self) -> Result<Vec<String>, FileError> {
-        let files = names_in(&self.folder)?.into_iter();
-        let own = files.filter_map(|file| Some(name_of(file.to_str()?)?.to_owned()));
-        Ok(own.collect())
+        let files = paths_in(&self.folder)?.into_iter();
+        Ok(files.filter_map(|path| name_of(&path)).collect())
     }
 
     /// The name of the user's shape, spelled as in its file; None if the user has none of that name.
@@ -189,15 +187,14 @@ impl Library {
                 let content = read(&path)?;
                 (path, content, ShapeOrigin::Own)
             }
-            (None, Some((shipped, text))) => (
-                self.path(shipped),
-                text.as_bytes().to_vec(),
-                ShapeOrigin::Shipped,
-            ),
+            (None, Some((shipped, text))) => {
+                let content = text.as_bytes().to_vec();
+                (self.path(shipped), content, ShapeOrigin::Shipped)
+            }
             (None, None) => return Err(LibraryError::Unknown(name.to_string())),
         };
-        let shape = StoredShape::read(&content)
-            .map_err(|error| LibraryError::Refused(format!("{}: {error}", path.display())))?;
+        let shape = StoredShape::read(&content);
+        let shape = shape.map_err(|error| LibraryError::Refused(wrong(&path, error).message))?;
         // A file that was renamed by hand goes by its new name.
         let stem = path.file_stem().map(|stem| stem.to_string_lossy());
         Ok(LoadedShape {
@@ -253,23 +250,14 @@ impl Library {
     fn lock(&self) -> Result<File, FileError> {
         let path = self.folder.join(LOCK);
         let refuse = |error| FileError::new("lock", &path, error);
-        let file = File::options()
-            .read(true)
-            .write(true)
-            .create(true)
-            .open(&path);
+        let mut options = File::options();
+        let opened = options.append(true).create(true).open(&path);
         // A file of another user that may only be read can be locked, too.
-        let file = file.or_else(|error| File::open(&path).map_err(|_| error));
+        let file = opened.or_else(|error| File::open(&path).map_err(|_| error));
         let file = file.map_err(refuse)?;
-        let locked = match file.try_lock() {
-            Err(TryLockError::WouldBlock) => {
-                self.waits.store(true, Ordering::Relaxed);
-                let locked = file.lock();
-                self.waits.store(false, Ordering::Relaxed);
-                locked
-            }
-            locked => locked.map_err(io::Error::from),
-        };
+        self.waits.store(true, Ordering::Relaxed);
+        let locked = file.lock();
+        self.waits.store(false, Ordering::Relaxed);
         locked.map_err(refuse)?;
         Ok(file)
     }
@@ -338,8 +326,7 @@ impl Library {
         let folder = self.folder.join(TRASH);
         make_folder(&folder)?;
         let deleted = self.trash()?;
-        let now = SystemTime::now().duration_since(UNIX_EPOCH);
-        let now = now.map_or(0, |now| u64::try_from(now.as_millis()).unwrap_or(u64::MAX));
+        let now = UNIX_EPOCH.elapsed().map_or(0, |now| now.as_millis());
         // Later than all others, even if the clock was set back.
         let last = deleted.first().map_or(0, |(time, _)| *time);
         put(&self.in_trash(now.max(last.saturating_add(1)), name))?;
@@ -353,18 +340,18 @@ impl Library {
 
     /// The times when the shapes in the trash were deleted, in milliseconds since 1970, and their names, the last deleted
     /// first.
-    fn trash(&self) -> Result<Vec<(u64, String)>, FileError> {
-        let deleted = |file: OsString| {
-            let (name, time) = file.to_str()?.strip_suffix(".json")?.rsplit_once('-')?;
+    fn trash(&self) -> Result<Vec<(u128, String)>, FileError> {
+        let deleted = |path: PathBuf| {
+            let (name, time) = path.file_stem()?.to_str()?.rsplit_once('-')?;
             Some((time.parse().ok()?, Name::new(name).ok()?.to_string()))
         };
-        let files = names_in(&self.folder.join(TRASH))?.into_iter();
-        let mut shapes: Vec<(u64, String)> = files.filter_map(deleted).collect();
+        let files = paths_in(&self.folder.join(TRASH))?.into_iter();
+        let mut shapes: Vec<(u128, String)> = files.filter_map(deleted).collect();
         shapes.sort_by(|one, other| other.cmp(one));
         Ok(shapes)
     }
 
-    fn in_trash(&self, time: u64, name: &str) -> PathBuf {
+    fn in_trash(&self, time: u128, name: &str) -> PathBuf {
         self.folder.join(TRASH).join(format!("{name}-{time}.json"))
     }
 
@@ -426,14 +413,13 @@ impl Library {
     /// # Errors
     /// If the folder exists but cannot be read.
     pub fn foreign_files(&self) -> Result<Vec<PathBuf>, LibraryError> {
-        let is_foreign = |name: &OsString| {
-            let name = name.to_string_lossy();
-            !name.starts_with('.') && name != models::FOLDER && name_of(&name).is_none()
+        let is_foreign = |path: &PathBuf| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            !name.starts_with('.') && name != models::FOLDER && name_of(path).is_none()
         };
-        let mut foreign = names_in(&self.folder)?;
+        let mut foreign = paths_in(&self.folder)?;
         foreign.retain(is_foreign);
-        foreign.sort();
-        Ok(foreign.iter().map(|name| self.folder.join(name)).collect())
+        Ok(foreign)
     }
 }
 
@@ -446,10 +432,10 @@ fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     Ok(content)
 }
 
-/// The name of the shape in a file with this name; None if it is not `NAME.json`.
-fn name_of(file: &str) -> Option<&str> {
-    let name = file.strip_suffix(".json")?;
-    Name::new(name).is_ok().then_some(name)
+/// The name of the shape in a file; None if the file is not called `NAME.json`.
+fn name_of(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?.strip_suffix(".json")?;
+    Some(Name::new(name).ok()?.to_string())
 }
 
 /// A small file in the library's folder in which the screen keeps its memory between runs: one entry per line, the

@@ -22,7 +22,7 @@ use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape, model_header, read_model, write_model};
 use crate::storage::error::FileError;
 use crate::storage::file::{
-    self, Existing, check_writable, make_folder, names_in, open, sync_folder, wrong,
+    self, Existing, check_writable, make_folder, open, paths_in, sync_folder, wrong,
 };
 use crate::storage::shipped;
 
@@ -111,16 +111,13 @@ impl ModelFolder {
     /// # Errors
     /// The system's error, except if the folder does not exist.
     pub fn list(&self) -> Result<Vec<(Name, PathBuf)>, FileError> {
-        let own = names_in(&self.own)?
-            .into_iter()
-            .map(|file| self.own.join(file));
-        let earlier = names_in(&self.earlier).unwrap_or_default().into_iter();
-        let earlier = earlier.map(|file| self.earlier.join(file));
+        let mut paths = paths_in(&self.own)?;
+        paths.extend(paths_in(&self.earlier).unwrap_or_default());
         let named = |path: PathBuf| {
             let name = Name::new(path.file_stem()?.to_str()?).ok()?;
             (path.extension()? == ENDING).then_some((name, path))
         };
-        let mut models: Vec<(Name, PathBuf)> = own.chain(earlier).filter_map(named).collect();
+        let mut models: Vec<(Name, PathBuf)> = paths.into_iter().filter_map(named).collect();
         // Of two of the same name, the one in the library comes first.
         models.sort_by_cached_key(|(name, _)| (folded(name.as_str()), name.clone()));
         models.dedup_by(|next, first| next.0 == first.0);
@@ -151,11 +148,10 @@ impl ModelFolder {
     /// The file that a model of this name gets.
     fn target(&self, name: &Name, existing: Existing) -> Result<PathBuf, FileError> {
         match self.find(name) {
-            Some(path) if existing == Existing::Kept => Err(FileError::new(
-                "write",
-                &path,
-                ErrorKind::AlreadyExists.into(),
-            )),
+            Some(path) if existing == Existing::Kept => {
+                let exists = ErrorKind::AlreadyExists.into();
+                Err(FileError::new("write", &path, exists))
+            }
             Some(path) if path.starts_with(&self.own) => Ok(path),
             _ => Ok(self.own.join(format!("{name}.{ENDING}"))),
         }
@@ -346,12 +342,7 @@ impl fmt::Display for ModelChoice {
 /// The message for an unknown set; it lists the built-in sets and the stored models.
 pub fn unknown_set(name: &str, stored: &[Name]) -> String {
     let own = ModelChoice::BUILT_IN.iter().map(ModelChoice::name);
-    let is_own = |stored: &&Name| {
-        let mut own = ModelChoice::BUILT_IN.iter();
-        own.any(|own| stored.same(own.name()))
-    };
-    let stored = stored.iter().filter(|stored| !is_own(stored));
-    let all: Vec<&str> = own.chain(stored.map(Name::as_str)).collect();
+    let all: Vec<&str> = own.chain(stored.iter().map(Name::as_str)).collect();
     format!(
         "no model or file named {:?}; models: {}{}",
         shortened(name),
@@ -396,7 +387,7 @@ mod tests {
         let save = |existing| models.save(&model, &name, existing);
         models.check(&name, Existing::Kept).expect("free");
         assert_eq!(
-            names_in(folder.path()).expect("read").len(),
+            paths_in(folder.path()).expect("read").len(),
             0,
             "nothing is left"
         );
@@ -435,7 +426,7 @@ mod tests {
             .save(&model, &name, Existing::Replaced)
             .expect("written");
         assert_eq!(path, folder.path().join("library/models/set.npz"));
-        assert_eq!(names_in(&earlier).expect("read"), ["Set.npz"]);
+        assert_eq!(paths_in(&earlier).expect("read"), [earlier.join("Set.npz")]);
         assert_eq!(models.find(&name), Some(path));
     }
 

@@ -170,7 +170,7 @@ impl PoseFile {
     /// The first error.
     pub fn finish(mut self) -> Result<Option<NewFile>, FileError> {
         match self.error {
-            Some(error) => Err(FileError::new("write", self.file.path(), error)),
+            Some(error) => Err(FileError::new("write", &self.file.path, error)),
             None if self.missing > 0 => Ok(None),
             None => {
                 self.file.finish()?;
