@@ -8,6 +8,7 @@ use std::{env, fs, thread};
 
 use taxel_core::imprint::Imprint;
 use taxel_core::sensor::Sensor;
+use taxel_files::acquire::metadata_beside;
 use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Expected, Library, LibraryError, Orphan, ShapeOrigin};
@@ -106,20 +107,19 @@ impl State {
     /// The number of frames in the array, and whether it is described. Checks that the frames are whole, and that the
     /// description is that of the array.
     pub(crate) fn recorded(&self) -> (usize, bool) {
-        let array = fs::read(self.place().join("touch.npy")).expect("there is always one");
+        let path = self.place().join("touch.npy");
+        let array = fs::read(&path).expect("there is always one");
         let frames = array::records(&array).expect("a header");
         let start = array::start(&array).expect("a header");
         let is_new = String::from_utf8_lossy(&array[..start]).contains("'number'");
         // A record of a recording begins with its time and its number, 8 bytes each.
         let record = 4 * 8 + if is_new { 16 } else { 0 };
         assert!(array.len() >= start + frames * record);
-        let text = fs::read(self.place().join("touch.json"));
-        if let Ok(text) = &text {
-            let json: serde_json::Value = serde_json::from_slice(text).expect("whole");
-            let source = json["source"].as_str().expect("a source");
-            assert_eq!(source.ends_with("new.txt"), is_new);
+        let metadata = metadata_beside(&path).expect("whole");
+        if let Some(metadata) = &metadata {
+            assert_eq!(metadata.source.ends_with("new.txt"), is_new);
         }
-        (frames, text.is_ok())
+        (frames, metadata.is_some())
     }
 
     /// Kills a program some time after its first save. Returns the last numbers that it printed after "saved" and

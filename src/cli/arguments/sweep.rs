@@ -133,7 +133,7 @@ fn atlas() -> Arg {
         "FILE",
         "Write the atlas, a list of all imprints found, as\n.csv, .jsonl or .npz",
     )
-    .value_parser(OsStringValueParser::new().try_map(|path| atlas_path(path)))
+    .value_parser(OsStringValueParser::new().try_map(atlas_path))
 }
 
 impl SweepArguments {

@@ -28,8 +28,7 @@ impl ShapeDescriptor {
     /// Iterates over all of them, in the order of [`DESCRIPTORS`].
     pub fn all() -> impl Iterator<Item = Self> {
         let all = 0..DESCRIPTORS.len();
-        all.filter(|&row| !DESCRIPTORS[row].of_place)
-            .map(Self)
+        all.filter(|&row| !DESCRIPTORS[row].of_place).map(Self)
     }
 
     /// Returns the row of the descriptor in the table.

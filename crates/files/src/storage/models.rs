@@ -270,6 +270,9 @@ pub enum ModelChoice {
     File(PathBuf),
 }
 
+/// The name, the shapes and the steps of a set that needs no file.
+type BuiltIn = (&'static str, fn() -> Vec<NamedShape>, GridSteps);
+
 impl ModelChoice {
     /// The choices that need no file.
     pub const BUILT_IN: &'static [Self] = &[Self::Figures, Self::EqualFigures, Self::Shipped];
@@ -285,8 +288,7 @@ impl ModelChoice {
         Name::new(text).map_or_else(|_| Self::File(text.into()), Self::from_name)
     }
 
-    /// The name, the shapes and the steps of a built-in set.
-    fn built_in(&self) -> Option<(&'static str, fn() -> Vec<NamedShape>, GridSteps)> {
+    fn built_in(&self) -> Option<BuiltIn> {
         match self {
             Self::Figures => Some(("figures", default_figures, GridSteps::FINE)),
             Self::EqualFigures => Some(("figures-30", equal_figures, GridSteps::FINE)),
