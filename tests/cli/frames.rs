@@ -263,9 +263,10 @@ fn missing_rows_and_columns_are_asked_for_and_a_crop_must_fit() {
     unanswered(
         "plain.csv",
         "--rows 4 --columns 4",
-        "found 22 values, expected 16",
+        "22 numbers a line, expected 16 (or 4 for a row): which is the time? --time-column N",
     );
-    let list = &answered("plain.csv", "--rows 4 --columns 5 --json")[0]["channels"][0];
+    let columns = "--rows 4 --columns 5 --label-column 21 --time-column 22:ms";
+    let list = &answered("plain.csv", &format!("{columns} --json"))[0]["channels"][0];
     assert_eq!((&list["rows"], &list["columns"]), (&4.into(), &5.into()));
     let crop = "--frame 0 --at-least 9 --json --crop 1,1,2x2 --turn 90";
     assert_eq!(
@@ -436,13 +437,11 @@ fn an_empty_field_at_either_end_of_a_line_is_a_missing_cell() {
     let flags = "--rows 1 --columns 3 --at-least 1";
     let row = |row: &str| serde_json::json!([row]);
     for (text, frames) in [
-        ("1,2,3\n4,5,\n", ["###", "##."]),
-        ("1,2,\n4,5,6\n", ["##.", "###"]),
-        ("1,2,\n4,5,\n", ["##.", "##."]),
+        ("r0c0,r0c1,r0c2\n1,2,3\n4,5,\n", ["###", "##."]),
         (",2,3\n4,,6\n", [".##", "#.#"]),
         ("r0c0\tr0c1\tr0c2\n\t2\t3\n4\t5\t\n", [".##", "##."]),
-        ("1\t2\t3\n\t2\t\n", ["###", ".#."]),
-        // Tabs around a whole line are no cells.
+        // A separator at the end is no cell, nor are tabs around a whole line.
+        ("1,2,3,\n4,5,6,\n", ["###", "###"]),
         ("\t1\t2\t3\t\n\t4\t5\t6\t\n", ["###", "###"]),
     ] {
         let found = imprints_of("ends.csv", text.as_bytes(), flags);
@@ -471,7 +470,7 @@ fn no_frame_is_exported_if_a_later_one_cannot_be() {
 }
 
 /// Rows of four cells, each with a label; 7 occurs twice.
-const LABELLED: &str = "label,a,b,c,d\n7,1,0,0,0\n7,1,1,0,0\n8,1,1,1,0\n";
+const LABELLED: &str = "label,s0,s1,s2,s3\n7,1,0,0,0\n7,1,1,0,0\n8,1,1,1,0\n";
 
 #[test]
 fn a_frame_is_saved_or_exported_by_its_label() {
@@ -921,7 +920,7 @@ fn a_column_of_numbers_is_a_recording_if_rows_and_columns_are_given() {
     super::refused(
         &read(column, "--rows 2 --columns 2"),
         1,
-        "standard input: line 1: found 1 value, expected 4",
+        "standard input: line 1: 1 number a line, expected 4 (or 2 for a row)",
     );
 }
 

@@ -199,7 +199,7 @@ fn a_wrong_frame_in_a_growing_file_is_counted_and_the_watch_goes_on() {
             "",
             &rows,
             &[
-                "garbage\n1 2\n3 4\n\n",
+                "garbage 1\n3 4\n\n",
                 "1 2\n\n",
                 "1 2\n3\n\n",
                 "1 2\n3 4\n5 6\n7 8\n\n",
@@ -772,37 +772,24 @@ fn noise_and_greetings_before_the_first_frame_do_not_affect_the_format() {
 fn the_message_says_why_lines_of_numbers_are_not_frames() {
     let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
     let said = failure("watch - --once --rows 2 --columns 2", timed);
-    let expected = "35 bytes but no frame; the last one dropped: 5 numbers, expected 4 for a frame of 2 rows of 2, or 2 for a row";
+    let expected = "35 bytes but no frame; the last one dropped: line 3: 5 numbers a line, expected 4 (or 2 for a row): which is the time?";
     assert!(said.contains(expected), "{said}");
     for (line, text) in [
         ("watch - --once", "1,2\r3,4\r\r5,6\r7,8\r"),
         ("watch - --once --rows 2 --columns 2", "1,2,3,4\r5,6,7,8\r"),
     ] {
         let said = failure(line, text);
-        let expected =
-            "bytes but no frame; the last one dropped: ends in CR alone, expected LF or CR LF";
+        let expected = "text whose lines end in CR alone (save it with LF or CR LF)";
         assert!(said.contains(expected), "{said}");
     }
-    let ragged = "1 2 3\n4 5\n6 7 8 9\n\n".repeat(3);
-    let said = failure("watch - --once", ragged);
-    assert!(
-        said.contains("the last one dropped: row 2 has 2 numbers, expected 3"),
-        "{said}"
-    );
     let wide = ("1 ".repeat(600) + "\n").repeat(2) + "\n";
+    let expected = "600 numbers a line, but the rows and columns of a frame are not stated: --rows 24 --columns 25 for a frame a line";
     let said = failure("watch - --once", wide.repeat(3));
-    let expected = "the last one dropped: 600 numbers a row, expected at most 512";
     assert!(said.contains(expected), "{said}");
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("wide.txt");
     fs::write(&file, wide.repeat(3)).expect("written");
     let said = failure(&format!("frames {}", file.display()), "");
-    let expected = "600 numbers a line, but the rows and columns of a frame, each at most 512, are not stated (";
-    assert!(said.contains(expected), "{said}");
-    let timed = "0.1\n1 2\n3 4\n\n0.2\n1 2\n3 4\n\n";
-    let said = failure("watch - --once", timed);
-    let expected = "26 bytes but no frame; the last one dropped: found one value above rows of numbers; if it is the time of a \
-                    frame, begin such lines with #";
     assert!(said.contains(expected), "{said}");
 }
 

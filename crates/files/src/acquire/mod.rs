@@ -180,7 +180,11 @@ fn stream(
     session: &RefCell<Session<'_, '_>>,
 ) -> Result<(), ReadError> {
     let comes_back = source.comes_back() && session.borrow().options.playback != Playback::Once;
-    let mut reader = StreamReader::new(options);
+    // The format of a recording was found already.
+    let mut reader = match &opened {
+        Some(_) => StreamReader::of_recording(options),
+        None => StreamReader::new(options),
+    };
     let mut next = match opened {
         Some(opened) => Some(opened),
         None => first_input(source, &mut session.borrow_mut())?,

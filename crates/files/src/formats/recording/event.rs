@@ -391,6 +391,10 @@ impl<E: Into<ReadError>> From<E> for Stop {
 #[derive(Debug, Default)]
 pub(in crate::formats) struct ReadState {
     channels: Vec<(ChannelInfo, u64)>,
+    /// The number of channels that were not reported: the one without a name of a stream that names none.
+    unreported: usize,
+    /// Whether a channel without a name is reported only beside others.
+    pub(in crate::formats::recording) hides_unnamed: bool,
     /// The layout of the table, whose header is not repeated.
     pub(in crate::formats::recording) layout: Option<TableLayout>,
     lacks_time: bool,
@@ -441,7 +445,15 @@ impl<'a> Sink<'a> {
             name: name.map(str::to_owned),
             ..info()
         };
-        self.event(RecordingEvent::Channel(&info))?;
+        if name.is_none() && self.state.channels.is_empty() && self.state.hides_unnamed {
+            self.state.unreported = 1;
+        } else {
+            let hidden = std::mem::take(&mut self.state.unreported);
+            let hidden = self.state.channels[..hidden].to_vec();
+            for info in hidden.iter().map(|(info, _)| info).chain([&info]) {
+                self.event(RecordingEvent::Channel(info))?;
+            }
+        }
         self.state.channels.push((info, 0));
         Ok(self.state.channels.len() - 1)
     }

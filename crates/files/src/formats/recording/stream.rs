@@ -65,8 +65,16 @@ const STEP: usize = 64;
 const MOST_LINES: usize = 64;
 
 impl StreamReader {
-    /// Prepares for the first byte. Wrong frames are always left out and reported as [`RecordingEvent::Damage`].
+    /// Prepares for the first byte of a stream. Wrong frames are always left out and reported as
+    /// [`RecordingEvent::Damage`]; a channel without a name is reported only beside others.
     pub fn new(options: &ReadOptions) -> Self {
+        let mut reader = Self::of_recording(options);
+        reader.state.hides_unnamed = true;
+        reader
+    }
+
+    /// Prepares for a recording that grows: like a stream, but each channel is reported.
+    pub fn of_recording(options: &ReadOptions) -> Self {
         let size = options.size.or(options.stream_size);
         let options = ReadOptions {
             size,
@@ -184,6 +192,10 @@ fn look(
             return match format_of(head, true) {
                 Some(format) => Ok(Some(format)),
                 None if head.is_empty() || options.is_joined && count == 0 => Ok(None),
+                None if options.size.is_none() && str::from_utf8(head).is_err() => {
+                    let message = "bytes of no known format: those of boards need --rows and --columns, text needs --format";
+                    Err(ReadError::new(message).of_kind(ReadErrorKind::Unsized))
+                }
                 None => Err(refused(head)),
             };
         }

@@ -148,6 +148,7 @@ pub(super) fn read(
         options,
         sink,
         is_one: false,
+        is_inside: options.is_joined,
     }
     .read()
 }
@@ -166,6 +167,7 @@ pub fn read_rows(mut text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<()
         options,
         sink,
         is_one: true,
+        is_inside: options.is_joined,
     })
     .read()
     {
@@ -180,6 +182,8 @@ struct Table<'a, 'b> {
     sink: &'a mut Sink<'b>,
     /// Whether the whole table is a single frame.
     is_one: bool,
+    /// Whether the next line may be inside a frame: the stream was joined there, and no frame has ended since.
+    is_inside: bool,
 }
 
 /// What a line is.
@@ -231,6 +235,8 @@ struct Columns {
     label: Option<usize>,
     sensors: Vec<Sensor>,
     left_out: Vec<usize>,
+    /// Whether one or two cells may be a sensor, if nothing else is.
+    takes_few: bool,
 }
 
 /// The cells of a channel: their columns in the order of the cells.
@@ -380,7 +386,8 @@ impl Table<'_, '_> {
             let (number, line) = (self.lines.number(), self.lines.line());
             let (_, fields) = bare(line);
             if is_blank(fields) {
-                comment = None;
+                // Names stand right above the numbers; a greeting may not.
+                (above, comment, self.is_inside) = (None, None, false);
                 continue;
             }
             if is_comment(fields) {
@@ -496,7 +503,7 @@ impl Table<'_, '_> {
         let mut held: Vec<(u64, Vec<u8>)> = Vec::new();
         // The rows since the last end of a frame, those of the frame before it, and all of them.
         let (mut rows, mut before, mut all, mut bytes) = (0_usize, 0_usize, 0_usize, 0);
-        let (mut is_joined, mut has_ended) = (self.options.is_joined, false);
+        let mut has_ended = false;
         // The rows of a frame, if these are parted.
         let block = loop {
             let is_wide = cells >= most && !self.is_one && all > usize::from(is_live);
@@ -535,10 +542,10 @@ impl Table<'_, '_> {
             }
             let is_row = matches!(kind, Line::Fields(..));
             let is_break = matches!(kind, Line::Break);
-            if is_break && is_joined {
+            if is_break && std::mem::take(&mut self.is_inside) {
                 // What precedes the first end of a frame is the rest of one.
                 held.clear();
-                (rows, all, is_joined) = (0, 0, false);
+                (rows, all) = (0, 0);
             }
             // A file is parted if more follows; of a live stream, the first frame may be torn.
             let is_block = if is_live {
@@ -626,7 +633,7 @@ impl Table<'_, '_> {
         let mut row = 0;
         let mut is_parted = layout.is_parted;
         // What was joined anywhere begins inside a frame.
-        let mut skipping = layout.in_rows && self.options.is_joined;
+        let mut skipping = layout.in_rows && self.is_inside;
         let mut start = Start::default();
         loop {
             let more = self.advance()?;
@@ -984,6 +991,7 @@ impl Columns {
             label,
             sensors: Vec::new(),
             left_out: Vec::new(),
+            takes_few: options.size.is_none_or(|size| size.cells() < 3),
         };
         if columns.names.is_some() {
             columns.find_named(first)?;
@@ -1033,9 +1041,7 @@ impl Columns {
             if is_beside || column == 0 && name.is_empty() {
                 continue;
             }
-            let Some(cell) =
-                CellName::of(name).filter(|_| self.separator.is_numeric(first[column]))
-            else {
+            let Some(cell) = CellName::of(name) else {
                 self.left_out.push(column);
                 continue;
             };
@@ -1061,7 +1067,7 @@ impl Columns {
         let has_sensor = groups.iter().any(is_sensor);
         let (sensors, small): (Vec<_>, Vec<_>) = groups.into_iter().partition(|group| {
             let is_grid = group.1.keys().all(|numbers| numbers.len() == 2);
-            is_sensor(group) || !has_sensor && is_grid
+            is_sensor(group) || !has_sensor && is_grid && self.takes_few
         });
         self.left_out
             .extend(small.iter().flat_map(|(_, cells)| cells.values()));
