@@ -80,8 +80,11 @@ impl ExportFormat {
     }
 }
 
+type Begins = fn(&[u8]) -> bool;
+type Reader = fn(&[u8]) -> Result<Imprint, ReadError>;
+
 /// How each format begins, and how it is read.
-const READERS: [(fn(&[u8]) -> bool, fn(&[u8]) -> Result<Imprint, ReadError>); 4] = [
+const READERS: [(Begins, Reader); 4] = [
     (is_text, read_text),
     (pbm::begins, pbm::read),
     (table::begins, table::read),

@@ -19,6 +19,7 @@ use crate::formats::record::{ONE_KEY, Record};
 /// The task in a line: a figure, a picture or a whole matrix, perhaps with its own sensor; or the values of a real
 /// sensor with a threshold.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 pub enum Job {
     /// Touch a source with a sensor.
     Touch(Sensor, Source),

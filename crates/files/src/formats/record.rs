@@ -87,20 +87,13 @@ impl Record {
         let Some((key, _)) = keys.into_iter().chain(foreign).find(|(_, given)| *given) else {
             return Ok(());
         };
-        let article = if thing.starts_with(['e', 'i', 'o']) {
-            "an"
-        } else {
-            "a"
-        };
-        let expected = match parameters {
-            [] => String::new(),
-            known => format!(
-                ", expected {}",
-                joined(known.iter().map(|known| known.row().key), "or")
-            ),
+        let known = joined(parameters.iter().map(|known| known.row().key), "or");
+        let expected = match known.as_str() {
+            "" => String::new(),
+            known => format!(", expected {known}"),
         };
         Err(ReadError::new(format!(
-            "{key}: does not belong to {article} {thing}{expected}"
+            "{key}: does not belong to {thing:?}{expected}"
         )))
     }
 

@@ -122,7 +122,7 @@ mod tests {
             ("# only\n", "expected 1 to 64 rows of '#' and '.'"),
             (
                 &"1\n".repeat(99),
-                "line 65: expected 1 to 64 rows of '#' and '.'",
+                "expected 1 to 64 rows of '#' and '.'",
             ),
             (
                 &"1,".repeat(65),
