@@ -8,13 +8,13 @@
 //! of the data, so it shows that a message is damaged, but not which one: messages are reported as they are read,
 //! then the error.
 
-use std::io::{self, BufReader, Read, Take};
+use std::io::{self, BufReader, ErrorKind, Read, Take};
 
 use flate2::CrcReader;
-use taxel_core::index::wide;
+use taxel_core::index::{index, wide};
 use taxel_core::quote::shortened_message;
 
-use crate::error::ReadError;
+use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::recording::event::Stop;
 use crate::formats::recording::ros::MCAP_MAGIC;
 
@@ -106,11 +106,27 @@ pub(super) fn each_record(
     };
     let read = pass_over(&mut input, MCAP_MAGIC.len() as u64)
         .and_then(|()| reader.records(&mut input, Container::File));
-    read.map_err(|error| match error {
-        RecordsError::Torn => {
-            ReadError::new("the file ends without a footer: it was not closed").into()
-        }
-        RecordsError::Other(end) => end,
+    in_words(
+        read,
+        TORN,
+        "the file ends without a footer: it was not closed",
+    )
+}
+
+/// The errors of bytes that end within a record, or before the footer.
+const TORN: &[ErrorKind] = &[ErrorKind::UnexpectedEof];
+
+/// The errors of unpacking.
+const PACKED: &[ErrorKind] = &[ErrorKind::Other, ErrorKind::InvalidData];
+
+/// Says what an error of one of these kinds means.
+fn in_words(read: Result<(), Stop>, kinds: &[ErrorKind], message: &str) -> Result<(), Stop> {
+    read.map_err(|stop| match stop {
+        Stop::Failed(ReadError {
+            kind: ReadErrorKind::Io(kind),
+            ..
+        }) if kinds.contains(&kind) => ReadError::new(message).into(),
+        stop => stop,
     })
 }
 
@@ -127,48 +143,6 @@ enum Container {
     Chunk,
 }
 
-#[derive(Debug)]
-enum RecordsError {
-    /// The bytes end within a record, or the file ends before its footer.
-    Torn,
-    Other(Stop),
-}
-
-impl From<Stop> for RecordsError {
-    fn from(end: Stop) -> Self {
-        Self::Other(end)
-    }
-}
-
-impl RecordsError {
-    fn damaged(message: impl Into<String>) -> Self {
-        Self::Other(ReadError::new(message).into())
-    }
-
-    /// Converts an error among the records of a chunk: if all bytes of the chunk were there, the file is not torn.
-    fn within_chunk(self, is_whole: bool) -> Self {
-        match self {
-            Self::Torn if is_whole => Self::damaged("a record reaches beyond its chunk"),
-            error => error,
-        }
-    }
-}
-
-/// Fills all of `bytes`.
-fn whole(input: &mut dyn Read, bytes: &mut [u8]) -> Result<(), RecordsError> {
-    input.read_exact(bytes).map_err(refused)
-}
-
-fn refused(error: io::Error) -> RecordsError {
-    match error.kind() {
-        io::ErrorKind::UnexpectedEof => RecordsError::Torn,
-        io::ErrorKind::Other | io::ErrorKind::InvalidData => {
-            RecordsError::damaged("a chunk cannot be unpacked")
-        }
-        _ => RecordsError::Other(error.into()),
-    }
-}
-
 /// The head of a chunk, before its records.
 struct ChunkHead {
     size: u64,
@@ -179,20 +153,20 @@ struct ChunkHead {
 }
 
 impl ChunkHead {
-    fn read(input: &mut dyn Read) -> Result<Self, RecordsError> {
+    fn read(input: &mut dyn Read) -> Result<Self, ReadError> {
         // Start, end, size, checksum, length of the compression's name.
         let mut head = [0; 32];
-        whole(input, &mut head)?;
+        input.read_exact(&mut head)?;
         let size = head[16..24].try_into().map_or(0, u64::from_le_bytes);
         let word = |at: usize| head[at..at + 4].try_into().map_or(0, u32::from_le_bytes);
         let (checksum, length) = (word(24), word(28));
         let mut name = vec![0; wide(length.min(40))];
-        whole(input, &mut name)?;
+        input.read_exact(&mut name)?;
         let mut records = [0; 8];
-        whole(input, &mut records)?;
+        input.read_exact(&mut records)?;
         let compression = String::from_utf8_lossy(&name).into_owned();
         if size > LARGEST_CHUNK {
-            return Err(RecordsError::damaged("a chunk of more than 1 GiB"));
+            return Err(ReadError::new("a chunk of more than 1 GiB"));
         }
         Ok(Self {
             size,
@@ -211,57 +185,53 @@ fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
     Some((str::from_utf8(text).ok()?, rest))
 }
 
-fn check_sum(stated: u32, found: u32, of: &str) -> Result<(), RecordsError> {
+fn check_sum(stated: u32, found: u32, of: &str) -> Result<(), ReadError> {
     if stated == 0 || stated == found {
         return Ok(());
     }
     let message = format!("the checksum of {of} does not hold, so a message in it is damaged");
-    Err(RecordsError::damaged(message))
+    Err(ReadError::new(message))
 }
 
 /// Skips `length` bytes.
-fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordsError> {
-    let passed = io::copy(&mut Read::take(input, length), &mut io::sink()).map_err(refused)?;
-    if passed < length {
-        Err(RecordsError::Torn)
-    } else {
-        Ok(())
+fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), Stop> {
+    if io::copy(&mut Read::take(input, length), &mut io::sink())? < length {
+        return Err(io::Error::from(ErrorKind::UnexpectedEof).into());
     }
+    Ok(())
 }
 
 impl RecordReader<'_> {
-    fn records(
-        &mut self,
-        input: &mut SummedInput<'_>,
-        within: Container,
-    ) -> Result<(), RecordsError> {
+    fn records(&mut self, input: &mut SummedInput<'_>, within: Container) -> Result<(), Stop> {
         loop {
             let sum = input.crc().sum();
             let mut head = [0; 9];
-            if within == Container::Chunk && input.read(&mut head[..1]).map_err(refused)? == 0 {
+            if within == Container::Chunk && input.read(&mut head[..1])? == 0 {
                 return Ok(());
             }
             let known = usize::from(within == Container::Chunk);
-            whole(input, &mut head[known..])?;
+            input.read_exact(&mut head[known..])?;
             let [kind, length @ ..] = head;
             let length = u64::from_le_bytes(length);
             match kind {
                 FOOTER if within == Container::File => {
                     pass_over(input, length)?;
                     let mut magic = [0; MCAP_MAGIC.len()];
-                    whole(input, &mut magic)?;
-                    let is_whole = magic == MCAP_MAGIC;
-                    return is_whole.then_some(()).ok_or(RecordsError::Torn);
+                    input.read_exact(&mut magic)?;
+                    return match magic {
+                        MCAP_MAGIC => Ok(()),
+                        _ => Err(io::Error::from(ErrorKind::UnexpectedEof).into()),
+                    };
                 }
                 CHUNK if within == Container::File => self.chunk(input)?,
                 DATA_END if within == Container::File && length == 4 => {
                     let mut stated = [0; 4];
-                    whole(input, &mut stated)?;
+                    input.read_exact(&mut stated)?;
                     check_sum(u32::from_le_bytes(stated), sum, "the file")?;
                 }
                 MESSAGE if length > LARGEST_RECORD => {
                     let mut channel = [0; 2];
-                    whole(input, &mut channel)?;
+                    input.read_exact(&mut channel)?;
                     let channel = u16::from_le_bytes(channel);
                     (self.each)(McapRecord::LargeMessage { channel })?;
                     pass_over(input, length - 2)?;
@@ -272,23 +242,20 @@ impl RecordReader<'_> {
         }
     }
 
-    fn record(&mut self, input: &mut dyn Read, kind: u8, length: u64) -> Result<(), RecordsError> {
+    fn record(&mut self, input: &mut dyn Read, kind: u8, length: u64) -> Result<(), Stop> {
         if length > LARGEST_RECORD {
-            return Err(RecordsError::damaged("a record of more than 16 MiB"));
+            return Err(ReadError::new("a record of more than 16 MiB").into());
         }
-        self.record.clear();
-        let read = input.take(length).read_to_end(&mut self.record);
-        if (read.map_err(refused)? as u64) < length {
-            return Err(RecordsError::Torn);
-        }
+        self.record.resize(index(length), 0);
+        input.read_exact(&mut self.record)?;
         let record = McapRecord::of(kind, &self.record);
-        let record = record.ok_or_else(|| RecordsError::damaged("a record is broken"))?;
-        Ok((self.each)(record)?)
+        (self.each)(record.ok_or_else(|| ReadError::new("a record is broken"))?)
     }
 
-    fn chunk(&mut self, input: &mut dyn Read) -> Result<(), RecordsError> {
+    fn chunk(&mut self, input: &mut dyn Read) -> Result<(), Stop> {
         let head = ChunkHead::read(input)?;
         let mut packed = Read::take(&mut *input, head.length);
+        let broken = "a chunk cannot be unpacked";
         let read = match head.compression.as_str() {
             "" => self.unpacked(&head, Read::take(&mut packed, head.length)),
             "lz4" => {
@@ -300,36 +267,37 @@ impl RecordReader<'_> {
                     &mut packed,
                     LARGEST_WINDOW,
                 );
-                let unpacked =
-                    unpacked.map_err(|_| RecordsError::damaged("a chunk cannot be unpacked"))?;
+                let unpacked = unpacked.map_err(|_| ReadError::new(broken))?;
                 self.unpacked(&head, unpacked.take(head.size))
             }
             other => {
                 let message =
                     format!("chunks are compressed with {other:?}, expected lz4, zstd or none");
-                return Err(RecordsError::damaged(shortened_message(&message)));
+                return Err(ReadError::new(shortened_message(&message)).into());
             }
         };
-        read.map_err(|error| error.within_chunk(packed.limit() == 0))?;
         let left = packed.limit();
+        in_words(within(read, left == 0), PACKED, broken)?;
         pass_over(&mut packed, left)
     }
 
-    fn unpacked(
-        &mut self,
-        head: &ChunkHead,
-        unpacked: Take<impl Read>,
-    ) -> Result<(), RecordsError> {
+    fn unpacked(&mut self, head: &ChunkHead, unpacked: Take<impl Read>) -> Result<(), Stop> {
         let mut unpacked = BufReader::new(unpacked);
         let mut summed = SummedInput::new(&mut unpacked);
         let read = self.records(&mut summed, Container::Chunk);
         let found = summed.crc().sum();
         let is_whole = unpacked.get_ref().limit() == 0;
-        read.map_err(|error| error.within_chunk(is_whole))?;
+        within(read, is_whole)?;
         // A chunk that lacks bytes is torn; the next read reports that.
         if is_whole {
             check_sum(head.checksum, found, "a chunk")?;
         }
         Ok(())
     }
+}
+
+/// Says what is wrong with the records of a chunk that are torn: if all its bytes were there, the file is not torn.
+fn within(read: Result<(), Stop>, is_whole: bool) -> Result<(), Stop> {
+    let kinds = if is_whole { TORN } else { &[] };
+    in_words(read, kinds, "a record reaches beyond its chunk")
 }
