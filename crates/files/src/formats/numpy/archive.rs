@@ -82,9 +82,10 @@ impl<R: Read + Seek> ArrayReader<R> {
         for index in 0..archive.len() {
             let file = archive.by_index(index).map_err(refused)?;
             let name = file.name().map_err(refused)?;
+            let name = name.trim_end_matches(".npy");
             // Decompressed, a short file could fill all memory.
             if file.compression() != CompressionMethod::Stored {
-                let name = shortened(&name);
+                let name = shortened(name);
                 let expected = "expected one as taxel writes it, without compression";
                 return Err(ReadError::new(format!(
                     "array {name:?} is compressed, {expected}"
@@ -92,7 +93,7 @@ impl<R: Read + Seek> ArrayReader<R> {
             }
             // Arrays that share their bytes could take for ever.
             let left = rest.checked_sub(file.compressed_size());
-            rest = left.ok_or_else(|| damaged(&name))?;
+            rest = left.ok_or_else(|| damaged(name))?;
         }
         let read = Vec::new();
         Ok(Self { archive, read })

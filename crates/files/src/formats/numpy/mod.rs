@@ -220,9 +220,8 @@ impl Field {
         } else {
             size
         };
-        let sides = self.sides.iter();
-        let count = sides.map(|&side| usize::try_from(side).ok());
-        count.fold(Some(size), |product, side| product?.checked_mul(side?))
+        let mut sides = self.sides.iter().map(|&side| usize::try_from(side).ok());
+        sides.try_fold(size, |product, side| product.checked_mul(side?))
     }
 }
 

@@ -224,8 +224,11 @@ mod tests {
     use super::*;
     use crate::formats::recording::{RecordingEvent, read};
 
-    /// The values and times of the frames; or the error.
-    fn found(text: &str) -> Result<Vec<(Vec<f64>, Option<f64>)>, String> {
+    /// The values and the time of a frame.
+    type Found = (Vec<f64>, Option<f64>);
+
+    /// The frames; or the error.
+    fn found(text: &str) -> Result<Vec<Found>, String> {
         let mut frames = Vec::new();
         let read = read(Cursor::new(text), &ReadOptions::default(), &mut |event| {
             if let RecordingEvent::Frame(frame) = event {

@@ -1,6 +1,7 @@
 //! The metadata beside one of taxel's own recordings: `touch.json` says where the frames of `touch.npy` come from,
 //! their unit, and how they were viewed.
 
+use std::fmt::Display;
 use std::num::NonZeroU32;
 
 use serde::ser::Serializer;
@@ -123,7 +124,9 @@ impl DescribedRule {
     fn set(self) -> Result<SetRule, ReadError> {
         let (rule, least) = match self {
             Self::Set(rule) => return Ok(rule),
-            Self::Noise { noise, least } => (Rule::noise(noise).map_err(wrong)?, least),
+            Self::Noise { noise, least } => {
+                (Rule::noise(noise).map_err(|error| wrong(&error))?, least)
+            }
             Self::Other(record) => (record.rule()?, record.least),
         };
         Ok(SetRule {
@@ -134,7 +137,7 @@ impl DescribedRule {
     }
 }
 
-fn wrong(error: impl ToString) -> ReadError {
+fn wrong(error: &dyn Display) -> ReadError {
     ReadError::new(error.to_string())
 }
 
@@ -168,7 +171,7 @@ impl RecordingMetadata {
     }
 
     fn of(described: Described) -> Result<Self, ReadError> {
-        let in_key = |key| move |error| wrong(error).of_key(key);
+        let in_key = |key| move |error: String| wrong(&error).of_key(key);
         let rule = described.rule.map(DescribedRule::set).transpose();
         let tare = described.tare.map(|rows| {
             let spread = described.tare_spread.map(|rows| matrix(&rows)).transpose();
@@ -176,7 +179,7 @@ impl RecordingMetadata {
             let baseline = matrix(&rows).map_err(in_key("tare"))?;
             let frames = described.tare_frames.filter(|&frames| frames > 0);
             let tare = Tare::from_parts(baseline, spread, described.tare_step, frames.unwrap_or(1));
-            tare.map_err(|error| wrong(error).of_key("tare"))
+            tare.map_err(|error| wrong(&error).of_key("tare"))
         });
         Ok(Self {
             source: shortened_message(&described.source),

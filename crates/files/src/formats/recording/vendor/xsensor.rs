@@ -63,10 +63,10 @@ struct XsensorState {
     time: Option<f64>,
     times: FrameClock,
     block: Block,
-    rows: Option<u16>,
-    columns: Option<u16>,
-    width_mm: Option<f64>,
-    height_mm: Option<f64>,
+    /// `Columns` and `Rows`.
+    sides: [Option<u16>; 2],
+    /// `Sensel Width` and `Sensel Height` in mm.
+    pitches: [Option<f64>; 2],
 }
 
 pub(in crate::formats::recording) fn read(
@@ -155,8 +155,7 @@ impl XsensorState {
             "TIME" => self.clock = Some(value.to_owned()),
             "SENSOR" => {
                 self.block = Block::Sensor(Some(value.to_owned()));
-                (self.rows, self.columns) = (None, None);
-                (self.width_mm, self.height_mm) = (None, None);
+                (self.sides, self.pitches) = ([None; 2], [None; 2]);
             }
             "GROUP" => self.block = Block::Group { cells: 0, left: 0 },
             "CELLS" => {
@@ -169,15 +168,10 @@ impl XsensorState {
                 if self.block == Block::Other {
                     self.block = Block::Sensor(None);
                 }
-                let side = Some(stated(key, ' ', value, number)?);
-                *(if key == "ROWS" {
-                    &mut self.rows
-                } else {
-                    &mut self.columns
-                }) = side;
+                self.sides[usize::from(key == "ROWS")] = Some(stated(key, ' ', value, number)?);
             }
-            _ if key.starts_with("SENSEL WIDTH") => self.width_mm = length(),
-            _ if key.starts_with("SENSEL HEIGHT") => self.height_mm = length(),
+            _ if key.starts_with("SENSEL WIDTH") => self.pitches[0] = length(),
+            _ if key.starts_with("SENSEL HEIGHT") => self.pitches[1] = length(),
             _ => {}
         }
         Ok(())
@@ -189,7 +183,7 @@ impl XsensorState {
         lines: &mut TextLines<R>,
         frame: &mut Frame,
     ) -> Result<(), ReadError> {
-        let Some(size) = FrameSize::of_sides(self.columns, self.rows) else {
+        let Some(size) = FrameSize::of_sides(self.sides[0], self.sides[1]) else {
             let message = "SENSELS of a sensor without Rows and Columns";
             return Err(in_line(lines.number(), message));
         };
@@ -216,11 +210,12 @@ impl XsensorState {
         if self.sensors[0] == 0 {
             self.time = self.seconds();
         }
-        self.info.pitch_mm = self.width_mm.zip(self.height_mm).map(|(x, y)| [x, y]);
-        let beginning = self.date.as_ref().zip(self.clock.as_ref());
-        self.info.start = beginning.map(|(date, clock)| match clock.contains(':') {
-            true => format!("{date} {clock}"),
-            false => date.clone(),
+        let [x, y] = self.pitches;
+        self.info.pitch_mm = x.zip(y).map(|(x, y)| [x, y]);
+        let clock = self.clock.as_ref().zip(self.date.as_ref());
+        self.info.start = clock.map(|(clock, date)| {
+            let clock = Some(clock).filter(|clock| clock.contains(':'));
+            clock.map_or(date.clone(), |clock| format!("{date} {clock}"))
         });
         let channel = sink.channel(name.as_deref(), || self.info.clone())?;
         (frame.label, frame.time) = (self.label.clone(), self.time);
@@ -232,16 +227,14 @@ impl XsensorState {
     /// of seconds.
     fn seconds(&mut self) -> Option<f64> {
         let clock = self.clock.as_ref()?;
-        let time = match read_number(clock.as_bytes()) {
-            Some(seconds) => Time::Seconds(seconds),
-            None => {
-                let clock = of_day(clock)?;
-                let date = self.date.as_ref().and_then(|date| iso_date(date));
-                let dated = date.map(|date| format!("{date} {clock}"));
-                let moment = read_moment(dated.as_ref().unwrap_or(&clock).as_bytes())?;
-                self.times.moment(moment)
-            }
-        };
+        if let Some(seconds) = read_number(clock.as_bytes()) {
+            return Some(self.times.since_first(Time::Seconds(seconds)));
+        }
+        let clock = of_day(clock)?;
+        let date = self.date.as_ref().and_then(|date| iso_date(date));
+        let dated = date.map(|date| format!("{date} {clock}"));
+        let moment = read_moment(dated.as_ref().unwrap_or(&clock).as_bytes())?;
+        let time = self.times.moment(moment);
         Some(self.times.since_first(time))
     }
 }
