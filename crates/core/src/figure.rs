@@ -350,10 +350,12 @@ impl Figure {
                 };
                 return pen.ellipse(&ellipse, material);
             }
-            let opposite = |vector: Point<T>| Point::new(-vector.x, -vector.y);
-            let (back, up) = (opposite(across), opposite(along));
-            let corners = [(back, up), (across, up), (across, along), (back, along)];
-            pen.ring(&corners.map(|(u, v)| centre.moved(u).moved(v)), material);
+            let corner = |u: Point<T>, v: Point<T>| centre.moved(u).moved(v);
+            let back = Point::new(-across.x, -across.y);
+            let up = Point::new(-along.x, -along.y);
+            let (top_left, top_right) = (corner(back, up), corner(across, up));
+            let (bottom_right, bottom_left) = (corner(across, along), corner(back, along));
+            pen.ring(&[top_left, top_right, bottom_right, bottom_left], material);
         };
         draw(half, Side::Inside);
         if let Some((thickness, _)) = self.hole(sizes) {

@@ -52,6 +52,7 @@
 //!  sensor       columns, rows, threshold, pitch
 //!  imprint      the binary matrix: one u64 per row
 //!  matrix       one value per taxel
+//!  values       the values of a shape's parameters
 //!  figure  picture  source        the shapes that touch: seven figures, a stored imprint
 //!  touch        shape + sensor -> coverage of each taxel -> imprint
 //!  description  imprint -> regions -> DESCRIPTORS

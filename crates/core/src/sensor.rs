@@ -339,16 +339,8 @@ mod tests {
             (Parameter::Threshold, 0.5, 0.501, 0.499),
             (Parameter::Pitch, 20.0, 20.001, 19.999),
         ] {
-            assert_eq!(
-                sensor.step(parameter, value, 1),
-                up,
-                "{parameter:?} {value}"
-            );
-            assert_eq!(
-                sensor.step(parameter, value, -1),
-                down,
-                "{parameter:?} {value}"
-            );
+            let stepped = [1, -1].map(|direction| sensor.step(parameter, value, direction));
+            assert_eq!(stepped, [up, down], "{parameter:?} {value}");
         }
         assert_eq!(sensor.step(Parameter::X0, 1.236, 0), 1.24);
     }

@@ -114,10 +114,11 @@ pub fn differing(taxels: impl Into<u128>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::{counted, differing, grouped, time_in_words};
+    use crate::parameter::number;
+
     #[test]
-    fn examples_of_number() {
-        use crate::parameter::number;
-        use crate::parameter::number::{counted, differing, grouped, time_in_words};
+    fn numbers_are_read_and_written_as_people_do() {
         assert_eq!(number::read(" 1.5 "), Some(1.5));
         assert_eq!(
             (number::read("2,5"), number::read("inf"), number::read("")),

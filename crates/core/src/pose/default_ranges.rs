@@ -272,9 +272,9 @@ impl Reach {
                 end || start && given[axis].is_none()
             };
             let [along_x, along_y] = sides_of(sensor);
-            !(sides.columns.is_none() && gains(along_x))
-                && !(sides.rows.is_none() && gains(along_y))
-                && allows(sensor, given, sources)
+            let gains_columns = sides.columns.is_none() && gains(along_x);
+            let gains_rows = sides.rows.is_none() && gains(along_y);
+            !gains_columns && !gains_rows && allows(sensor, given, sources)
         };
         let mut enough = sides.sensors().map(at).filter(is_enough);
         enough.next().unwrap_or_else(|| at(sides.largest()))

@@ -19,13 +19,6 @@ pub struct CountedImprints {
     pub partly_off: u64,
 }
 
-impl PartialEq for CountedImprints {
-    fn eq(&self, other: &Self) -> bool {
-        (self.poses, self.partly_off) == (other.poses, other.partly_off)
-            && self.iter().eq(other.iter())
-    }
-}
-
 impl CountedImprints {
     /// Returns the number of distinct imprints.
     pub fn len(&self) -> usize {

@@ -421,7 +421,6 @@ type Sample = (f64, f64);
 impl HollowEllipse {
     /// Follows the passages from the previous rows: the beginning and the end of the span, as columns of the cell
     /// relative to the shape's anchor, and those of the gap in it. None if they are not certain.
-    #[expect(clippy::type_complexity, reason = "two ends, and perhaps two more")]
     fn follow(&self, tracks: &mut Tracks) -> Option<([f64; 2], Option<[f64; 2]>)> {
         let [from, to, hole, end] = tracks;
         let (outer, threshold) = (&self.outer, self.threshold);

@@ -75,9 +75,9 @@ pub(crate) fn sweep_task(
         .collect();
     if !task.with_runs {
         // Kept for images only.
-        found
-            .iter_mut()
-            .for_each(|found| found.runs = Runs::default());
+        for found in &mut found {
+            found.runs = Runs::default();
+        }
     }
     let flow = progress.add(unreported * orientations);
     flow.is_continue().then_some(found)
