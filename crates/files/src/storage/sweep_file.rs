@@ -289,7 +289,7 @@ mod tests {
             assert!(file.take(0, &first).is_break(), "it stays so");
             let error = file.finish().expect_err("no such row").to_string();
             let expected = format!(
-                "poses.npy: row {row} with {length} numbers, expected 100 rows of 100 numbers"
+                "poses.npy: cannot write: row {row} with {length} numbers, expected 100 rows of 100 numbers"
             );
             assert!(error.ends_with(&expected), "{error}");
         }
