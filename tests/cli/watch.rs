@@ -373,44 +373,6 @@ fn frames_of_another_size_do_not_end_the_stream() {
     assert!(run.stderr.contains(said), "{}", run.stderr);
 }
 
-#[test]
-fn frames_of_another_size_are_left_out_of_a_tare() {
-    let wide = "{\"frame\":[[1,2,3]]}\n".repeat(5);
-    let square = |frames: std::ops::Range<u32>| -> String {
-        let line = |number| format!("{{\"frame\":[[{number},2],[3,4]]}}\n");
-        frames.map(line).collect()
-    };
-    let input = square(0..3) + &wide + &square(3..8);
-    let run = taxel("watch - --tare 5 --at-least 1", &input);
-    assert_eq!(run.status, Some(0), "{}", run.stderr);
-    let frames: Vec<u64> = lines(&run.stdout)
-        .iter()
-        .map(|line| line["frame"].as_u64().expect("a number"))
-        .collect();
-    assert_eq!(frames, [0, 1, 2, 6, 7, 8]);
-    for said in [
-        "standard input: frame 3 is not printed: the tare has 2 columns and 2 rows",
-        "standard input: 3 frames of another size not printed",
-    ] {
-        assert!(run.stderr.contains(said), "{said}: {}", run.stderr);
-    }
-    // If no more of the size of the first frames come, the tare is made of the others.
-    let run = taxel(
-        "watch - --tare 5 --at-least 1",
-        square(0..1) + &wide.repeat(3),
-    );
-    assert_eq!(run.status, Some(0), "{}", run.stderr);
-    let frames: Vec<_> = lines(&run.stdout)
-        .iter()
-        .map(|line| line["frame"].clone())
-        .collect();
-    assert_eq!((frames.len(), &frames[0]), (13, &1.into()));
-    // A single frame is reported once.
-    let said = "standard input: frame 0 is not printed: the tare has 3 columns and 1 row, expected 2 and 2";
-    assert!(run.stderr.contains(said), "{}", run.stderr);
-    assert!(!run.stderr.contains("not printed\n"), "{}", run.stderr);
-}
-
 /// Returns true if a program has locked a file, which is how it claims a serial line.
 fn has_locked(program: &Child, file: &Path) -> bool {
     let id = program.id().to_string();

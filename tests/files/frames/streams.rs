@@ -461,9 +461,10 @@ fn a_stream_without_rows_and_columns_is_refused() {
     assert!(message.contains("--full-length"), "{message}");
     assert_eq!(refused(&[0xff; 200]).0, ReadErrorKind::Unsized);
     assert_eq!(refused(b"hello\nworld\n").0, ReadErrorKind::UnknownFormat);
-    assert_eq!(
-        refused(b"\x93NUMPY\x01\x00").1,
-        "a recording (npy), not a stream"
+    let (_, message) = refused(b"\x93NUMPY\x01\x00");
+    assert!(
+        message.starts_with("a recording (npy), not a stream"),
+        "{message}"
     );
 }
 

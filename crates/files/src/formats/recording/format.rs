@@ -98,7 +98,7 @@ pub static FORMATS: [Format; 10] = [
         name: "ros2",
         title: "ros2 topic echo",
         stream: Some("ros2"),
-        sniff: |head, options, _| is_text(head) && echo::sniff(without_mark(head), options),
+        sniff: |head, options, _| is_text(head) && echo::sniff(text_of(head), options),
         read: Reader::Bytes(echo::read),
     },
     Format {
@@ -120,7 +120,7 @@ pub static FORMATS: [Format; 10] = [
         title: "CSV",
         stream: Some("lines"),
         sniff: |head, options, is_all| {
-            is_text(head) && table::sniff(without_mark(head), options, is_all)
+            is_text(head) && table::sniff(text_of(head), options, is_all)
         },
         read: Reader::Bytes(table::read),
     },
@@ -228,7 +228,7 @@ pub fn read(
 
 /// The error for a content of no known format.
 pub(super) fn refused(head: &[u8]) -> ReadError {
-    let text = without_mark(head).trim_ascii();
+    let text = text_of(head).trim_ascii();
     if is_parted_by_cr(head) {
         foreign("text whose lines end in CR alone (save it with LF or CR LF)")
     } else if is_bitmap(head) {
@@ -239,11 +239,17 @@ pub(super) fn refused(head: &[u8]) -> ReadError {
         ReadError::new("empty, expected a recording").of_kind(ReadErrorKind::UnknownFormat)
     } else if !text.is_empty() && text.iter().all(|byte| b"#.\r\n".contains(byte)) {
         foreign("an imprint as text (taxel describe reads it)")
-    } else if table::is_column(without_mark(head)) {
+    } else if table::is_column(text_of(head)) {
         unshaped(1, None)
     } else {
         unknown_format()
     }
+}
+
+/// The text without a byte order mark, and without the zero bytes that a truncated file begins with.
+fn text_of(head: &[u8]) -> &[u8] {
+    let zeros = head.iter().take_while(|&&byte| byte == 0).count();
+    without_mark(&head[zeros..])
 }
 
 fn has(text: &[u8], word: &[u8]) -> bool {
@@ -256,12 +262,12 @@ fn is_bitmap(head: &[u8]) -> bool {
 
 /// Whether this may be the text of a recording; zero bytes at its beginning are what a truncated file has there.
 fn is_text(head: &[u8]) -> bool {
-    let text = without_mark(head);
+    let text = text_of(head);
     !text.contains(&0) && !is_parted_by_cr(text) && !is_bitmap(text) && !text.starts_with(b"<")
 }
 
 fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    without_mark(text).split(|&byte| byte == b'\n')
+    text_of(text).split(|&byte| byte == b'\n')
 }
 
 fn is_tekscan(head: &[u8]) -> bool {
@@ -280,9 +286,9 @@ fn is_xsensor(head: &[u8]) -> bool {
 
 /// For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
 fn is_json(head: &[u8], options: &ReadOptions) -> bool {
-    let text = without_mark(head).trim_ascii_start();
+    let text = text_of(head).trim_ascii_start();
     let inside = text.strip_prefix(b"[").map(<[u8]>::trim_ascii_start);
     let is_list = inside.is_some_and(|inside| inside.starts_with(b"{"));
     let is_line = || lines(text).skip(1).any(|line| line.starts_with(b"{"));
-    !head.contains(&0) && (text.starts_with(b"{") || is_list || options.is_joined && is_line())
+    !text.contains(&0) && (text.starts_with(b"{") || is_list || options.is_joined && is_line())
 }

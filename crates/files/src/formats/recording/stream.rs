@@ -61,6 +61,9 @@ pub struct StreamReader {
 /// The bytes after which the format is looked for again, if no line ends before.
 const STEP: usize = 64;
 
+/// The first bytes, after each of which the format is looked for.
+const MARKERS: usize = 16;
+
 /// The lines after each of which the format is looked for.
 const MOST_LINES: usize = 64;
 
@@ -106,7 +109,7 @@ impl StreamReader {
     /// a line, which is then dropped; any other is that of the last line. At its end, the input must go on to end so.
     ///
     /// # Errors
-    /// If the input cannot be read, has no known format or one that only a file has ([`ReadErrorKind::UnknownFormat`]),
+    /// If the input cannot be read, has no known format ([`ReadErrorKind::UnknownFormat`]) or one that only a file has,
     /// or does not say how its values are arranged ([`ReadErrorKind::Unsized`]).
     pub fn read(
         &mut self,
@@ -140,8 +143,10 @@ impl StreamReader {
 }
 
 fn not_a_stream(format: &Format) -> ReadError {
-    ReadError::new(format!("a recording ({}), not a stream", format.name))
-        .of_kind(ReadErrorKind::UnknownFormat)
+    let name = format.name;
+    ReadError::new(format!(
+        "a recording ({name}), not a stream; save it to a file, then type taxel frames FILE"
+    ))
 }
 
 /// Takes the first bytes of a stream until they show its format, which does not depend on the pieces in which they come;
@@ -173,12 +178,17 @@ fn look(
         input.consume(count);
         let is_all = count == 0 || head.len() >= LOOKED_AT;
         loop {
-            let rest = &head[seen..];
+            let rest = &head[seen..head.len().min(LOOKED_AT)];
             let line = rest
                 .iter()
                 .position(|&byte| byte == b'\n')
                 .filter(|_| lines < MOST_LINES);
-            let step = line.map_or(STEP.max(seen / 8), |end| end + 1);
+            // Markers decide at once.
+            let step = match line {
+                _ if seen < MARKERS => 1,
+                Some(end) => end + 1,
+                None => STEP.max(seen / 8),
+            };
             if rest.len() < step {
                 break;
             }
@@ -189,10 +199,12 @@ fn look(
             }
         }
         if is_all {
+            let head = &head[..head.len().min(LOOKED_AT)];
+            let is_binary = str::from_utf8(head).is_err_and(|error| error.error_len().is_some());
             return match format_of(head, true) {
                 Some(format) => Ok(Some(format)),
                 None if head.is_empty() || options.is_joined && count == 0 => Ok(None),
-                None if options.size.is_none() && str::from_utf8(head).is_err() => {
+                None if options.size.is_none() && is_binary => {
                     let message = "bytes of no known format: those of boards need --rows and --columns, text needs --format";
                     Err(ReadError::new(message).of_kind(ReadErrorKind::Unsized))
                 }

@@ -110,7 +110,6 @@ fn is_grid_name(line: &[u8]) -> bool {
 /// Removes what is no part of the numbers of a line: the time that a serial monitor puts before them, `12:00:01.100 -> `,
 /// and brackets around all of them.
 fn bare(line: &[u8]) -> (Option<&[u8]>, &[u8]) {
-    let line = line.trim_ascii_end();
     let clock = line.get(..24).unwrap_or(line);
     let arrow = clock.windows(2).position(|pair| pair == b"->");
     let (time, line) = match arrow.map(|at| (line[..at].trim_ascii(), &line[at + 2..])) {
@@ -118,7 +117,7 @@ fn bare(line: &[u8]) -> (Option<&[u8]>, &[u8]) {
         _ => (None, line),
     };
     let begins = line.trim_ascii_start().starts_with(b"[");
-    let ends = line.trim_ascii_end().trim_ascii_end();
+    let ends = line.trim_ascii_end();
     let ends = ends.strip_suffix(b",").unwrap_or(ends).ends_with(b"]");
     if !begins && !ends {
         return (time, line);
@@ -235,8 +234,8 @@ struct Columns {
     label: Option<usize>,
     sensors: Vec<Sensor>,
     left_out: Vec<usize>,
-    /// Whether one or two cells may be a sensor, if nothing else is.
-    takes_few: bool,
+    /// The rows and columns that are given.
+    given: Option<FrameSize>,
 }
 
 /// The cells of a channel: their columns in the order of the cells.
@@ -991,7 +990,7 @@ impl Columns {
             label,
             sensors: Vec::new(),
             left_out: Vec::new(),
-            takes_few: options.size.is_none_or(|size| size.cells() < 3),
+            given: options.size,
         };
         if columns.names.is_some() {
             columns.find_named(first)?;
@@ -1063,11 +1062,13 @@ impl Columns {
                 )));
             }
         }
+        // One or two cells may be a sensor if nothing else is.
+        let takes_few = self.given.is_none_or(|size| size.cells() < 3);
         let is_sensor = |(_, cells): &(Vec<String>, CellColumns)| cells.len() > 2;
         let has_sensor = groups.iter().any(is_sensor);
         let (sensors, small): (Vec<_>, Vec<_>) = groups.into_iter().partition(|group| {
             let is_grid = group.1.keys().all(|numbers| numbers.len() == 2);
-            is_sensor(group) || !has_sensor && is_grid && self.takes_few
+            is_sensor(group) || !has_sensor && is_grid && takes_few
         });
         self.left_out
             .extend(small.iter().flat_map(|(_, cells)| cells.values()));
@@ -1081,7 +1082,11 @@ impl Columns {
                 .collect::<Vec<_>>(),
         );
         for ((_, cells), name) in sensors.into_iter().zip(channels) {
-            let grid = grid(&cells)?;
+            let grid = match grid(&cells) {
+                // The given rows and columns take them in order.
+                Err(_) if self.given.is_some_and(|size| size.cells() == cells.len()) => None,
+                grid => grid?,
+            };
             self.sensors.push(Sensor {
                 name,
                 columns: cells.into_values().collect(),
@@ -1090,7 +1095,7 @@ impl Columns {
         }
         if self.sensors.is_empty() {
             return Err(ReadError::new(
-                "no three columns have the names of cells, such as s0, s1, s2 or r0c0, r0c1, r0c2",
+                "no three columns have the names of cells, such as s0, s1, s2 or r0c0, r0c1, r0c2; without the line of names, all columns are cells",
             ));
         }
         Ok(())
@@ -1181,7 +1186,7 @@ fn grid(cells: &CellColumns) -> Result<Option<FrameSize>, ReadError> {
     size.map(Some).ok_or_else(|| {
         let found = counted(cells.len() as u64, "column");
         ReadError::new(format!(
-            "{found} named by row and column, expected one for each cell of {rows} × {columns}"
+            "{found} named by row and column, expected one for each cell of {rows} × {columns}; --rows and --columns take them in order"
         ))
     })
 }

@@ -105,7 +105,7 @@ pub(in crate::formats::recording) fn time_name(name: &str) -> Option<Option<Time
     let name = name.trim().trim_start_matches('%').to_lowercase();
     let end = name.find(|character: char| !character.is_alphabetic());
     let (word, rest) = name.split_at(end.unwrap_or(name.len()));
-    let unit = rest.trim_matches(|character: char| " _-.()[]".contains(character));
+    let unit = rest.trim_matches(|character: char| " _-.()[]/".contains(character));
     if !NAMES.contains(&word) {
         return None;
     }
