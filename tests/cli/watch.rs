@@ -114,12 +114,11 @@ fn a_stream_is_a_filter_in_a_pipeline() {
             let message = format!("{refused}; save it to a file, then type taxel frames FILE");
             super::refused(&run, 1, &message);
         }
-        // From a file, it can be read again.
         let mut child = program(&["watch", "-", "--once"], "C.UTF-8");
         let input = fs::File::open(sample(name)).expect("a sample");
         let run = child.stdin(input).output().expect("it ends");
-        let message = format!("error: {refused}; read it with taxel frames -\n");
-        assert_eq!(String::from_utf8(run.stderr), Ok(message), "{name}");
+        let said = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(said.contains(&refused), "{name}: {said}");
     }
     misused("watch - --once --speed 2", "the argument '--once'");
     misused("watch - --write touch.txt", "invalid value 'touch.txt'");

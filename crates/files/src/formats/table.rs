@@ -120,10 +120,7 @@ mod tests {
     fn errors_name_their_place() {
         for (text, message) in [
             ("# only\n", "expected 1 to 64 rows of '#' and '.'"),
-            (
-                &"1\n".repeat(99),
-                "expected 1 to 64 rows of '#' and '.'",
-            ),
+            (&"1\n".repeat(99), "expected 1 to 64 rows of '#' and '.'"),
             (
                 &"1,".repeat(65),
                 "line 1: found 65 taxels, expected 1 to 64",
