@@ -368,7 +368,7 @@ fn a_consumer_that_broke_off_while_more_was_waited_for_gets_no_more() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("r.bin");
     // The end of the file confirms its last frame.
-    fs::write(&path, b"\xaa\x55\x01\x02".repeat(4)).expect("written");
+    fs::write(&path, b"\xaa\x55\x01\x02".repeat(20)).expect("written");
     let options = AcquireOptions {
         size: Some(frame_size(1, 2)),
         ..AcquireOptions::default()
@@ -378,7 +378,7 @@ fn a_consumer_that_broke_off_while_more_was_waited_for_gets_no_more() {
         assert!(!has_ended, "{event:?}");
         match event {
             AcquireEvent::Frame { .. } => frames += 1,
-            AcquireEvent::Tick(_) => has_ended = frames == 3,
+            AcquireEvent::Tick(_) => has_ended = frames == 19,
             _ => {}
         }
         if has_ended {

@@ -289,3 +289,6 @@ fn reopened(
 fn is_invalid(error: &io::Error) -> bool {
     error.kind() == ErrorKind::InvalidInput
 }
+
+#[cfg(test)]
+mod tests;
