@@ -197,27 +197,20 @@ pub struct ArchiveKind {
 /// # Errors
 /// Returns an error if it is not an archive with such a header.
 pub fn kind_of(input: impl Read + Seek) -> Result<ArchiveKind, ReadError> {
-    #[derive(Deserialize)]
-    #[serde(expecting = "an object")]
-    struct Part {
-        shard: String,
-    }
-    let header = ArrayReader::new(input)?.header()?;
-    let format = format_in(&header)?;
-    let part: Part = parsed(&header)?;
-    let shard = part.shard.parse().map_err(in_header)?;
-    Ok(ArchiveKind { format, shard })
+    let head: Head = parsed(&ArrayReader::new(input)?.header()?)?;
+    Ok(ArchiveKind {
+        shard: head.shard.parse().map_err(in_header)?,
+        format: head.format,
+    })
 }
 
-/// Returns the format in a header, without checking the other keys.
-fn format_in(header: &[u8]) -> Result<String, ReadError> {
-    #[derive(Deserialize)]
-    #[serde(expecting = "an object")]
-    struct Format {
-        format: String,
-    }
-    let format: Format = parsed(header)?;
-    Ok(format.format)
+/// The keys that the headers of all formats have.
+#[derive(Deserialize)]
+#[serde(expecting = "an object")]
+struct Head {
+    format: String,
+    #[serde(default)]
+    shard: String,
 }
 
 fn parsed<'a, T: Deserialize<'a>>(header: &'a [u8]) -> Result<T, ReadError> {
@@ -235,7 +228,7 @@ pub(crate) fn header_of<'a, T: Deserialize<'a>>(
     expected: &'static str,
 ) -> Result<T, ReadError> {
     // Another format has other keys, so the format is reported before a missing key.
-    let found = format_in(header)?;
+    let found = parsed::<Head>(header)?.format;
     if found == expected {
         return parsed(header);
     }
