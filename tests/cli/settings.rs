@@ -323,7 +323,6 @@ fn a_bad_number_for_a_flag_is_refused_with_the_expected_range() {
             "frames a.csv --rows 0",
             "expected a whole number from 1 to 512",
         ),
-        ("frames a.csv --label nope", "expected a whole number"),
         (
             "recognise a.txt --top 9999999999",
             "the number is too large",

@@ -173,13 +173,13 @@ pub(crate) fn processing() -> [Arg; 11] {
         option(
             "time-column",
             "X[:UNIT]",
-            "Column of a table with the time: its name, or its\nnumber from 1; with s, ms, us or ns",
+            "Column with the time: its name, or its number\nfrom 1; UNIT is s, ms, us or ns",
         )
         .value_parser(str::parse::<TimeColumn>),
         option(
             "label-column",
             "X",
-            "Column of a table with the label: its name, or its\nnumber from 1",
+            "Column with the label: its name, or its number\nfrom 1",
         )
         .value_parser(str::parse::<Column>),
         option(

@@ -472,7 +472,8 @@ Examples:
   taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
   taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
   taxel frames recording.csv --noise-report --at-least 10 --export mask.txt
-  taxel frames plain.csv --rows 4 --columns 5 --crop 1,0,3x3 --json";
+  taxel frames plain.csv --rows 4 --columns 5 --label-column 21 \\
+    --time-column 22:ms --crop 1,0,3x3 --json";
 
 /// `taxel watch`: what is answered, what a stream may be, and what is recorded.
 pub(crate) const WATCH_EXAMPLES: &str = "\

@@ -5,7 +5,7 @@
 //!
 //! A listing shows what the recording states about each channel; an answer is an imprint with what was measured:
 //! ```text
-//! $ taxel frames plain.csv --rows 4 --columns 5          $ taxel frames plain.csv … --peak --at-least 3
+//! $ taxel frames plain.csv …                             $ taxel frames plain.csv … --peak --at-least 3
 //! csv, 1 channel                                             0   2   4
 //!                                                         0  · · · · ·
 //! frames    1                                             1  · ██████·
