@@ -92,6 +92,10 @@ impl TimeUnit {
 
 /// Reads the name of a column of times: `time`, `t_ms`, `Time (ms)`, `timestamp`. Returns its unit, if it has one; None
 /// for any other name. ROS writes `%time`.
+#[expect(
+    clippy::option_option,
+    reason = "a time without a unit is not the same as no time"
+)]
 pub(in crate::formats::recording) fn time_name(name: &str) -> Option<Option<TimeUnit>> {
     const NAMES: [&str; 7] = [
         "time",
