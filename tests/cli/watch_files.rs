@@ -735,8 +735,8 @@ fn the_message_says_why_lines_of_json_are_not_frames() {
         ),
     ] {
         let said = failure(line, &input);
-        let expected = format!("bytes but no frame; the last one dropped: {reason}");
-        assert!(said.contains(&expected), "{said}");
+        let expected = "bytes but no frame; the last one dropped: ";
+        assert!(said.contains(expected) && said.contains(reason), "{said}");
         assert!(!said.contains("--rows"), "{said}");
     }
 }

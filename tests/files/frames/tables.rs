@@ -425,11 +425,12 @@ fn with_rows_and_columns_a_line_is_a_frame_or_a_row() {
             error(&found)
         );
     }
-    let above = recorded(b"5 7\n1 2 3\n4 5 6\n", None);
-    assert_eq!(
-        error(&above),
-        "line 1: found 2 fields, but line 2 has 3: delete the lines above the table, or begin them with #"
-    );
+    for (text, found, fields) in [("5 7\n1 2 3\n4 5 6\n", 2, 3), ("t,s0,s1\n5,6\n7,8\n", 3, 2)] {
+        let expected = format!(
+            "line 1: found {found} fields, but line 2 has {fields}: delete the lines above the table, or begin them with #"
+        );
+        assert_eq!(error(&recorded(text.as_bytes(), None)), expected);
+    }
 }
 
 /// Returns the times of the frames of a table, and its notes.

@@ -26,20 +26,15 @@ pub(super) fn is_flexitac(head: &[u8], options: &ReadOptions, _: bool) -> bool {
         return true;
     }
     let has_marker = |at: usize| head[at..].starts_with(&MARKER);
-    match options.size {
-        Some(size) => {
-            let period = MARKER.len() + size.cells();
-            let last = head.len().saturating_sub(2 * period);
-            (0..last).any(|at| (0..3).all(|frame| has_marker(at + frame * period)))
-        }
-        None => {
-            let markers: Vec<usize> = (0..head.len()).filter(|&at| has_marker(at)).collect();
-            let is_even = |three: &[usize]| three[1] - three[0] == three[2] - three[1];
-            markers
-                .windows(3)
-                .any(|three| is_even(three) && three[1] - three[0] > 2)
-        }
+    if let Some(size) = options.size {
+        let period = MARKER.len() + size.cells();
+        let last = head.len().saturating_sub(2 * period);
+        return (0..last).any(|at| (0..3).all(|frame| has_marker(at + frame * period)));
     }
+    let markers: Vec<usize> = (0..head.len()).filter(|&at| has_marker(at)).collect();
+    let is_even = |three: &[usize]| three[1] - three[0] == three[2] - three[1];
+    let mut three = markers.windows(3);
+    three.any(|three| is_even(three) && three[1] - three[0] > 2)
 }
 
 /// Whether these are frames of a `MatSense`; text has brackets, too.
@@ -415,6 +410,7 @@ enum Part {
 }
 
 /// A frame between an end and the next one.
+#[expect(clippy::struct_excessive_bools, reason = "the states of two framings")]
 struct SplitFrame {
     framing: &'static Framing,
     cells: usize,

@@ -368,7 +368,7 @@ impl Table<'_, '_> {
                 let size = own.or(sensor.grid).or(squared);
                 layout.channels[channel].1 =
                     size.ok_or_else(|| columns.misfit(cells, given, number))?;
-                if let (None, None, Some(size)) = (own, sensor.grid, squared) {
+                if let (0, None, None, Some(size)) = (channel, own, sensor.grid, squared) {
                     self.sink
                         .note(&RecordingNote::Square { side: size.rows() })?;
                 }
@@ -422,9 +422,10 @@ impl Table<'_, '_> {
                         .map(text)
                         .collect(),
                 ),
-                // A line of text may stand above the first frame.
+                // A line of text may stand above the first frame, but not a list of words.
                 Some((at, words))
-                    if !matches!(Line::of(words, separator, found.len()), Line::Break) =>
+                    if expected > 1 && separator != Separator::Spaces
+                        || !matches!(Line::of(words, separator, found.len()), Line::Break) =>
                 {
                     return Err(above_table(*at, expected, number, found.len()).into());
                 }
@@ -652,7 +653,6 @@ impl Table<'_, '_> {
                 Line::Break
             };
             match line {
-                Line::Comment => {}
                 Line::Break if layout.in_rows => {
                     if row == height {
                         self.give(layout, &mut frames, &start)?;
@@ -666,7 +666,7 @@ impl Table<'_, '_> {
                     }
                     (row, skipping, is_parted) = (0, false, true);
                 }
-                Line::Break => {}
+                Line::Comment | Line::Break => {}
                 Line::Fields(..) if skipping => {}
                 Line::Fields(time, fields) => {
                     let filled = if row == height && layout.in_rows {
