@@ -16,6 +16,7 @@ use crate::formats::recording::error::unshaped;
 use crate::formats::recording::event::{
     ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink, Stop,
 };
+use crate::formats::recording::format::LOOKED_AT;
 
 /// The bytes before each frame of a `FlexiTac`.
 const MARKER: [u8; 2] = [0xaa, 0x55];
@@ -52,13 +53,18 @@ pub(super) fn flexitac(
     sink: &mut Sink<'_>,
 ) -> Result<(), Stop> {
     let Some(size) = options.size else {
-        let head = input.fill_buf()?;
-        let has_marker = |at: &usize| head[*at..].starts_with(&MARKER);
-        let first = (0..head.len()).find(has_marker).unwrap_or(0);
-        let next = (first + 3..head.len())
-            .find(has_marker)
-            .unwrap_or(head.len());
-        return Err(unshaped((next - first).saturating_sub(MARKER.len()) as u64, None).into());
+        let (mut head, mut ended) = (Vec::new(), false);
+        let values = loop {
+            let mut markers = (0..head.len()).filter(|&at| head[at..].starts_with(&MARKER));
+            let first = markers.next().unwrap_or(0);
+            match markers.find(|&at| at > first + MARKER.len()) {
+                None if !ended && head.len() < LOOKED_AT => {
+                    ended = take_bytes(input, LOOKED_AT - head.len(), &mut head)?;
+                }
+                next => break next.unwrap_or(head.len()) - first,
+            }
+        };
+        return Err(unshaped(values.saturating_sub(MARKER.len()) as u64, None).into());
     };
     let mut frames = MarkedFrames {
         board: Board::new(size, options, sink)?,
