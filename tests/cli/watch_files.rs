@@ -916,7 +916,7 @@ fn a_recording_without_frames_is_refused_also_with_loop() {
     fs::write(&bad, "r0c0,r0c1\n1,2\n3,x\n").expect("written");
     let run = taxel(&format!("watch {} --tare 3 --once", bad.display()), "");
     let expected = format!(
-        "{}: line 3, column 2: found \"x\", expected a number",
+        "{}: line 3, column 2: found \"x\", expected a number; if it is the label: --label-column 2",
         bad.display()
     );
     super::refused(&run, 1, &expected);

@@ -81,14 +81,18 @@ pub(super) fn sniff(head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
             return false;
         }
         let separator = Separator::of(line);
-        let (mut fields, mut numbers) = (0, 0);
+        let (mut fields, mut numbers, mut filled) = (0, 0, 0);
         for field in separator.fields(line) {
+            let is_number = separator.is_numeric(field);
             fields += 1;
-            numbers += usize::from(separator.is_numeric(field));
+            numbers += usize::from(is_number);
+            filled += usize::from(is_number && !field.trim_ascii().is_empty());
         }
+        // Spreadsheets fill lines of words, and empty ones, with separators.
+        let least = if numbers == fields { 1 } else { 2 };
         let is_one = fields == 1 && numbers == 1 && (is_named || options.size.is_some());
         is_named = fields == 1 && is_grid_name(line);
-        is_one || numbers > 1 && 2 * numbers >= fields
+        is_one || numbers > 1 && filled >= least && 2 * numbers >= fields
     })
 }
 
