@@ -111,7 +111,7 @@ fn bad_lines_are_answered_in_their_places() {
         error("11: column 22: row 2: found 1 taxel, expected 2 as in the first row"),
         error("12: column 26: duplicate key `imprint`"),
         error("13: column 66: expected value"),
-        error("14: column 25: invalid value: integer `-1`, expected a nonzero u32"),
+        error("14: column 25: invalid value: integer `-1`, expected a whole number from 1 to 4294967295"),
         error("15: column 19: invalid type: string \\\"washer\\\", expected a sequence"),
         error("16: column 26: unknown key \\\"sied\\\"; did you mean \\\"side\\\"?"),
         error(
@@ -278,7 +278,7 @@ fn a_frame_with_a_threshold_is_described() {
         lines[5]
     );
     for (line, found) in [(6, "value: integer `0`"), (7, "type: floating point `1.5`")] {
-        let expected = format!("invalid {found}, expected a nonzero u32\"}}");
+        let expected = format!("invalid {found}, expected a whole number from 1 to 4294967295\"}}");
         assert!(lines[line].ends_with(&expected), "{}", lines[line]);
     }
     assert!(

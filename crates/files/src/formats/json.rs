@@ -135,7 +135,8 @@ pub fn message(error: &serde_json::Error) -> String {
     let text = text[..end]
         .replace(|c: char| c.is_control() || is_invisible(c), "\u{fffd}")
         .replacen(" field `", " key `", 1)
-        .replacen(" variant `", " value `", 1);
+        .replacen(" variant `", " value `", 1)
+        .replacen("a nonzero u32", "a whole number from 1 to 4294967295", 1);
     // As in: unknown key `lenght`, expected one of `length`, `width`
     let mut parts = text.split('`');
     if let (Some(unknown), Some(found)) = (parts.next(), parts.next())
