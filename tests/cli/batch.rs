@@ -111,7 +111,9 @@ fn bad_lines_are_answered_in_their_places() {
         error("11: column 22: row 2: found 1 taxel, expected 2 as in the first row"),
         error("12: column 26: duplicate key `imprint`"),
         error("13: column 66: expected value"),
-        error("14: column 25: invalid value: integer `-1`, expected a whole number from 1 to 4294967295"),
+        error(
+            "14: column 25: invalid value: integer `-1`, expected a whole number from 1 to 4294967295",
+        ),
         error("15: column 19: invalid type: string \\\"washer\\\", expected a sequence"),
         error("16: column 26: unknown key \\\"sied\\\"; did you mean \\\"side\\\"?"),
         error(

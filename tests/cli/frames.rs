@@ -629,7 +629,10 @@ fn an_endless_input_is_refused_at_once() {
             "1 2 3",
             "3 numbers a line, but the rows and columns of a frame are not stated",
         ),
-        ("{\\\"frame\\\":[[1],[]]}", "line 1, column "),
+        (
+            "{\\\"frame\\\":[[1],[]]}",
+            "line 1: row 2 has 0 values, expected 1",
+        ),
         ("no recording", "error: standard input: not a recording"),
     ] {
         let script = format!("yes \"{line}\" | timeout 5 \"$0\" frames -");

@@ -22,7 +22,7 @@ fn candump() -> String {
     let mut text = String::new();
     for frame in 0..2 {
         for row in 0..8 {
-            let values = (0..8).map(|column| format!(" {:02X}", 16 * row + column + frame));
+            let values = (0..8).map(|column| format!(" {:02X}", 16 * row + column + frame + 1));
             let values: String = values.collect();
             let _ = writeln!(text, "  can0  10{row}   [8] {values}");
         }
@@ -93,7 +93,7 @@ fn every_line_that_can_be_run_works() {
             let text = String::from_utf8_lossy(&run.stdout).into_owned();
             assert_eq!(text.lines().count(), 2, "{text}");
             assert!(
-                text.contains("\"max\":119") && text.contains("\"max\":120"),
+                text.contains("\"max\":120") && text.contains("\"max\":121"),
                 "{text}"
             );
         }

@@ -221,7 +221,10 @@ fn malformed_commands_are_reported_with_their_line() {
             "Size 80x24\nSet columns 65",
             "line 2: columns: 65 is above 64",
         ),
-        ("Set shape {}", "line 1: Set shape: format: missing"),
+        (
+            "Set shape {}",
+            "line 1: Set shape: line 1, column 2: missing key `format`",
+        ),
         (
             "Set library nowhere",
             "line 1: expected a folder in double quotes, found nowhere",

@@ -302,7 +302,7 @@ actions! {
         "save" Arguments::Name;
         "seed" Arguments::Seed, "set the seed of random touches";
         "sensor" Arguments::Sensor;
-        "size" Arguments::FrameSize, "Watch: the sensor's columns and rows, if the source does not state them";
+        "size" Arguments::FrameSize, "Watch: the sensor's columns and rows";
         "turn" Arguments::Degrees, "turn the shape right; negative degrees: left";
         "watch" Arguments::FrameSource, "Watch: frames, live or recorded";
         "write" Arguments::File(FilePurpose::Write), "write an imprint, shape or drawing, by file extension";

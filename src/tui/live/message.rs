@@ -560,7 +560,7 @@ mod tests {
             ("x --baud", "--baud needs a value"),
             (
                 "x --format line",
-                "format \"line\" is unknown, expected one of lines, jsonl, ros2, flexitac, matsense; did you mean \"lines\"?",
+                "format \"line\" is unknown, expected one of jsonl, ros2, flexitac, matsense, lines; did you mean \"lines\"?",
             ),
         ] {
             assert_eq!(request(text).expect_err(text), error);

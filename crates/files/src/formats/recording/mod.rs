@@ -19,7 +19,7 @@
 //! })?;
 //! assert_eq!(format.name, "csv");
 //! assert_eq!(sums, [(Some(0.0), 10.0), (Some(0.1), 26.0)]);
-//! # Ok::<(), taxel_files::formats::recording::ReadError>(())
+//! # Ok::<(), taxel_files::ReadError>(())
 //! ```
 //!
 //! ```text
