@@ -12,7 +12,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number;
 use taxel_core::quote::shortened;
 use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
-use taxel_files::acquire::{AcquireOptions, Playback, SourceName};
+use taxel_files::acquire::{AcquireOptions, FrameSource, Playback};
 use taxel_files::formats::recording::{ChannelInfo, Format, StreamCounts};
 use taxel_files::formats::value::decimal;
 use taxel_files::storage::{Existing, ModelChoice};
@@ -193,7 +193,8 @@ impl SourceState {
 
 #[derive(Clone, Debug)]
 pub struct WatchRequest {
-    pub source: SourceName,
+    /// The source as it was named; what a path refers to is found when it is watched.
+    pub source: FrameSource,
     pub options: AcquireOptions,
     pub baud_named: bool,
     /// The processing of frames: crop, flip, turn, mask and gain.
@@ -221,7 +222,7 @@ impl PartialEq for WatchRequest {
 impl WatchRequest {
     pub fn new(source: impl AsRef<OsStr>) -> Self {
         Self {
-            source: SourceName::new(source),
+            source: FrameSource::named(source),
             options: AcquireOptions::default(),
             baud_named: false,
             processing: Processing::default(),
@@ -238,7 +239,7 @@ impl WatchRequest {
     #[must_use]
     pub fn for_source(&self, source: impl AsRef<OsStr>) -> Self {
         Self {
-            source: SourceName::new(source),
+            source: FrameSource::named(source),
             ..self.clone()
         }
     }
@@ -251,8 +252,13 @@ impl WatchRequest {
         })
     }
 
+    /// Returns the name of the source for messages, without folders.
     pub fn name(&self) -> String {
-        self.source.short()
+        let name = self.source.name();
+        match &self.source {
+            FrameSource::File(_) => name.rsplit('/').next().unwrap_or(&name).to_owned(),
+            _ => name,
+        }
     }
 }
 
@@ -515,7 +521,7 @@ mod tests {
             "my run.csv --rows 4 --columns=5 --baud 9600 --at-least 10 --channel left --speed 0.5 --model figures-30",
         );
         let whole = whole.expect("flags");
-        assert_eq!(whole.source, SourceName::new("my run.csv"));
+        assert_eq!(whole.source, FrameSource::named("my run.csv"));
         let options = &whole.options;
         assert_eq!(
             (options.size, options.baud),

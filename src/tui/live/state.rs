@@ -5,7 +5,7 @@ use std::sync::Arc;
 use taxel_core::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
 use taxel_core::recognition::Noise;
-use taxel_files::acquire::SourceName;
+use taxel_files::acquire::FrameSource;
 use taxel_files::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use taxel_files::storage::ModelChoice;
 
@@ -463,7 +463,7 @@ impl Live {
     /// Checks that the source can be watched again: a recording at any time unless it is still being written, any
     /// other source after its end.
     pub fn check_again(&self) -> Result<(), LiveRefusal> {
-        if self.request.source == SourceName::Standard {
+        if self.request.source == FrameSource::Standard {
             return Err(LiveRefusal::ReadOnce);
         }
         let is_possible =

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use taxel_core::frame::{FrameError, FrameSize, Rule};
-use taxel_files::acquire::SourceName;
+use taxel_files::acquire::FrameSource;
 use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::formats::value::{counted, grouped};
 use taxel_files::storage::{Existing, ModelChoice};
@@ -60,7 +60,7 @@ fn watch_with(app: &mut App, size: FrameSize) -> Option<Effect> {
         refuse(app, NO_SOURCE);
         return None;
     };
-    if page.request().source == SourceName::Standard {
+    if page.request().source == FrameSource::Standard {
         refuse(app, LiveRefusal::ReadOnce.to_string());
         return None;
     }
@@ -284,7 +284,7 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     page.recording.request(page.cursor.next_number());
     let channel = page.status().channel.as_deref();
     let metadata = RecordingMetadata {
-        source: page.request().source.to_string(),
+        source: page.request().source.name(),
         unit: channel.and_then(|channel| channel.unit.clone()),
         pitch_mm: channel.and_then(|channel| channel.pitch_mm),
         rule: page.rule(),
@@ -447,7 +447,7 @@ pub(in crate::tui) fn set_aside(app: &mut App) {
 pub(super) fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
     let request = source.request(&app.watch_settings);
     // A second page would have no bytes to read, and the first one and its history would be gone.
-    let reads_standard = |request: &WatchRequest| request.source == SourceName::Standard;
+    let reads_standard = |request: &WatchRequest| request.source == FrameSource::Standard;
     if reads_standard(&request) && page(app).is_some_and(|page| reads_standard(page.request())) {
         refuse(app, LiveRefusal::ReadOnce.to_string());
         return None;

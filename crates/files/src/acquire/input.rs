@@ -2,8 +2,9 @@
 
 use std::cell::RefCell;
 use std::fs::{self, File};
-use std::io::{self, BufRead, ErrorKind, Read};
+use std::io::{self, BufReader, ErrorKind, Read};
 use std::net::{TcpStream, ToSocketAddrs};
+use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -11,7 +12,7 @@ use std::time::Duration;
 use crate::acquire::clock::TICK;
 use crate::acquire::session::Session;
 use crate::acquire::source::{FrameSource, check_address};
-use crate::acquire::unix::{self, Device};
+use crate::acquire::unix;
 use crate::storage::FileId;
 
 const CHUNK: usize = 1 << 16;
@@ -24,7 +25,8 @@ const GROWTH: Duration = Duration::from_millis(50);
 
 /// An open source.
 pub(super) enum OpenSource {
-    Device(Device),
+    /// What is waited for by its descriptor.
+    Device(File),
     /// A file, and the number of bytes that were read of it.
     File {
         path: PathBuf,
@@ -51,18 +53,17 @@ impl OpenSource {
         source: &FrameSource,
         session: &mut Session<'_, '_>,
     ) -> io::Result<Option<Self>> {
-        Ok(Some(match source {
-            FrameSource::Standard => Self::Device(Device::Standard(io::stdin())),
+        let device = match source {
+            FrameSource::Standard => unix::standard_input()?,
             FrameSource::Tcp(address) => match connect_unless_stopped(address, session)? {
-                Some(stream) => Self::Device(Device::Tcp(stream)),
+                Some(stream) => OwnedFd::from(stream).into(),
                 None => return Ok(None),
             },
-            FrameSource::Serial(path) => {
-                Self::Device(Device::File(unix::open_line(path, session.options.baud)?))
-            }
-            FrameSource::Fifo(path) => Self::Device(Device::File(unix::open_fifo(path)?)),
-            FrameSource::File(path) => Self::file(path, File::open(path)?),
-        }))
+            FrameSource::Serial(path) => unix::open_line(path, session.options.baud)?,
+            FrameSource::Fifo(path) => unix::open_fifo(path)?,
+            FrameSource::File(path) => return Ok(Some(Self::file(path, File::open(path)?))),
+        };
+        Ok(Some(Self::Device(device)))
     }
 
     pub(super) fn file(path: &Path, file: File) -> Self {
@@ -74,47 +75,43 @@ impl OpenSource {
     }
 }
 
-/// A source behind a buffer; see the module.
+/// A source that is read as it comes; see the module.
 pub(super) struct WaitingInput<'s, 'a, 'b> {
     source: OpenSource,
     session: &'s RefCell<Session<'a, 'b>>,
-    buffer: Vec<u8>,
-    /// The part of the buffer that was not taken yet.
-    rest: std::ops::Range<usize>,
-    end: Option<InputEnd>,
+    /// Why it has ended; None if it was not read to its end.
+    pub(super) end: Option<InputEnd>,
 }
 
 impl<'s, 'a, 'b> WaitingInput<'s, 'a, 'b> {
-    pub(super) fn new(source: OpenSource, session: &'s RefCell<Session<'a, 'b>>) -> Self {
-        Self {
+    pub(super) fn new(
+        source: OpenSource,
+        session: &'s RefCell<Session<'a, 'b>>,
+    ) -> BufReader<Self> {
+        let end = None;
+        let input = Self {
             source,
             session,
-            buffer: vec![0; CHUNK],
-            rest: 0..0,
-            end: None,
-        }
-    }
-
-    /// Why the input has ended; None if it was not read to its end.
-    pub(super) fn end(self) -> Option<InputEnd> {
-        self.end
+            end,
+        };
+        BufReader::with_capacity(CHUNK, input)
     }
 
     /// Waits for bytes. Returns their number, or why no more come.
-    fn wait(&mut self) -> Result<usize, InputEnd> {
+    fn wait(&mut self, bytes: &mut [u8]) -> Result<usize, InputEnd> {
         loop {
             let mut session = self.session.borrow_mut();
             if session.tick().is_break() {
                 return Err(InputEnd::Stopped);
             }
             let count = match &mut self.source {
-                OpenSource::Device(device) => match device.read(&mut self.buffer, TICK) {
+                OpenSource::Device(device) => match unix::read(device, bytes, TICK) {
                     Ok(Some(0)) => return Err(InputEnd::Closed),
                     Ok(count) => count.unwrap_or(0),
                     Err(error) => return Err(InputEnd::Lost(error)),
                 },
                 OpenSource::File { path, file, offset } => {
-                    let count = read_some(file, &mut self.buffer).map_err(InputEnd::Lost)?;
+                    let count = read_some(file, bytes).map_err(InputEnd::Lost)?;
                     *offset += count as u64;
                     if count == 0 {
                         if let Some(how) = rewritten(path, file, *offset).map_err(InputEnd::Lost)? {
@@ -138,34 +135,19 @@ impl<'s, 'a, 'b> WaitingInput<'s, 'a, 'b> {
     }
 }
 
-impl BufRead for WaitingInput<'_, '_, '_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if self.rest.is_empty() && self.end.is_none() {
-            match self.wait() {
-                Ok(count) => self.rest = 0..count,
+impl Read for WaitingInput<'_, '_, '_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        if self.end.is_none() {
+            match self.wait(bytes) {
+                Ok(count) => return Ok(count),
                 Err(end) => self.end = Some(end),
             }
         }
         match self.end {
             // What was sent may have been cut off anywhere, but a file ends where it ends.
-            Some(InputEnd::Closed) if self.session.borrow().is_read_to_its_end() => Ok(&[]),
-            Some(_) => Err(ErrorKind::UnexpectedEof.into()),
-            None => Ok(&self.buffer[self.rest.clone()]),
+            Some(InputEnd::Closed) if self.session.borrow().is_read_to_its_end() => Ok(0),
+            _ => Err(ErrorKind::UnexpectedEof.into()),
         }
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.rest.start += count;
-    }
-}
-
-impl Read for WaitingInput<'_, '_, '_> {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let found = self.fill_buf()?;
-        let count = found.len().min(bytes.len());
-        bytes[..count].copy_from_slice(&found[..count]);
-        self.consume(count);
-        Ok(count)
     }
 }
 

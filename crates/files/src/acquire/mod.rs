@@ -37,7 +37,7 @@ use session::Session;
 pub use event::{AcquireEvent, AcquireOptions, AcquireSink, Playback};
 pub use rate::FrameRate;
 pub use recorder::{FrameRecorder, RecorderError, metadata_beside};
-pub use source::{FrameSource, SourceName};
+pub use source::FrameSource;
 
 /// The pause before opening a source is tried again.
 const RETRY: Duration = Duration::from_secs(1);
@@ -62,7 +62,7 @@ const RETRY: Duration = Duration::from_secs(1);
 /// # let path = folder.path().join("touch.jsonl");
 /// # std::fs::write(&path, "{\"t\":0,\"frame\":[[0,9],[0,8]]}\n{\"t\":0.01,\"frame\":[[0,9],[7,8]]}\n")?;
 /// // Or "/dev/ttyUSB0", "tcp://192.168.1.4:5000", a FIFO, or a file that grows.
-/// let source = FrameSource::new(path.as_os_str());
+/// let source = FrameSource::new(&path);
 /// // As fast as possible, then stop; without this a recording is played at its own rate.
 /// let options = AcquireOptions {
 ///     playback: Playback::Once,
@@ -199,7 +199,7 @@ fn stream(
     while let Some(opened) = next {
         let mut input = WaitingInput::new(opened, session);
         let result = reader.read(&mut input, &mut |event| session.borrow_mut().take(event));
-        let end = input.end();
+        let end = input.into_inner().end;
         let mut session = session.borrow_mut();
         session.check()?;
         if session.is_stopped() {

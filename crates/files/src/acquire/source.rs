@@ -1,7 +1,6 @@
 //! The name of a source, and its kind.
 
 use std::ffi::OsStr;
-use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -30,18 +29,36 @@ pub enum FrameSource {
 }
 
 impl FrameSource {
-    /// The source of that name. A path that does not exist counts as a file, except in `/dev` and
+    /// The source of that name, as it is found. A path that does not exist counts as a file, except in `/dev` and
     /// `/dev/serial`: there it counts as a serial line, which may be plugged in later.
-    pub fn new(name: &OsStr) -> Self {
-        Self::named(SourceName::new(name))
+    pub fn new(name: impl AsRef<OsStr>) -> Self {
+        Self::named(name).found()
     }
 
-    /// The source of that name; see [`Self::new`].
-    pub fn named(name: SourceName) -> Self {
-        let path = match name {
-            SourceName::Standard => return Self::Standard,
-            SourceName::Tcp(address) => return Self::Tcp(address),
-            SourceName::Path(path) => path,
+    /// The source of that name, without a look at the disk: each path counts as a file.
+    ///
+    /// ```
+    /// use taxel_files::acquire::FrameSource;
+    /// assert_eq!(FrameSource::named("-"), FrameSource::Standard);
+    /// let robot = FrameSource::Tcp("robot:7000".to_owned());
+    /// assert_eq!(FrameSource::named("tcp://robot:7000"), robot);
+    /// ```
+    pub fn named(name: impl AsRef<OsStr>) -> Self {
+        let name = name.as_ref();
+        if name == "-" {
+            return Self::Standard;
+        }
+        match name.to_str().and_then(|name| name.strip_prefix(TCP)) {
+            Some(address) => Self::Tcp(address.to_owned()),
+            None => Self::File(name.into()),
+        }
+    }
+
+    /// What a path refers to now; see [`Self::new`].
+    #[must_use]
+    pub fn found(self) -> Self {
+        let Self::File(path) = self else {
+            return self;
         };
         match fs::metadata(&path).map(|metadata| metadata.file_type()) {
             Ok(kind) if unix::is_serial(kind) => Self::Serial(path),
@@ -53,14 +70,13 @@ impl FrameSource {
 
     /// The name for messages.
     pub fn name(&self) -> String {
-        let name = match self {
-            Self::Standard => SourceName::Standard,
-            Self::Tcp(address) => SourceName::Tcp(address.clone()),
+        match self {
+            Self::Standard => "standard input".to_owned(),
+            Self::Tcp(address) => format!("{TCP}{address}"),
             Self::Serial(path) | Self::Fifo(path) | Self::File(path) => {
-                SourceName::Path(path.clone())
+                path.to_string_lossy().into_owned()
             }
-        };
-        name.to_string()
+        }
     }
 
     /// Refuses a source that cannot be read even later: a file that cannot be opened, or an address without a port.
@@ -97,7 +113,7 @@ impl FrameSource {
             && !name.contains('/')
             && check_address(&name).is_ok();
         let hint = if is_connection {
-            format!("; a connection is written {}", SourceName::Tcp(name))
+            format!("; a connection is written {TCP}{name}")
         } else {
             String::new()
         };
@@ -165,59 +181,6 @@ pub(super) fn check_address(address: &str) -> io::Result<()> {
 
 /// The beginning of the name of a connection.
 const TCP: &str = "tcp://";
-
-/// The name of a source. Its text is the name for messages.
-///
-/// ```
-/// use taxel_files::acquire::SourceName;
-/// assert_eq!(SourceName::new("-"), SourceName::Standard);
-/// assert_eq!(SourceName::new("tcp://robot:7000"), SourceName::Tcp("robot:7000".to_owned()));
-/// assert_eq!(SourceName::new("runs/touch.npy").short(), "touch.npy");
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum SourceName {
-    /// Standard input, written `-`.
-    Standard,
-    /// The address of a connection, written `tcp://HOST:PORT`.
-    Tcp(String),
-    /// The path of anything else: a file, a FIFO or a serial line.
-    Path(PathBuf),
-}
-
-impl SourceName {
-    /// Reads a name.
-    pub fn new(name: impl AsRef<OsStr>) -> Self {
-        let name = name.as_ref();
-        if name == "-" {
-            return Self::Standard;
-        }
-        match name.to_str().and_then(|name| name.strip_prefix(TCP)) {
-            Some(address) => Self::Tcp(address.to_owned()),
-            None => Self::Path(name.into()),
-        }
-    }
-
-    /// The name for messages, without folders.
-    pub fn short(&self) -> String {
-        match self {
-            Self::Path(path) => {
-                let path = path.to_string_lossy();
-                path.rsplit('/').next().unwrap_or(&path).to_owned()
-            }
-            name => name.to_string(),
-        }
-    }
-}
-
-impl fmt::Display for SourceName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Standard => f.write_str("standard input"),
-            Self::Tcp(address) => write!(f, "{TCP}{address}"),
-            Self::Path(path) => f.write_str(&path.to_string_lossy()),
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -4,7 +4,7 @@
 use std::fs::{File, FileType};
 use std::io::{self, ErrorKind, Read};
 use std::net::TcpStream;
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 use std::time::Duration;
@@ -23,47 +23,29 @@ const SILENT: Duration = Duration::from_secs(15);
 const BETWEEN_PROBES: Duration = Duration::from_secs(5);
 const PROBES: u32 = 3;
 
-/// A source whose bytes are waited for.
-#[derive(Debug)]
-pub(super) enum Device {
-    Standard(io::Stdin),
-    Tcp(TcpStream),
-    /// A serial line or a pipe.
-    File(File),
-}
-
-impl Device {
-    fn fd(&self) -> BorrowedFd<'_> {
-        match self {
-            Self::Standard(input) => input.as_fd(),
-            Self::Tcp(stream) => stream.as_fd(),
-            Self::File(file) => file.as_fd(),
-        }
+/// Reads the bytes of a device that are there, waiting for them no longer than this. None if there are none yet, 0 at
+/// the end.
+pub(super) fn read(
+    device: &mut File,
+    bytes: &mut [u8],
+    wait: Duration,
+) -> io::Result<Option<usize>> {
+    let mut fds = [PollFd::new(device, PollFlags::IN)];
+    let wait = Timespec {
+        tv_sec: 0,
+        tv_nsec: wait.subsec_nanos().into(),
+    };
+    match poll(&mut fds, Some(&wait)) {
+        Ok(0) | Err(Errno::INTR) => return Ok(None),
+        Ok(_) => {}
+        Err(error) => return Err(error.into()),
     }
-
-    /// Reads the bytes that are there, waiting for them no longer than this. None if there are none yet, 0 at the end.
-    pub(super) fn read(&mut self, bytes: &mut [u8], wait: Duration) -> io::Result<Option<usize>> {
-        let mut fds = [PollFd::from_borrowed_fd(self.fd(), PollFlags::IN)];
-        let wait = Timespec {
-            tv_sec: 0,
-            tv_nsec: wait.subsec_nanos().into(),
-        };
-        match poll(&mut fds, Some(&wait)) {
-            Ok(0) | Err(Errno::INTR) => return Ok(None),
-            Ok(_) => {}
-            Err(error) => return Err(error.into()),
-        }
-        let read = match self {
-            // Not through the buffer of the standard library: `poll` would not see the bytes in it.
-            Self::Standard(input) => rustix::io::read(&*input, bytes).map_err(io::Error::from),
-            Self::Tcp(stream) => stream.read(bytes),
-            Self::File(file) => file.read(bytes),
-        };
-        match read.map_err(|error| (error.kind(), error)) {
-            Ok(count) => Ok(Some(count)),
-            Err((ErrorKind::Interrupted | ErrorKind::WouldBlock, _)) => Ok(None),
-            Err((_, error)) => Err(error),
-        }
+    match device.read(bytes) {
+        Ok(count) => Ok(Some(count)),
+        Err(error) => match error.kind() {
+            ErrorKind::Interrupted | ErrorKind::WouldBlock => Ok(None),
+            _ => Err(error),
+        },
     }
 }
 
@@ -77,7 +59,8 @@ pub(super) fn is_fifo(kind: FileType) -> bool {
     kind.is_fifo()
 }
 
-/// Standard input as a file, to find out what it is.
+/// Standard input as a file. It is not read through the buffer of the standard library: `poll` would not see the bytes
+/// in it.
 pub(super) fn standard_input() -> io::Result<File> {
     io::stdin().as_fd().try_clone_to_owned().map(File::from)
 }
@@ -153,11 +136,11 @@ mod tests {
         let path = folder.path().join("pipe");
         let made = Command::new("mkfifo").arg(&path).status();
         assert!(made.expect("mkfifo starts").success());
-        let mut input = Device::File(open_fifo(&path).expect("opened"));
+        let mut input = open_fifo(&path).expect("opened");
         let mut bytes = [0; 8];
         let mut read = || {
             let moment = Duration::from_millis(1);
-            input.read(&mut bytes, moment).expect("read")
+            super::read(&mut input, &mut bytes, moment).expect("read")
         };
         assert_eq!(read(), None);
         let mut writer = File::options().write(true).open(&path).expect("opened");

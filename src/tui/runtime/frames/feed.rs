@@ -102,11 +102,11 @@ impl FrameFeed {
             return Ok(());
         };
         let metadata = RecordingMetadata {
-            source: request.source.to_string(),
+            source: request.source.name(),
             rule: request.rule,
             ..RecordingMetadata::default()
         };
-        source::named(&request.source)
+        source::found(&request.source)
             .refuse_as_target(&recording.path())
             .map_err(|error| error.to_string())?;
         recording.begin(existing, &metadata)?;
@@ -208,11 +208,11 @@ impl FrameFeed {
                 is_new && pending.set_new()
             }
             AcquireEvent::Silent { counts, reason } => self.change(|pending| {
-                let why = source::silence(&source::named(&request.source), counts, reason);
+                let why = source::silence(&source::found(&request.source), counts, reason);
                 pending.status().state = SourceState::Silent(why);
             }),
             AcquireEvent::Absent(error) => self.change(|pending| {
-                let name = &request.source;
+                let name = request.source.name();
                 let reason = system_reason(error);
                 let text = format!("waiting for {name}, trying again each second: {reason}");
                 pending.status().state = SourceState::Lost(text);

@@ -6,7 +6,7 @@ use std::os::fd::AsFd;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-use taxel_files::acquire::{FrameSource, SourceName};
+use taxel_files::acquire::FrameSource;
 use taxel_files::formats::recording::StreamCounts;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::below_home;
@@ -14,21 +14,24 @@ use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::tui::runtime::disk::files::WriteAccess;
 
-pub(in crate::tui::runtime) fn named(name: &SourceName) -> FrameSource {
-    let below = match name {
-        SourceName::Path(path) => path.to_str().and_then(below_home),
-        SourceName::Standard | SourceName::Tcp(_) => None,
+/// Returns what a source refers to, in which `~` is the home folder.
+pub(in crate::tui::runtime) fn found(named: &FrameSource) -> FrameSource {
+    let below = match named {
+        FrameSource::File(path) => path.to_str().and_then(below_home),
+        _ => None,
     };
-    FrameSource::named(below.map_or_else(|| name.clone(), SourceName::Path))
+    below
+        .map_or_else(|| named.clone(), FrameSource::File)
+        .found()
 }
 
 /// Returns the source of a name. A script from a stranger reads files only: a serial line would be set up and its
 /// device reset, a connection made, a pipe waited for.
 pub(in crate::tui::runtime) fn readable(
-    name: &SourceName,
+    named: &FrameSource,
     access: &WriteAccess,
 ) -> Result<FrameSource, String> {
-    let source = named(name);
+    let source = found(named);
     let refused = |reason: &dyn std::fmt::Display| format!("{}: {reason}", source.name());
     if access.folder.is_some() && !is_file(&source) {
         return Err(refused(

@@ -92,7 +92,7 @@ impl FrameWatcher {
             if let Err(refused) = feed.begin_recording(&request, existing) {
                 post(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
             }
-            let source = source::named(&request.source);
+            let source = source::found(&request.source);
             let post = || post(WorkerEvent::Live(number, LiveEvent::Waiting));
             let mut options = request.options.clone();
             options.waits = true;
