@@ -554,7 +554,7 @@ impl WatchArguments {
         options.time_column.clone_from(&processing.time_column);
         options.label_column.clone_from(&processing.label_column);
         options.channel.clone_from(&processing.channel);
-        options.baud = matches.get_one("baud").copied().unwrap_or(options.baud);
+        options.baud = matches.get_one("baud").copied().or(options.baud);
         options.playback = playback(matches);
         Ok(Self {
             source,

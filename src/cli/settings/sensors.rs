@@ -251,7 +251,7 @@ impl SensorSettings {
         if let Some(FormatSetting(format)) = self.format {
             options.stream_format = format;
         }
-        options.baud = self.baud.unwrap_or(options.baud);
+        options.baud = self.baud.or(options.baud);
         options.stream_size = FrameSize::of_sides(self.columns, self.rows);
     }
 
@@ -276,7 +276,7 @@ impl SensorSettings {
     pub(crate) fn default_text(key: SensorKey) -> Option<String> {
         match key {
             SensorKey::Format => Some(FormatSetting(None).to_string()),
-            SensorKey::Baud => Some(AcquireOptions::default().baud.to_string()),
+            SensorKey::Baud => Some(AcquireOptions::BAUD.to_string()),
             SensorKey::Tare => Some("0".to_owned()),
             SensorKey::HistoryBytes => Some(HISTORY_BYTES.to_string()),
             _ => None,

@@ -454,7 +454,7 @@ impl NamedSource {
         let options = &mut request.options;
         options.size = FrameSize::of_sides(self.columns, self.rows).or(options.size);
         options.format = self.format.or(options.format);
-        options.baud = self.baud.unwrap_or(options.baud);
+        options.baud = self.baud.or(options.baud);
         options.channel = self.channel.clone().or(options.channel.take());
         if let Some(speed) = self.speed {
             options.playback = Playback::paced(speed, options.playback.repeats());
@@ -525,7 +525,10 @@ mod tests {
         let options = &whole.options;
         assert_eq!(
             (options.size, options.baud),
-            (Some(FrameSize::new(5, 4).expect("an allowed size")), 9600)
+            (
+                Some(FrameSize::new(5, 4).expect("an allowed size")),
+                Some(9600)
+            )
         );
         assert_eq!(
             (options.channel.as_deref(), options.playback),

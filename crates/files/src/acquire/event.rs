@@ -13,7 +13,7 @@ use crate::formats::recording::{
 use crate::formats::value::{counted, decimal, grouped};
 
 /// The options of an acquisition: how a source is read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct AcquireOptions {
     /// The format of a stream; None to detect it. If it is given, a file is a stream, not a recording.
     pub format: Option<&'static Format>,
@@ -30,9 +30,9 @@ pub struct AcquireOptions {
     /// The channel of a recording whose frames are played at its rate; by default the first one. Frames of other
     /// channels are reported at once.
     pub channel: Option<String>,
-    /// Bits per second of a serial line; by default 115,200. The program allows 50 to 20,000,000. A line whose driver
+    /// Bits per second of a serial line; by default [`Self::BAUD`]. The program allows 50 to 20,000,000. A line whose driver
     /// refuses the number is not opened.
-    pub baud: u32,
+    pub baud: Option<u32>,
     /// Whether taxel tries again each second to open a connection or a serial line that it cannot open at first. One
     /// that was open before is tried again in any case, except with [`Playback::Once`].
     pub waits: bool,
@@ -60,6 +60,9 @@ pub enum Playback {
 }
 
 impl AcquireOptions {
+    /// The bits per second of a serial line, if nothing else is said.
+    pub const BAUD: u32 = 115_200;
+
     /// The allowed bits per second of a serial line.
     pub const BAUDS: RangeInclusive<u32> = 50..=20_000_000;
 
@@ -95,23 +98,6 @@ impl Playback {
     /// Whether a recording begins again at its end.
     pub fn repeats(self) -> bool {
         matches!(self, Self::Paced { repeat: true, .. })
-    }
-}
-
-impl Default for AcquireOptions {
-    fn default() -> Self {
-        Self {
-            format: None,
-            stream_format: None,
-            size: None,
-            stream_size: None,
-            time_column: None,
-            label_column: None,
-            channel: None,
-            baud: 115_200,
-            waits: false,
-            playback: Playback::Live,
-        }
     }
 }
 

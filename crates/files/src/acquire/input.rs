@@ -10,6 +10,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use crate::acquire::clock::TICK;
+use crate::acquire::event::AcquireOptions;
 use crate::acquire::session::Session;
 use crate::acquire::source::{FrameSource, check_address};
 use crate::acquire::unix;
@@ -59,7 +60,10 @@ impl OpenSource {
                 Some(stream) => OwnedFd::from(stream).into(),
                 None => return Ok(None),
             },
-            FrameSource::Serial(path) => unix::open_line(path, session.options.baud)?,
+            FrameSource::Serial(path) => {
+                let baud = session.options.baud.unwrap_or(AcquireOptions::BAUD);
+                unix::open_line(path, baud)?
+            }
             FrameSource::Fifo(path) => unix::open_fifo(path)?,
             FrameSource::File(path) => return Ok(Some(Self::file(path, File::open(path)?))),
         };

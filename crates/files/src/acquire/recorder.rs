@@ -76,9 +76,8 @@ pub struct FrameRecorder {
     size: Option<FrameSize>,
     /// The records that are not in the file yet.
     waiting: Vec<u8>,
-    /// The number of records in the file and waiting, of those in the file, and the number in its header.
+    /// The number of records in the file and waiting, and the number in its header.
     records: u64,
-    in_file: u64,
     counted: u64,
     written: Instant,
     left_out: u64,
@@ -127,7 +126,6 @@ impl FrameRecorder {
             size: None,
             waiting: Vec::new(),
             records: 0,
-            in_file: 0,
             counted: 0,
             written: Instant::now(),
             left_out: 0,
@@ -153,11 +151,6 @@ impl FrameRecorder {
     /// The number of frames that were left out because their size is not that of the first one: an array has one size.
     pub fn left_out(&self) -> u64 {
         self.left_out
-    }
-
-    /// The size of the recorded frames; None before the first one.
-    pub fn size(&self) -> Option<FrameSize> {
-        self.size
     }
 
     /// Changes the metadata, also in the file once there is one. Marks of frames before the first recorded one are left
@@ -206,7 +199,6 @@ impl FrameRecorder {
     /// The system's error.
     pub fn flush(&mut self) -> Result<(), RecorderError> {
         let written = self.write_records().and_then(|()| self.count());
-        let written = written.map_err(|error| self.failed(error));
         self.noted(written)
     }
 
@@ -251,8 +243,7 @@ impl FrameRecorder {
         self.waiting.extend(values.flat_map(f64::to_le_bytes));
         self.records += 1;
         if self.waiting.len() >= MOST_WAITING {
-            let written = self.write_records();
-            written.map_err(|error| self.failed(error))?;
+            self.write_records()?;
         }
         self.tick()
     }
@@ -311,49 +302,49 @@ impl FrameRecorder {
         )?)
     }
 
-    /// Writes the waiting records. Those for which the disk has no room are given up.
-    fn write_records(&mut self) -> io::Result<()> {
+    /// Writes the waiting records. Those for which the disk has no room are given up: the file ends after a whole one,
+    /// and its header says so.
+    fn write_records(&mut self) -> Result<(), RecorderError> {
         let (Some(file), Some(size)) = (&mut self.file, self.size) else {
             return Ok(());
         };
         let record = 16 + 8 * size.cells() as u64;
-        let start = HEADER + self.in_file * record;
-        file.seek(SeekFrom::Start(start))?;
-        let written = file.write_all(&self.waiting);
+        let start = HEADER + self.records * record - self.waiting.len() as u64;
+        let written = file
+            .seek(SeekFrom::Start(start))
+            .and_then(|_| file.write_all(&self.waiting));
         self.waiting.clear();
-        self.in_file = self.records;
-        if written.is_err() {
-            // The file ends after a whole record.
-            let end = file.metadata().map_or(start, |found| found.len());
-            self.records = end.saturating_sub(HEADER) / record;
-            self.in_file = self.records;
-            let _ = file.set_len(HEADER + self.records * record);
-            let _ = self.count();
-        }
-        written
+        let Err(error) = written else {
+            return Ok(());
+        };
+        let end = file.metadata().map_or(start, |found| found.len());
+        self.records = end.saturating_sub(HEADER) / record;
+        let _ = file.set_len(HEADER + self.records * record);
+        let _ = self.count();
+        Err(self.failed(error))
     }
 
     /// Syncs the records, and writes the header with their number in one piece.
-    fn count(&mut self) -> io::Result<()> {
+    fn count(&mut self) -> Result<(), RecorderError> {
         self.written = Instant::now();
         let (Some(file), Some(size)) = (&mut self.file, self.size) else {
             return Ok(());
         };
-        if self.counted == self.in_file {
-            return Ok(());
+        if self.counted != self.records {
+            let header = header(size, self.records);
+            let counted = file
+                .sync_data()
+                .and_then(|()| file.seek(SeekFrom::Start(0)))
+                .and_then(|_| file.write_all(&header));
+            counted.map_err(|error| self.failed(error))?;
+            self.counted = self.records;
         }
-        file.sync_data()?;
-        file.seek(SeekFrom::Start(0))?;
-        file.write_all(&header(size, self.in_file))?;
-        self.counted = self.in_file;
         Ok(())
     }
 
     fn failed(&self, error: io::Error) -> RecorderError {
-        RecorderError::Io {
-            path: self.path.clone(),
-            error,
-        }
+        let path = self.path.clone();
+        RecorderError::Io { path, error }
     }
 
     /// Keeps the first failure for the metadata.

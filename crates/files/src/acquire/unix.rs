@@ -138,19 +138,19 @@ mod tests {
         assert!(made.expect("mkfifo starts").success());
         let mut input = open_fifo(&path).expect("opened");
         let mut bytes = [0; 8];
-        let mut read = || {
+        let mut found = || {
             let moment = Duration::from_millis(1);
-            super::read(&mut input, &mut bytes, moment).expect("read")
+            read(&mut input, &mut bytes, moment).expect("read")
         };
-        assert_eq!(read(), None);
+        assert_eq!(found(), None);
         let mut writer = File::options().write(true).open(&path).expect("opened");
-        assert_eq!(read(), None);
+        assert_eq!(found(), None);
         writer.write_all(b"1 2").expect("written");
-        assert_eq!(read(), Some(3));
+        assert_eq!(found(), Some(3));
         let second = open_fifo(&path).expect_err("it is read already");
         assert_eq!(second.kind(), ErrorKind::ResourceBusy);
         drop(writer);
-        assert_eq!(read(), Some(0));
+        assert_eq!(found(), Some(0));
         drop(input);
         assert!(open_fifo(&path).is_ok());
     }

@@ -18,7 +18,7 @@
 //!
 //! ```text
 //! acquire -> ChannelGate -> WatchRecording: each frame of the channel
-//!                        -> TareQueue: the first frames, if a tare is made -> Answers -> standard output
+//!                        -> the first frames wait, if a tare is made -> Answers -> standard output
 //!         -> SourceReports: oddities, errors -> standard error
 //! ```
 
@@ -31,9 +31,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use taxel_core::frame::{Frame, FrameSize, Processing};
+use taxel_core::frame::{Frame, FrameError, FrameSize, Processing, TareFrames};
 use taxel_core::quote::as_argument;
-use taxel_files::acquire::{AcquireEvent, FrameRecorder, FrameSource, Playback, acquire};
+use taxel_files::acquire::{
+    AcquireEvent, FrameRecorder, FrameSource, Playback, RecorderError, acquire,
+};
 use taxel_files::formats::recording::{
     ChannelChoice, ChannelInfo, RecordingMetadata, StreamCounts, no_channel,
 };
@@ -42,7 +44,7 @@ use taxel_files::{ReadError, ReadErrorKind};
 use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::commands::model;
 use crate::cli::commands::recognise::FrameNamer;
-use crate::cli::commands::watch::answers::{Answers, TareQueue};
+use crate::cli::commands::watch::answers::Answers;
 use crate::cli::commands::watch::recording::{SourceReports, WatchRecording};
 use crate::cli::error::CliError;
 use crate::cli::input::recording::{self as input_recording, RecordingFile};
@@ -59,9 +61,8 @@ struct Watcher<'a> {
     reports: SourceReports<'a>,
     gate: ChannelGate<'a>,
     processing: Processing,
-    /// The threshold in use; None if neither a flag nor a recording has set one yet.
-    /// The frames that wait for the tare; None if none is made any more.
-    tare: Option<TareQueue>,
+    /// The tare that is made of the first frames, and these frames; None if none is made any more.
+    tare: Option<(TareFrames, Vec<Frame>)>,
     recording: Option<WatchRecording<'a>>,
     unrecorded: Option<CliError>,
     answers: Answers,
@@ -88,13 +89,15 @@ pub(crate) fn watch(
     // Errors in these are reported before a recording begins.
     let lines = line_writer(asked, &processing, shelf, &signals.stopped)?;
     let recording = WatchRecording::create(&source, asked).map_err(CliError::Recorder)?;
+    let wanted_tare = asked.processing.tare.filter(|&frames| frames > 0);
+    let wanted_tare = wanted_tare.map(|frames| (TareFrames::new(frames), Vec::new()));
     let is_live = source.arrives(asked.options.playback);
     let mut watcher = Watcher {
         asked,
         reports: SourceReports::new(&source, &asked.options, note),
         gate: ChannelGate::new(&source, asked),
         processing,
-        tare: TareQueue::new(asked.processing.tare.unwrap_or_default()),
+        tare: wanted_tare,
         answers: Answers::new(lines, is_live, recording.is_some()),
         recording,
         unrecorded: None,
@@ -199,8 +202,8 @@ impl Watcher<'_> {
             }
         }
         let (tare, rule) = (self.processing.tare.clone(), self.processing.applied_rule());
-        self.record(|recording, _| {
-            recording.describe(|metadata| {
+        self.record(|recorder| {
+            recorder.describe(|metadata| {
                 metadata.tare = tare;
                 metadata.seconds_per_frame = info.seconds_per_frame;
                 metadata.unit.clone_from(&info.unit);
@@ -212,12 +215,12 @@ impl Watcher<'_> {
 
     fn record(
         &mut self,
-        write: impl FnOnce(&mut WatchRecording<'_>, &mut SourceReports<'_>) -> Result<(), CliError>,
+        write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError>,
     ) -> Result<(), CliError> {
         let Some(recording) = &mut self.recording else {
             return Ok(());
         };
-        let error = match write(recording, &mut self.reports) {
+        let error = match write(&mut recording.recorder).map_err(CliError::Recorder) {
             Err(error) if self.answers.go_on_alone() => error,
             written => return written,
         };
@@ -255,37 +258,36 @@ impl Watcher<'_> {
             self.reports
                 .say(&format!("{size} cells from frame {number} on"));
         }
-        self.record(|recording, reports| recording.add(frame, time, reports))?;
+        self.record(|recorder| recorder.add(frame, time))?;
         let mut own = std::mem::take(&mut self.frame);
         own.copy_from(frame);
         own.time = time;
-        let Some(queue) = &mut self.tare else {
+        let Some((mut tare, mut waiting)) = self.tare.take() else {
             let answered = self.answer(&own);
             self.frame = own;
             return answered;
         };
-        let left_out = queue
-            .add(own, &self.processing.view)
-            .map_err(|error| self.reports.refused(&error))?;
-        for (number, error) in left_out {
-            self.answers.leave_out(number, &error, &mut self.reports);
-        }
-        if queue.is_complete() {
-            return self.end_tare();
-        }
-        Ok(())
-    }
-
-    fn end_tare(&mut self) -> Result<(), CliError> {
-        let Some(queue) = self.tare.take() else {
-            return Ok(());
+        // A sensor that was lost may come back with another size: then the tare begins again with its frames.
+        let added = match tare.add(&own, &self.processing.view) {
+            Err(error) if error.is_of_size() && !waiting.is_empty() => Ok(()),
+            Err(error) => Err(error),
+            Ok(goes_on) => {
+                if !goes_on {
+                    waiting.retain(|frame: &Frame| frame.size() == size);
+                }
+                tare.check_memory(own.values().len())
+            }
         };
-        let (tare, waiting) = queue
+        added.map_err(|error| self.reports.refused(&error))?;
+        waiting.push(own);
+        if tare.missing() > 0 {
+            self.tare = Some((tare, waiting));
+            return Ok(());
+        }
+        let tare = tare
             .finish()
             .map_err(|error| self.reports.refused(&error))?;
-        self.record(|recording, _| {
-            recording.describe(|metadata| metadata.tare = Some(tare.clone()))
-        })?;
+        self.record(|recorder| recorder.describe(|metadata| metadata.tare = Some(tare.clone())))?;
         self.processing.tare = Some(tare);
         if let Some(unknown) = input_recording::unknown_step(&self.processing) {
             self.reports.warn(unknown);
@@ -300,7 +302,7 @@ impl Watcher<'_> {
     }
 
     fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
-        self.record(|recording, _| recording.tick())?;
+        self.record(FrameRecorder::tick)?;
         self.answers.tick(&mut self.reports)?;
         self.reports.tick(counts);
         Ok(())
@@ -319,7 +321,7 @@ impl Watcher<'_> {
         if let (Some(error), Some(recording)) =
             (failure.as_ref().or(damage.as_ref()), &mut self.recording)
         {
-            recording.note_reason(error);
+            recording.recorder.note_reason(&error.to_string());
         }
         if ended_well {
             failure = failure.or_else(|| self.unfinished());
@@ -340,8 +342,11 @@ impl Watcher<'_> {
     /// Returns the error of a source that has ended before a tare was complete, or without a frame of the channel. For
     /// a stream, the latter is an error already.
     fn unfinished(&self) -> Option<CliError> {
-        if let Some(queue) = &self.tare {
-            let reason = self.asked.processing.tare_refused(&queue.incomplete());
+        if let Some((tare, _)) = &self.tare {
+            let wanted = tare.wanted();
+            let frames = wanted - tare.missing();
+            let lacks = FrameError::Tare { frames, wanted };
+            let reason = self.asked.processing.tare_refused(&lacks);
             return Some(self.reports.refused(&reason));
         }
         let reason = self.gate.no_frame_reason()?;

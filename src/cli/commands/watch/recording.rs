@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use taxel_core::frame::Frame;
 use taxel_files::acquire::{
     AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, RecorderError,
 };
@@ -14,10 +13,10 @@ use taxel_files::{ReadError, ReadErrorKind};
 use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::error::{CliError, note_advice};
 
-/// A recording, whose metadata is written again when something new becomes known.
+/// A recording; see [`FrameRecorder`].
 pub(super) struct WatchRecording<'a> {
     path: &'a Path,
-    recorder: FrameRecorder,
+    pub(super) recorder: FrameRecorder,
 }
 
 impl<'a> WatchRecording<'a> {
@@ -37,42 +36,6 @@ impl<'a> WatchRecording<'a> {
         };
         let recorder = FrameRecorder::create(path, asked.existing, &metadata)?;
         Ok(Some(Self { path, recorder }))
-    }
-
-    pub(super) fn describe(
-        &mut self,
-        change: impl FnOnce(&mut RecordingMetadata),
-    ) -> Result<(), CliError> {
-        let described = self.recorder.describe(change);
-        described.map_err(CliError::Recorder)
-    }
-
-    /// Records a frame. The first frame of another size is reported: such frames are left out of the recording.
-    pub(super) fn add(
-        &mut self,
-        frame: &Frame,
-        time: Option<f64>,
-        reports: &mut SourceReports<'_>,
-    ) -> Result<(), CliError> {
-        let before = self.recorder.left_out();
-        self.recorder.add(frame, time).map_err(CliError::Recorder)?;
-        if let (0, 1, Some(size)) = (before, self.recorder.left_out(), self.recorder.size()) {
-            reports.say(&format!(
-                "frame {} has {} cells; the recording has frames of {} and leaves out others",
-                frame.number,
-                frame.size().in_words(),
-                size.in_words()
-            ));
-        }
-        Ok(())
-    }
-
-    pub(super) fn tick(&mut self) -> Result<(), CliError> {
-        self.recorder.tick().map_err(CliError::Recorder)
-    }
-
-    pub(super) fn note_reason(&mut self, error: &CliError) {
-        self.recorder.note_reason(&error.to_string());
     }
 
     /// Ends the recording, and reports the frames that are not in it. `explained` tells whether the error of the watch
