@@ -225,13 +225,13 @@ fn file(path: &Path, own: &Evaluation) -> Result<String, CliError> {
     if !has_ending(path, "svg") {
         return Ok(evaluation::csv(own));
     }
-    let map = drawing(path, &own.labels, own.confusion.rows())?;
-    let mut title = format!("error {}", percent(own.error()));
+    let mut map = drawing(path, &own.labels, own.confusion.rows())?;
+    map.title = format!("error {}", percent(own.error()));
     if let Some(certainty) = own.certainty {
         let certain = share(certainty.touches, own.touches);
-        title += &format!(", certain {}", percent(certain));
+        map.title += &format!(", certain {}", percent(certain));
     }
-    Ok(map.with_title(&title).svg())
+    Ok(map.svg())
 }
 
 fn drawing(

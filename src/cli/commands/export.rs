@@ -51,13 +51,10 @@ impl Export {
         title: &str,
         pitch: Option<f64>,
     ) -> Result<Begun, CliError> {
-        let mut drawing = Drawing::new(imprint).with_title(title);
-        if let Some(values) = heat {
-            drawing = drawing.with_heat(values);
-        }
-        if let Some(pitch) = pitch {
-            drawing = drawing.with_pitch(pitch);
-        }
+        let mut drawing = Drawing::new(imprint);
+        drawing.title = title.to_owned();
+        drawing.heat = heat.cloned();
+        drawing.pitch_mm = pitch;
         self.begin_with(&drawing)
     }
 
@@ -76,14 +73,13 @@ impl Export {
         if let Some(source) = source {
             drawing = drawing.with_outline(source);
         }
-        self.begin_with(&match (source, pitch) {
+        drawing.pitch_mm = pitch;
+        drawing.title = match (source, pitch) {
             // The title describes the source, which is always in cells.
-            (Some(_), Some(pitch)) => drawing
-                .with_pitch(pitch)
-                .with_title(&format!("{title} (in cells)")),
-            (None, Some(pitch)) => drawing.with_pitch(pitch).with_title(title),
-            (_, None) => drawing.with_title(title),
-        })
+            (Some(_), Some(_)) => format!("{title} (in cells)"),
+            _ => title.to_owned(),
+        };
+        self.begin_with(&drawing)
     }
 
     /// Makes the content and writes the file, which gets its name only in [`Begun::end`].

@@ -220,7 +220,8 @@ fn drawing(results: &Results) -> Result<String, String> {
         return Err(NOTHING_TO_DRAW.to_owned());
     }
     let feature = results.feature();
-    let mut plot = Plot::new("angle / °", &feature.label()).with_title(&results.summary(false));
+    let mut plot = Plot::new("angle / °", &feature.label());
+    plot.title = results.summary(false);
     let names = ["smallest", "largest", "mean"];
     for ((of, dashed), name) in CURVES.into_iter().zip(names) {
         let points: Vec<(f64, f64)> = spread

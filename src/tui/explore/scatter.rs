@@ -164,12 +164,10 @@ fn drawing(results: &Results) -> Result<String, String> {
         return Err(NOTHING_TO_DRAW.to_owned());
     }
     let (x, y) = (&features()[results.x_feature()], results.feature());
-    let mut plot = Plot::new(&x.label(), &y.label())
-        .with_title(&results.summary(true))
-        .with_points(&points);
+    let mut plot = Plot::new(&x.label(), &y.label());
+    plot.title = results.summary(true);
+    plot.points = points;
     let selected = results.rows_from(results.list.selected()).next();
-    if let Some((x, y)) = selected.and_then(|(_, entry)| point(results, &entry)) {
-        plot = plot.with_chosen(x, y);
-    }
+    plot.chosen = selected.and_then(|(_, entry)| point(results, &entry));
     Ok(plot.svg())
 }

@@ -507,13 +507,9 @@ fn drawing(app: &App) -> Drawing {
     if let Some(source) = &document.source {
         drawing = drawing.with_outline(source);
     }
-    if document.sensor.pitch_mm() != 1.0 {
-        drawing = drawing.with_pitch(document.sensor.pitch_mm());
-    }
-    match app.chosen() {
-        Some(index) => drawing.with_region(index),
-        None => drawing,
-    }
+    drawing.pitch_mm = Some(document.sensor.pitch_mm()).filter(|&pitch| pitch != 1.0);
+    drawing.region = app.chosen().or(drawing.region);
+    drawing
 }
 
 pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect> {

@@ -36,7 +36,7 @@ pub struct PlotField {
 impl PlotField {
     pub fn of(area: Rect, x: (f64, f64), y: (f64, f64)) -> Option<Self> {
         let height = area.height.checked_sub(3).filter(|&height| height > 0)?;
-        let upwards = axis_marks(y, (height / LINES).max(1));
+        let upwards = axis_marks(y, 0.0, (height / LINES).max(1));
         let labels = upwards.iter().map(|(_, label)| write::width(label));
         let indent = narrow(labels.fold(0, usize::max) + 2);
         let width = area.width.checked_sub(indent).filter(|&width| width > 0)?;
@@ -145,7 +145,7 @@ impl PlotField {
         write::text(buffer, place, theme, label, Role::Key);
         let middle = f64::midpoint(self.y.0, self.y.1);
         let mut free = self.area.x;
-        for (value, text) in axis_marks(self.x, self.field.width / APART) {
+        for (value, text) in axis_marks(self.x, 0.0, self.field.width / APART) {
             let Some(at) = self.character((value, middle)) else {
                 continue;
             };

@@ -14,22 +14,21 @@
 
 use std::io::{self, Read, Seek, Write};
 
+use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
-use serde::{Deserialize, Serialize};
 use taxel_core::atlas::{Atlas, AtlasEntry, ImprintSummary, feature_values, features};
 use taxel_core::parameter::number::share;
-use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
-use taxel_core::quote::shortened;
-use taxel_core::sensor::Sensor;
-use taxel_core::sweep::{Parts, Shard, SweepResult};
+use taxel_core::pose::PoseGrid;
+use taxel_core::sweep::{Parts, SweepResult};
 
 use crate::error::ReadError;
-use crate::formats::json::{self, RegionRecord};
+use crate::formats::header::{ATLAS_FORMAT, ArchiveHeader};
+use crate::formats::json::RegionRecord;
 use crate::formats::numpy::Number;
 use crate::formats::numpy::archive::{
     ArrayReader, ArrayWriter, header_of, in_header, little_endian,
 };
-use crate::formats::record::{Record, SensorRecord, no_names};
+use crate::formats::record::no_names;
 
 /// Returns the share of all poses that leave this imprint: above 0, up to 1.
 pub fn pose_share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
@@ -119,31 +118,6 @@ impl Serialize for First<'_> {
     }
 }
 
-/// The required value of the header's key `format`.
-pub const FORMAT: &str = "taxel-atlas/1";
-
-/// The header of an atlas: written from a source and a sensor, read as records that are then checked.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object")]
-struct ArchiveHeader<Shape, Size> {
-    format: String,
-    source: Shape,
-    sensor: Size,
-    /// The point that x0 and y0 place: `corner` or `centre`.
-    anchor: String,
-    /// Each axis is a range, `START:END:STEP`, or a single number.
-    x0: String,
-    y0: String,
-    angle: String,
-    zoom_x: String,
-    zoom_y: String,
-    /// The shard of the grid: `1/1` for the whole grid.
-    shard: String,
-    /// The number of poses of this shard.
-    poses: u64,
-    partly_off: u64,
-}
-
 /// Writes the archive.
 ///
 /// # Errors
@@ -176,22 +150,12 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> io::Result<
 }
 
 fn header(result: &SweepResult, parts: &Parts) -> Vec<u8> {
-    let (grid, ranges) = (&result.grid, result.grid.ranges());
-    json::text(&ArchiveHeader {
-        format: FORMAT.to_owned(),
-        source: grid.source(),
-        sensor: grid.sensor(),
-        anchor: grid.anchor().name().to_owned(),
-        x0: ranges[Axis::X0].to_string(),
-        y0: ranges[Axis::Y0].to_string(),
-        angle: ranges[Axis::Angle].to_string(),
-        zoom_x: ranges[Axis::ZoomX].to_string(),
-        zoom_y: ranges[Axis::ZoomY].to_string(),
-        shard: result.shard.to_string(),
-        poses: parts.poses,
-        partly_off: parts.partly_off,
-    })
-    .into_bytes()
+    let grid = &result.grid;
+    let own = (grid.sensor(), grid.anchor(), grid.ranges(), result.shard);
+    let mut header = ArchiveHeader::new(ATLAS_FORMAT, own, parts.poses);
+    header.source = Some(grid.source());
+    header.partly_off = Some(parts.partly_off);
+    header.bytes()
 }
 
 fn regions_of_each(atlas: &Atlas, number: fn(&ImprintSummary) -> u16) -> Vec<u8> {
@@ -223,25 +187,17 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ReadError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    let header: ArchiveHeader<Record, SensorRecord> = header_of(&header, FORMAT)?;
-    let sensor = header.sensor.sensor(Sensor::default()).map_err(in_header)?;
-    let source = header
-        .source
-        .source(&sensor, &no_names)
-        .map_err(in_header)?;
-    let anchor = anchor(&header.anchor)?;
-    let ranges = ranges([
-        &header.x0,
-        &header.y0,
-        &header.angle,
-        &header.zoom_x,
-        &header.zoom_y,
-    ])?;
-    let shard: Shard = header.shard.parse().map_err(in_header)?;
+    let header: ArchiveHeader = header_of(&header, ATLAS_FORMAT)?;
+    let (sensor, anchor, ranges, shard) = header.grid()?;
+    let (Some(source), Some(partly_off), None) = (header.source, header.partly_off, header.shapes)
+    else {
+        return Err(in_header("expected source and partly_off, and no shapes"));
+    };
+    let source = source.source(&sensor, &no_names).map_err(in_header)?;
     let grid = PoseGrid::new(source, sensor, anchor, ranges).map_err(in_header)?;
     let parts = Parts {
         poses: header.poses,
-        partly_off: header.partly_off,
+        partly_off,
         rows: archive.words("rows")?,
         counts: archive.words("count")?,
         first_poses: archive.words("first_pose")?,
@@ -249,23 +205,4 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ReadError> {
     };
     archive.finish()?;
     SweepResult::from_parts(grid, shard, &parts).map_err(|error| ReadError::new(error.to_string()))
-}
-
-pub(super) fn anchor(name: &str) -> Result<Anchor, ReadError> {
-    name.parse().map_err(|_| {
-        in_header(format!(
-            "anchor {:?} is unknown, expected {}",
-            shortened(name),
-            Anchor::NAMES.join(" or ")
-        ))
-    })
-}
-
-/// Parses the ranges, in the order of [`Axis::ALL`].
-pub(super) fn ranges(texts: [&str; 5]) -> Result<Ranges, ReadError> {
-    let mut ranges = Ranges::default();
-    for (axis, text) in Axis::ALL.into_iter().zip(texts) {
-        ranges[axis] = text.parse().map_err(in_header)?;
-    }
-    Ok(ranges)
 }

@@ -11,6 +11,7 @@
 pub mod atlas;
 mod drawing;
 pub mod file;
+mod header;
 pub mod imprint_file;
 pub mod job;
 pub mod json;
@@ -39,8 +40,8 @@ pub use shape::StoredShape;
 
 pub use numpy::archive::{ArchiveKind, kind_of as archive_kind};
 
-pub use model::{
-    FORMAT as MODEL_FORMAT, header as model_header, read as read_model, write as write_model,
-};
+pub use header::MODEL_FORMAT;
+
+pub use model::{header as model_header, read as read_model, write as write_model};
 
 pub use named_shape::{ShapeLookup, named_shape};

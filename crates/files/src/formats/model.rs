@@ -2,57 +2,18 @@
 
 use std::io::{self, Read, Seek, Write};
 
-use serde::{Deserialize, Serialize};
 use taxel_core::imprint::Imprint;
 use taxel_core::index::index;
-use taxel_core::pose::Axis;
 use taxel_core::recognition::{
     ImprintKey, KeyTable, Model, ModelError, ModelHead, NamedShape, ShapeCount,
 };
 use taxel_core::sensor::{MatrixSize, Sensor};
 
 use crate::error::ReadError;
-use crate::formats::atlas::{anchor, ranges};
-use crate::formats::json;
+use crate::formats::header::{ArchiveHeader, MODEL_FORMAT, ShapeHeader};
 use crate::formats::numpy::Number;
 use crate::formats::numpy::archive::{ArrayReader, ArrayWriter, header_of, in_header, unexpected};
-use crate::formats::record::{Record, SensorRecord, no_names};
-
-/// The required value of the header's key `format`.
-pub const FORMAT: &str = "taxel-model/1";
-
-/// The header of a model: written from sources and a sensor, read as records that are then checked.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object")]
-struct ModelHeader<Shape, Size> {
-    format: String,
-    /// The shapes of the set, in order; ties go to the first.
-    shapes: Vec<ShapeHeader<Shape>>,
-    sensor: Size,
-    /// The point that x0 and y0 place: `corner` or `centre`.
-    anchor: String,
-    /// Each axis is a range, `START:END:STEP`, or a single number.
-    x0: String,
-    y0: String,
-    angle: String,
-    zoom_x: String,
-    zoom_y: String,
-    /// The shard of the grid: `1/1` for the whole grid.
-    shard: String,
-    /// The number of poses of each shape.
-    poses: u64,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "an object")]
-struct ShapeHeader<Shape> {
-    name: String,
-    /// The weight: how often the shape is expected, compared with the others.
-    weight: u32,
-    /// The number of poses in which the sensor cuts the shape off.
-    cut: u64,
-    source: Shape,
-}
+use crate::formats::record::no_names;
 
 /// Writes a model as an archive of numpy arrays (`numpy.load`). Equal models are equal files.
 ///
@@ -117,29 +78,17 @@ fn row_type(columns: u8) -> Number {
 
 /// Returns the header of a model as JSON, which begins its file. Equal heads have equal headers.
 pub fn header(head: &ModelHead) -> Vec<u8> {
-    let ranges = &head.ranges;
+    let own = (&head.sensor, head.anchor, &head.ranges, head.shard);
+    let mut header = ArchiveHeader::new(MODEL_FORMAT, own, head.poses);
     let shapes = head.shapes.iter().zip(&head.cut);
-    json::text(&ModelHeader {
-        format: FORMAT.to_owned(),
-        shapes: shapes
-            .map(|(shape, &cut)| ShapeHeader {
-                name: shape.name.clone(),
-                weight: shape.weight,
-                cut,
-                source: &shape.source,
-            })
-            .collect(),
-        sensor: &head.sensor,
-        anchor: head.anchor.name().to_owned(),
-        x0: ranges[Axis::X0].to_string(),
-        y0: ranges[Axis::Y0].to_string(),
-        angle: ranges[Axis::Angle].to_string(),
-        zoom_x: ranges[Axis::ZoomX].to_string(),
-        zoom_y: ranges[Axis::ZoomY].to_string(),
-        shard: head.shard.to_string(),
-        poses: head.poses,
-    })
-    .into_bytes()
+    let shapes = shapes.map(|(shape, &cut)| ShapeHeader {
+        name: shape.name.clone(),
+        weight: shape.weight,
+        cut,
+        source: &shape.source,
+    });
+    header.shapes = Some(shapes.collect());
+    header.bytes()
 }
 
 /// Reads a model that [`write_model`](crate::formats::write_model) has written.
@@ -153,25 +102,20 @@ pub fn header(head: &ModelHead) -> Vec<u8> {
 pub fn read(input: impl Read + Seek) -> Result<Model, ReadError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    let header: ModelHeader<Record, SensorRecord> = header_of(&header, FORMAT)?;
-    let sensor = header.sensor.sensor(Sensor::default()).map_err(in_header)?;
-    let mut shapes = Vec::with_capacity(header.shapes.len());
-    for shape in &header.shapes {
+    let header: ArchiveHeader = header_of(&header, MODEL_FORMAT)?;
+    let (sensor, anchor, ranges, shard) = header.grid()?;
+    let (Some(records), None, None) = (header.shapes, header.source, header.partly_off) else {
+        return Err(in_header("expected shapes, and no source or partly_off"));
+    };
+    let mut shapes = Vec::with_capacity(records.len());
+    for shape in &records {
         let source = shape.source.source(&Sensor::LARGEST, &no_names);
         let source = source.map_err(in_header)?;
         shapes.push(NamedShape::new(shape.name.clone(), source).weighted(shape.weight));
     }
-    let texts = [
-        &header.x0,
-        &header.y0,
-        &header.angle,
-        &header.zoom_x,
-        &header.zoom_y,
-    ];
-    let (anchor, ranges) = (anchor(&header.anchor)?, ranges(texts.map(String::as_str))?);
     let mut head = ModelHead::new(shapes, sensor, anchor, ranges, header.poses);
-    head.shard = header.shard.parse().map_err(in_header)?;
-    head.cut = header.shapes.iter().map(|shape| shape.cut).collect();
+    head.shard = shard;
+    head.cut = records.iter().map(|shape| shape.cut).collect();
     let keys = keys(&mut archive)?;
     let counts = counts(&mut archive, keys.len())?;
     archive.finish()?;

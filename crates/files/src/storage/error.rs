@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::{ReadError, ReadErrorKind};
-use crate::formats::file::{is_missing, system_reason, write_reason};
+use crate::formats::file::{system_reason, write_reason};
 
 /// The error for an operation on a file that the system refused.
 #[derive(Debug, thiserror::Error)]
@@ -38,11 +38,6 @@ impl FileError {
     /// Whether there is a file already, which was to be kept.
     pub fn exists(&self) -> bool {
         self.error.kind() == io::ErrorKind::AlreadyExists
-    }
-
-    /// Whether there is no such file, or if a file is where a folder is expected.
-    pub fn is_missing(&self) -> bool {
-        is_missing(&self.error)
     }
 }
 

@@ -126,9 +126,9 @@ pub(in crate::tui) fn drawing(results: &Results) -> Result<String, String> {
         (range.value(0), range.value((count - 1) * stride))
     };
     let (x0, y0) = (ends(Axis::X0, across), ends(Axis::Y0, down));
-    let map = PoseMap::new(x0, y0, index(across), &ids).ok_or(NOTHING_TO_DRAW)?;
-    let title = format!("{}; {}", results.summary(false), heading(results));
-    Ok(map.with_title(&title).svg())
+    let mut map = PoseMap::new(x0, y0, index(across), &ids).ok_or(NOTHING_TO_DRAW)?;
+    map.title = format!("{}; {}", results.summary(false), heading(results));
+    Ok(map.svg())
 }
 
 fn heading(results: &Results) -> String {

@@ -6,7 +6,7 @@
 use taxel_core::parameter::number::share;
 
 use crate::formats::drawing::svg::{
-    Axis, AxisMarks, CELLS, Stroke, Svg, TEXT, TextAnchor, cut, rectangle, width,
+    Axis, AxisMarks, CELLS, Stroke, Svg, TEXT, TextAnchor, rectangle, width,
 };
 use crate::formats::value::percent;
 
@@ -31,7 +31,8 @@ pub struct ConfusionMap {
     labels: Vec<String>,
     /// The touches by true shape and by the name given.
     counts: Vec<Vec<u128>>,
-    title: String,
+    /// What stands above; only its first 100 characters are drawn.
+    pub title: String,
 }
 
 impl ConfusionMap {
@@ -52,13 +53,6 @@ impl ConfusionMap {
             counts,
             title: String::new(),
         })
-    }
-
-    /// Adds a title above; only its first 100 characters are kept.
-    #[must_use]
-    pub fn with_title(mut self, title: &str) -> Self {
-        self.title = cut(title);
-        self
     }
 
     /// The matrix as SVG 1.1.
@@ -114,11 +108,7 @@ impl ConfusionMap {
         let below = (0.0, svg.below());
         let note = "touches, and their share of the true shape's";
         svg.text(note, below, TextAnchor::Start);
-        let name = match self.title.as_str() {
-            "" => "confusion matrix",
-            title => title,
-        };
-        svg.finish(name, &self.title)
+        svg.finish_named("confusion matrix", &self.title)
     }
 }
 

@@ -5,14 +5,9 @@ use crate::formats::drawing::svg::{
 };
 
 /// The marks of an axis between two ends, each with its label: at most about `steps` of them, at steps of 1, 2 or 5
-/// times a power of ten.
-pub fn axis_marks(ends: (f64, f64), steps: u16) -> Vec<(f64, String)> {
-    marks(ends, 0.0, steps.max(1))
-}
-
-/// The same, with no step smaller than `least`.
-pub(super) fn marks((low, high): (f64, f64), least: f64, steps: u16) -> Vec<(f64, String)> {
-    let smallest = ((high - low) / f64::from(steps)).max(least);
+/// times a power of ten, not smaller than `least`.
+pub fn axis_marks((low, high): (f64, f64), least: f64, steps: u16) -> Vec<(f64, String)> {
+    let smallest = ((high - low) / f64::from(steps.max(1))).max(least);
     let power = libm::pow(10.0, libm::log10(smallest).floor());
     // A small tolerance absorbs the rounding of the logarithm.
     let fits = |factor: &f64| factor * power >= smallest * (1.0 - 1e-9);
@@ -67,16 +62,21 @@ const DASHES: [&str; 4] = ["", "6 3", "1 3", "12 4"];
 ///
 /// ```
 /// use taxel_files::formats::Plot;
-/// let plot = Plot::new("na", "p").with_points(&[(18.0, 18.0), (21.0, 20.0)]).with_chosen(18.0, 18.0);
+/// let mut plot = Plot::new("na", "p");
+/// plot.points = vec![(18.0, 18.0), (21.0, 20.0)];
+/// plot.chosen = Some((18.0, 18.0));
 /// assert!(plot.svg().contains(">na</text>"));
 /// ```
 #[derive(Clone, Debug)]
 pub struct Plot {
     labels: [String; 2],
-    title: String,
-    points: Vec<Position>,
+    /// What stands above; only its first 100 characters are drawn.
+    pub title: String,
+    /// The points; those with a coordinate that is not finite are left out.
+    pub points: Vec<(f64, f64)>,
     curves: Vec<Curve>,
-    chosen: Option<Position>,
+    /// A point with a ring around it.
+    pub chosen: Option<(f64, f64)>,
     from_zero: bool,
 }
 
@@ -110,20 +110,6 @@ impl Plot {
         }
     }
 
-    /// Adds a title above; only its first 100 characters are kept.
-    #[must_use]
-    pub fn with_title(mut self, title: &str) -> Self {
-        self.title = cut(title);
-        self
-    }
-
-    /// Adds points; those with a coordinate that is not finite are left out.
-    #[must_use]
-    pub fn with_points(mut self, points: &[(f64, f64)]) -> Self {
-        self.points.extend(points.iter().filter(is_drawable));
-        self
-    }
-
     /// Adds a line through points, in their order, with a gap where a coordinate is not finite.
     #[must_use]
     pub fn with_line(mut self, name: &str, points: &[(f64, f64)], dashed: bool) -> Self {
@@ -148,13 +134,6 @@ impl Plot {
         self
     }
 
-    /// Adds a ring around a point.
-    #[must_use]
-    pub fn with_chosen(mut self, x: f64, y: f64) -> Self {
-        self.chosen = Some((x, y)).filter(|point| is_drawable(&point));
-        self
-    }
-
     fn axis(&self, index: usize, of: fn(&Position) -> f64, span: Position) -> Axis {
         let curves = self.curves.iter().flat_map(|curve| &curve.points);
         let all = curves.chain(&self.points).filter(is_drawable).map(of);
@@ -171,7 +150,7 @@ impl Plot {
             title: self.labels[index].clone(),
             ends,
             span,
-            marks: marks(ends, 0.0, STEPS),
+            marks: axis_marks(ends, 0.0, STEPS),
         }
     }
 
@@ -182,7 +161,7 @@ impl Plot {
         let along = self.axis(1, |point| point.1, (PLANE.1, 0.0));
         let place = |&(x, y): &Position| (across.place(x), along.place(y));
         svg.axes(AxisMarks::Grid, &across, &along);
-        let specks = specks(self.points.iter().map(place));
+        let specks = specks(self.points.iter().filter(is_drawable).map(place));
         svg.line("points", &specks, Stroke::black(2.0));
         for curve in &self.curves {
             let stroke = Stroke::black(1.1).dashed(curve.dash);
@@ -198,7 +177,8 @@ impl Plot {
             }
             svg.legend_of_line(&curve.name, stroke);
         }
-        let ring = self.chosen.map(|chosen| circle(place(&chosen), 4.0));
+        let chosen = self.chosen.iter().find(is_drawable);
+        let ring = chosen.map(|chosen| circle(place(chosen), 4.0));
         svg.line("chosen", &ring.unwrap_or_default(), Stroke::black(1.1));
         let [x, y] = &self.labels;
         svg.finish(&format!("{y} against {x}"), &self.title)
@@ -226,7 +206,7 @@ mod tests {
     #[test]
     fn an_axis_may_begin_anywhere() {
         let labels = |low, high, steps| {
-            let marks = axis_marks((low, high), steps);
+            let marks = axis_marks((low, high), 0.0, steps);
             let labels: Vec<String> = marks.into_iter().map(|(_, label)| label).collect();
             labels.join(" ")
         };
@@ -245,14 +225,14 @@ mod tests {
         for (low, high) in [(1e12, 1e12 + 1.0), (-1e300, 1e300), (0.0, 1e-300)] {
             let (low, high) = ends(&[low, high]);
             assert!(
-                low < high && axis_marks((low, high), 8).len() <= 11,
+                low < high && axis_marks((low, high), 0.0, 8).len() <= 11,
                 "{low} {high}"
             );
         }
     }
 
     fn labels(length: f64, least: f64) -> Vec<String> {
-        let marks = marks((0.0, length), least, 8);
+        let marks = axis_marks((0.0, length), least, 8);
         marks.into_iter().map(|(_, label)| label).collect()
     }
 

@@ -2,8 +2,8 @@
 //!
 //! Borders separate the areas; greys only help the eye, and a bad printer may lose them.
 
-use crate::formats::drawing::plot::marks;
-use crate::formats::drawing::svg::{Axis, AxisMarks, Position, Stroke, Svg, cut, line, rectangle};
+use crate::formats::drawing::plot::axis_marks;
+use crate::formats::drawing::svg::{Axis, AxisMarks, Position, Stroke, Svg, line, rectangle};
 use crate::formats::value::decimal;
 
 const PLANE: f64 = 288.0;
@@ -28,8 +28,8 @@ pub struct PoseMap {
     ends: [(f64, f64); 2],
     columns: usize,
     ids: Vec<Option<u32>>,
-    title: String,
-    chosen: Option<(usize, usize)>,
+    /// What stands above; only its first 100 characters are drawn.
+    pub title: String,
 }
 
 impl PoseMap {
@@ -52,22 +52,7 @@ impl PoseMap {
             columns,
             ids: ids.to_vec(),
             title: String::new(),
-            chosen: None,
         })
-    }
-
-    /// Adds a title above; only its first 100 characters are kept.
-    #[must_use]
-    pub fn with_title(mut self, title: &str) -> Self {
-        self.title = cut(title);
-        self
-    }
-
-    /// Adds a frame around a cell, given by column and row.
-    #[must_use]
-    pub fn with_chosen(mut self, column: usize, row: usize) -> Self {
-        self.chosen = Some((column, row)).filter(|_| column < self.columns && row < self.rows());
-        self
     }
 
     fn rows(&self) -> usize {
@@ -88,10 +73,6 @@ impl PoseMap {
             svg.fill("imprints", path, grey);
         }
         svg.line("borders", &self.borders(&place), Stroke::black(0.5));
-        if let Some((column, row)) = self.chosen {
-            let cell = rectangle(place(column, row), place(column + 1, row + 1));
-            svg.line("chosen", &cell, Stroke::black(2.0));
-        }
         let [x0, y0] = self.ends;
         let axis = |name: &str, ends: (f64, f64), cells: usize| Axis {
             title: format!("{name} / cells"),
@@ -151,7 +132,7 @@ fn count(cells: usize) -> f64 {
 fn marks_of((one, other): (f64, f64), cells: usize) -> Vec<(f64, String)> {
     let (low, high) = (one.min(other), one.max(other));
     if cells > 1 && low < high {
-        marks((low, high), 0.0, 6)
+        axis_marks((low, high), 0.0, 6)
     } else {
         vec![(one, decimal(one, 6))]
     }

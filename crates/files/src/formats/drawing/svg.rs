@@ -257,10 +257,16 @@ impl Svg {
         self.line("legend", &sign, stroke);
     }
 
+    /// Ends the page like [`Self::finish`]; the title, if there is one, is the name.
+    pub(super) fn finish_named(self, otherwise: &str, title: &str) -> String {
+        let name = cut(if title.is_empty() { otherwise } else { title });
+        self.finish(&name, title)
+    }
+
     /// Ends the page with a title above everything, unless it is empty. `name` is what screen readers read.
     pub(super) fn finish(mut self, name: &str, title: &str) -> String {
         if !title.is_empty() {
-            self.text(title, (0.0, self.above()), TextAnchor::Start);
+            self.text(&cut(title), (0.0, self.above()), TextAnchor::Start);
         }
         let size = |low: f64, high: f64| number(high - low + 2.0 * MARGIN);
         let (width, height) = (size(self.low.0, self.high.0), size(self.low.1, self.high.1));

@@ -10,9 +10,9 @@ use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
 
-use crate::formats::drawing::plot::marks;
+use crate::formats::drawing::plot::axis_marks;
 use crate::formats::drawing::svg::{
-    Axis, AxisMarks, CELLS, Position, Stroke, Svg, circle, cut, ellipse, line, polyline, rectangle,
+    Axis, AxisMarks, CELLS, Position, Stroke, Svg, circle, ellipse, line, polyline, rectangle,
 };
 use crate::formats::value::{self, fitting, shade};
 
@@ -41,12 +41,18 @@ const LEAST_PITCH: f64 = 1e-9;
 pub struct Drawing {
     pub(in crate::formats) imprint: Imprint,
     regions: Vec<Region<'static>>,
-    chosen: Option<usize>,
+    /// The index of the region described, in [`regions`]; without one nothing is described.
+    pub region: Option<usize>,
     /// The path of the shape's outline.
     outline: String,
-    pitch_mm: Option<f64>,
-    title: String,
-    heat: Option<Matrix<f64>>,
+    /// The side of a cell, for axes and values in mm. A value that a sensor cannot have as its pitch changes nothing,
+    /// nor does one below a picometre (1e-9 mm), whose axis could not be labelled.
+    pub pitch_mm: Option<f64>,
+    /// What stands above; only its first 100 characters are drawn.
+    pub title: String,
+    /// The values of all cells as shades, white for 0 and less, black for the largest, with a bold edge around active
+    /// taxels. A NaN means that there is no cell. A matrix of another size changes nothing.
+    pub heat: Option<Matrix<f64>>,
 }
 
 impl Drawing {
@@ -55,7 +61,7 @@ impl Drawing {
         let regions = regions(imprint);
         Self {
             imprint: *imprint,
-            chosen: main_region(&regions),
+            region: main_region(&regions),
             regions,
             outline: String::new(),
             pitch_mm: None,
@@ -72,44 +78,6 @@ impl Drawing {
         self
     }
 
-    /// Draws axes and values in mm, for cells of this side. A value that a sensor cannot have as its pitch changes
-    /// nothing, nor does one below a picometre (1e-9 mm), whose axis could not be labelled.
-    #[must_use]
-    pub fn with_pitch(mut self, mm: f64) -> Self {
-        if let Ok(mm) = Sensor::LARGEST.check(Parameter::Pitch, mm)
-            && mm >= LEAST_PITCH
-        {
-            self.pitch_mm = Some(mm);
-        }
-        self
-    }
-
-    /// Adds the values of all cells as shades, white for 0 and less, black for the largest, and a bold edge around
-    /// active taxels. A NaN means that there is no cell. A matrix of another size changes nothing.
-    #[must_use]
-    pub fn with_heat(mut self, values: &Matrix<f64>) -> Self {
-        if values.size() == self.imprint.size() {
-            self.heat = Some(values.clone());
-        }
-        self
-    }
-
-    /// Adds a title above; only its first 100 characters are kept.
-    #[must_use]
-    pub fn with_title(mut self, title: &str) -> Self {
-        self.title = cut(title);
-        self
-    }
-
-    /// Describes another region, given by its index in [`regions`]; an index beyond them changes nothing.
-    #[must_use]
-    pub fn with_region(mut self, index: usize) -> Self {
-        if index < self.regions.len() {
-            self.chosen = Some(index);
-        }
-        self
-    }
-
     /// The side of a cell in points.
     fn cell(&self) -> f64 {
         let longer = self.imprint.columns().max(self.imprint.rows());
@@ -121,15 +89,21 @@ impl Drawing {
         let cell = self.cell();
         let sides = [self.imprint.columns(), self.imprint.rows()].map(f64::from);
         let [width, height] = sides.map(|cells| cells * cell);
-        let described = self.chosen.and_then(|index| self.regions.get(index));
+        let described = self.region.and_then(|index| self.regions.get(index));
         let description = described.map(Description::of);
-        let (unit, pitch, least) = match self.pitch_mm {
+        let is_pitch = |mm: &f64| Sensor::LARGEST.check(Parameter::Pitch, *mm).is_ok();
+        let pitch = self
+            .pitch_mm
+            .filter(|mm| is_pitch(mm) && *mm >= LEAST_PITCH);
+        let (unit, pitch, least) = match pitch {
             Some(pitch) => ("mm", pitch, 0.0),
             // Marks in cells stand at whole numbers only.
             None => ("cells", 1.0, 1.0),
         };
+        let heat = self.heat.as_ref();
+        let heat = heat.filter(|values| values.size() == self.imprint.size());
         let mut svg = Svg::new((width, height));
-        match &self.heat {
+        match heat {
             Some(values) => self.heat(&mut svg, values),
             None => self.taxels(&mut svg, described),
         }
@@ -142,7 +116,7 @@ impl Drawing {
             title: format!("{name} / {unit}"),
             ends: (0.0, cells * pitch),
             span: (0.0, cells * cell),
-            marks: marks((0.0, cells * pitch), least, 8),
+            marks: axis_marks((0.0, cells * pitch), least, 8),
         };
         let [across, along] = [axis("x", sides[0]), axis("y", sides[1])];
         svg.axes(AxisMarks::Outside, &across, &along);
@@ -158,7 +132,7 @@ impl Drawing {
             svg.line("cd", &circle(place(cd.x, cd.y), ARM), POINT);
             svg.line("cg", &cross(place(cg.x, cg.y)), POINT);
         }
-        match &self.heat {
+        match heat {
             Some(values) => self.legend_of_heat(&mut svg, values),
             None => self.legend_of_taxels(&mut svg, description.as_ref()),
         }
@@ -177,11 +151,7 @@ impl Drawing {
             let sign = svg.legend(&text("CD", Value::Point(description.cd())));
             svg.line("legend", &circle(sign, ARM), POINT);
         }
-        let name = match self.title.as_str() {
-            "" => "imprint",
-            title => title,
-        };
-        svg.finish(name, &self.title)
+        svg.finish_named("imprint", &self.title)
     }
 
     /// Draws the active taxels, darker in the described region.
