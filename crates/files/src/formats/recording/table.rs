@@ -7,7 +7,7 @@
 //! | cells | all columns whose names have numbers: two of them are row and column, one is the place in their order; what else is in the name is the channel. Without names all fields, in order |
 //! | size | the given rows and columns; else of the names; else lines in blocks, as many lines as fields, or n² numbers a line |
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::io::BufRead;
 
 use taxel_core::frame::{Frame, FrameSize, Label, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
@@ -21,9 +21,10 @@ use crate::formats::recording::event::{
 };
 use crate::formats::recording::size::frame_size;
 use crate::formats::recording::text::{
-    Field, Separator, TextLines, is_blank, is_comment, text, whole, wrong_count, wrong_field,
+    Field, Separator, TextLines, is_blank, is_comment, is_none, text, whole, wrong_count,
+    wrong_field,
 };
-use crate::formats::recording::time::{Moment, TimeUnit, read_moment, time_name};
+use crate::formats::recording::time::{TimeUnit, read_moment, time_name};
 
 /// The most fields of a line: cells, and a few beside them.
 const MOST_FIELDS: usize = MAX_FRAME_CELLS + 16;
@@ -37,45 +38,55 @@ const MOST_ABOVE: usize = 8;
 /// The most bytes of the lines that are waited for.
 const MOST_HELD: usize = 16 << 20;
 
-/// Where a table goes on after an interruption, and where a file continues that was emptied: each line has these
-/// fields.
+/// How a table is arranged: of each field, what it is. An interrupted stream goes on with it, as does a file that was
+/// emptied.
 #[derive(Clone, Debug)]
 pub(super) struct TableLayout {
     separator: Separator,
-    /// The number of fields if they have names: then the last one may be empty. Otherwise 0: a separator at the end is
-    /// none.
-    expected: usize,
-    /// For each field, its channel and the index of its cell; None if it is not a cell.
-    slots: Vec<Option<(usize, usize)>>,
-    channels: Vec<(Option<String>, FrameSize)>,
-    time: Option<(usize, Option<TimeUnit>)>,
-    label: Option<usize>,
+    /// The names of the fields; None without a header.
+    names: Option<Vec<String>>,
+    uses: Vec<Use>,
+    time_unit: Option<TimeUnit>,
+    channels: Vec<Channel>,
+    /// The order of the cells, in words.
+    order: &'static str,
     /// Whether a line is a row; otherwise it is a frame.
     in_rows: bool,
     /// Whether empty lines or lines of text end the frames in rows.
     is_parted: bool,
 }
 
+/// What a field is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Use {
+    Cell {
+        channel: usize,
+        index: usize,
+    },
+    Time,
+    Label,
+    /// A number that is none of these.
+    LeftOut,
+    Nothing,
+}
+
+#[derive(Clone, Debug)]
+struct Channel {
+    name: Option<String>,
+    cells: usize,
+    /// The rows and columns; None until something gives them.
+    size: Option<FrameSize>,
+}
+
 /// Whether a text begins like a table: with a line of two numbers or more that are at least half of its fields; or with
 /// a number, if the rows and columns are given or the name of a single cell is above it.
 pub(super) fn sniff(head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
-    let end = head.iter().rposition(|&byte| byte == b'\n');
-    let whole = if is_all {
-        head
-    } else {
-        &head[..end.unwrap_or(0)]
-    };
-    // A stream that was joined anywhere begins with the rest of a line.
-    let first = whole
-        .iter()
-        .position(|&byte| byte == b'\n')
-        .filter(|_| options.is_joined);
-    let whole = match (options.is_joined, first) {
-        (true, None) => return false,
-        (_, first) => &whole[first.map_or(0, |end| end + 1)..],
-    };
+    let end = head.iter().rposition(|&byte| byte == b'\n').unwrap_or(0);
+    let whole = if is_all { head } else { &head[..end] };
+    let lines = whole.split(|&byte| byte == b'\n');
     let mut is_named = false;
-    whole.split(|&byte| byte == b'\n').any(|line| {
+    // A stream that was joined anywhere begins with the rest of a line.
+    lines.skip(usize::from(options.is_joined)).any(|line| {
         let (_, line) = bare(line);
         if is_blank(line) || is_comment(line) {
             return false;
@@ -107,8 +118,7 @@ pub(super) fn is_column(head: &[u8]) -> bool {
 }
 
 fn is_grid_name(line: &[u8]) -> bool {
-    let name = str::from_utf8(line.trim_ascii());
-    name.is_ok_and(|name| CellName::of(name).is_some_and(|cell| cell.numbers.len() == 2))
+    CellName::of(&text(line.trim_ascii())).is_some_and(|cell| cell.numbers.len() == 2)
 }
 
 /// Removes what is no part of the numbers of a line: the time that a serial monitor puts before them, `12:00:01.100 -> `,
@@ -120,22 +130,18 @@ fn bare(line: &[u8]) -> (Option<&[u8]>, &[u8]) {
         Some((time, rest)) if read_moment(time).is_some() => (Some(time), rest),
         _ => (None, line),
     };
-    let begins = line.trim_ascii_start().starts_with(b"[");
     let ends = line.trim_ascii_end();
     let ends = ends.strip_suffix(b",").unwrap_or(ends).ends_with(b"]");
-    if !begins && !ends {
+    if !ends && !line.trim_ascii_start().starts_with(b"[") {
         return (time, line);
     }
-    let is_edge = |byte: &u8| b"[], \t".contains(byte);
-    let start = line
-        .iter()
-        .position(|byte| !b"[ \t".contains(byte))
-        .unwrap_or(line.len());
-    let end = line
-        .iter()
-        .rposition(|byte| !is_edge(byte))
-        .map_or(start, |end| end + 1);
-    let inside = &line[start..end.max(start)];
+    let mut inside = line;
+    while let [b'[' | b' ' | b'\t', rest @ ..] = inside {
+        inside = rest;
+    }
+    while let [rest @ .., b'[' | b']' | b',' | b' ' | b'\t'] = inside {
+        inside = rest;
+    }
     let is_nested = inside.iter().any(|byte| b"[]".contains(byte));
     (time, if is_nested { line } else { inside })
 }
@@ -146,14 +152,14 @@ pub(super) fn read(
     options: &ReadOptions,
     sink: &mut Sink<'_>,
 ) -> Result<(), Stop> {
-    Table {
+    let mut table = Table {
         lines: TextLines::new(input),
         options,
         sink,
         is_one: false,
         is_inside: options.is_joined,
-    }
-    .read()
+    };
+    table.read()
 }
 
 /// Reads a text that is known to be a single frame, a row a line.
@@ -162,18 +168,14 @@ pub(super) fn read(
 /// If the text is no table, or larger than a frame; with the kind [`ReadErrorKind::UnknownFormat`] if it has no numbers.
 pub fn read_rows(mut text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<(), ReadError> {
     let mut state = ReadState::default();
-    let sink = &mut Sink::new(consumer, &mut state);
-    let options = &ReadOptions::default();
-    let lines = TextLines::new(&mut text as &mut dyn BufRead);
-    match (Table {
-        lines,
-        options,
-        sink,
+    let mut table = Table {
+        lines: TextLines::new(&mut text as &mut dyn BufRead),
+        options: &ReadOptions::default(),
+        sink: &mut Sink::new(consumer, &mut state),
         is_one: true,
-        is_inside: options.is_joined,
-    })
-    .read()
-    {
+        is_inside: false,
+    };
+    match table.read() {
         Ok(()) | Err(Stop::Enough) => Ok(()),
         Err(Stop::Failed(error)) => Err(error),
     }
@@ -227,31 +229,8 @@ impl<'a> Line<'a> {
     }
 }
 
-/// What the names of the columns say, or that there are none.
-struct Columns {
-    separator: Separator,
-    /// The names; None without a header.
-    names: Option<Vec<String>>,
-    /// The number of fields in a line.
-    count: usize,
-    time: Option<(usize, Option<TimeUnit>)>,
-    label: Option<usize>,
-    sensors: Vec<Sensor>,
-    left_out: Vec<usize>,
-    /// The rows and columns that are given.
-    given: Option<FrameSize>,
-}
-
-/// The cells of a channel: their columns in the order of the cells.
-struct Sensor {
-    name: Option<String>,
-    columns: Vec<usize>,
-    /// The rows and columns that the names give.
-    grid: Option<FrameSize>,
-}
-
 impl Table<'_, '_> {
-    fn read(mut self) -> Result<(), Stop> {
+    fn read(&mut self) -> Result<(), Stop> {
         // What was joined anywhere begins with the rest of a line.
         if self.options.is_joined {
             self.advance()?;
@@ -278,111 +257,59 @@ impl Table<'_, '_> {
         let Some(layout) = self.sink.state.layout.clone() else {
             return Ok(None);
         };
-        let mut held: Vec<(u64, Vec<u8>)> = Vec::new();
-        let (mut header, mut goes_on) = (None, false);
-        while held.len() < MOST_ABOVE && !goes_on && self.advance()? {
-            let number = self.lines.number();
-            let line = self.lines.line();
-            let fields = layout.separator.fields_of(bare(line).1, layout.expected);
-            let fields: Vec<&[u8]> = fields.collect();
-            let is_header = self.is_header(&fields, layout.separator);
-            goes_on = !is_header && fields.len() == layout.slots.len();
-            if goes_on && header == Some((number - 1, fields.len())) {
-                goes_on = false;
-                held.push((number, line.to_vec()));
-                break;
+        let count = layout.uses.len();
+        let (mut held, mut header, mut goes_on) = (Vec::new(), None, None);
+        while goes_on.is_none() && held.len() < MOST_ABOVE && self.advance()? {
+            let (number, line) = self.lines.held();
+            let fields: Vec<&[u8]> = layout.fields(bare(&line).1).collect();
+            if self.is_header(&fields, layout.separator) {
+                header = Some((number + 1, fields.len()));
+            } else if fields.len() == count {
+                goes_on = Some(header != Some((number, count)));
             }
-            header = is_header.then_some((number, fields.len()));
-            held.push((number, line.to_vec()));
+            held.push((number, line));
         }
-        let is_empty = held.is_empty();
-        for (number, line) in held.into_iter().rev() {
-            self.lines.unread(number, line);
-        }
-        Ok(Some(layout).filter(|_| goes_on || is_empty))
+        let goes_on = goes_on.unwrap_or(held.is_empty());
+        self.lines.unread(held);
+        Ok(Some(layout).filter(|_| goes_on))
     }
 
-    /// Finds out how the table is arranged. In a live stream, lines that do not fit are dropped until some do; None if
-    /// it ends before that.
+    /// Finds out how the table is arranged; the lines of its numbers are read again. In a live stream, lines that do not
+    /// fit are dropped until some do; None if it ends before that.
     fn layout(&mut self) -> Result<Option<TableLayout>, Stop> {
+        let is_live = self.options.leaves_out;
         loop {
-            let is_live = self.options.leaves_out;
-            let columns = match self.columns() {
-                Ok(Some(columns)) => columns,
-                Ok(None) if is_live => return Ok(None),
-                Ok(None) => return Err(unknown_format().into()),
-                Err(Stop::Failed(error)) if is_live && error.kind == ReadErrorKind::Invalid => {
-                    self.drop_line(error)?;
-                    continue;
-                }
-                Err(stop) => return Err(stop),
-            };
-            match self.arranged(&columns) {
-                Ok(Some(mut layout)) => {
+            let mut layout = None;
+            let found = self.columns().and_then(|columns| match columns {
+                Some(columns) => self.arranged(layout.insert(columns)),
+                None => Ok(false),
+            });
+            match (found, layout) {
+                (Ok(true), Some(mut layout)) => {
                     layout.is_parted |= layout.in_rows && self.options.is_joined;
-                    self.tell(&columns, &layout)?;
-                    let unit = layout.time.and_then(|(_, unit)| unit);
-                    self.sink.state.clock.set_unit(unit);
+                    self.tell(&layout)?;
+                    self.sink.state.clock.set_unit(layout.time_unit);
                     return Ok(Some(layout));
                 }
-                Ok(None) => {}
-                Err(Stop::Failed(error)) if is_live && error.kind == ReadErrorKind::Invalid => {
-                    self.advance()?;
+                (Ok(_), Some(_)) => {}
+                (Ok(_), None) if is_live => return Ok(None),
+                (Ok(_), None) => return Err(unknown_format().into()),
+                (Err(Stop::Failed(error)), _)
+                    if is_live && error.kind == ReadErrorKind::Invalid =>
+                {
                     self.drop_line(error)?;
                 }
-                Err(stop) => return Err(stop),
+                (Err(stop), _) => return Err(stop),
             }
         }
     }
 
     fn drop_line(&mut self, error: ReadError) -> Result<(), Stop> {
-        let line = self.lines.line().to_vec();
-        self.sink.damage(self.options, error, &line)
+        self.sink.damage(self.options, error, self.lines.line())
     }
 
-    /// Arranges the cells of these columns; None if the lines before the next one do not fit it and were dropped.
-    fn arranged(&mut self, columns: &Columns) -> Result<Option<TableLayout>, Stop> {
-        let given = self.options.size;
-        let total: usize = columns
-            .sensors
-            .iter()
-            .map(|sensor| sensor.columns.len())
-            .sum();
-        let is_single = columns.sensors.len() == 1;
-        let number = self.lines.number();
-        let mut layout = columns.layout();
-        if let Some(size) = given.filter(|size| size.cells() == total) {
-            layout.take_as_one(columns, size);
-        } else if let Some(size) =
-            given.filter(|size| is_single && usize::from(size.columns()) == total)
-        {
-            layout.take_as_one(columns, size);
-            layout.in_rows = true;
-        } else if is_single && columns.sensors[0].grid.is_none() && given.is_none() {
-            let Some((size, in_rows, is_parted)) = self.look_ahead(columns, total)? else {
-                return Ok(None);
-            };
-            layout.take_as_one(columns, size);
-            (layout.in_rows, layout.is_parted) = (in_rows, is_parted);
-        } else {
-            for (channel, sensor) in columns.sensors.iter().enumerate() {
-                let cells = sensor.columns.len();
-                let own = given.filter(|size| size.cells() == cells);
-                let squared = square(cells, 2).filter(|_| given.is_none());
-                let size = own.or(sensor.grid).or(squared);
-                layout.channels[channel].1 =
-                    size.ok_or_else(|| columns.misfit(cells, given, number))?;
-                if let (0, None, None, Some(size)) = (channel, own, sensor.grid, squared) {
-                    self.sink
-                        .note(&RecordingNote::Square { side: size.rows() })?;
-                }
-            }
-        }
-        Ok(Some(layout))
-    }
-
-    /// Finds the header, if there is one, up to the first line of numbers, which is read again.
-    fn columns(&mut self) -> Result<Option<Columns>, Stop> {
+    /// Finds the header, if there is one, up to the first line of numbers.
+    fn columns(&mut self) -> Result<Option<TableLayout>, Stop> {
         let mut comment = None;
         let mut above: Option<(u64, Vec<u8>)> = None;
         while self.advance()? {
@@ -398,34 +325,29 @@ impl Table<'_, '_> {
                 continue;
             }
             let separator = Separator::of(fields);
-            let above_fields =
-                |(_, names): &(u64, Vec<u8>)| separator.fields(bare(names).1).count();
-            let expected = above.as_ref().map_or(0, above_fields);
-            let found: Vec<&[u8]> = separator
-                .fields_of(fields, expected)
-                .take(MOST_FIELDS + 1)
-                .collect();
+            let expected = match &above {
+                Some((_, names)) => separator.fields(bare(names).1).count(),
+                None => 0,
+            };
+            let found = separator.fields_of(fields, expected);
+            let found: Vec<&[u8]> = found.take(MOST_FIELDS + 1).collect();
             if found.len() > MOST_FIELDS {
-                return Err(in_line(
-                    number,
-                    "more than 262,160 fields, expected at most 512 × 512 cells and 16 beside them",
-                )
-                .into());
+                let message =
+                    "more than 262,160 fields, expected at most 512 × 512 cells and 16 beside them";
+                return Err(in_line(number, message).into());
             }
-            let has_number = found
-                .iter()
-                .any(|field| separator.is_numeric(field) && !field.is_empty());
-            if expected != found.len() && self.is_header(&found, separator) || !has_number {
-                above = Some((number, line.to_vec()));
+            let is_number = |field: &&[u8]| separator.is_numeric(field) && !field.is_empty();
+            if expected != found.len() && self.is_header(&found, separator)
+                || !found.iter().any(is_number)
+            {
+                above = Some(self.lines.held());
                 continue;
             }
-            let names = match &above {
-                Some((_, names)) if expected == found.len() => Some(
-                    separator
-                        .fields_of(bare(names).1, expected)
-                        .map(text)
-                        .collect(),
-                ),
+            let (names, at) = match &above {
+                Some((at, names)) if expected == found.len() => {
+                    let names = separator.fields_of(bare(names).1, expected);
+                    (Some(names.map(text).collect()), *at)
+                }
                 // A line of text may stand above the first frame, but not a list of words.
                 Some((at, words))
                     if expected > 1 && separator != Separator::Spaces
@@ -433,21 +355,50 @@ impl Table<'_, '_> {
                 {
                     return Err(above_table(*at, expected, number, found.len()).into());
                 }
-                _ => comment
-                    .as_deref()
-                    .and_then(|comment| names_in_comment(comment, separator, found.len())),
+                _ => {
+                    let names = |comment| names_in_comment(comment, separator, found.len());
+                    let names = comment.as_deref().and_then(names);
+                    let at = above.as_ref().filter(|_| names.is_some());
+                    (names, at.map_or(number, |(at, _)| *at))
+                }
             };
-            let at = above
-                .as_ref()
-                .filter(|_| names.is_some())
-                .map_or(number, |(at, _)| *at);
-            let columns = Columns::new(separator, names, &found, self.options)
-                .map_err(|error| error.in_line(at))?;
-            let line = line.to_vec();
-            self.lines.unread(number, line);
-            return Ok(Some(columns));
+            let layout = TableLayout::new(separator, names, &found, self.options);
+            return Ok(Some(layout.map_err(|error| error.in_line(at))?));
         }
         Ok(None)
+    }
+
+    /// Arranges the cells, with the first line of numbers, which is read again. Returns false if the lines before the next
+    /// one do not fit it and were dropped.
+    fn arranged(&mut self, layout: &mut TableLayout) -> Result<bool, Stop> {
+        let given = self.options.size;
+        let total: usize = layout.channels.iter().map(|channel| channel.cells).sum();
+        let is_single = layout.channels.len() == 1;
+        let is_row = |size: &FrameSize| is_single && usize::from(size.columns()) == total;
+        if let Some(size) = given.filter(|size| size.cells() == total || is_row(size)) {
+            layout.in_rows = size.cells() != total;
+            layout.take_as_one(size);
+        } else if is_single && given.is_none() && layout.channels[0].size.is_none() {
+            self.lines.unread([self.lines.held()]);
+            return self.look_ahead(layout, total);
+        } else {
+            for (index, channel) in layout.channels.iter_mut().enumerate() {
+                let own = given.filter(|size| size.cells() == channel.cells);
+                let own = own.or(channel.size);
+                let squared = square(channel.cells, 2).filter(|_| given.is_none());
+                let Some(size) = own.or(squared) else {
+                    let (cells, is_named) = (channel.cells, layout.names.is_some());
+                    return Err(misfit(cells, given, self.lines.number(), is_named).into());
+                };
+                channel.size = Some(size);
+                if index == 0 && own.is_none() {
+                    let side = size.rows();
+                    self.sink.note(&RecordingNote::Square { side })?;
+                }
+            }
+        }
+        self.lines.unread([self.lines.held()]);
+        Ok(true)
     }
 
     /// Whether these fields are names: words, beside numbers only if the numbers count up or the words are usual names;
@@ -490,15 +441,10 @@ impl Table<'_, '_> {
         numbers.is_empty() || is_usual || many && (counts(0.0) || counts(1.0))
     }
 
-    /// Reads lines until it is clear how they are arranged; they are read again. Returns the rows and columns, whether a
-    /// line is a row, and whether frames are parted; None if the next line of a live stream has another number of
-    /// fields than those before it, which are dropped.
-    fn look_ahead(
-        &mut self,
-        columns: &Columns,
-        cells: usize,
-    ) -> Result<Option<(FrameSize, bool, bool)>, Stop> {
-        let is_live = self.options.leaves_out;
+    /// Reads lines until it is clear how they are arranged; they are read again. Returns false if the next line of a live
+    /// stream has another number of fields than those before it, which are dropped.
+    fn look_ahead(&mut self, layout: &mut TableLayout, cells: usize) -> Result<bool, Stop> {
+        let (is_live, is_named) = (self.options.leaves_out, layout.names.is_some());
         let most = if is_live {
             MOST_LIVE_ROWS
         } else {
@@ -507,120 +453,105 @@ impl Table<'_, '_> {
         let mut held: Vec<(u64, Vec<u8>)> = Vec::new();
         // The rows since the last end of a frame, those of the frame before it, and all of them.
         let (mut rows, mut before, mut all, mut bytes) = (0_usize, 0_usize, 0_usize, 0);
-        let mut has_ended = false;
         // The rows of a frame, if these are parted.
-        let block = loop {
+        let (mut block, mut has_ended) = (None, false);
+        while block.is_none() {
             let is_wide = cells >= most && !self.is_one && all > usize::from(is_live);
             if is_wide || rows >= most || all >= 3 * most || bytes > MOST_HELD {
-                break None;
+                break;
             }
             if !self.advance()? {
                 has_ended = true;
-                break Some(before).filter(|&before| before > 1 && rows > 0);
+                block = Some(before).filter(|&before| before > 1 && rows > 0);
+                break;
             }
-            let (number, line) = (self.lines.number(), self.lines.line());
-            bytes += line.len();
-            let kind = Line::of(line, columns.separator, columns.count);
-            let count = match kind {
-                Line::Fields(_, fields) => columns
-                    .separator
-                    .fields_of(fields, columns.expected())
-                    .count(),
-                _ => columns.count,
+            let (number, line) = self.lines.held();
+            let expected = layout.uses.len();
+            let (is_row, is_break, count) = match Line::of(&line, layout.separator, expected) {
+                Line::Fields(_, fields) => (true, false, layout.fields(fields).count()),
+                Line::Break => (false, true, expected),
+                Line::Comment => (false, false, expected),
             };
-            if count != columns.count && is_live && columns.names.is_none() {
-                let line = line.to_vec();
-                self.lines.unread(number, line);
-                self.sink
-                    .damage(self.options, wrong_count(number, count, columns.count), b"")?;
-                return Ok(None);
-            }
-            if count != columns.count && !is_live {
-                let is_above = all == 1 && columns.names.is_none();
-                return Err(if is_above {
-                    above_table(held[0].0, columns.count, number, count)
-                } else {
-                    wrong_count(number, count, columns.count)
+            if count != expected && !(is_live && is_named) {
+                if is_live {
+                    self.lines.unread([(number, line)]);
+                } else if all == 1 && !is_named {
+                    return Err(above_table(held[0].0, expected, number, count).into());
                 }
-                .into());
+                self.sink
+                    .damage(self.options, wrong_count(number, count, expected), b"")?;
+                return Ok(false);
             }
-            let is_row = matches!(kind, Line::Fields(..));
-            let is_break = matches!(kind, Line::Break);
             if is_break && std::mem::take(&mut self.is_inside) {
                 // What precedes the first end of a frame is the rest of one.
                 held.clear();
                 (rows, all) = (0, 0);
             }
+            bytes += line.len();
+            held.push((number, line));
             // A file is parted if more follows; of a live stream, the first frame may be torn.
             let is_block = if is_live {
                 is_break && rows > 1 && rows == before
             } else {
                 is_row && rows == 0 && before > 1
             };
-            held.push((number, line.to_vec()));
-            if is_block {
-                break Some(before);
-            }
+            block = is_block.then_some(before);
             if is_break && rows > 0 {
                 (before, rows) = (rows, 0);
             }
             rows += usize::from(is_row);
             all += usize::from(is_row);
-        };
-        for (number, line) in held.into_iter().rev() {
-            self.lines.unread(number, line);
         }
-        let squared = square(cells, if columns.names.is_some() { 2 } else { 3 });
+        self.lines.unread(held);
+        let squared = square(cells, if is_named { 2 } else { 3 }).filter(|_| !self.is_one);
         let is_one = has_ended && (self.is_one || all == cells);
         if let Some(size) = block.and_then(|rows| frame_size(cells, rows)) {
-            Ok(Some((size, true, true)))
+            layout.take_as_one(size);
+            (layout.in_rows, layout.is_parted) = (true, true);
         } else if let Some(size) = frame_size(cells, all).filter(|_| is_one) {
-            Ok(Some((size, true, false)))
-        } else if let Some(size) = squared.filter(|_| !self.is_one) {
+            layout.take_as_one(size);
+            layout.in_rows = true;
+        } else if let Some(size) = squared {
+            layout.take_as_one(size);
             let side = size.rows();
             self.sink.note(&RecordingNote::Square { side })?;
-            Ok(Some((size, false, false)))
         } else {
-            Err(unclear(cells, has_ended.then_some(all)).into())
+            return Err(unclear(cells, has_ended.then_some(all)).into());
         }
+        Ok(true)
     }
 
     /// Notes how the table is read.
-    fn tell(&mut self, columns: &Columns, layout: &TableLayout) -> Result<(), Stop> {
-        let name = |column: usize| columns.called(column);
-        let mut notes = Vec::new();
-        if let Some((column, unit)) = layout.time {
-            let unit = unit.map_or(String::new(), |unit| format!(", in {}", unit.name()));
-            notes.push(format!("times: {}{unit}", name(column)));
-        }
-        if let Some(column) = layout.label {
-            notes.push(format!("labels: {}", name(column)));
-        }
-        let cells = match (
-            &columns.names,
-            columns.sensors.iter().all(|sensor| sensor.grid.is_some()),
-        ) {
-            (None, _) => "all other numbers of a line, in order",
-            (Some(_), true) => "by the row and column in their names",
-            (Some(_), false) => "in the order of the numbers in their names",
+    fn tell(&mut self, layout: &TableLayout) -> Result<(), Stop> {
+        let names = |wanted: Use| -> Vec<String> {
+            let columns = (0..layout.uses.len()).filter(|&column| layout.uses[column] == wanted);
+            let called = |column: usize| match &layout.names {
+                Some(names) => format!("{:?}", shortened(&names[column])),
+                None => format!("column {}", column + 1),
+            };
+            columns.map(called).collect()
         };
+        let mut notes = Vec::new();
+        for time in names(Use::Time) {
+            let unit = layout.time_unit.map(|unit| format!(", in {}", unit.name()));
+            notes.push(format!("times: {time}{}", unit.unwrap_or_default()));
+        }
+        for label in names(Use::Label) {
+            notes.push(format!("labels: {label}"));
+        }
         let lines = match (layout.in_rows, layout.is_parted) {
             (false, _) => "a frame a line",
             (true, false) => "a row a line",
             (true, true) => "a row a line; an empty line or a line of text ends a frame",
         };
-        notes.push(format!("cells: {cells}; {lines}"));
-        if !columns.left_out.is_empty() {
-            let mut names: Vec<String> = columns
-                .left_out
-                .iter()
-                .take(16)
-                .map(|&column| name(column))
-                .collect();
-            if columns.left_out.len() > 16 {
-                names.push("…".to_owned());
-            }
-            notes.push(format!("left out: {}", names.join(", ")));
+        notes.push(format!("cells: {}; {lines}", layout.order));
+        let mut left_out = names(Use::LeftOut);
+        if left_out.len() > 16 {
+            left_out.truncate(16);
+            left_out.push("…".to_owned());
+        }
+        if !left_out.is_empty() {
+            notes.push(format!("left out: {}", left_out.join(", ")));
         }
         notes
             .into_iter()
@@ -628,58 +559,56 @@ impl Table<'_, '_> {
     }
 
     fn frames(&mut self, layout: &TableLayout) -> Result<(), Stop> {
-        let mut frames: Vec<Frame> = layout
-            .channels
-            .iter()
-            .map(|(_, size)| Frame::new(*size))
-            .collect();
-        let height = usize::from(frames[0].rows());
+        let sizes = layout.channels.iter().filter_map(|channel| channel.size);
+        let mut taken = Taken {
+            frames: sizes.map(Frame::new).collect(),
+            time: None,
+            label: None,
+        };
+        let height = usize::from(taken.frames[0].rows());
         let mut row = 0;
         let mut is_parted = layout.is_parted;
         // What was joined anywhere begins inside a frame.
         let mut skipping = layout.in_rows && self.is_inside;
-        let mut start = Start::default();
         loop {
             let more = self.advance()?;
             let number = self.lines.number();
             if !is_blank(self.lines.torn()) {
-                let torn = self.lines.torn().to_vec();
                 let error = in_line(number + 1, "no line break after it");
                 return if skipping {
                     Ok(())
                 } else {
-                    self.sink.damage(self.options, error, &torn)
+                    self.drop_line(error)
                 };
             }
             let line = if more {
-                Line::of(self.lines.line(), layout.separator, layout.slots.len())
+                Line::of(self.lines.line(), layout.separator, layout.uses.len())
             } else {
                 Line::Break
             };
             match line {
                 Line::Break if layout.in_rows => {
                     if row == height {
-                        self.give(layout, &mut frames, &start)?;
+                        self.give(layout, &mut taken)?;
                     } else if row > 0 {
-                        let at = number + u64::from(!more);
-                        let message = format!(
-                            "the frame ends after {}, expected {height}",
-                            counted(row as u64, "row")
-                        );
-                        self.drop_line(in_line(at, message))?;
+                        let rows = counted(row as u64, "row");
+                        let message = format!("the frame ends after {rows}, expected {height}");
+                        self.drop_line(in_line(number + u64::from(!more), message))?;
                     }
                     (row, skipping, is_parted) = (0, false, true);
                 }
                 Line::Comment | Line::Break => {}
                 Line::Fields(..) if skipping => {}
                 Line::Fields(time, fields) => {
+                    if row == 0 {
+                        taken.time = time.map(<[u8]>::to_vec);
+                    }
                     let filled = if row == height && layout.in_rows {
-                        Err(in_line(
-                            number,
-                            format!("another row, expected an empty line after {height} of them"),
-                        ))
+                        let message =
+                            format!("another row, expected an empty line after {height} of them");
+                        Err(in_line(number, message))
                     } else {
-                        layout.fill(fields, number, row, &mut frames, &mut start, time)
+                        layout.fill(fields, number, row, &mut taken)
                     };
                     if let Err(error) = filled {
                         self.drop_line(error)?;
@@ -688,7 +617,7 @@ impl Table<'_, '_> {
                     }
                     row += 1;
                     if !layout.in_rows || row == height && !is_parted {
-                        self.give(layout, &mut frames, &start)?;
+                        self.give(layout, &mut taken)?;
                         row = 0;
                     }
                 }
@@ -699,73 +628,212 @@ impl Table<'_, '_> {
         }
     }
 
-    fn give(
-        &mut self,
-        layout: &TableLayout,
-        frames: &mut [Frame],
-        start: &Start,
-    ) -> Result<(), Stop> {
+    fn give(&mut self, layout: &TableLayout, taken: &mut Taken) -> Result<(), Stop> {
         let clock = &mut self.sink.state.clock;
-        let (mut time, mut is_moment, mut unread) = (None, false, None);
-        if let Some(field) = &start.time {
-            let read = match layout.separator.value(field) {
-                Field::Value(value) => Some(clock.number(field, value)),
-                Field::NoCell => None,
-                Field::Wrong => {
-                    let moment: Option<Moment> = read_moment(field);
-                    is_moment = moment.is_some();
-                    unread = moment.is_none().then(|| shortened(&text(field)));
-                    moment.map(|moment| clock.moment(moment))
+        let (mut read, mut start, mut unread) = (None, None, None);
+        if let Some(field) = &taken.time {
+            match (layout.separator.value(field), read_moment(field)) {
+                (Field::Value(value), _) => read = Some(clock.number(field, value)),
+                (Field::NoCell, _) => {}
+                (Field::Wrong, Some(moment)) => {
+                    read = Some(clock.moment(moment));
+                    start = Some(text(field));
                 }
-            };
-            time = read.map(|read| clock.since_first(read));
+                (Field::Wrong, None) => unread = Some(shortened(&text(field))),
+            }
         }
-        let assumed = clock.take_note();
-        for (index, (frame, (name, size))) in frames.iter_mut().zip(&layout.channels).enumerate() {
-            let channel = self.sink.channel(name.as_deref(), || ChannelInfo {
-                size: Some(*size),
-                start: start
-                    .time
-                    .as_ref()
-                    .filter(|_| is_moment)
-                    .map(|time| text(time)),
+        let time = read.map(|read| clock.since_first(read));
+        let mut assumed = clock.take_note();
+        for (frame, own) in taken.frames.iter_mut().zip(&layout.channels) {
+            let channel = self.sink.channel(own.name.as_deref(), || ChannelInfo {
+                size: own.size,
+                start: start.clone(),
                 ..ChannelInfo::default()
             })?;
-            if index == 0 {
-                if let Some(note) = &assumed {
-                    self.sink.note(note)?;
-                }
-                if let Some(text) = unread.take() {
-                    self.sink.unread_time(channel, text)?;
-                }
+            if let Some(note) = assumed.take() {
+                self.sink.note(&note)?;
+            }
+            if let Some(text) = unread.take() {
+                self.sink.unread_time(channel, text)?;
             }
             frame.time = time;
-            frame.label.clone_from(&start.label);
+            frame.label.clone_from(&taken.label);
             self.sink.frame(channel, frame)?;
         }
         Ok(())
     }
 }
 
-/// The time and the label in the first line of a frame.
-#[derive(Default)]
-struct Start {
+/// The frames that are being filled, one a channel, with the time and the label in the first line.
+struct Taken {
+    frames: Vec<Frame>,
     time: Option<Vec<u8>>,
     label: Option<Label>,
 }
 
 impl TableLayout {
-    /// Takes all cells as those of one channel.
-    fn take_as_one(&mut self, columns: &Columns, size: FrameSize) {
-        let name = match &columns.sensors[..] {
-            [sensor] => sensor.name.clone(),
-            _ => None,
+    fn new(
+        separator: Separator,
+        names: Option<Vec<String>>,
+        first: &[&[u8]],
+        options: &ReadOptions,
+    ) -> Result<Self, ReadError> {
+        let known = names.as_deref().unwrap_or(&[]);
+        let find = |column: &Column, flag: &str| match column {
+            Column::Number(number) if *number <= first.len() => Ok(*number - 1),
+            Column::Number(number) => {
+                let columns = counted(first.len() as u64, "column");
+                let message = format!("{flag} {number}: the table has {columns}");
+                Err(ReadError::new(message))
+            }
+            Column::Name(name) => {
+                let found = known.iter().position(|own| own.eq_ignore_ascii_case(name));
+                found.ok_or_else(|| {
+                    let near = did_you_mean(name, known.iter().map(String::as_str));
+                    ReadError::new(format!("{flag} {name}: no column has this name{near}"))
+                })
+            }
         };
-        self.channels = vec![(name, size)];
-        let all = columns.sensors.iter().flat_map(|sensor| &sensor.columns);
-        for (index, &column) in all.enumerate() {
-            self.slots[column] = Some((0, index));
+        let label = match &options.label_column {
+            Some(chosen) => Some(find(chosen, "--label-column")?),
+            None => LABELS.iter().find_map(|label| {
+                let mut names = known.iter();
+                names.position(|name| name.trim().eq_ignore_ascii_case(label))
+            }),
+        };
+        let times = known.iter().map(|name| time_name(name));
+        let mut times = times.enumerate().filter_map(|(at, unit)| Some((at, unit?)));
+        let time = match &options.time_column {
+            Some(chosen) => {
+                let column = find(&chosen.column, "--time-column")?;
+                let named = times.find(|(at, _)| *at == column);
+                Some((column, chosen.unit.or(named.and_then(|(_, unit)| unit))))
+            }
+            // A date may stand beside the time of day.
+            None => times.min_by_key(|(at, _)| known[*at].eq_ignore_ascii_case("date")),
+        };
+        let mut layout = Self {
+            separator,
+            names: None,
+            uses: vec![Use::Nothing; first.len()],
+            time_unit: time.and_then(|(_, unit)| unit),
+            channels: Vec::new(),
+            order: "all other numbers of a line, in order",
+            in_rows: false,
+            is_parted: false,
+        };
+        if let Some(label) = label {
+            layout.uses[label] = Use::Label;
         }
+        if let Some((time, _)) = time {
+            layout.uses[time] = Use::Time;
+        }
+        if let Some(names) = &names {
+            layout.find_cells(names, first, options.size)?;
+        } else {
+            let mut cells = 0;
+            for field in layout.uses.iter_mut().filter(|own| **own == Use::Nothing) {
+                let (channel, index) = (0, cells);
+                *field = Use::Cell { channel, index };
+                cells += 1;
+            }
+            let (name, size) = (None, None);
+            layout.channels.push(Channel { name, cells, size });
+        }
+        layout.names = names;
+        Ok(layout)
+    }
+
+    /// Finds the cells by their names.
+    fn find_cells(
+        &mut self,
+        names: &[String],
+        first: &[&[u8]],
+        given: Option<FrameSize>,
+    ) -> Result<(), ReadError> {
+        // The column of each cell, by the words around its numbers, in the order in which they appear.
+        let mut groups: Vec<(Vec<String>, CellColumns)> = Vec::new();
+        for (column, name) in names.iter().enumerate() {
+            // pandas writes its index below an empty name.
+            if self.uses[column] != Use::Nothing || column == 0 && name.is_empty() {
+                continue;
+            }
+            if self.separator.is_numeric(first[column]) {
+                self.uses[column] = Use::LeftOut;
+            }
+            let Some(cell) = CellName::of(name) else {
+                continue;
+            };
+            let known = groups.iter().position(|(words, _)| *words == cell.words);
+            let group = known.unwrap_or_else(|| {
+                groups.push((cell.words, BTreeMap::new()));
+                groups.len() - 1
+            });
+            if let Some(other) = groups[group].1.insert(cell.numbers, column) {
+                let [other, name] = [&names[other], name].map(|name| shortened(name));
+                let message = format!("two columns for one cell: {other:?} and {name:?}");
+                return Err(ReadError::new(message));
+            }
+            if groups.len() > MOST_GROUPS {
+                let message = format!("more than {MOST_GROUPS} kinds of names");
+                return Err(ReadError::new(message));
+            }
+        }
+        // One or two cells may be a sensor if nothing else is.
+        let takes_few = given.is_none_or(|size| size.cells() < 3)
+            && groups.iter().all(|(_, cells)| cells.len() < 3);
+        groups.retain(|(_, cells)| {
+            let is_grid = cells.keys().all(|numbers| numbers.len() == 2);
+            cells.len() > 2 || takes_few && is_grid
+        });
+        if groups.is_empty() {
+            let message = "no three columns have the names of cells, such as s0, s1, s2 or r0c0, r0c1, r0c2; without the line of names, all columns are cells";
+            return Err(ReadError::new(message));
+        }
+        let words: Vec<&[String]> = groups.iter().map(|(words, _)| &words[..]).collect();
+        let channels = channel_names(&words).into_iter().enumerate();
+        for ((channel, name), (_, cells)) in channels.zip(&groups) {
+            let size = match grid(cells) {
+                // The given rows and columns take them in order.
+                Err(_) if given.is_some_and(|size| size.cells() == cells.len()) => None,
+                grid => grid?,
+            };
+            for (index, &column) in cells.values().enumerate() {
+                self.uses[column] = Use::Cell { channel, index };
+            }
+            let cells = cells.len();
+            self.channels.push(Channel { name, cells, size });
+        }
+        self.order = if self.channels.iter().all(|channel| channel.size.is_some()) {
+            "by the row and column in their names"
+        } else {
+            "in the order of the numbers in their names"
+        };
+        Ok(())
+    }
+
+    /// The fields of a line. If they have names, the last one may be empty; otherwise a separator at the end is none.
+    fn fields<'a>(&self, line: &'a [u8]) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+        let expected = self.names.as_ref().map_or(0, Vec::len);
+        self.separator.fields_of(line, expected)
+    }
+
+    /// Takes all cells as those of one channel.
+    fn take_as_one(&mut self, size: FrameSize) {
+        let cells = |channel: usize| self.channels[..channel].iter().map(|own| own.cells).sum();
+        let starts: Vec<usize> = (0..self.channels.len()).map(cells).collect();
+        for field in &mut self.uses {
+            if let Use::Cell { channel, index } = field {
+                *index += starts[*channel];
+                *channel = 0;
+            }
+        }
+        let name = self.channels[0].name.take().filter(|_| starts.len() == 1);
+        self.channels = vec![Channel {
+            name,
+            cells: size.cells(),
+            size: Some(size),
+        }];
     }
 
     /// Fills the cells of a line into its row; in the first row of a frame, its time and label, too.
@@ -774,58 +842,49 @@ impl TableLayout {
         line: &[u8],
         number: u64,
         row: usize,
-        frames: &mut [Frame],
-        start: &mut Start,
-        time: Option<&[u8]>,
+        taken: &mut Taken,
     ) -> Result<(), ReadError> {
+        let width = usize::from(taken.frames[0].columns());
+        let offset = if self.in_rows { row * width } else { 0 };
         let mut found = 0;
-        let offset = if self.in_rows {
-            row * usize::from(frames[0].columns())
-        } else {
-            0
-        };
-        if row == 0 {
-            start.time = time.map(<[u8]>::to_vec);
-        }
-        for field in self.separator.fields_of(line, self.expected) {
-            let column = found;
+        for field in self.fields(line) {
+            let own = self.uses.get(found);
             found += 1;
-            match self.slots.get(column) {
-                Some(&Some((channel, index))) => {
+            match own {
+                Some(&Use::Cell { channel, index }) => {
                     let cell = self.separator.value(field).cell();
-                    frames[channel].values_mut()[offset + index] =
+                    taken.frames[channel].values_mut()[offset + index] =
                         cell.ok_or_else(|| self.wrong(number, found, field))?;
                 }
-                Some(None) if row == 0 => {
-                    if self.time.is_some_and(|(time, _)| time == column) {
-                        start.time = Some(field.to_vec());
-                    } else if self.label == Some(column) {
-                        start.label = match self.separator.value(field) {
-                            Field::Value(number) => Some(
-                                whole(number)
-                                    .map_or_else(|| Label::Text(text(field)), Label::Number),
-                            ),
-                            Field::NoCell => None,
-                            Field::Wrong => Some(Label::Text(text(field))),
-                        };
-                    }
+                Some(Use::Time) if row == 0 => taken.time = Some(field.to_vec()),
+                Some(Use::Label) if row == 0 => {
+                    let number = match self.separator.value(field) {
+                        Field::Value(number) => whole(number),
+                        Field::NoCell | Field::Wrong => None,
+                    };
+                    let is_none = is_none(field);
+                    let label = || Label::Text(text(field));
+                    let label = number.map_or_else(label, Label::Number);
+                    taken.label = Some(label).filter(|_| !is_none);
                 }
                 _ => {}
             }
         }
-        if found == self.slots.len() {
+        if found == self.uses.len() {
             Ok(())
         } else {
-            Err(wrong_count(number, found, self.slots.len()))
+            Err(wrong_count(number, found, self.uses.len()))
         }
     }
 
     /// The error for a text in a cell: it may be a label or a time.
     fn wrong(&self, number: u64, column: usize, field: &[u8]) -> ReadError {
         let mut error = wrong_field(number, column, field);
-        if self.time.is_none() && read_moment(field).is_some() {
+        if !self.uses.contains(&Use::Time) && read_moment(field).is_some() {
             error.message += &format!("; if it is the time: --time-column {column}");
-        } else if self.label.is_none() && field.first().is_some_and(u8::is_ascii_alphabetic) {
+        } else if !self.uses.contains(&Use::Label)
+            && field.first().is_some_and(u8::is_ascii_alphabetic)
+        {
             error.message += &format!("; if it is the label: --label-column {column}");
         }
         error
@@ -850,6 +909,22 @@ fn square(cells: usize, least: u16) -> Option<FrameSize> {
     FrameSize::new(side, side).ok().filter(|_| is_square)
 }
 
+/// The error for a number of cells that does not fit the given size, or needs one.
+fn misfit(cells: usize, given: Option<FrameSize>, line: u64, is_named: bool) -> ReadError {
+    let Some(size) = given else {
+        return unclear(cells, None);
+    };
+    let (all, row) = (size.cells(), usize::from(size.columns()));
+    let advice = if !is_named && (cells > all || cells > row && size.rows() > 1) {
+        ": which is the time? --time-column N; a label? --label-column N"
+    } else {
+        ""
+    };
+    let numbers = counted(cells as u64, "number");
+    let message = format!("{numbers} a line, expected {all} (or {row} for a row){advice}");
+    in_line(line, message)
+}
+
 /// The error for a table whose lines may be frames or rows, with the flags for each.
 fn unclear(cells: usize, lines: Option<usize>) -> ReadError {
     let rows = (1..=cells.isqrt())
@@ -871,21 +946,17 @@ fn unclear(cells: usize, lines: Option<usize>) -> ReadError {
 
 /// The names in a comment right above the numbers, if it has as many and they are those of cells.
 fn names_in_comment(comment: &[u8], separator: Separator, count: usize) -> Option<Vec<String>> {
-    let comment = comment.trim_ascii_start().trim_ascii();
-    let start = comment
-        .iter()
-        .position(|&byte| byte != b'#' && byte != b' ')?;
-    let comment = &comment[start..];
-    [separator, Separator::of(comment)]
-        .into_iter()
-        .find_map(|separator| {
-            let names: Vec<String> = separator.fields_of(comment, count).map(text).collect();
-            let cells = names
-                .iter()
-                .filter(|name| CellName::of(name).is_some())
-                .count();
-            (names.len() == count && (cells > 2 || cells == count)).then_some(names)
-        })
+    let mut comment = comment.trim_ascii();
+    while let [b'#' | b' ', rest @ ..] = comment {
+        comment = rest;
+    }
+    let separators = [separator, Separator::of(comment)].into_iter();
+    let names = separators.map(|own| own.fields_of(comment, count).map(text).collect());
+    names.into_iter().find(|names: &Vec<String>| {
+        let cells = names.iter().filter(|name| CellName::of(name).is_some());
+        let cells = cells.count();
+        names.len() == count && (cells > 2 || cells == count)
+    })
 }
 
 /// The name of a cell: the numbers that say where it is, and the words around them, which say on which sensor.
@@ -930,236 +1001,16 @@ impl CellName {
 
 /// Whether a pattern such as `pad_col#_row#` names the column before the row.
 fn is_column_first(pattern: &str) -> bool {
-    let word = |text: &str| -> String {
-        let end = text.trim_end_matches(|character: char| !character.is_alphabetic());
-        let letters: Vec<char> = end
-            .chars()
-            .rev()
-            .take_while(|character| character.is_alphabetic())
-            .collect();
-        letters.into_iter().rev().collect::<String>().to_lowercase()
+    let word = |text: &str| {
+        let mut words = text.rsplit(|character: char| !character.is_alphabetic());
+        let word = words.find(|word| !word.is_empty());
+        word.unwrap_or_default().to_lowercase()
     };
-    let mut before = pattern.split('#').map(word);
-    let (first, second) = (before.next(), before.next());
-    first.is_some_and(|word| ["c", "col", "column", "x"].contains(&&*word))
-        && second.is_some_and(|word| ["r", "row", "y"].contains(&&*word))
-}
-
-impl Columns {
-    fn new(
-        separator: Separator,
-        names: Option<Vec<String>>,
-        first: &[&[u8]],
-        options: &ReadOptions,
-    ) -> Result<Self, ReadError> {
-        let count = first.len();
-        let find = |column: &Column, flag: &str| -> Result<usize, ReadError> {
-            let known = names.as_deref().unwrap_or(&[]);
-            match column {
-                Column::Number(number) if *number <= count => Ok(*number - 1),
-                Column::Number(number) => Err(ReadError::new(format!(
-                    "{flag} {number}: the table has {}",
-                    counted(count as u64, "column")
-                ))),
-                Column::Name(name) => known
-                    .iter()
-                    .position(|own| own.eq_ignore_ascii_case(name))
-                    .ok_or_else(|| {
-                        let near = did_you_mean(name, known.iter().map(String::as_str));
-                        ReadError::new(format!("{flag} {name}: no column has this name{near}"))
-                    }),
-            }
-        };
-        let label = options
-            .label_column
-            .as_ref()
-            .map(|column| find(column, "--label-column"))
-            .transpose()?;
-        let time = match &options.time_column {
-            None => None,
-            Some(chosen) => {
-                let column = find(&chosen.column, "--time-column")?;
-                let named = names
-                    .as_ref()
-                    .and_then(|names| time_name(&names[column]))
-                    .flatten();
-                Some((column, chosen.unit.or(named)))
-            }
-        };
-        let mut columns = Self {
-            separator,
-            names,
-            count,
-            time,
-            label,
-            sensors: Vec::new(),
-            left_out: Vec::new(),
-            given: options.size,
-        };
-        if columns.names.is_some() {
-            columns.find_named(first)?;
-        } else {
-            let beside = |column: &usize| {
-                columns.label != Some(*column) && columns.time.map(|time| time.0) != Some(*column)
-            };
-            let cells = (0..count).filter(beside).collect();
-            columns.sensors.push(Sensor {
-                name: None,
-                columns: cells,
-                grid: None,
-            });
-        }
-        Ok(columns)
-    }
-
-    /// Finds the time, the label and the cells by their names.
-    fn find_named(&mut self, first: &[&[u8]]) -> Result<(), ReadError> {
-        let names = self.names.clone().unwrap_or_default();
-        if self.time.is_none() {
-            let times = || {
-                names
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(column, name)| time_name(name).map(|unit| (column, unit)))
-            };
-            // A date may stand beside the time of day.
-            let mut clocks =
-                times().filter(|(column, _)| !names[*column].eq_ignore_ascii_case("date"));
-            self.time = clocks.next().or_else(|| times().next());
-        }
-        if self.label.is_none() {
-            let column = |label: &&str| {
-                names
-                    .iter()
-                    .position(|name| name.trim().eq_ignore_ascii_case(label))
-            };
-            self.label = LABELS.iter().find_map(column);
-        }
-        // The column of each cell, by the words around its numbers, in the order in which they appear.
-        let mut groups: Vec<(Vec<String>, CellColumns)> = Vec::new();
-        for (column, name) in names.iter().enumerate() {
-            let is_beside =
-                self.label == Some(column) || self.time.map(|time| time.0) == Some(column);
-            // pandas writes its index below an empty name.
-            if is_beside || column == 0 && name.is_empty() {
-                continue;
-            }
-            let Some(cell) = CellName::of(name) else {
-                self.left_out.push(column);
-                continue;
-            };
-            let known = groups.iter().position(|(words, _)| *words == cell.words);
-            let group = known.unwrap_or_else(|| {
-                groups.push((cell.words, BTreeMap::new()));
-                groups.len() - 1
-            });
-            if let Some(other) = groups[group].1.insert(cell.numbers, column) {
-                return Err(ReadError::new(format!(
-                    "two columns for one cell: {} and {}",
-                    self.called(other),
-                    self.called(column)
-                )));
-            }
-            if groups.len() > MOST_GROUPS {
-                return Err(ReadError::new(format!(
-                    "more than {MOST_GROUPS} kinds of names"
-                )));
-            }
-        }
-        // One or two cells may be a sensor if nothing else is.
-        let takes_few = self.given.is_none_or(|size| size.cells() < 3);
-        let is_sensor = |(_, cells): &(Vec<String>, CellColumns)| cells.len() > 2;
-        let has_sensor = groups.iter().any(is_sensor);
-        let (sensors, small): (Vec<_>, Vec<_>) = groups.into_iter().partition(|group| {
-            let is_grid = group.1.keys().all(|numbers| numbers.len() == 2);
-            is_sensor(group) || !has_sensor && is_grid && takes_few
-        });
-        self.left_out
-            .extend(small.iter().flat_map(|(_, cells)| cells.values()));
-        self.left_out
-            .retain(|&column| self.separator.is_numeric(first[column]));
-        self.left_out.sort_unstable();
-        let channels = channel_names(
-            &sensors
-                .iter()
-                .map(|(words, _)| &words[..])
-                .collect::<Vec<_>>(),
-        );
-        for ((_, cells), name) in sensors.into_iter().zip(channels) {
-            let grid = match grid(&cells) {
-                // The given rows and columns take them in order.
-                Err(_) if self.given.is_some_and(|size| size.cells() == cells.len()) => None,
-                grid => grid?,
-            };
-            self.sensors.push(Sensor {
-                name,
-                columns: cells.into_values().collect(),
-                grid,
-            });
-        }
-        if self.sensors.is_empty() {
-            return Err(ReadError::new(
-                "no three columns have the names of cells, such as s0, s1, s2 or r0c0, r0c1, r0c2; without the line of names, all columns are cells",
-            ));
-        }
-        Ok(())
-    }
-
-    /// The name of a column in sentences.
-    fn called(&self, column: usize) -> String {
-        match self.names.as_ref().and_then(|names| names.get(column)) {
-            Some(name) => format!("{:?}", shortened(name)),
-            None => format!("column {}", column + 1),
-        }
-    }
-
-    /// See [`TableLayout::expected`].
-    fn expected(&self) -> usize {
-        self.names.as_ref().map_or(0, Vec::len)
-    }
-
-    fn layout(&self) -> TableLayout {
-        let mut slots = vec![None; self.count];
-        for (channel, sensor) in self.sensors.iter().enumerate() {
-            for (index, &column) in sensor.columns.iter().enumerate() {
-                slots[column] = Some((channel, index));
-            }
-        }
-        let channels = self
-            .sensors
-            .iter()
-            .map(|sensor| (sensor.name.clone(), FrameSize::SMALLEST));
-        TableLayout {
-            separator: self.separator,
-            expected: self.expected(),
-            slots,
-            channels: channels.collect(),
-            time: self.time,
-            label: self.label,
-            in_rows: false,
-            is_parted: false,
-        }
-    }
-
-    /// The error for a number of cells that does not fit the given size, or needs one.
-    fn misfit(&self, cells: usize, given: Option<FrameSize>, line: u64) -> ReadError {
-        let Some(size) = given else {
-            return unclear(cells, None);
-        };
-        let numbers = counted(cells as u64, "number");
-        let expected = format!("{} (or {} for a row)", size.cells(), size.columns());
-        let advice = match cells {
-            _ if self.names.is_some() => "",
-            cells if cells > size.cells() || cells > size.columns().into() && size.rows() > 1 => {
-                ": which is the time? --time-column N; a label? --label-column N"
-            }
-            _ => "",
-        };
-        in_line(
-            line,
-            format!("{numbers} a line, expected {expected}{advice}"),
-        )
-    }
+    let words: Vec<String> = pattern.split('#').map(word).collect();
+    ["c", "col", "column", "x"].contains(&&*words[0])
+        && words
+            .get(1)
+            .is_some_and(|word| ["r", "row", "y"].contains(&&**word))
 }
 
 /// The columns of cells, by their numbers.
@@ -1204,31 +1055,19 @@ fn channel_names(sensors: &[&[String]]) -> Vec<Option<String>> {
         return vec![None];
     }
     let shortest = sensors.iter().map(|words| words.len()).min().unwrap_or(0);
-    let is_common = |at: &dyn Fn(&[String]) -> Option<String>| {
-        others.iter().all(|words| at(words) == at(first))
+    let from_end = |words: &[String], at: usize| words[words.len() - 1 - at].clone();
+    let is_start = |at: &usize| others.iter().all(|words| words[*at] == first[*at]);
+    let is_end = |at: &usize| {
+        let mut others = others.iter();
+        others.all(|words| from_end(words, *at) == from_end(first, *at))
     };
-    let start = (0..shortest)
-        .take_while(|&index| is_common(&|words| words.get(index).cloned()))
-        .count();
-    let end = (0..shortest - start)
-        .take_while(|&index| is_common(&|words| words.iter().rev().nth(index).cloned()))
-        .count();
-    let name = |words: &[String]| words.join("_").replace('#', "");
-    let mut names: Vec<String> = sensors
-        .iter()
-        .map(|words| name(&words[start..words.len() - end]))
-        .collect();
-    let is_unique = |names: &[String]| {
-        names
-            .iter()
-            .enumerate()
-            .all(|(index, name)| !names[..index].contains(name))
-    };
-    if !is_unique(&names) {
+    let start = (0..shortest).take_while(is_start).count();
+    let end = (0..shortest - start).take_while(is_end).count();
+    let own = |words: &&[String]| words[start..words.len() - end].join("_").replace('#', "");
+    let mut names: Vec<String> = sensors.iter().map(own).collect();
+    if names.iter().collect::<HashSet<_>>().len() < names.len() {
         names = sensors.iter().map(|words| words.join("_")).collect();
     }
-    names
-        .into_iter()
-        .map(|name| Some(name).filter(|name| !name.is_empty()))
-        .collect()
+    let some = |name: String| Some(name).filter(|name| !name.is_empty());
+    names.into_iter().map(some).collect()
 }

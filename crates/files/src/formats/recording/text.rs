@@ -123,9 +123,17 @@ impl<R: BufRead> TextLines<R> {
         &self.line
     }
 
-    /// Lets a line be read again. The last one that is given back is the next one.
-    pub(in crate::formats::recording) fn unread(&mut self, number: u64, line: Vec<u8>) {
-        self.ahead.push((number, line));
+    /// The line with its number, to be given back later.
+    pub(in crate::formats::recording) fn held(&self) -> (u64, Vec<u8>) {
+        (self.number, self.line.clone())
+    }
+
+    /// Lets lines be read again, in this order.
+    pub(in crate::formats::recording) fn unread(
+        &mut self,
+        lines: impl IntoIterator<Item = (u64, Vec<u8>), IntoIter: DoubleEndedIterator>,
+    ) {
+        self.ahead.extend(lines.into_iter().rev());
     }
 
     /// The rest of a line at which the input was cut off; empty unless it has ended so.
