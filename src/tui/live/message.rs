@@ -545,7 +545,7 @@ mod tests {
         assert_eq!(rule.rule, Rule::at_least(10.0).expect("in range"));
         let plain = request("a--b.csv").expect("no flags");
         assert_eq!(
-            (plain.source.to_string(), plain.rule),
+            (plain.source.name(), plain.rule),
             ("a--b.csv".to_owned(), None)
         );
         for (text, error) in [
