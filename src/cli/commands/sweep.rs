@@ -186,14 +186,14 @@ impl Part {
     fn of(path: &Path) -> Result<Self, CliError> {
         let read = |error: FileError| CliError::Archive(error.into());
         let kind = archive_kind(BufReader::new(storage::open(path).map_err(read)?));
-        let kind = kind.map_err(|error| CliError::Shard {
+        let (format, shard) = kind.map_err(|error| CliError::Shard {
             path: path.to_owned(),
             reason: error.to_string(),
         })?;
         Ok(Self {
             path: path.to_owned(),
-            format: kind.format,
-            shard: kind.shard,
+            format,
+            shard,
         })
     }
 

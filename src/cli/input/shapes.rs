@@ -359,7 +359,7 @@ mod tests {
     fn a_read_only_library_is_called_so() {
         let shelf = Shelf::new(None, false);
         let (doing, lock) = ("open the lock", Path::new("ro/.lock"));
-        let refused = FileError::new(doing, lock, ErrorKind::ReadOnlyFilesystem.into());
+        let refused = FileError::cannot(doing, lock)(ErrorKind::ReadOnlyFilesystem.into());
         let said = shelf.refused(refused.into()).to_string();
         assert!(said.ends_with(": the library is read-only"), "{said}");
     }

@@ -25,9 +25,7 @@ use crate::error::ReadError;
 use crate::formats::header::{ATLAS_FORMAT, ArchiveHeader};
 use crate::formats::json::RegionRecord;
 use crate::formats::numpy::Number;
-use crate::formats::numpy::archive::{
-    ArrayReader, ArrayWriter, header_of, in_header, little_endian,
-};
+use crate::formats::numpy::archive::{ArrayReader, ArrayWriter, in_header, little_endian};
 use crate::formats::record::no_names;
 
 /// Returns the share of all poses that leave this imprint: above 0, up to 1.
@@ -186,8 +184,7 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 /// Returns an error if it is not an atlas; the input may be any bytes.
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ReadError> {
     let mut archive = ArrayReader::new(input)?;
-    let header = archive.header()?;
-    let header: ArchiveHeader = header_of(&header, ATLAS_FORMAT)?;
+    let header = archive.header(ATLAS_FORMAT)?;
     let (sensor, anchor, ranges, shard) = header.grid()?;
     let (Some(source), Some(partly_off), None) = (header.source, header.partly_off, header.shapes)
     else {

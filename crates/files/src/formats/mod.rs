@@ -38,7 +38,7 @@ pub use job::Job;
 
 pub use shape::StoredShape;
 
-pub use numpy::archive::{ArchiveKind, kind_of as archive_kind};
+pub use numpy::archive::kind_of as archive_kind;
 
 pub use header::MODEL_FORMAT;
 

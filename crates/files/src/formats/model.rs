@@ -12,7 +12,7 @@ use taxel_core::sensor::{MatrixSize, Sensor};
 use crate::error::ReadError;
 use crate::formats::header::{ArchiveHeader, MODEL_FORMAT, ShapeHeader};
 use crate::formats::numpy::Number;
-use crate::formats::numpy::archive::{ArrayReader, ArrayWriter, header_of, in_header, unexpected};
+use crate::formats::numpy::archive::{ArrayReader, ArrayWriter, in_header, unexpected};
 use crate::formats::record::no_names;
 
 /// Writes a model as an archive of numpy arrays (`numpy.load`). Equal models are equal files.
@@ -101,8 +101,7 @@ pub fn header(head: &ModelHead) -> Vec<u8> {
 /// Returns an error that says what is wrong; the input may be any bytes.
 pub fn read(input: impl Read + Seek) -> Result<Model, ReadError> {
     let mut archive = ArrayReader::new(input)?;
-    let header = archive.header()?;
-    let header: ArchiveHeader = header_of(&header, MODEL_FORMAT)?;
+    let header = archive.header(MODEL_FORMAT)?;
     let (sensor, anchor, ranges, shard) = header.grid()?;
     let (Some(records), None, None) = (header.shapes, header.source, header.partly_off) else {
         return Err(in_header("expected shapes, and no source or partly_off"));

@@ -68,11 +68,8 @@ fn number(rest: &mut &[u8]) -> Option<u32> {
     let end = text.iter().position(|byte| !byte.is_ascii_digit());
     let (digits, after) = text.split_at(end.unwrap_or(text.len()));
     *rest = after;
-    str::from_utf8(digits)
-        .ok()?
-        .parse()
-        .ok()
-        .filter(|_| is_apart)
+    let number = str::from_utf8(digits).ok()?.parse().ok();
+    number.filter(|_| is_apart)
 }
 
 /// Skips blanks and comments.
@@ -88,7 +85,7 @@ fn after_blanks(bytes: &[u8]) -> &[u8] {
 pub(super) fn plain(imprint: &Imprint) -> Vec<u8> {
     let mut text = format!("P1\n{} {}\n", imprint.columns(), imprint.rows());
     for row in imprint.lines() {
-        text.extend(row.chars().map(|sign| if sign == '#' { '1' } else { '0' }));
+        text += &row.replace('#', "1").replace('.', "0");
         text.push('\n');
     }
     text.into_bytes()

@@ -83,11 +83,8 @@ fn active(field: &str) -> Option<bool> {
 pub(super) fn write(imprint: &Imprint) -> Vec<u8> {
     let mut text = String::new();
     for row in imprint.lines() {
-        let fields: Vec<&str> = row
-            .chars()
-            .map(|sign| if sign == '#' { "1" } else { "0" })
-            .collect();
-        text += &fields.join(",");
+        let fields = row.replace('#', "1,").replace('.', "0,");
+        text += fields.trim_end_matches(',');
         text.push('\n');
     }
     text.into_bytes()

@@ -40,10 +40,7 @@ pub fn in_millimetres(value: Value, unit: Dimension, pitch_mm: f64) -> Option<St
 /// assert_eq!([0.5, 1e-4].map(|pitch| times(Value::Number(3.25), pitch, 4).unwrap()), ["1.625", "0.000325"]);
 /// ```
 pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
-    let lost = [
-        1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12,
-    ];
-    let lost = lost.into_iter().take_while(|&power| factor <= power);
+    let lost = (1..=12).take_while(|&power| factor <= 1.0 / 10_f64.powi(power));
     let decimals = decimals + lost.count();
     let number = |number: f64| decimal(number * factor, decimals);
     match value {
@@ -53,14 +50,9 @@ pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
         Value::Point(point) => Some(format!("{}, {}", number(point.x), number(point.y))),
         Value::Pair([first, second]) => Some(format!("{}, {}", number(first), number(second))),
         Value::Rect(rect) => {
-            let side = |low: u8, high: u8| {
-                format!("{}..{}", number(f64::from(low)), number(f64::from(high)))
-            };
-            Some(format!(
-                "{} × {}",
-                side(rect.left, rect.right),
-                side(rect.top, rect.bottom)
-            ))
+            let sides = [rect.left, rect.right, rect.top, rect.bottom];
+            let [left, right, top, bottom] = sides.map(|side| number(side.into()));
+            Some(format!("{left}..{right} × {top}..{bottom}"))
         }
     }
 }
@@ -73,11 +65,9 @@ pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
 /// assert_eq!([23.656_854, 123.456_78, 131_072.5].map(|number| fitting(number, 7)), ["23.6569", "123.457", "131072"]);
 /// ```
 pub fn fitting(number: f64, width: usize) -> String {
-    let texts = (0..=4).rev().map(|decimals| decimal(number, decimals));
-    texts
-        .into_iter()
-        .find(|text| text.len() <= width)
-        .unwrap_or_else(|| decimal(number, 0))
+    let mut texts = (1..=4).rev().map(|decimals| decimal(number, decimals));
+    let fits = texts.find(|text| text.len() <= width);
+    fits.unwrap_or_else(|| decimal(number, 0))
 }
 
 /// Formats a measured value, like [`fitting`]. A value nearer to 0 than 0.01 gets three significant digits;
@@ -98,10 +88,9 @@ pub fn measured(number: f64, width: usize) -> String {
         text.parse::<f64>().unwrap_or(number)
     };
     let powers = [2, 1, 0].map(|digits| format!("{:e}", rounded(digits)));
-    std::iter::once(rounded(2).to_string())
-        .chain(powers)
-        .find(|text| text.len() <= width)
-        .unwrap_or_else(|| fitting(number, width))
+    let mut texts = std::iter::once(rounded(2).to_string()).chain(powers);
+    let fits = texts.find(|text| text.len() <= width);
+    fits.unwrap_or_else(|| fitting(number, width))
 }
 
 /// Formats a share as percent, with one decimal. A share that is not exactly 0 or 1 is not shown as 0 or 100 %.
@@ -215,8 +204,7 @@ pub fn escaped(text: &str) -> String {
             '<' => safe.push_str("&lt;"),
             '>' => safe.push_str("&gt;"),
             '"' => safe.push_str("&quot;"),
-            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
-            control if control.is_control() => safe.push('\u{fffd}'),
+            '\u{fffe}' | '\u{ffff}' | '\0'..='\x1f' | '\x7f'..='\u{9f}' => safe.push('\u{fffd}'),
             other => safe.push(other),
         }
     }
@@ -227,13 +215,11 @@ pub fn escaped(text: &str) -> String {
 /// for mm. Decimals are never dropped, so that lines keep their width while a shape is moved.
 pub fn pose_centre(pose: &PoseEstimate, factor: f64) -> String {
     let ([x, y], [dx, dy]) = (pose.position, pose.standard_deviation);
-    format!(
-        "{:.2} ± {}, {:.2} ± {}",
-        x * factor,
-        pose_spread(dx * factor, 2),
-        y * factor,
-        pose_spread(dy * factor, 2)
-    )
+    let of = |at: f64, spread: f64| {
+        let spread = pose_spread(spread * factor, 2);
+        format!("{:.2} ± {spread}", at * factor)
+    };
+    format!("{}, {}", of(x, dx), of(y, dy))
 }
 
 /// Formats a standard deviation with all its decimals.

@@ -19,9 +19,9 @@ pub struct FileError {
 }
 
 impl FileError {
-    /// Says what was being done with which file when the system refused.
-    pub fn new(doing: &'static str, path: &Path, error: io::Error) -> Self {
-        Self {
+    /// Tells an error of the system as that of an operation on a file.
+    pub fn cannot<'a>(doing: &'static str, path: &'a Path) -> impl Fn(io::Error) -> Self + 'a {
+        move |error| Self {
             doing,
             path: path.to_owned(),
             error,

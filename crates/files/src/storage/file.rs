@@ -89,8 +89,7 @@ impl NewFile {
             }
             Ok(made.into_parts())
         };
-        let begun = begin().map_err(|error| FileError::new("write", path, error));
-        let (file, temporary) = begun?;
+        let (file, temporary) = begin().map_err(FileError::cannot("write", path))?;
         Ok(Self {
             path: path.to_owned(),
             existing,
@@ -110,7 +109,7 @@ impl NewFile {
     ) -> Result<Self, FileError> {
         let mut file = Self::begin(path, existing)?;
         let written = file.output.write_all(content);
-        written.map_err(|error| FileError::new("write", path, error))?;
+        written.map_err(FileError::cannot("write", path))?;
         file.finish()?;
         Ok(file)
     }
@@ -122,7 +121,7 @@ impl NewFile {
     pub fn finish(&mut self) -> Result<(), FileError> {
         let written = self.output.flush();
         let synced = written.and_then(|()| self.output.get_ref().sync_all());
-        synced.map_err(|error| FileError::new("write", &self.path, error))
+        synced.map_err(FileError::cannot("write", &self.path))
     }
 
     /// Finishes the file, gives it its name and syncs the folder. Returns the open file.
@@ -133,7 +132,7 @@ impl NewFile {
     pub fn persist(mut self) -> Result<File, FileError> {
         self.finish()?;
         let path = &self.path;
-        let refuse = |error| FileError::new("write", path, error);
+        let refuse = FileError::cannot("write", path);
         let file = self.output.into_inner();
         let file = file.map_err(|error| refuse(error.into_error()))?;
         let named = match self.existing {
@@ -187,7 +186,7 @@ pub fn open(path: &Path) -> Result<File, FileError> {
             Err(io::Error::other("not a regular file"))
         }
     });
-    opened.map_err(|error| FileError::new("read", path, error))
+    opened.map_err(FileError::cannot("read", path))
 }
 
 /// The error for a file whose content is wrong.
@@ -202,7 +201,7 @@ pub(crate) fn paths_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
         Err(error) if is_missing(&error) && !folder.exists() => return Ok(Vec::new()),
         files => files.and_then(|files| files.map(|file| Ok(file?.path())).collect()),
     };
-    let mut paths = paths.map_err(|error| FileError::new("read the folder", folder, error))?;
+    let mut paths = paths.map_err(FileError::cannot("read the folder", folder))?;
     paths.sort();
     Ok(paths)
 }
@@ -212,8 +211,7 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), FileError> {
     if path.is_dir() {
         return Ok(());
     }
-    let made = fs::create_dir_all(path);
-    made.map_err(|error| FileError::new("make the folder", path, error))?;
+    fs::create_dir_all(path).map_err(FileError::cannot("make the folder", path))?;
     sync_folder(folder_of(path))
 }
 
@@ -234,7 +232,7 @@ pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
         Ok(()) | Err((PermissionDenied | InvalidInput | Unsupported, _)) => Ok(()),
         Err((_, error)) => {
             let doing = "sync the folder; it was changed, but a power cut may undo that";
-            Err(FileError::new(doing, folder, error))
+            Err(FileError::cannot(doing, folder)(error))
         }
     }
 }
@@ -264,15 +262,6 @@ impl FileId {
     /// The system's error.
     pub fn of(file: &File) -> io::Result<Self> {
         file.metadata().map(|found| Self::in_metadata(&found))
-    }
-
-    /// The identity of the file that a stream, such as standard input, reads or writes.
-    ///
-    /// # Errors
-    /// The system's error.
-    #[cfg(unix)]
-    pub fn of_stream(stream: impl std::os::fd::AsFd) -> io::Result<Self> {
-        Self::of(&File::from(stream.as_fd().try_clone_to_owned()?))
     }
 
     /// The identity of the file at a path; of a link, that of the file that it leads to.

@@ -61,7 +61,7 @@ impl Journal {
                 && let Err(error) = fs::remove_file(path)
                 && !is_missing(&error)
             {
-                return Err(FileError::new("remove", path, error));
+                return Err(FileError::cannot("remove", path)(error));
             }
             self.file = None;
             return Ok(());
@@ -76,7 +76,7 @@ impl Journal {
         let file = NewFile::with_content(path, content.as_bytes(), existing)?;
         // Locked before it has its name, so that no other program finds it free.
         let locked = file.output.get_ref().try_lock();
-        locked.map_err(|error| FileError::new("lock", path, error.into()))?;
+        locked.map_err(|error| FileError::cannot("lock", path)(error.into()))?;
         self.file = Some(file.persist()?);
         self.works = works;
         Ok(())

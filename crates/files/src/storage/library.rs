@@ -181,25 +181,20 @@ impl Library {
     /// If there is no such shape, or if its file is broken or cannot be read.
     pub fn load(&self, name: &str) -> Result<LoadedShape, LibraryError> {
         let name = Name::new(name)?;
-        let (path, content, origin) = match (self.own_name(&name)?, shipped::text(&name)) {
+        let (file, content, origin) = match (self.own_name(&name)?, shipped::text(&name)) {
             (Some(own), _) => {
-                let path = self.path(&own);
-                let content = read(&path)?;
-                (path, content, ShapeOrigin::Own)
+                let content = read(&self.path(&own))?;
+                (own, content, ShapeOrigin::Own)
             }
-            (None, Some((shipped, text))) => {
-                let content = text.as_bytes().to_vec();
-                (self.path(shipped), content, ShapeOrigin::Shipped)
-            }
+            (None, Some((shipped, text))) => (shipped.into(), text.into(), ShapeOrigin::Shipped),
             (None, None) => return Err(LibraryError::Unknown(name.to_string())),
         };
-        let shape = StoredShape::read(&content);
-        let shape = shape.map_err(|error| LibraryError::Refused(wrong(&path, error).message))?;
-        // A file that was renamed by hand goes by its new name.
-        let stem = path.file_stem().map(|stem| stem.to_string_lossy());
+        let refuse = |error| LibraryError::Refused(wrong(&self.path(&file), error).message);
+        let shape = StoredShape::read(&content).map_err(refuse)?;
         Ok(LoadedShape {
             written_name: shape.name.clone(),
-            shape: shape.renamed(Name::new(&stem.unwrap_or_default())?),
+            // A file that was renamed by hand goes by its new name.
+            shape: shape.renamed(Name::new(&file)?),
             stamp: xxh3_64(&content),
             origin,
         })
@@ -236,7 +231,7 @@ impl Library {
         let stamp = xxh3_64(&read(&path)?);
         if (path.metadata()).is_ok_and(|found| found.permissions().readonly()) {
             let protected = io::Error::from(ErrorKind::PermissionDenied);
-            return Err(FileError::new("replace it, it is read-only", &path, protected).into());
+            return Err(FileError::cannot("replace it, it is read-only", &path)(protected).into());
         }
         let name = own.to_owned();
         match expected {
@@ -249,12 +244,12 @@ impl Library {
     /// Waits for the lock of the folder, which the system releases when its program dies or the file is closed.
     fn lock(&self) -> Result<File, FileError> {
         let path = self.folder.join(LOCK);
-        let refuse = |error| FileError::new("lock", &path, error);
+        let refuse = FileError::cannot("lock", &path);
         let mut options = File::options();
         let opened = options.append(true).create(true).open(&path);
         // A file of another user that may only be read can be locked, too.
         let file = opened.or_else(|error| File::open(&path).map_err(|_| error));
-        let file = file.map_err(refuse)?;
+        let file = file.map_err(&refuse)?;
         self.waits.store(true, Ordering::Relaxed);
         let locked = file.lock();
         self.waits.store(false, Ordering::Relaxed);
@@ -289,8 +284,7 @@ impl Library {
         let own = self.deletable(name)?;
         let path = self.path(&own);
         self.put_into_trash(&own, |to| {
-            let moved = fs::rename(&path, to);
-            moved.map_err(|error| FileError::new("move it into the trash", &path, error))
+            fs::rename(&path, to).map_err(FileError::cannot("move it into the trash", &path))
         })?;
         sync_folder(&self.folder)?;
         Ok(own)
@@ -386,8 +380,8 @@ impl Library {
             self.check_replaceable(&name, Expected::Nothing)?;
         }
         let from = self.in_trash(time, &name);
-        fs::rename(&from, self.path(&name))
-            .map_err(|error| FileError::new("bring it back", &from, error))?;
+        let back = fs::rename(&from, self.path(&name));
+        back.map_err(FileError::cannot("bring it back", &from))?;
         sync_folder(&self.folder)?;
         sync_folder(file::folder_of(&from))?;
         Ok(name)
@@ -428,7 +422,7 @@ fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let mut content = Vec::new();
     let file = open(path)?.take(MAX_BYTES as u64 + 1);
     let read = { file }.read_to_end(&mut content);
-    read.map_err(|error| FileError::new("read", path, error))?;
+    read.map_err(FileError::cannot("read", path))?;
     Ok(content)
 }
 

@@ -150,7 +150,7 @@ impl ModelFolder {
         match self.find(name) {
             Some(path) if existing == Existing::Kept => {
                 let exists = ErrorKind::AlreadyExists.into();
-                Err(FileError::new("write", &path, exists))
+                Err(FileError::cannot("write", &path)(exists))
             }
             Some(path) if path.starts_with(&self.own) => Ok(path),
             _ => Ok(self.own.join(format!("{name}.{ENDING}"))),
@@ -182,7 +182,7 @@ impl ModelFolder {
         let Some(path) = self.find(name) else {
             return Ok(None);
         };
-        fs::remove_file(&path).map_err(|error| FileError::new("delete", &path, error))?;
+        fs::remove_file(&path).map_err(FileError::cannot("delete", &path))?;
         sync_folder(file::folder_of(&path))?;
         Ok(path
             .file_stem()

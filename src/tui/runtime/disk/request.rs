@@ -319,7 +319,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let library = Library::open(folder.path().to_owned());
         let said = |kind: ErrorKind| {
-            let error = FileError::new("write", folder.path(), kind.into());
+            let error = FileError::cannot("write", folder.path())(kind.into());
             not_changed(&library, "not deleted", &error.into())
         };
         let expected = "not deleted: the library is read-only";

@@ -11,6 +11,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::error::{ReadError, ReadErrorKind};
+use crate::formats::header::{ATLAS_FORMAT, ArchiveHeader, MODEL_FORMAT};
 use crate::formats::json;
 use crate::formats::numpy::{self, Header, Number};
 
@@ -132,8 +133,26 @@ impl<R: Read + Seek> ArrayReader<R> {
         Ok(words.iter().map(|&word| u64::from_le_bytes(word)).collect())
     }
 
-    pub(crate) fn header(&mut self) -> Result<Vec<u8>, ReadError> {
-        self.bytes(HEADER, Number::U8)
+    /// Reads the header, and checks that it is of this format.
+    pub(crate) fn header(&mut self, format: &str) -> Result<ArchiveHeader, ReadError> {
+        let header = self.bytes(HEADER, Number::U8)?;
+        // Another format has other keys, so the format is reported before a missing key.
+        let found = parsed::<Head>(&header)?.format;
+        if found == format {
+            return parsed(&header);
+        }
+        let kind = |format: &str| match format {
+            ATLAS_FORMAT => Some("an atlas of taxel sweep"),
+            MODEL_FORMAT => Some("a model"),
+            _ => None,
+        };
+        Err(ReadError::new(match (kind(&found), kind(format)) {
+            (Some(found), Some(expected)) => format!("{found}, expected {expected}"),
+            _ => {
+                let found = shortened(&found);
+                format!("format: {found:?} is unknown to this version, which reads {format:?}")
+            }
+        }))
     }
 
     /// Reads and discards all other arrays: damage to an array is only found at its end, and an archive must not pass
@@ -183,25 +202,13 @@ pub(crate) fn refused(error: ZipError) -> ReadError {
     ReadError::new(message).of_kind(ReadErrorKind::UnknownFormat)
 }
 
-/// The kind of an archive and its shard, from the header.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ArchiveKind {
-    /// The value of the key `format`.
-    pub format: String,
-    /// The shard of the sweep or model that the file holds.
-    pub shard: Shard,
-}
-
-/// Returns the kind of an archive, reading only its header.
+/// Returns the format of an archive and the shard of the sweep or model that it holds, reading only its header.
 ///
 /// # Errors
 /// Returns an error if it is not an archive with such a header.
-pub fn kind_of(input: impl Read + Seek) -> Result<ArchiveKind, ReadError> {
-    let head: Head = parsed(&ArrayReader::new(input)?.header()?)?;
-    Ok(ArchiveKind {
-        shard: head.shard.parse().map_err(in_header)?,
-        format: head.format,
-    })
+pub fn kind_of(input: impl Read + Seek) -> Result<(String, Shard), ReadError> {
+    let head: Head = parsed(&ArrayReader::new(input)?.bytes(HEADER, Number::U8)?)?;
+    Ok((head.format, head.shard.parse().map_err(in_header)?))
 }
 
 /// The keys that the headers of all formats have.
@@ -220,30 +227,4 @@ fn parsed<'a, T: Deserialize<'a>>(header: &'a [u8]) -> Result<T, ReadError> {
 /// The error for something in a header.
 pub(crate) fn in_header(error: impl std::fmt::Display) -> ReadError {
     ReadError::new(format!("header: {error}"))
-}
-
-/// Parses a header of the format `expected`.
-pub(crate) fn header_of<'a, T: Deserialize<'a>>(
-    header: &'a [u8],
-    expected: &'static str,
-) -> Result<T, ReadError> {
-    // Another format has other keys, so the format is reported before a missing key.
-    let found = parsed::<Head>(header)?.format;
-    if found == expected {
-        return parsed(header);
-    }
-    let kind = |format: &str| match format.split_once('/')?.0 {
-        "taxel-atlas" => Some("an atlas of taxel sweep"),
-        "taxel-model" => Some("a model"),
-        _ => None,
-    };
-    Err(ReadError::new(match (kind(&found), kind(expected)) {
-        (Some(found), Some(expected)) if found != expected => {
-            format!("{found}, expected {expected}")
-        }
-        _ => {
-            let found = shortened(&found);
-            format!("format: {found:?} is unknown to this version, which reads {expected:?}")
-        }
-    }))
 }
