@@ -202,7 +202,7 @@ fn size_advice(error: &ReadError) -> &'static str {
 
 pub(crate) fn note_advice(note: &RecordingNote) -> &'static str {
     match note {
-        RecordingNote::Flat { .. } => "; if so, give --rows and --columns",
+        RecordingNote::Flat(_) => "; if so, give --rows and --columns",
         _ => "",
     }
 }

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use taxel_core::frame::Frame;
+use taxel_core::parameter::number::time_in_words;
 
 use crate::acquire::event::Playback;
 use crate::formats::recording::RecordingNote;
@@ -203,10 +204,12 @@ impl Pace {
         }
         self.played += if is_long { PLAYED } else { gap };
         let is_news = is_long && !std::mem::replace(&mut self.is_said, true);
-        is_news.then_some(RecordingNote::Gap {
-            frame: frame.number,
-            seconds: gap,
-            played: PLAYED,
+        is_news.then(|| {
+            RecordingNote::Oddity(format!(
+                "frame {} comes {} after the one before; this pause is played as {PLAYED} s at normal speed",
+                frame.number,
+                time_in_words(gap)
+            ))
         })
     }
 

@@ -98,8 +98,8 @@ pub fn acquire(
     let recording = source.open_recording(options)?;
     if let Some((path, file, format)) = &recording {
         let metadata = metadata_beside(path).unwrap_or_else(|error| {
-            let complaint = error.to_string();
-            let _ = session.report(AcquireEvent::Note(&RecordingNote::Metadata { complaint }));
+            let note = RecordingNote::Oddity(error.to_string());
+            let _ = session.report(AcquireEvent::Note(&note));
             None
         });
         session.play(metadata);

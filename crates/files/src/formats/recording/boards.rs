@@ -163,9 +163,10 @@ impl<'a, 'b> Board<'a, 'b> {
     }
 
     fn finish(&mut self) -> Result<(), Stop> {
-        let frames = self.garbled;
-        if frames > 0 && !self.options.leaves_out {
-            self.sink.note(&RecordingNote::Garbled { frames })?;
+        if self.garbled > 0 && !self.options.leaves_out {
+            let frames = counted(self.garbled, "frame");
+            let text = format!("{frames} dropped (torn, short, long or garbled)");
+            self.sink.note(&RecordingNote::Oddity(text))?;
         }
         Ok(())
     }

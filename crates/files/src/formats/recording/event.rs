@@ -5,8 +5,8 @@ use std::io::BufRead;
 use std::ops::ControlFlow;
 use std::str::FromStr;
 
-use taxel_core::frame::{Frame, FrameSize, Label, Rule, RuleOrigin, SetRule, Tare, View};
-use taxel_core::parameter::number::{counted, short, time_in_words, to_decimals};
+use taxel_core::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
+use taxel_core::parameter::number::short;
 
 use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::recording::format::Format;
@@ -109,10 +109,10 @@ impl ReadOptions {
 pub(crate) const UNNAMED_CHANNEL: &str = "unnamed";
 
 /// The most channels of a recording or a stream.
-pub(in crate::formats::recording) const MOST_CHANNELS: usize = 256;
+pub(super) const MOST_CHANNELS: usize = 256;
 
 /// The most bytes of a channel's name.
-pub(in crate::formats::recording) const LONGEST_NAME: usize = 1024;
+pub(super) const LONGEST_NAME: usize = 1024;
 
 /// A description of a channel, as far as the recording gives it: a field is None if it does not.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -206,144 +206,35 @@ impl ChannelInfo {
     }
 }
 
-/// An oddity that does not stop a reader.
+/// What is to be said of a recording beside its frames, as a sentence without an end.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordingNote {
-    /// A sum in the file that differs from the sum of the values in the frame.
-    Checksum {
-        /// The number of the frame, from 0.
-        frame: u64,
-        /// The label of the frame in its file.
-        label: Option<Label>,
-        /// The name of the sum.
-        what: &'static str,
-        /// The sum according to the file.
-        stated: f64,
-        /// The sum of the values.
-        found: f64,
-    },
-    /// Rows and columns that were derived from the number of values alone.
-    Square {
-        /// The number of rows, and of columns.
-        side: u16,
-    },
-    /// A two-dimensional array that is taken as one frame, although it is larger than 64 × 64.
-    Flat {
-        /// The number of rows.
-        rows: u16,
-        /// The number of columns.
-        columns: u16,
-    },
-    /// How a table is read: what its times, labels and cells are.
-    Table {
-        /// The sentence.
-        text: String,
-    },
-    /// Times whose unit was derived from their size alone.
-    TimeUnit {
-        /// The unit: `nanoseconds`.
-        unit: &'static str,
-    },
-    /// The first time that cannot be read; its frame has none.
-    Time {
-        /// The number of the frame, from 0.
-        frame: u64,
-        /// The text in place of the time, shortened if it is long.
-        text: String,
-    },
-    /// Bytes that belong to no frame.
-    Garbled {
-        /// The number of frames that were dropped.
-        frames: u64,
-    },
-    /// A file that ends before the last of the records that its header counts.
-    Cut {
-        /// The number of whole records in the file.
-        records: u64,
-        /// The number of records according to the header.
-        counted: u64,
-    },
-    /// A long time between two frames, which playback shortens: perhaps a clock was set.
-    Gap {
-        /// The number of the frame after it, from 0.
-        frame: u64,
-        /// The seconds between the frames.
-        seconds: f64,
-        /// The seconds that are played instead, at normal speed.
-        played: f64,
-    },
-    /// Metadata beside the recording that is ignored, because it is broken or cannot be read.
-    Metadata {
-        /// The path of the metadata, and the error in it.
-        complaint: String,
-    },
+    /// How it is read, which is no reason to doubt it.
+    Reading(String),
+    /// An oddity that does not stop a reader.
+    Oddity(String),
+    /// An oddity that the rows and columns of a frame would settle: an array that may be one frame, or many.
+    Flat(String),
 }
 
 impl RecordingNote {
-    /// Whether it only says how the recording is read, and is no reason to doubt it.
+    pub(super) fn square(side: u16) -> Self {
+        let cells = u32::from(side) * u32::from(side);
+        Self::Oddity(format!(
+            "{cells} numbers a frame, taken as {side} rows of {side} columns"
+        ))
+    }
+
+    /// Whether it only says how the recording is read.
     pub fn is_plain(&self) -> bool {
-        matches!(self, Self::Table { .. })
+        matches!(self, Self::Reading(_))
     }
 }
 
 impl fmt::Display for RecordingNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Checksum {
-                frame,
-                label,
-                what,
-                stated,
-                found,
-            } => {
-                let label = label.as_ref().map(|label| format!(" (label {label})"));
-                let label = label.unwrap_or_default();
-                // A sum of decimals has a rounding error in its last digits.
-                let [stated, found] = [*stated, to_decimals(*found, 9)].map(short);
-                write!(
-                    f,
-                    "frame {frame}{label}: {what} should be {stated}, but the values give {found}"
-                )
-            }
-            Self::Square { side } => write!(
-                f,
-                "{} numbers a frame, taken as {side} rows of {side} columns",
-                u32::from(*side) * u32::from(*side)
-            ),
-            Self::Flat { rows, columns } => write!(
-                f,
-                "an array of {rows} × {columns}, taken as one frame, though each of its {rows} rows may be a frame of {columns} values"
-            ),
-            Self::Table { text } => f.write_str(text),
-            Self::TimeUnit { unit } => {
-                write!(
-                    f,
-                    "the times have no unit and are taken as {unit} since 1970"
-                )
-            }
-            Self::Time { frame, text } => write!(
-                f,
-                "frame {frame}: {text:?} cannot be read as a time; such frames have none"
-            ),
-            Self::Garbled { frames } => {
-                let frames = counted(*frames, "frame");
-                write!(f, "{frames} dropped (torn, short, long or garbled)")
-            }
-            Self::Cut { records, counted } => write!(
-                f,
-                "the file was cut off: it has {records} of the {counted} frames that its header counts"
-            ),
-            Self::Gap {
-                frame,
-                seconds,
-                played,
-            } => write!(
-                f,
-                "frame {frame} comes {} after the one before; this pause is played as {played} s at normal speed",
-                time_in_words(*seconds)
-            ),
-            Self::Metadata { complaint } => f.write_str(complaint),
-        }
+        let (Self::Reading(text) | Self::Oddity(text) | Self::Flat(text)) = self;
+        f.write_str(text)
     }
 }
 
@@ -394,17 +285,17 @@ pub(in crate::formats) struct ReadState {
     /// The number of channels that were not reported: the one without a name of a stream that names none.
     unreported: usize,
     /// Whether a channel without a name is reported only beside others.
-    pub(in crate::formats::recording) hides_unnamed: bool,
+    pub(super) hides_unnamed: bool,
     /// The layout of the table, whose header is not repeated.
-    pub(in crate::formats::recording) layout: Option<TableLayout>,
+    pub(super) layout: Option<TableLayout>,
     lacks_time: bool,
-    pub(in crate::formats::recording) clock: FrameClock,
+    pub(super) clock: FrameClock,
 }
 
 /// Where a reader puts what it finds.
 pub(in crate::formats) struct Sink<'a> {
     consumer: &'a mut RecordingSink<'a>,
-    pub(in crate::formats::recording) state: &'a mut ReadState,
+    pub(super) state: &'a mut ReadState,
 }
 
 impl<'a> Sink<'a> {
@@ -494,7 +385,9 @@ impl<'a> Sink<'a> {
             return Ok(());
         }
         let frame = self.state.channels[channel].1;
-        self.note(&RecordingNote::Time { frame, text })
+        self.note(&RecordingNote::Oddity(format!(
+            "frame {frame}: {text:?} cannot be read as a time; such frames have none"
+        )))
     }
 
     pub(in crate::formats) fn note(&mut self, note: &RecordingNote) -> Result<(), Stop> {
@@ -502,7 +395,7 @@ impl<'a> Sink<'a> {
     }
 
     /// Reads the next line; one that is too long is a wrong frame.
-    pub(in crate::formats::recording) fn advance(
+    pub(super) fn advance(
         &mut self,
         lines: &mut TextLines<impl BufRead>,
         options: &ReadOptions,

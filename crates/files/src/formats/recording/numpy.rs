@@ -286,7 +286,10 @@ fn report(
         // Few sensors are that large, so a row may well be a frame.
         let is_large = rows.max(columns) > MAX_SIDE.into();
         if header.shape.len() == 2 && options.size.is_none() && is_large {
-            sink.note(&RecordingNote::Flat { rows, columns })?;
+            let text = format!(
+                "an array of {rows} × {columns}, taken as one frame, though each of its {rows} rows may be a frame of {columns} values"
+            );
+            sink.note(&RecordingNote::Flat(text))?;
         }
     }
     Ok(channels)
@@ -318,7 +321,10 @@ fn frames(
             let (records, frames) = (number, layout.frames);
             match layout.own {
                 Some(counted) if records < counted => {
-                    sink.note(&RecordingNote::Cut { records, counted })?;
+                    let text = format!(
+                        "the file was cut off: it has {records} of the {counted} frames that its header counts"
+                    );
+                    sink.note(&RecordingNote::Oddity(text))?;
                 }
                 Some(_) => {}
                 None => {

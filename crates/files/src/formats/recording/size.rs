@@ -69,7 +69,7 @@ pub(super) fn stated(key: &str, mark: char, value: &str, line: u64) -> Result<u1
 const DECIMALS: i32 = 9;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::formats::recording) enum LengthUnit {
+pub(super) enum LengthUnit {
     Micrometres,
     Millimetres,
     Centimetres,
@@ -79,7 +79,7 @@ pub(in crate::formats::recording) enum LengthUnit {
 
 impl LengthUnit {
     /// Returns the unit that a text names, such as `mm`, `Centimeters` or `in.`.
-    pub(in crate::formats::recording) fn of_name(text: &str) -> Option<Self> {
+    pub(super) fn of_name(text: &str) -> Option<Self> {
         let name = text.to_lowercase();
         match name.trim_end_matches('.') {
             // The micro sign and the Greek letter look the same.
@@ -96,7 +96,7 @@ impl LengthUnit {
 
     /// Converts a distance between cells from this unit to mm, rounded to a picometre. None if no sensor can have
     /// such a pitch, or if nothing is left after rounding.
-    pub(in crate::formats::recording) fn pitch_in_mm(self, length: f64) -> Option<f64> {
+    pub(super) fn pitch_in_mm(self, length: f64) -> Option<f64> {
         let mm = match self {
             Self::Micrometres => length / 1000.0,
             Self::Millimetres => length,

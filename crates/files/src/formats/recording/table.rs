@@ -392,8 +392,7 @@ impl Table<'_, '_> {
                 };
                 channel.size = Some(size);
                 if index == 0 && own.is_none() {
-                    let side = size.rows();
-                    self.sink.note(&RecordingNote::Square { side })?;
+                    self.sink.note(&RecordingNote::square(size.rows()))?;
                 }
             }
         }
@@ -513,8 +512,7 @@ impl Table<'_, '_> {
             layout.in_rows = true;
         } else if let Some(size) = squared {
             layout.take_as_one(size);
-            let side = size.rows();
-            self.sink.note(&RecordingNote::Square { side })?;
+            self.sink.note(&RecordingNote::square(size.rows()))?;
         } else {
             return Err(unclear(cells, has_ended.then_some(all)).into());
         }
@@ -555,7 +553,7 @@ impl Table<'_, '_> {
         }
         notes
             .into_iter()
-            .try_for_each(|text| self.sink.note(&RecordingNote::Table { text }))
+            .try_for_each(|text| self.sink.note(&RecordingNote::Reading(text)))
     }
 
     fn frames(&mut self, layout: &TableLayout) -> Result<(), Stop> {
@@ -722,11 +720,14 @@ impl TableLayout {
             in_rows: false,
             is_parted: false,
         };
-        if let Some(label) = label {
-            layout.uses[label] = Use::Label;
-        }
         if let Some((time, _)) = time {
             layout.uses[time] = Use::Time;
+        }
+        // A chosen label may have the name of a time.
+        if let Some(label) = label
+            && (options.label_column.is_some() || layout.uses[label] == Use::Nothing)
+        {
+            layout.uses[label] = Use::Label;
         }
         if let Some(names) = &names {
             layout.find_cells(names, first, options.size)?;

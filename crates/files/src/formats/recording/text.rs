@@ -33,7 +33,7 @@ const EXACT_DIGITS: usize = 15;
 ///
 /// A number of at most 15 digits is the quotient of two exact floats, and thus rounded correctly; other numbers are
 /// left to the standard library.
-pub(in crate::formats::recording) fn read_number(text: &[u8]) -> Option<f64> {
+pub(super) fn read_number(text: &[u8]) -> Option<f64> {
     let (negative, digits) = match text {
         [b'-', rest @ ..] => (true, rest),
         [b'+', rest @ ..] => (false, rest),
@@ -78,7 +78,7 @@ fn slow(text: &[u8]) -> Option<f64> {
 /// Converts a number without a fraction, as labels are; None for any other, and beyond the whole numbers that a float
 /// holds exactly.
 #[expect(clippy::cast_possible_truncation, reason = "checked")]
-pub(in crate::formats::recording) fn whole(value: f64) -> Option<i64> {
+pub(super) fn whole(value: f64) -> Option<i64> {
     (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
 }
 
@@ -88,7 +88,7 @@ pub(in crate::formats) const LONGEST_LINE: usize = 8 << 20;
 
 /// The lines of a text, counted from 1, without their ends and without a byte order mark.
 #[derive(Debug)]
-pub(in crate::formats::recording) struct TextLines<R> {
+pub(super) struct TextLines<R> {
     /// The source of the bytes.
     input: R,
     line: Vec<u8>,
@@ -104,7 +104,7 @@ pub(in crate::formats::recording) struct TextLines<R> {
 
 impl<R: BufRead> TextLines<R> {
     /// Starts before the first line.
-    pub(in crate::formats::recording) fn new(input: R) -> Self {
+    pub(super) fn new(input: R) -> Self {
         Self {
             input,
             line: Vec::new(),
@@ -115,21 +115,21 @@ impl<R: BufRead> TextLines<R> {
         }
     }
 
-    pub(in crate::formats::recording) fn number(&self) -> u64 {
+    pub(super) fn number(&self) -> u64 {
         self.number
     }
 
-    pub(in crate::formats::recording) fn line(&self) -> &[u8] {
+    pub(super) fn line(&self) -> &[u8] {
         &self.line
     }
 
     /// The line with its number, to be given back later.
-    pub(in crate::formats::recording) fn held(&self) -> (u64, Vec<u8>) {
+    pub(super) fn held(&self) -> (u64, Vec<u8>) {
         (self.number, self.line.clone())
     }
 
     /// Lets lines be read again, in this order.
-    pub(in crate::formats::recording) fn unread(
+    pub(super) fn unread(
         &mut self,
         lines: impl IntoIterator<Item = (u64, Vec<u8>), IntoIter: DoubleEndedIterator>,
     ) {
@@ -137,12 +137,12 @@ impl<R: BufRead> TextLines<R> {
     }
 
     /// The rest of a line at which the input was cut off; empty unless it has ended so.
-    pub(in crate::formats::recording) fn torn(&self) -> &[u8] {
+    pub(super) fn torn(&self) -> &[u8] {
         if self.is_cut { &self.line } else { b"" }
     }
 
     /// Reads the next line; returns false at the end.
-    pub(in crate::formats::recording) fn advance(&mut self) -> Result<bool, ReadError> {
+    pub(super) fn advance(&mut self) -> Result<bool, ReadError> {
         if let Some((number, line)) = self.ahead.pop() {
             (self.number, self.line) = (number, line);
             return Ok(true);
@@ -203,7 +203,7 @@ impl<R: BufRead> TextLines<R> {
     }
 
     /// Reads the next line that is not blank; returns false at the end. A line of commas is blank.
-    pub(in crate::formats::recording) fn advance_to_content(&mut self) -> Result<bool, ReadError> {
+    pub(super) fn advance_to_content(&mut self) -> Result<bool, ReadError> {
         while self.advance()? {
             if !is_blank(&self.line) {
                 return Ok(true);
@@ -213,19 +213,19 @@ impl<R: BufRead> TextLines<R> {
     }
 }
 
-pub(in crate::formats::recording) fn is_blank(line: &[u8]) -> bool {
+pub(super) fn is_blank(line: &[u8]) -> bool {
     line.iter()
         .all(|byte| byte.is_ascii_whitespace() || *byte == b',')
 }
 
-pub(in crate::formats::recording) fn unpadded(line: &[u8]) -> &[u8] {
+pub(super) fn unpadded(line: &[u8]) -> &[u8] {
     let is_padding = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
     let end = line.iter().rposition(|byte| !is_padding(byte));
     &line[..end.map_or(0, |end| end + 1)]
 }
 
 /// Decodes a name or a unit: as UTF-8, or as Latin-1 if it is not UTF-8.
-pub(in crate::formats::recording) fn text(bytes: &[u8]) -> String {
+pub(super) fn text(bytes: &[u8]) -> String {
     match str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
@@ -250,7 +250,7 @@ impl Field {
     }
 }
 
-pub(in crate::formats::recording) fn read_value(field: &[u8]) -> Field {
+pub(super) fn read_value(field: &[u8]) -> Field {
     match read_number(field) {
         Some(read_value) if read_value.abs() <= LARGEST_VALUE => Field::Value(read_value),
         _ => Field::Wrong,
@@ -258,7 +258,7 @@ pub(in crate::formats::recording) fn read_value(field: &[u8]) -> Field {
 }
 
 /// Fills a row of values from the fields of a line. Fields beyond the values must be empty.
-pub(in crate::formats::recording) fn fill_row<'a>(
+pub(super) fn fill_row<'a>(
     values: &mut [f64],
     fields: impl Iterator<Item = &'a [u8]>,
     number: u64,
@@ -281,21 +281,13 @@ pub(in crate::formats::recording) fn fill_row<'a>(
     }
 }
 
-pub(in crate::formats::recording) fn wrong_count(
-    line: u64,
-    found: usize,
-    expected: usize,
-) -> ReadError {
+pub(super) fn wrong_count(line: u64, found: usize, expected: usize) -> ReadError {
     let found = counted(found as u64, "value");
     in_line(line, format!("found {found}, expected {expected}"))
 }
 
 /// Returns the error for a field that is not a value.
-pub(in crate::formats::recording) fn wrong_field(
-    line: u64,
-    column: usize,
-    field: &[u8],
-) -> ReadError {
+pub(super) fn wrong_field(line: u64, column: usize, field: &[u8]) -> ReadError {
     if let Some(read_value) =
         read_number(field).filter(|read_value| read_value.abs() > LARGEST_VALUE)
     {
@@ -317,7 +309,7 @@ const NONE: [&[u8]; 8] = [
 ];
 
 /// Returns true if a field says that there is no value. A dash does not: lines of lists begin with one.
-pub(in crate::formats::recording) fn is_none(field: &[u8]) -> bool {
+pub(super) fn is_none(field: &[u8]) -> bool {
     match field.first() {
         None => true,
         // Most fields are numbers.
@@ -374,7 +366,7 @@ pub(in crate::formats) enum Separator {
 impl Separator {
     /// Returns the separator of a line: the first of semicolon, tab and comma that it has outside quotes, otherwise
     /// blanks. Commas beside tabs separate, unless they are decimal signs.
-    pub(in crate::formats::recording) fn of(line: &[u8]) -> Self {
+    pub(super) fn of(line: &[u8]) -> Self {
         let line = line.trim_ascii();
         let has = |mark| Self::Byte(mark).split(line).nth(1).is_some();
         let is_decimal =
@@ -392,7 +384,7 @@ impl Separator {
 
     /// Splits a line at its separators, and removes blanks and quotes around each part. A separator in quotes is part
     /// of its field; if a quote is not closed, quotes are characters like any other, as in `width in "`.
-    pub(in crate::formats::recording) fn split(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    pub(super) fn split(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         let quotes: usize = line.iter().map(|byte| usize::from(*byte == b'"')).sum();
         let (has_quotes, mut is_quoted) = (quotes > 0 && quotes.is_multiple_of(2), false);
         let is_end = move |byte: &u8| {
@@ -408,11 +400,7 @@ impl Separator {
 
     /// Returns the fields of a line like [`Self::fields`]. If the line has the `expected` number of fields only when
     /// the empty ones at its ends count, they count.
-    pub(in crate::formats::recording) fn fields_of(
-        self,
-        line: &[u8],
-        expected: usize,
-    ) -> impl Iterator<Item = &[u8]> {
+    pub(super) fn fields_of(self, line: &[u8], expected: usize) -> impl Iterator<Item = &[u8]> {
         let (whole, ended) = (self.without_blanks(line), self.without_ends(line));
         let is_whole = whole.len() > ended.len() && self.split(whole).count() == expected;
         self.split_into_fields(if is_whole { whole } else { ended })
@@ -457,13 +445,13 @@ impl Separator {
     }
 
     /// Returns true if a field can be that of a cell: a number, or a word for a missing value.
-    pub(in crate::formats::recording) fn is_numeric(self, field: &[u8]) -> bool {
+    pub(super) fn is_numeric(self, field: &[u8]) -> bool {
         !matches!(self.value(field), Field::Wrong)
     }
 }
 
 /// Reads a number whose decimal sign may be a comma; with a comma, it has at most 32 characters.
-pub(in crate::formats::recording) fn decimal(field: &[u8]) -> Field {
+pub(super) fn decimal(field: &[u8]) -> Field {
     if !field.contains(&b',') {
         return read_value(field);
     }

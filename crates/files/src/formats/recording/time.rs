@@ -33,7 +33,7 @@ pub enum TimeUnit {
 
 impl TimeUnit {
     /// Returns the unit of this name: s, ms, us or ns.
-    pub(in crate::formats::recording) fn named(name: &str) -> Option<Self> {
+    pub(super) fn named(name: &str) -> Option<Self> {
         match name {
             "s" | "sec" | "seconds" => Some(Self::Seconds),
             "ms" | "msec" | "millis" => Some(Self::Milliseconds),
@@ -43,7 +43,7 @@ impl TimeUnit {
         }
     }
 
-    pub(in crate::formats::recording) fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Nanoseconds => "nanoseconds",
             Self::Microseconds => "microseconds",
@@ -62,7 +62,7 @@ impl TimeUnit {
     }
 
     /// Converts a number in this unit to seconds.
-    pub(in crate::formats::recording) fn seconds(self, number: f64) -> f64 {
+    pub(super) fn seconds(self, number: f64) -> f64 {
         // A quotient of whole numbers is rounded only once.
         match self {
             Self::Nanoseconds => number / 1e9,
@@ -74,14 +74,14 @@ impl TimeUnit {
 
     /// Converts the time from one frame to the next from this unit to seconds, rounded to the nanosecond. None unless
     /// that is above 0 and at most [`LONGEST_STEP`].
-    pub(in crate::formats::recording) fn step_in_seconds(self, number: f64) -> Option<f64> {
+    pub(super) fn step_in_seconds(self, number: f64) -> Option<f64> {
         let seconds = to_nanoseconds(self.seconds(number));
         (seconds > 0.0 && seconds <= LONGEST_STEP).then_some(seconds)
     }
 
     /// Guesses the unit of a time without one: milliseconds or smaller if that makes it a date between 2000 and 2100,
     /// otherwise seconds. A machine's clock may count in any unit since its start; no number shows which.
-    pub(in crate::formats::recording) fn by_size(number: f64) -> Self {
+    pub(super) fn by_size(number: f64) -> Self {
         const DATES: Range<f64> = 946_684_800.0..4_102_444_800.0;
         let smaller = [Self::Milliseconds, Self::Microseconds, Self::Nanoseconds];
         let mut dated = smaller.into_iter();
@@ -96,7 +96,7 @@ impl TimeUnit {
     clippy::option_option,
     reason = "a time without a unit is not the same as no time"
 )]
-pub(in crate::formats::recording) fn time_name(name: &str) -> Option<Option<TimeUnit>> {
+pub(super) fn time_name(name: &str) -> Option<Option<TimeUnit>> {
     const NAMES: [&str; 7] = [
         "time",
         "t",
@@ -127,14 +127,14 @@ pub(in crate::formats) enum Time {
 
 impl Time {
     /// Reads the time in a field whose value is `number`.
-    pub(in crate::formats::recording) fn read(field: &[u8], number: f64, unit: TimeUnit) -> Self {
+    pub(super) fn read(field: &[u8], number: f64, unit: TimeUnit) -> Self {
         match picoseconds(field, unit) {
             Some(exact) => Self::Picoseconds(exact),
             None => Self::Seconds(unit.seconds(number)),
         }
     }
 
-    pub(in crate::formats::recording) fn of_whole(whole: i128, unit: TimeUnit) -> Self {
+    pub(super) fn of_whole(whole: i128, unit: TimeUnit) -> Self {
         Self::Picoseconds(whole * i128::from(unit.picoseconds()))
     }
 
@@ -146,7 +146,7 @@ impl Time {
         }
     }
 
-    pub(in crate::formats::recording) fn plus(self, other: Self) -> Self {
+    pub(super) fn plus(self, other: Self) -> Self {
         match (self, other) {
             (Self::Picoseconds(one), Self::Picoseconds(other)) => Self::Picoseconds(one + other),
             _ => Self::Seconds(self.seconds() + other.seconds()),
@@ -154,7 +154,7 @@ impl Time {
     }
 
     /// Returns the seconds from `start` to this time, to the nanosecond.
-    pub(in crate::formats::recording) fn since(self, start: Self) -> f64 {
+    pub(super) fn since(self, start: Self) -> f64 {
         let seconds = match (start, self) {
             (Self::Picoseconds(start), Self::Picoseconds(own)) => {
                 Self::Picoseconds(own - start).seconds()
@@ -199,9 +199,9 @@ fn picoseconds(field: &[u8], unit: TimeUnit) -> Option<i128> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::formats) struct Moment {
     /// The seconds since 1970, or since midnight if there is no date.
-    pub(in crate::formats::recording) seconds: f64,
+    pub(super) seconds: f64,
     /// Whether the timestamp has a date; otherwise it starts again at midnight.
-    pub(in crate::formats::recording) is_dated: bool,
+    pub(super) is_dated: bool,
 }
 
 /// Reads a timestamp; None for anything else. Second 60, a leap second, counts as the first second of the next
@@ -260,7 +260,7 @@ impl Midnights {
 
 /// Returns the number of a day of the Gregorian calendar since 1970; earlier days are negative. The month counts from
 /// 1.
-pub(in crate::formats::recording) fn day(year: i32, month: i32, day: i32) -> i32 {
+pub(super) fn day(year: i32, month: i32, day: i32) -> i32 {
     // If years begin in March, the leap day is their last day.
     let (year, month) = if month < 3 {
         (year - 1, month + 9)
@@ -321,12 +321,12 @@ pub(in crate::formats) struct FrameClock {
 
 impl FrameClock {
     /// Sets the unit of the numbers to come; None if nothing names it.
-    pub(in crate::formats::recording) fn set_unit(&mut self, unit: Option<TimeUnit>) {
+    pub(super) fn set_unit(&mut self, unit: Option<TimeUnit>) {
         self.unit = unit;
     }
 
     /// Returns the unit of a number. If nothing names it, the size of the first number decides it for all.
-    pub(in crate::formats::recording) fn unit(&mut self, number: f64) -> TimeUnit {
+    pub(super) fn unit(&mut self, number: f64) -> TimeUnit {
         if let Some(unit) = self.unit {
             return unit;
         }
@@ -337,7 +337,7 @@ impl FrameClock {
     }
 
     /// Returns the time in a field whose value is `number`.
-    pub(in crate::formats::recording) fn number(&mut self, field: &[u8], number: f64) -> Time {
+    pub(super) fn number(&mut self, field: &[u8], number: f64) -> Time {
         let unit = self.unit(number);
         Time::read(field, number, unit)
     }
@@ -355,7 +355,10 @@ impl FrameClock {
     /// Returns once a note about a unit that was derived from the size of a time, unless it is seconds.
     pub(in crate::formats) fn take_note(&mut self) -> Option<RecordingNote> {
         let unit = self.assumed.take()?;
-        Some(RecordingNote::TimeUnit { unit: unit.name() })
+        Some(RecordingNote::Oddity(format!(
+            "the times have no unit and are taken as {} since 1970",
+            unit.name()
+        )))
     }
 }
 

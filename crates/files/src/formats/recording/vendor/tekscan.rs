@@ -27,7 +27,7 @@ use std::collections::HashMap;
 use std::io::BufRead;
 
 use taxel_core::frame::{Frame, FrameSize, Label};
-use taxel_core::parameter::number::counted;
+use taxel_core::parameter::number::{counted, short, to_decimals};
 use taxel_core::quote::shortened;
 
 use crate::error::ReadError;
@@ -151,13 +151,16 @@ pub(in crate::formats::recording) fn read(
             .sum
             .filter(|stated| is_raw && (found - stated).abs() > ROUNDING);
         if let Some(stated) = stated {
-            sink.note(&RecordingNote::Checksum {
-                frame: number,
-                label: frame.label.clone(),
-                what: "Raw Sum",
-                stated,
-                found,
-            })?;
+            let label = frame
+                .label
+                .as_ref()
+                .map(|label| format!(" (label {label})"));
+            let label = label.unwrap_or_default();
+            // A sum of decimals has a rounding error in its last digits.
+            let [stated, found] = [stated, to_decimals(found, 9)].map(short);
+            sink.note(&RecordingNote::Oddity(format!(
+                "frame {number}{label}: Raw Sum should be {stated}, but the values give {found}"
+            )))?;
         }
         sink.frame(channel, &mut frame)?;
     }
