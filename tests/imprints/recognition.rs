@@ -178,7 +178,7 @@ fn four_rectangles_are_confused_as_often_as_published() {
 fn small() -> (Vec<NamedShape>, Ranges) {
     let sensor = sensor(16);
     let picture: Imprint = "###\n#..\n#..".parse().expect("an imprint");
-    let picture = Picture::of(picture).on(&sensor).expect("in range");
+    let picture = Picture::at_home(picture);
     let bar = Figure::rectangle(3.0, 2.0).on(&sensor).expect("in range");
     let ring = Figure::ellipse(2.0, 2.0)
         .thickness(0.8)

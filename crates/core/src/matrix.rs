@@ -1,6 +1,5 @@
 //! A matrix with one value per taxel, row by row from the top left: for example the measurements of a sensor's cells.
 
-use crate::parameter::number::counted;
 use crate::sensor::MatrixSize;
 
 /// A matrix of 1 × 1 to 64 × 64 values, row-major.
@@ -26,17 +25,9 @@ impl<T: Copy> Matrix<T> {
         }
     }
 
-    /// Creates a matrix from the values of its cells, row by row.
-    ///
-    /// # Errors
-    /// Returns an error if the number of values is not the number of cells.
-    pub fn from_values(size: MatrixSize, values: Vec<T>) -> Result<Self, MatrixError> {
-        let found = values.len();
-        if found == size.cells() {
-            Ok(Self { size, values })
-        } else {
-            Err(MatrixError { size, found })
-        }
+    /// Creates a matrix from the values of its cells, row by row; None if there are not as many values as cells.
+    pub fn from_values(size: MatrixSize, values: Vec<T>) -> Option<Self> {
+        (values.len() == size.cells()).then_some(Self { size, values })
     }
 
     /// Changes the size and sets every cell to `value`. Allocates only if there are more cells than ever before.
@@ -96,19 +87,6 @@ impl<T: Copy> Matrix<T> {
     }
 }
 
-/// The error for a number of values that is not the number of cells.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "found {}, expected {} for a matrix of {size}",
-    counted(*found as u64, "value"), size.cells()
-)]
-pub struct MatrixError {
-    /// The size of the matrix.
-    pub size: MatrixSize,
-    /// The number of values.
-    pub found: usize,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,9 +94,7 @@ mod tests {
     #[test]
     fn a_matrix_needs_valid_sides_and_one_value_per_cell() {
         let full = Matrix::from_values(MatrixSize::LARGEST, vec![0; 4096]);
-        assert_eq!(full, Ok(Matrix::filled(MatrixSize::LARGEST, 0)));
-        let size = MatrixSize::of(2, 2);
-        let error = Matrix::from_values(size, vec![0; 5]);
-        assert_eq!(error, Err(MatrixError { size, found: 5 }));
+        assert_eq!(full, Some(Matrix::filled(MatrixSize::LARGEST, 0)));
+        assert_eq!(Matrix::from_values(MatrixSize::of(2, 2), vec![0; 5]), None);
     }
 }

@@ -41,51 +41,7 @@ impl PartialEq for Picture {
     }
 }
 
-/// A picture whose values are not checked yet; [`Self::on`] checks them all. Without any of its methods the imprint
-/// stays where it is: at its own corner, with angle 0 and zoom 1.
-#[derive(Clone, Debug, PartialEq)]
-#[must_use = "only `on` makes a picture of it"]
-pub struct PictureBuilder(Picture);
-
-impl PictureBuilder {
-    fn with(mut self, one: (Parameter, f64), other: (Parameter, f64)) -> Self {
-        self.0.values.put(one.0, one.1);
-        self.0.values.put(other.0, other.1);
-        self
-    }
-
-    /// Places the top left corner of the imprint's bounding rectangle, before zoom and rotation; in cell sides.
-    pub fn at(self, x0: f64, y0: f64) -> Self {
-        self.with((Parameter::X0, x0), (Parameter::Y0, y0))
-    }
-
-    /// Turns the picture about its centre, counter-clockwise as seen; in degrees, from 0 to below 360.
-    pub fn angle(mut self, degrees: f64) -> Self {
-        self.0.values.put(Parameter::Angle, degrees);
-        self
-    }
-
-    /// Scales the picture and its position along x and y.
-    pub fn zoom(self, x: f64, y: f64) -> Self {
-        self.with((Parameter::ZoomX, x), (Parameter::ZoomY, y))
-    }
-
-    /// Returns the picture, after checking its values against the ranges of a sensor.
-    ///
-    /// # Errors
-    /// Returns the error of the first value that is out of range, in the order of [`PICTURE_PARAMETERS`].
-    pub fn on(self, sensor: &Sensor) -> Result<Picture, ParameterError> {
-        let values = Values::new(PICTURE_PARAMETERS, sensor, |own| self.0.get(own))?;
-        Ok(Picture { values, ..self.0 })
-    }
-}
-
 impl Picture {
-    /// Starts a picture of this imprint.
-    pub fn of(imprint: Imprint) -> PictureBuilder {
-        PictureBuilder(Self::at_home(imprint))
-    }
-
     /// Creates a picture that leaves the imprint where it is: at its own corner, with angle 0 and zoom 1.
     pub fn at_home(imprint: Imprint) -> Self {
         use Parameter::{Angle, X0, Y0, ZoomX, ZoomY};
@@ -101,11 +57,9 @@ impl Picture {
 
     /// Returns the same picture with the name under which its imprint is stored.
     #[must_use]
-    pub fn named(self, name: &str) -> Self {
-        Self {
-            name: Some(name.into()),
-            ..self
-        }
+    pub fn named(mut self, name: &str) -> Self {
+        self.name = Some(name.into());
+        self
     }
 
     /// Creates a picture from the values that `value` returns for [`PICTURE_PARAMETERS`], each in range on the
@@ -118,10 +72,12 @@ impl Picture {
         sensor: &Sensor,
         value: impl FnMut(Parameter) -> Option<f64>,
     ) -> Result<Self, ParameterError> {
+        let values = Values::new(PICTURE_PARAMETERS, sensor, value)?;
+        let name = None;
         Ok(Self {
             imprint,
-            values: Values::new(PICTURE_PARAMETERS, sensor, value)?,
-            name: None,
+            values,
+            name,
         })
     }
 
@@ -282,7 +238,10 @@ mod tests {
         use crate::prelude::*;
         let sensor = Sensor::default();
         let bar: Imprint = "###".parse().expect("a row of taxels");
-        let turned = Picture::of(bar).at(5.0, 5.0).angle(90.0).on(&sensor)?;
+        let turned = Picture::at_home(bar)
+            .with(Parameter::X0, 5.0, &sensor)?
+            .with(Parameter::Y0, 5.0, &sensor)?
+            .with(Parameter::Angle, 90.0, &sensor)?;
         let bounds = Plane::new(sensor)
             .touch(&turned)
             .bounds()

@@ -13,7 +13,7 @@ use crate::quote::shortened;
 pub const MAX_SIDE: u8 = 64;
 
 /// The columns and rows of a sensor, its imprints and its matrices of values: each from 1 to [`MAX_SIDE`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
 pub struct MatrixSize {
     columns: u8,
     rows: u8,
@@ -21,16 +21,14 @@ pub struct MatrixSize {
 
 impl MatrixSize {
     /// The smallest size: one cell.
-    pub const SMALLEST: Self = Self {
-        columns: 1,
-        rows: 1,
-    };
+    pub const SMALLEST: Self = Self::unchecked(1, 1);
 
     /// The largest size: [`MAX_SIDE`] columns and rows.
-    pub const LARGEST: Self = Self {
-        columns: MAX_SIDE,
-        rows: MAX_SIDE,
-    };
+    pub const LARGEST: Self = Self::unchecked(MAX_SIDE, MAX_SIDE);
+
+    const fn unchecked(columns: u8, rows: u8) -> Self {
+        Self { columns, rows }
+    }
 
     /// Creates the size of a matrix from its columns and rows.
     ///
@@ -66,10 +64,7 @@ impl MatrixSize {
     /// Returns the smallest size that contains both sizes.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
-        Self {
-            columns: self.columns.max(other.columns),
-            rows: self.rows.max(other.rows),
-        }
+        Self::unchecked(self.columns.max(other.columns), self.rows.max(other.rows))
     }
 
     #[cfg(test)]
@@ -94,19 +89,17 @@ pub const SENSOR_PARAMETERS: &[Parameter] = &[
 
 /// A sensor whose values are always in range: 1 to 64 columns and rows, a threshold above 0 and up to 1, a pitch
 /// above 0 and up to 1000 mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Sensor {
+    #[serde(flatten)]
     size: MatrixSize,
-    threshold: f64,
     pitch_mm: f64,
+    threshold: f64,
 }
 
 impl Default for Sensor {
     fn default() -> Self {
-        Self::of_size(MatrixSize {
-            columns: 16,
-            rows: 16,
-        })
+        Self::of_size(MatrixSize::unchecked(16, 16))
     }
 }
 

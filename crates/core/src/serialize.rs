@@ -8,35 +8,11 @@ use serde::de::{self, Deserializer};
 use serde::ser::{Error, SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 
-use crate::description::Value;
 use crate::figure::FigureKind;
-use crate::frame::{Label, Rule, SetRule};
+use crate::frame::{Rule, SetRule};
 use crate::imprint::Imprint;
-use crate::sensor::Sensor;
+use crate::sensor::MAX_SIDE;
 use crate::source::Source;
-
-impl Serialize for Value {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match *self {
-            Self::None => serializer.serialize_none(),
-            Self::Count(count) => serializer.serialize_u32(count),
-            Self::Number(number) => serializer.serialize_f64(number),
-            Self::Point(point) => [point.x, point.y].serialize(serializer),
-            Self::Pair(pair) => pair.serialize(serializer),
-            Self::Rect(rect) => rect.serialize(serializer),
-        }
-    }
-}
-
-impl Serialize for Label {
-    /// Writes a number or a text.
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Number(number) => serializer.serialize_i64(*number),
-            Self::Text(text) => serializer.serialize_str(text),
-        }
-    }
-}
 
 impl Serialize for Source {
     /// Writes the object that reads back as the same source.
@@ -51,17 +27,6 @@ impl Serialize for Source {
                 map.serialize_entry(parameter.row().key, &value)?;
             }
         }
-        map.end()
-    }
-}
-
-impl Serialize for Sensor {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(4))?;
-        map.serialize_entry("columns", &self.columns())?;
-        map.serialize_entry("rows", &self.rows())?;
-        map.serialize_entry("pitch_mm", &self.pitch_mm())?;
-        map.serialize_entry("threshold", &self.threshold())?;
         map.end()
     }
 }
@@ -118,21 +83,9 @@ struct ImprintRow {
 
 impl Serialize for ImprintRow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// Most rows of an imprint are empty, so their text is ready.
-        const EMPTY: &str = "................................................................";
-        let columns = usize::from(self.columns);
-        if self.word == 0 {
-            return serializer.serialize_str(&EMPTY[..columns]);
-        }
-        let mut row = [b'.'; EMPTY.len()];
-        let row = &mut row[..columns];
-        for (column, byte) in row.iter_mut().enumerate() {
-            *byte = if self.word >> column & 1 == 1 {
-                b'#'
-            } else {
-                b'.'
-            };
-        }
+        let taxel = |column: usize| b".#"[usize::from(self.word >> column & 1 == 1)];
+        let row: [u8; MAX_SIDE as usize] = std::array::from_fn(taxel);
+        let row = &row[..usize::from(self.columns)];
         serializer.serialize_str(str::from_utf8(row).map_err(S::Error::custom)?)
     }
 }

@@ -154,7 +154,7 @@ impl Plane {
             // If several cells of a row are in doubt, such as full cells at a threshold of 1, the shape is drawn once
             // for all of them.
             let areas =
-                (doubtful.count_ones() > 1).then(|| row_areas::<Double>(solid, columns, row));
+                (doubtful.count_ones() > 1).then(|| row_areas::<Double>(solid, [0, row], columns));
             let word = &mut self.imprint.words_mut()[index];
             for column in (0..columns).filter(|column| doubtful >> column & 1 == 1) {
                 let area = match &areas {

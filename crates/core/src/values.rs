@@ -1,21 +1,19 @@
 //! The values of a shape's parameters: what figures and pictures have in common.
 
-use std::fmt;
-
-use crate::parameter::{PARAMETERS, Parameter, ParameterError};
+use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
 
 /// The number of parameters of shapes. They come first among all parameters.
 const COUNT: usize = Parameter::ZoomY as usize + 1;
 
 /// A value for each parameter of shapes; None for one that a shape does not have, or that is not given.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Values([Option<f64>; COUNT]);
 
 impl Values {
     /// Creates values that are not checked.
     pub(crate) fn unchecked<const N: usize>(given: [(Parameter, f64); N]) -> Self {
-        let mut values = Self([None; COUNT]);
+        let mut values = Self::default();
         for (parameter, value) in given {
             values.put(parameter, value);
         }
@@ -29,7 +27,7 @@ impl Values {
         sensor: &Sensor,
         mut value: impl FnMut(Parameter) -> Option<f64>,
     ) -> Result<Self, ParameterError> {
-        let mut values = Self([None; COUNT]);
+        let mut values = Self::default();
         for &parameter in own {
             match value(parameter) {
                 Some(value) => values.put(parameter, sensor.check(parameter, value)?),
@@ -57,13 +55,5 @@ impl Values {
         if let Some(slot) = self.0.get_mut(parameter as usize) {
             *slot = Some(value);
         }
-    }
-}
-
-impl fmt::Debug for Values {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let given = PARAMETERS.iter().zip(self.0);
-        let given = given.filter_map(|(row, value)| Some((row.parameter, value?)));
-        f.debug_map().entries(given).finish()
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use taxel_core::description::{RegionKind, regions};
 use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
 use taxel_core::picture::Picture;
 use taxel_core::touch::Plane;
 use taxel_files::storage::{Library, LoadedShape, ShapeOrigin, shipped};
@@ -100,7 +101,7 @@ fn without_angle_and_zoom_a_picture_is_only_shifted() {
     for LoadedShape { shape, .. } in all() {
         let (imprint, sensor) = (shape.imprint, shape.sensor);
         let bounds = imprint.bounds().expect("not empty");
-        let home = Picture::of(imprint);
+        let home = Picture::at_home(imprint);
         let mut plane = Plane::new(sensor);
         assert_eq!(
             plane.touch(&Picture::at_home(imprint)),
@@ -112,8 +113,8 @@ fn without_angle_and_zoom_a_picture_is_only_shifted() {
             for left in 0..=sensor.columns() - (bounds.right - bounds.left) {
                 let moved = home
                     .clone()
-                    .at(f64::from(left), f64::from(top))
-                    .on(&sensor)
+                    .with(Parameter::X0, left.into(), &sensor)
+                    .and_then(|home| home.with(Parameter::Y0, top.into(), &sensor))
                     .expect("inside");
                 let by = |to: u8, from: u8| i16::from(to) - i16::from(from);
                 let expected = shifted(&imprint, by(left, bounds.left), by(top, bounds.top));

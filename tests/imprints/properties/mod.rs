@@ -165,13 +165,13 @@ proptest! {
         let mut plane = Plane::new(sensor(side, side, 0.5));
         let mut turned = first;
         for _ in 0..4 {
-            let picture = Picture::of(turned).angle(90.0).on(plane.sensor()).expect("in range");
+            let picture = Picture::at_home(turned).with(Parameter::Angle, 90.0, plane.sensor()).expect("in range");
             let expected = moved(&turned, |i, j| (j, last - i));
             turned = plane.touch(&picture);
             prop_assert_eq!(turned, expected);
         }
         prop_assert_eq!(turned, first);
-        let half = Picture::of(first).angle(180.0).on(plane.sensor()).expect("in range");
+        let half = Picture::at_home(first).with(Parameter::Angle, 180.0, plane.sensor()).expect("in range");
         prop_assert_eq!(plane.touch(&half), moved(&first, |i, j| (last - i, last - j)));
     }
 

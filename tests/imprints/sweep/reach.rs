@@ -6,8 +6,7 @@ use taxel_core::geometry::Extent;
 use taxel_core::parameter::Parameter;
 use taxel_core::picture::Picture;
 use taxel_core::pose::{
-    Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges,
-    smallest_sensor,
+    Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, Ranges, Reach, SensorSides, default_ranges,
 };
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
@@ -209,6 +208,15 @@ fn given_ranges_are_kept() {
     assert!(refused.is_err(), "a figure has no zoom");
 }
 
+fn smallest_sensor(
+    set: &[&Source],
+    anchor: Anchor,
+    given: &GivenRanges,
+) -> Option<(Sensor, Ranges)> {
+    let reach = Reach::of_all(set.iter().copied(), anchor, given).expect("in range");
+    reach.smallest_sensor(set, given, SensorSides::at_least(16), 1)
+}
+
 #[test]
 fn the_smallest_sensor_holds_all_shapes_and_no_smaller_one_does() {
     let large = sensor(64);
@@ -218,8 +226,7 @@ fn the_smallest_sensor_holds_all_shapes_and_no_smaller_one_does() {
     for anchor in Anchor::ALL {
         for angles in ["0", "30", "0:359:1"] {
             let given = GivenRanges::default().with(Axis::Angle, Some(range(angles)));
-            let fit = smallest_sensor(set, anchor, &given, 16).expect("in range");
-            let (fit, ranges) = fit.expect("64 are enough");
+            let (fit, ranges) = smallest_sensor(&set, anchor, &given).expect("64 are enough");
             let cut = |sensor: Sensor, ranges: &Ranges| -> u64 {
                 let grids = set.iter().map(|&source| {
                     PoseGrid::new(source.clone(), sensor, anchor, *ranges).expect("in range")
@@ -227,10 +234,6 @@ fn the_smallest_sensor_holds_all_shapes_and_no_smaller_one_does() {
                 grids.map(|grid| grid.poses_beyond_sensor()).sum()
             };
             assert_eq!(cut(fit, &ranges), 0);
-            assert_eq!(
-                common_ranges(set, &fit, anchor, &given).expect("in range"),
-                ranges
-            );
             // Every cell in hundredths on the next smaller sensor, along one axis at a time.
             let smaller = sensor(fit.columns() - 1);
             let fits_along = |axis: Axis| {
@@ -260,10 +263,8 @@ fn the_smallest_sensor_holds_all_shapes_and_no_smaller_one_does() {
             assert!(!smaller_holds, "{anchor:?} {angles}: {}", fit.columns());
         }
     }
-    let (small, _) = smallest_sensor([&hexagon()], Anchor::Corner, &GivenRanges::default(), 16)
-        .expect("in range")
-        .expect("it fits");
-    assert_eq!(small.columns(), 16);
+    let small = smallest_sensor(&[&hexagon()], Anchor::Corner, &GivenRanges::default());
+    assert_eq!(small.expect("it fits").0.columns(), 16);
 }
 
 #[test]
@@ -274,6 +275,5 @@ fn a_shape_too_large_for_any_sensor_has_no_smallest_sensor() {
             .expect("in range"),
     );
     let given = GivenRanges::default();
-    let fit = smallest_sensor([&large], Anchor::Corner, &given, 16).expect("in range");
-    assert_eq!(fit, None);
+    assert_eq!(smallest_sensor(&[&large], Anchor::Corner, &given), None);
 }

@@ -7,13 +7,15 @@
 //! [`glam`].
 
 use glam::DVec2;
+use serde::{Serialize, Serializer};
 
 use crate::description::measures::{ChainSteps, Description, ExactValue, direction, ratios, whole};
 use crate::description::region::RegionKind;
 use crate::imprint::Bounds;
 
 /// The value of a descriptor.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Value {
     /// The descriptor does not exist for this region.
     None,
@@ -22,11 +24,15 @@ pub enum Value {
     /// A number.
     Number(f64),
     /// A point of the plane.
-    Point(DVec2),
+    Point(#[serde(serialize_with = "coordinates")] DVec2),
     /// Two directions.
     Pair([f64; 2]),
     /// A rectangle of whole taxels.
     Rect(Bounds),
+}
+
+fn coordinates<S: Serializer>(point: &DVec2, serializer: S) -> Result<S::Ok, S::Error> {
+    point.to_array().serialize(serializer)
 }
 
 impl Value {

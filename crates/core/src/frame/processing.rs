@@ -201,7 +201,7 @@ mod tests {
 
     fn gain(columns: u8, values: &[f64]) -> Option<Matrix<f64>> {
         let rows = u8::try_from(values.len()).expect("few") / columns;
-        Matrix::from_values(MatrixSize::of(columns, rows), values.to_vec()).ok()
+        Matrix::from_values(MatrixSize::of(columns, rows), values.to_vec())
     }
 
     #[test]

@@ -10,7 +10,8 @@ pub const LARGEST_VALUE: f64 = 1e300;
 pub(super) const VALUES: RangeInclusive<f64> = -LARGEST_VALUE..=LARGEST_VALUE;
 
 /// The label that a recording gives a frame: its number there, or the name of what was touched.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(untagged)]
 pub enum Label {
     /// A whole number.
     Number(i64),

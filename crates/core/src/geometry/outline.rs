@@ -346,17 +346,14 @@ impl RegularPolygon {
     fn new(corners: u8) -> Self {
         let (sin, cos) = (Double::whole(180) / Double::whole(corners.into())).sin_cos_degrees();
         let inradius = cos / sin;
-        let (step_sin, step_cos) = (
-            Double::whole(2) * sin * cos,
-            Double::ONE - Double::whole(2) * sin * sin,
-        );
+        let step = Turn {
+            sin: Double::whole(2) * sin * cos,
+            cos: Double::ONE - Double::whole(2) * sin * sin,
+        };
         let mut next = Point::new(-Double::ONE, inradius);
         let corners = std::array::from_fn(|_| {
             let corner = next;
-            next = Point::new(
-                corner.x * step_cos - corner.y * step_sin,
-                corner.x * step_sin + corner.y * step_cos,
-            );
+            next = step.of(corner);
             corner
         });
         let least = |least: Point<Double>, corner: &Point<Double>| {

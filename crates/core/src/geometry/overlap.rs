@@ -249,16 +249,15 @@ impl<T: Real> Pen<T> for Overlap<T> {
     }
 }
 
-/// Returns the areas of a shape inside the first `columns` cells of a row, by the same method.
-pub(crate) fn row_areas<T: Real>(solid: &impl Solid, columns: u8, row: u8) -> Vec<T> {
-    let start = Point::new(T::ZERO, T::whole(-i32::from(row)));
-    let mut overlap = Overlap::new(columns, 1);
-    solid.draw(&mut Moving {
-        by: start,
-        pen: &mut overlap,
-    });
+/// Returns the areas of a shape inside some cells of a row, by the same method. The top left corner of the first cell is
+/// (`column`, `row`).
+pub(crate) fn row_areas<T: Real>(solid: &impl Solid, [column, row]: [u8; 2], cells: u8) -> Vec<T> {
+    let by = Point::new(T::whole(-i32::from(column)), T::whole(-i32::from(row)));
+    let mut overlap = Overlap::new(cells, 1);
+    let pen = &mut overlap;
+    solid.draw(&mut Moving { by, pen });
     let grid = overlap.grid;
-    let mut areas = vec![T::ZERO; columns.into()];
+    let mut areas = vec![T::ZERO; cells.into()];
     let Drawn { rows, columns } = grid.drawn();
     if rows.contains(&0) && !columns.is_empty() {
         for (area, found) in areas[columns.clone()].iter_mut().zip(grid.row(0, &columns)) {
@@ -270,13 +269,7 @@ pub(crate) fn row_areas<T: Real>(solid: &impl Solid, columns: u8, row: u8) -> Ve
 
 /// Returns the area of a shape inside the single cell whose top left corner is (`column`, `row`), by the same method.
 pub fn cell_area<T: Real>(solid: &impl Solid, column: u8, row: u8) -> T {
-    let corner = Point::new(T::whole(-i32::from(column)), T::whole(-i32::from(row)));
-    let mut overlap = Overlap::new(1, 1);
-    solid.draw(&mut Moving {
-        by: corner,
-        pen: &mut overlap,
-    });
-    overlap.grid.first()
+    row_areas(solid, [column, row], 1)[0]
 }
 
 // A grid of cells that sums up the boundary drawn on it, and computes areas from the sums.

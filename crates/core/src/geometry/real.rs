@@ -174,41 +174,23 @@ pub struct Double {
 }
 
 /// π to 32 digits.
-const PI: Double = Double {
-    high: std::f64::consts::PI,
-    low: 1.224_646_799_147_353_2e-16,
-};
-
-/// Half of π. Halving is exact.
-const HALF_PI: Double = Double {
-    high: 0.5 * PI.high,
-    low: 0.5 * PI.low,
-};
+const PI: Double = Double::new(std::f64::consts::PI, 1.224_646_799_147_353_2e-16);
 
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let part = high - a;
-    Double {
-        high,
-        low: (a - (high - part)) + (b - part),
-    }
+    Double::new(high, (a - (high - part)) + (b - part))
 }
 
 /// Returns a sum and its rounding error, like [`two_sum`], if `a` is known to be the larger number.
 fn quick_two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
-    Double {
-        high,
-        low: b - (high - a),
-    }
+    Double::new(high, b - (high - a))
 }
 
 fn two_product(a: f64, b: f64) -> Double {
     let high = a * b;
-    Double {
-        high,
-        low: a.mul_add(b, -high),
-    }
+    Double::new(high, a.mul_add(b, -high))
 }
 
 impl Add for Double {
@@ -224,10 +206,7 @@ impl Add for Double {
 impl Neg for Double {
     type Output = Self;
     fn neg(self) -> Self {
-        Self {
-            high: -self.high,
-            low: -self.low,
-        }
+        Self::new(-self.high, -self.low)
     }
 }
 
@@ -265,31 +244,17 @@ impl Div for Double {
 impl From<f64> for Double {
     /// Converts exactly this binary number. For the number that a user meant, see [`Real::decimal`].
     fn from(value: f64) -> Self {
-        Self {
-            high: value,
-            low: 0.0,
-        }
+        Self::new(value, 0.0)
     }
 }
 
 impl Real for Double {
-    const ZERO: Self = Self {
-        high: 0.0,
-        low: 0.0,
-    };
-    const ONE: Self = Self {
-        high: 1.0,
-        low: 0.0,
-    };
-    const HALF: Self = Self {
-        high: 0.5,
-        low: 0.0,
-    };
-    const QUARTER_TURN: Self = HALF_PI;
-    const TIE: Self = Self {
-        high: 1e-20,
-        low: 0.0,
-    };
+    const ZERO: Self = Self::new(0.0, 0.0);
+    const ONE: Self = Self::new(1.0, 0.0);
+    const HALF: Self = Self::new(0.5, 0.0);
+    // Halving is exact.
+    const QUARTER_TURN: Self = Self::new(0.5 * PI.high, 0.5 * PI.low);
+    const TIE: Self = Self::new(1e-20, 0.0);
 
     fn decimal(value: f64) -> Self {
         // The power of ten below would overflow. The error of the binary number is smaller than any tie.
@@ -361,6 +326,10 @@ impl Real for Double {
 }
 
 impl Double {
+    const fn new(high: f64, low: f64) -> Self {
+        Self { high, low }
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         // Taylor's series; the terms fall below 1e-33 before the 36th power.
         let (mut sin, mut cos, mut term) = (Self::ZERO, Self::ZERO, Self::ONE);

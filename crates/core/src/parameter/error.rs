@@ -1,14 +1,13 @@
 //! The error for a value that is not allowed, with one message for forms, flags and files.
 
-use std::fmt;
-
 use crate::figure::FigureKind;
 use crate::parameter::number::{complaint, short};
 use crate::parameter::table::{Parameter, Range, Unit};
 use crate::quote::{joined, unknown_name};
 
 /// The error for a value that is not allowed. The message names the parameter, the value, and what is expected.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", self.about(self.parameter().row().key))]
 pub enum ParameterError {
     /// The text is not a number.
     Number {
@@ -42,14 +41,6 @@ pub enum ParameterError {
         /// The parameters that the shape or sensor has.
         expected: &'static [Parameter],
     },
-}
-
-impl std::error::Error for ParameterError {}
-
-impl fmt::Display for ParameterError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.about(self.parameter().row().key))
-    }
 }
 
 impl ParameterError {

@@ -77,9 +77,9 @@ impl Parameter {
     /// Returns the number of decimals that a form shows of a value like this one, and steps by.
     pub(crate) fn decimals_at(self, value: f64) -> u8 {
         match self.row().decimals {
-            Decimals::Paper if value.abs() < 10.0 => 2,
-            Decimals::Paper => 1,
-            Decimals::Fixed(count) => count,
+            Some(count) => count,
+            None if value.abs() < 10.0 => 2,
+            None => 1,
         }
     }
 }
@@ -121,12 +121,6 @@ impl Unit {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Decimals {
-    Paper,
-    Fixed(u8),
-}
-
 /// A row of [`PARAMETERS`].
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterRow {
@@ -146,7 +140,8 @@ pub struct ParameterRow {
     pub meaning: &'static str,
     pub(super) low: Bound,
     pub(super) high: Bound,
-    pub(super) decimals: Decimals,
+    /// The decimals that a form shows; None as in the paper: two below 10, one from there on.
+    pub(super) decimals: Option<u8>,
 }
 
 named!(
@@ -185,7 +180,7 @@ const LENGTH: ParameterRow = ParameterRow {
     meaning: "side of the regular polygon",
     low: Bound::Beyond(0.0),
     high: Bound::Side(1.0),
-    decimals: Decimals::Paper,
+    decimals: None,
 };
 
 /// The range of a position, which may lie left of or above the sensor.
@@ -209,7 +204,7 @@ const COUNT: ParameterRow = ParameterRow {
     default: 16.0,
     low: Bound::At(1.0),
     high: Bound::At(64.0),
-    decimals: Decimals::Fixed(0),
+    decimals: Some(0),
     ..LENGTH
 };
 
@@ -276,7 +271,7 @@ pub const PARAMETERS: &[ParameterRow; 15] = &[
         meaning: "rotation about the centre: figures clockwise, pictures counter-clockwise",
         low: Bound::At(0.0),
         high: Bound::Beyond(360.0),
-        decimals: Decimals::Fixed(0),
+        decimals: Some(0),
     },
     ParameterRow {
         parameter: Parameter::Thickness,
@@ -328,7 +323,7 @@ pub const PARAMETERS: &[ParameterRow; 15] = &[
         default: 0.5,
         meaning: "covered share of a cell that makes its taxel active",
         high: Bound::At(1.0),
-        decimals: Decimals::Fixed(3),
+        decimals: Some(3),
         ..LENGTH
     },
     ParameterRow {
@@ -340,7 +335,7 @@ pub const PARAMETERS: &[ParameterRow; 15] = &[
         default: 1.0,
         meaning: "side of a cell",
         high: Bound::At(1000.0),
-        decimals: Decimals::Fixed(3),
+        decimals: Some(3),
         ..LENGTH
     },
 ];

@@ -57,7 +57,8 @@ pub fn default_ranges(
 }
 
 /// Returns the ranges in which a figure without a position is swept. If x0 or y0 is not given, it gets the paper's cell
-/// ([`Ranges::default`]) if the sensor cuts nothing off there; otherwise the cell of [`common_ranges`].
+/// ([`Ranges::default`]) if the sensor cuts nothing off there; otherwise the cell around the middle in
+/// which it is not cut off at any given angle.
 ///
 /// # Errors
 /// Returns an error if a given range exceeds that of its parameter, or zooms other than 1 are given.
@@ -77,45 +78,6 @@ pub fn figure_ranges(
         .iter()
         .all(|&(axis, side)| is_clear(axis, side));
     Ok(reach.ranges(sensor, given, FINE, is_clear.then_some([500; 2])))
-}
-
-/// Returns the ranges in which several shapes are swept on the same sensor. If x0 or y0 is not given, it gets the cell
-/// around the middle in which none of the shapes is cut off at any requested angle.
-///
-/// If there is no such cell, the positions put the middle of the common reach in the middle of the sensor.
-/// [`PoseGrid::poses_beyond_sensor`] then returns how many poses of a shape are cut off.
-///
-/// # Errors
-/// Returns an error if a given range exceeds that of its parameter, or a figure has zooms other than 1.
-pub fn common_ranges<'a>(
-    sources: impl IntoIterator<Item = &'a Source>,
-    sensor: &Sensor,
-    anchor: Anchor,
-    given: &GivenRanges,
-) -> Result<Ranges, GridError> {
-    check_given(given, sensor)?;
-    Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given, FINE, None))
-}
-
-/// Returns the smallest square sensor of at least `least` × `least` taxels, at most 64 × 64, on which no shape is cut
-/// off in any pose, and the ranges of these poses: if x0 or y0 is not given, one cell around the middle that is the same
-/// for all shapes. The sensor has the default threshold and pitch. None if even 64 × 64 taxels are too few.
-///
-/// Recognition sets `least` to 16, so that a set of small shapes is swept on the same sensor as other sets.
-///
-/// # Errors
-/// Returns an error if a given range exceeds that of its parameter on the largest sensor, or a figure has zooms
-/// other than 1.
-pub fn smallest_sensor<'a>(
-    sources: impl IntoIterator<Item = &'a Source>,
-    anchor: Anchor,
-    given: &GivenRanges,
-    least: u8,
-) -> Result<Option<(Sensor, Ranges)>, GridError> {
-    let sources: Vec<&Source> = sources.into_iter().collect();
-    let reach = Reach::of_all(sources.iter().copied(), anchor, given)?;
-    let sides = SensorSides::at_least(least);
-    Ok(reach.smallest_sensor(&sources, given, sides, FINE))
 }
 
 /// The sides of the sensors to choose from. If no side is given, the sensors are square.
@@ -239,8 +201,10 @@ impl Reach {
         self.0.append(&mut other.0);
     }
 
-    /// Returns the smallest sensor with these sides that cuts nothing off, and the ranges on it, like
-    /// [`smallest_sensor`]; `sources` are the shapes. None if there is no such sensor.
+    /// Returns the smallest sensor with these sides on which no shape is cut off in any pose, and the ranges of these
+    /// poses: if x0 or y0 is not given, one cell around the middle that is the same for all shapes, in steps of
+    /// `step` hundredths. `sources` are the shapes. The sensor has the default threshold and pitch. None if there is no
+    /// such sensor.
     pub fn smallest_sensor(
         &self,
         sources: &[&Source],
@@ -387,7 +351,7 @@ mod tests {
     #[test]
     fn a_shape_stays_in_its_cell_unless_it_is_cut_off_there()
     -> Result<(), Box<dyn std::error::Error>> {
-        use crate::pose::{GivenRanges, default_ranges, figure_ranges, smallest_sensor};
+        use crate::pose::{GivenRanges, Reach, SensorSides, default_ranges, figure_ranges};
         use crate::prelude::*;
         let sensor = Sensor::default();
         let given = GivenRanges::default();
@@ -395,9 +359,9 @@ mod tests {
         let ranges = default_ranges(&washer.into(), &sensor, Anchor::Corner, &given)?;
         assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
         // A picture keeps its zooms.
-        let bar = Picture::of("###".parse().expect("a row"))
-            .zoom(0.5, 2.0)
-            .on(&sensor)?;
+        let bar = Picture::at_home("###".parse().expect("a row"))
+            .with(Parameter::ZoomX, 0.5, &sensor)?
+            .with(Parameter::ZoomY, 2.0, &sensor)?;
         let ranges = default_ranges(&bar.into(), &sensor, Anchor::Centre, &given)?;
         assert_eq!(
             (
@@ -422,7 +386,9 @@ mod tests {
         let triangle = Source::from(Figure::triangle(11.77).on(&Sensor::default())?);
         let disc = Source::from(Figure::ellipse(3.09, 3.09).on(&Sensor::default())?);
         let all_angles = GivenRanges::default();
-        let fit = smallest_sensor([&triangle, &disc], Anchor::Centre, &all_angles, 16)?;
+        let set = [&triangle, &disc];
+        let reach = Reach::of_all(set, Anchor::Centre, &all_angles)?;
+        let fit = reach.smallest_sensor(&set, &all_angles, SensorSides::at_least(16), 1);
         let (sensor, ranges) = fit.expect("it fits on 64 × 64");
         // Its corners move on a circle of radius 6.8, and its centre moves within one cell.
         assert_eq!((sensor.columns(), sensor.rows()), (16, 16));

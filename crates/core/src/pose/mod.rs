@@ -11,8 +11,7 @@ mod symmetry;
 
 pub use axis::{Anchor, Axis, PerAxis, Pose, PoseIndex, Ranges};
 pub use default_ranges::{
-    GivenRanges, Reach, SensorSides, check_given, common_ranges, default_ranges, figure_ranges,
-    smallest_sensor,
+    GivenRanges, Reach, SensorSides, check_given, default_ranges, figure_ranges,
 };
 pub(crate) use grid::Boundary;
 pub use grid::{GridError, MAX_POSES, Placed, PoseGrid};

@@ -96,7 +96,7 @@ fn learn(spans: &Spans, tracks: &mut Tracks) {
 const SLACK: f64 = 1e-12;
 
 /// An ellipse prepared for bands; see `geometry::ellipse` for the formulas.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct EllipseBand {
     x: f64,
     y: f64,
@@ -159,12 +159,7 @@ impl EllipseBand {
             middle_x: mixed / y_square,
             scale_y: area / x_square,
             scale_x: area / y_square,
-            top: 0.0,
-            stretches: [EllipseStretch::default(); 5],
-            count: 0,
-            peak: (0.0, 0.0),
-            highest: 0.0,
-            total: 0.0,
+            ..Self::default()
         }
     }
 

@@ -83,7 +83,7 @@ impl Stretch {
 }
 
 /// A shape of straight edges, with working memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Polygonal {
     /// All edges that are not level, sorted by their upper ends.
     edges: Vec<Edge>,
@@ -123,9 +123,7 @@ impl Polygonal {
         Self {
             edges,
             levels,
-            pieces: Vec::new(),
-            corners: Vec::new(),
-            stretches: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -92,16 +92,38 @@ impl<'a> Sweep<'a> {
         self.run_to(Some(take))
     }
 
-    fn run_to(self, rows: Option<&mut TakeRow<'_>>) -> SweepResult {
+    fn run_to(self, mut rows: Option<&mut TakeRow<'_>>) -> SweepResult {
         let with_runs = rows.is_some();
-        let mut done = Accumulator {
-            result: SweepResult::empty(self.grid.clone(), self.shard),
-            table: Table::default(),
-            rows,
-        };
-        let layout = done.result.atlas.layout().clone();
-        self.each_portion(&layout, with_runs, |portion| done.add(portion));
-        let mut result = done.result.with_statistics(&done.table);
+        let mut result = SweepResult::empty(self.grid.clone(), self.shard);
+        let mut table = Table::default();
+        let layout = result.atlas.layout().clone();
+        self.each_portion(&layout, with_runs, |portion| {
+            let ids = portion
+                .iter()
+                .map(|found| result.atlas.add(&found.counter, found.multiplicity()));
+            let ids: Vec<Vec<u32>> = ids.collect();
+            result.atlas.describe();
+            table.extend(result.atlas.summaries());
+            let sums = portion.par_iter().zip(&ids).map(|(found, ids)| {
+                let counts = found.counter.tallies().iter().map(|tally| tally.count);
+                let counted = ids.iter().copied().zip(counts);
+                OrientationSums::of(&table, found.multiplicity(), counted)
+            });
+            let sums: Vec<OrientationSums> = sums.collect();
+            let mut flow = ControlFlow::Continue(());
+            for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
+                result.variance_parts.add(found.orientations[0], sums);
+                result.poses += found.poses(&result.grid);
+                result.partly_off += found.partly_off * found.multiplicity();
+                if let Some(rows) = &mut rows
+                    && flow.is_continue()
+                {
+                    flow = show_rows(&result.grid, found, ids, rows);
+                }
+            }
+            flow
+        });
+        let mut result = result.with_statistics(&table);
         if !with_runs {
             result.atlas.sort_by_first_pose();
         }
@@ -174,45 +196,6 @@ fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
         portion.push(task);
     }
     portion
-}
-
-/// The result of a sweep so far, without statistics.
-struct Accumulator<'w, 'r> {
-    result: SweepResult,
-    /// The features of the imprints.
-    table: Table,
-    rows: Option<&'w mut TakeRow<'r>>,
-}
-
-impl Accumulator<'_, '_> {
-    fn add(&mut self, portion: &Portion) -> ControlFlow<()> {
-        let result = &mut self.result;
-        let ids = portion
-            .iter()
-            .map(|found| result.atlas.add(&found.counter, found.multiplicity()));
-        let ids: Vec<Vec<u32>> = ids.collect();
-        result.atlas.describe();
-        self.table.extend(result.atlas.summaries());
-        let table = &self.table;
-        let sums = portion.par_iter().zip(&ids).map(|(found, ids)| {
-            let counts = found.counter.tallies().iter().map(|tally| tally.count);
-            let counted = ids.iter().copied().zip(counts);
-            OrientationSums::of(table, found.multiplicity(), counted)
-        });
-        let sums: Vec<OrientationSums> = sums.collect();
-        let mut flow = ControlFlow::Continue(());
-        for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
-            result.variance_parts.add(found.orientations[0], sums);
-            result.poses += found.poses(&result.grid);
-            result.partly_off += found.partly_off * found.multiplicity();
-            if let Some(rows) = &mut self.rows
-                && flow.is_continue()
-            {
-                flow = show_rows(&result.grid, found, ids, rows);
-            }
-        }
-        flow
-    }
 }
 
 /// Calls `show` for each row of a group, in each of its orientations, until it stops.
