@@ -220,9 +220,7 @@ fn with_flag(error: &GridError) -> String {
             let flag = error.parameter().flag();
             format!("--{flag} {} {}", short(*value), error.complaint())
         }
-        GridError::Zoom { .. } => {
-            "--zoom-x and --zoom-y are for pictures only (--picture)".to_owned()
-        }
+        GridError::Zoom(_) => "--zoom-x and --zoom-y are for pictures only (--picture)".to_owned(),
         error => error.to_string(),
     }
 }

@@ -290,7 +290,7 @@ fn merged_shards_equal_the_whole_model() {
     assert_eq!(merge.add(&part(1)), Ok(()));
     assert_eq!(merge.add(&part(3)), missing(2));
     assert_eq!(merge.add(&part(2)), Ok(()));
-    let twice = Err(ShardOrderError::Twice { shard: shard(2) }.into());
+    let twice = Err(ShardOrderError::Twice(shard(2)).into());
     assert_eq!(merge.add(&part(2)), twice);
     assert_eq!(merge.add(&part(3)), Ok(()));
     let merged = merge.finish().expect("all three");

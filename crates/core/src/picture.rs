@@ -176,14 +176,10 @@ impl Solid for Picture {
         };
         // A side between two neighbouring taxels belongs to the boundary if just one of them is active. Runs of such
         // sides on a line are drawn as one edge.
-        let word = |row: i32| {
-            usize::try_from(row)
-                .ok()
-                .and_then(|row| self.imprint.words().get(row))
-                .unwrap_or(&0)
-        };
+        let word = |row: u8| self.imprint.words().get(usize::from(row)).unwrap_or(&0);
         for row in bounds.top..=bounds.bottom {
-            let (above, below) = (*word(i32::from(row) - 1), *word(i32::from(row)));
+            // Row −1 wraps to 255, where no taxel is active.
+            let (above, below) = (word(row.wrapping_sub(1)), word(row));
             for (left, right) in runs(below & !above) {
                 pen.edge(corner(left, row), corner(right, row));
             }
@@ -194,7 +190,7 @@ impl Solid for Picture {
         for column in bounds.left..=bounds.right {
             let bit = |row: u8, column: u8| u64::from(self.imprint.get(column, row)) << row;
             let line = |column: u8| bounds.rows().fold(0, |line, row| line | bit(row, column));
-            // Column −1 wraps to 255, where no taxel is active.
+            // Likewise column −1.
             let (before, after) = (line(column.wrapping_sub(1)), line(column));
             for (top, bottom) in runs(after & !before) {
                 pen.edge(corner(column, bottom), corner(column, top));

@@ -160,14 +160,6 @@ impl Sensor {
         self.with(Parameter::Threshold, threshold)
     }
 
-    /// Returns the same sensor with another pitch: the side of a cell in mm.
-    ///
-    /// # Errors
-    /// Returns an error if the pitch is not above 0 and at most 1000.
-    pub fn with_pitch_mm(self, pitch: f64) -> Result<Self, ParameterError> {
-        self.with(Parameter::Pitch, pitch)
-    }
-
     /// Returns the value of a parameter; None if a sensor does not have the parameter.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
@@ -370,7 +362,7 @@ mod tests {
     #[test]
     fn a_sensor_has_its_threshold_and_its_pitch() {
         let sensor = Sensor::new(10, 8).and_then(|sensor| sensor.with_threshold(0.3));
-        let sensor = sensor.and_then(|sensor| sensor.with_pitch_mm(1.27));
+        let sensor = sensor.and_then(|sensor| sensor.with(Parameter::Pitch, 1.27));
         let sensor = sensor.expect("in range");
         assert_eq!((sensor.threshold(), sensor.pitch_mm()), (0.3, 1.27));
         assert!(sensor.with_threshold(0.0).is_err() && MatrixSize::new(65, 8).is_err());

@@ -227,12 +227,8 @@ impl Pen<f64> for TouchPen<'_> {
     }
 
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
-        let Ellipse {
-            centre,
-            across,
-            along,
-        } = *ellipse;
-        if is_within_limit(centre) && is_within_limit(across) && is_within_limit(along) {
+        let points = [ellipse.centre, ellipse.across, ellipse.along];
+        if points.into_iter().all(is_within_limit) {
             self.overlap.ellipse(ellipse, material);
         } else {
             self.finite = false;

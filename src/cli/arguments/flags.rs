@@ -255,8 +255,8 @@ pub(super) fn parse_probability(text: &str) -> Result<f64, String> {
 /// Parses a range. clap quotes the argument, so the message does not quote the whole of it again.
 pub(super) fn parse_range(text: &str) -> Result<DecimalRange, String> {
     text.parse().map_err(|error: RangeError| match &error {
-        RangeError::Form { .. } => error.expected(),
-        RangeError::Number { text: part } if part == text => number::complaint(text),
+        RangeError::Form(_) => error.expected(),
+        RangeError::Number(part) if part == text => number::complaint(text),
         _ => error.to_string(),
     })
 }

@@ -330,7 +330,7 @@ fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError>
                 "differs from {} in {difference}",
                 parts[0].path.display()
             )),
-            MergeError::Order(ShardOrderError::Twice { .. }) => part.refused(&error),
+            MergeError::Order(ShardOrderError::Twice(_)) => part.refused(&error),
             other => other.into(),
         })?;
         memory.check().map_err(CliError::Memory)?;
@@ -355,7 +355,7 @@ fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model
                 "belongs to another training than {}",
                 parts[0].path.display()
             )),
-            ModelError::Shards(ShardOrderError::Twice { .. }) => part.refused(&error),
+            ModelError::Shards(ShardOrderError::Twice(_)) => part.refused(&error),
             other => TrainingError::from(other).into(),
         })?;
         memory.check().map_err(CliError::Memory)?;

@@ -290,7 +290,7 @@ fn grid_of(
     let grid = PoseGrid::new(source.clone(), *form.sensor(), anchor, ranges);
     grid.map_err(|error: GridError| FormError {
         brief: match &error {
-            GridError::Poses { poses } => {
+            GridError::Poses(poses) => {
                 let poses = u64::try_from(*poses).unwrap_or(u64::MAX);
                 let most = grouped(MAX_POSES);
                 format!("{}\nexpected at most {most}", counted(poses, "pose"))

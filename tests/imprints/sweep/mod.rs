@@ -234,7 +234,7 @@ fn shards_are_merged_only_if_all_are_there() {
     let twice = Shard::new(1, 2).expect("a shard");
     assert_eq!(
         merge(vec![shard(&grid, 1, 2), shard(&grid, 1, 2)]),
-        Err(ShardOrderError::Twice { shard: twice }.into())
+        Err(ShardOrderError::Twice(twice).into())
     );
     // The original place of the shape does not matter.
     let moved = figure(FigureKind::Triangle, 6.0, 0.0, 0.0)
@@ -272,7 +272,7 @@ fn shards_are_merged_only_if_all_are_there() {
     );
     assert_eq!(
         refused.add(shard(&grid, 1, 2)),
-        Err(ShardOrderError::Twice { shard: twice }.into())
+        Err(ShardOrderError::Twice(twice).into())
     );
     assert_eq!(refused.add(shard(&grid, 2, 2)), Ok(()));
     let merged = refused.finish().map(|result| told(&result));
@@ -304,9 +304,7 @@ fn a_stopped_sweep_keeps_what_is_complete() {
         result.poses
     );
     assert!(result.statistics[0].poses == result.poses && result.statistics[0].sd_angle.is_some());
-    let incomplete = MergeError::Incomplete {
-        shard: Shard::WHOLE,
-    };
+    let incomplete = MergeError::Incomplete(Shard::WHOLE);
     assert_eq!(merge_all([result]).err(), Some(incomplete));
     // The sweep does not even wait for the end of an orientation.
     let result = stopped_after(1);

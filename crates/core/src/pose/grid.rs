@@ -59,8 +59,7 @@ impl PoseGrid {
             let parameter = axis.parameter();
             if !source.parameters().contains(&parameter) {
                 if range != DecimalRange::whole(1) {
-                    let noun = source.noun();
-                    return Err(GridError::Zoom { noun });
+                    return Err(GridError::Zoom(source.noun()));
                 }
                 continue;
             }
@@ -69,7 +68,7 @@ impl PoseGrid {
             poses *= u128::from(range.count());
         }
         if poses > u128::from(MAX_POSES) {
-            return Err(GridError::Poses { poses });
+            return Err(GridError::Poses(poses));
         }
         Ok(Self {
             source,
@@ -287,23 +286,14 @@ pub enum GridError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// A number has more digits than a range can have.
-    #[error("{value} has too many digits for a range")]
-    Digits {
-        /// The number.
-        value: f64,
-    },
-    /// A figure has zooms other than 1.
-    #[error("a {noun} has no zoom, only a picture has one")]
-    Zoom {
-        /// The noun for the shape: "figure".
-        noun: &'static str,
-    },
+    #[error("{0} has too many digits for a range")]
+    Digits(f64),
+    /// A shape that has no zoom, such as a "figure", has zooms other than 1.
+    #[error("a {0} has no zoom, only a picture has one")]
+    Zoom(&'static str),
     /// There are too many poses.
-    #[error("{} poses, expected at most {}", grouped(*poses), grouped(MAX_POSES))]
-    Poses {
-        /// The number of poses.
-        poses: u128,
-    },
+    #[error("{} poses, expected at most {}", grouped(*.0), grouped(MAX_POSES))]
+    Poses(u128),
 }
 
 /// A shape in a pose of a grid, ready for a touch ([`Plane::touch`](crate::touch::Plane::touch)).

@@ -157,35 +157,28 @@ impl FromStr for DecimalRange {
         let texts = match parts[..] {
             [single] => [single, single, "1"],
             [start, end, step] => [start, end, step],
-            _ => {
-                let text = shortened(whole.trim());
-                return Err(RangeError::Form { text });
-            }
+            _ => return Err(RangeError::Form(shortened(whole.trim()))),
         };
         let mut numbers = [0.0; 3];
         for (number, text) in numbers.iter_mut().zip(texts) {
-            *number = number::read(text).ok_or_else(|| {
-                let text = shortened(text);
-                RangeError::Number { text }
-            })?;
+            *number = number::read(text).ok_or_else(|| RangeError::Number(shortened(text)))?;
         }
         let most = numbers.map(places).into_iter().fold(0, u32::max);
         let exact = |number: f64| units(number, most).filter(|_| most <= MAX_PLACES);
         let [Some(first), Some(last), Some(by)] = numbers.map(exact) else {
             // The number with the most decimals decides how many digits each of them needs.
-            let text = shortened(whole.trim());
-            return Err(RangeError::Digits { text });
+            return Err(RangeError::Digits(shortened(whole.trim())));
         };
         let [start, end, step] = texts.map(shortened);
         if by <= 0 {
-            return Err(RangeError::Step { step });
+            return Err(RangeError::Step(step));
         }
         if last < first {
             return Err(RangeError::Backwards { start, end });
         }
         let count = (last - first).unsigned_abs() / by.unsigned_abs() + 1;
         if count > MAX_VALUES {
-            return Err(RangeError::Many { count });
+            return Err(RangeError::Many(count));
         }
         Ok(Self::from_units(first, by, most, count))
     }
@@ -224,32 +217,20 @@ fn not_a_number(text: &str) -> String {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RangeError {
     /// The text is neither one number nor three.
-    #[error("\"{text}\" is not a range, expected a number or start:end:step")]
-    Form {
-        /// The text, shortened.
-        text: String,
-    },
+    #[error("\"{0}\" is not a range, expected a number or start:end:step")]
+    Form(String),
     /// A part of the text is not a plain decimal.
-    #[error("{}", not_a_number(text))]
-    Number {
-        /// The text, shortened.
-        text: String,
-    },
+    #[error("{}", not_a_number(.0))]
+    Number(String),
     /// A number has more digits than are exact.
     #[error(
-        "\"{text}\" has too many digits: at most {MAX_PLACES} after the point, and 15 in all once each number has as many \
+        "\"{0}\" has too many digits: at most {MAX_PLACES} after the point, and 15 in all once each number has as many \
          decimals as the longest"
     )]
-    Digits {
-        /// The whole range, shortened.
-        text: String,
-    },
+    Digits(String),
     /// The step is not above 0.
-    #[error("step {step} is not above 0")]
-    Step {
-        /// The step as given, shortened.
-        step: String,
-    },
+    #[error("step {0} is not above 0")]
+    Step(String),
     /// The end lies before the start.
     #[error("the end {end} is below the start {start}")]
     Backwards {
@@ -259,23 +240,20 @@ pub enum RangeError {
         end: String,
     },
     /// There are too many values.
-    #[error("a range of {} values; at most {} are allowed", grouped(*count), grouped(MAX_VALUES))]
-    Many {
-        /// The number of values.
-        count: u64,
-    },
+    #[error("a range of {} values; at most {} are allowed", grouped(*.0), grouped(MAX_VALUES))]
+    Many(u64),
 }
 
 impl RangeError {
     /// Returns the part of the message that says what was expected, for a place that shows the text itself.
     pub fn expected(&self) -> String {
         match self {
-            Self::Form { .. } => "expected a number or start:end:step".to_owned(),
-            Self::Number { .. } => "not a number".to_owned(),
-            Self::Digits { .. } => format!("at most 15 digits, {MAX_PLACES} decimals"),
-            Self::Step { .. } => "expected a step above 0".to_owned(),
+            Self::Form(_) => "expected a number or start:end:step".to_owned(),
+            Self::Number(_) => "not a number".to_owned(),
+            Self::Digits(_) => format!("at most 15 digits, {MAX_PLACES} decimals"),
+            Self::Step(_) => "expected a step above 0".to_owned(),
             Self::Backwards { start, .. } => format!("expected an end of {start} or more"),
-            Self::Many { count } => {
+            Self::Many(count) => {
                 let (count, most) = (grouped(*count), grouped(MAX_VALUES));
                 format!("{count} values, at most {most}")
             }

@@ -186,7 +186,7 @@ impl Separation {
                     let zoom = Sensor::LARGEST.check(axis.parameter(), zoom);
                     let zoom = zoom.map_err(|error| TrainingError::grid(&shape.name, error))?;
                     let rounded = DecimalRange::rounded(zoom, 9);
-                    let digits = || GridError::Digits { value: zoom };
+                    let digits = || GridError::Digits(zoom);
                     given[axis] =
                         Some(rounded.ok_or_else(|| TrainingError::grid(&shape.name, digits()))?);
                 }

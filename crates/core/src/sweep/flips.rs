@@ -142,7 +142,7 @@ impl<'s, 'a> FlipWriter<'s, 'a> {
                     self.set(column, next, &mut active, false);
                 }
                 let mut step = from;
-                while step <= to && !self.exact.stopped() {
+                while step <= to && !self.exact.stopped {
                     if span.sharp && sure.contains(&step) {
                         self.set(column, step, &mut active, true);
                         step = sure.end.min(to + 1);
@@ -457,7 +457,7 @@ pub(crate) struct Exact<'a> {
     /// The effort since the last call of `go_on`.
     unasked: u64,
     /// Whether `go_on` has returned `false`.
-    stopped: bool,
+    pub(crate) stopped: bool,
 }
 
 impl<'a> Exact<'a> {
@@ -473,10 +473,6 @@ impl<'a> Exact<'a> {
             unasked: 0,
             stopped: false,
         }
-    }
-
-    pub(crate) fn stopped(&self) -> bool {
-        self.stopped
     }
 
     /// Returns true if the taxel is active when the shape lies at value `x` of x0 and value `y` of y0.

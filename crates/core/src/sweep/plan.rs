@@ -33,9 +33,7 @@ impl Shard {
         if (1..=of).contains(&number) {
             Ok(Self { number, of })
         } else {
-            Err(ShardError {
-                text: format!("{number}/{of}"),
-            })
+            Err(ShardError(format!("{number}/{of}")))
         }
     }
 
@@ -63,7 +61,7 @@ impl Shard {
     pub(crate) fn check_after(self, last: Option<Self>) -> Result<(), ShardOrderError> {
         let (number, of) = (last.map_or(1, |last| last.number + 1), self.of);
         match self.number.cmp(&number) {
-            Ordering::Less => Err(ShardOrderError::Twice { shard: self }),
+            Ordering::Less => Err(ShardOrderError::Twice(self)),
             Ordering::Greater => Err(ShardOrderError::Missing { number, of }),
             Ordering::Equal => Ok(()),
         }
@@ -88,9 +86,7 @@ impl FromStr for Shard {
     type Err = ShardError;
 
     fn from_str(text: &str) -> Result<Self, ShardError> {
-        let error = || ShardError {
-            text: shortened(text),
-        };
+        let error = || ShardError(shortened(text));
         let (number, of) = text.split_once('/').ok_or_else(error)?;
         let read = |text: &str| text.trim().parse().map_err(|_| error());
         Self::new(read(number)?, read(of)?).map_err(|_| error())
@@ -105,11 +101,8 @@ impl fmt::Display for Shard {
 
 /// The error for text that is not a shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("\"{text}\" is not a shard, {}", self.expected())]
-pub struct ShardError {
-    /// The text, shortened.
-    pub text: String,
-}
+#[error("\"{0}\" is not a shard, {expected}", expected = self.expected())]
+pub struct ShardError(String);
 
 impl ShardError {
     /// Returns the part of the message that says what was expected, for a place that shows the text itself.
@@ -126,11 +119,8 @@ pub enum ShardOrderError {
     #[error("no shards to merge")]
     Nothing,
     /// A shard that is given twice.
-    #[error("shard {shard} is given twice")]
-    Twice {
-        /// The shard.
-        shard: Shard,
-    },
+    #[error("shard {0} is given twice")]
+    Twice(Shard),
     /// A missing shard.
     #[error("shard {number}/{of} is missing")]
     Missing {

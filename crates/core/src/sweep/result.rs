@@ -240,19 +240,14 @@ impl SweepMerge {
     pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
         let shard = result.shard;
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
-        if let Some(merged) = &self.0 {
-            let difference = if shard.of() == merged.shard.of() {
-                difference(&result.grid, &merged.grid)
-            } else {
-                Some("the number of shards")
-            };
-            if let Some(difference) = difference {
-                return Err(MergeError::Foreign { shard, difference });
-            }
+        if let Some(merged) = &self.0
+            && let Some(difference) = difference(&result, merged)
+        {
+            return Err(MergeError::Foreign { shard, difference });
         }
         shard.check_after(self.0.as_ref().map(|merged| merged.shard))?;
         if !result.complete() {
-            return Err(MergeError::Incomplete { shard });
+            return Err(MergeError::Incomplete(shard));
         }
         let Some(merged) = &mut self.0 else {
             self.0 = Some(result);
@@ -278,9 +273,13 @@ impl SweepMerge {
     }
 }
 
-/// Returns what differs between two grids; None if they are equal. The source lies where its ranges begin, so it is
-/// compared last.
-fn difference(one: &PoseGrid, other: &PoseGrid) -> Option<&'static str> {
+/// Returns what makes two results no shards of one sweep; None if they can be. The source lies where its ranges begin,
+/// so it is compared last.
+fn difference(one: &SweepResult, other: &SweepResult) -> Option<&'static str> {
+    if one.shard.of() != other.shard.of() {
+        return Some("the number of shards");
+    }
+    let (one, other) = (&one.grid, &other.grid);
     if one == other {
         None
     } else if one.sensor() != other.sensor() {
@@ -307,11 +306,8 @@ pub enum MergeError {
         difference: &'static str,
     },
     /// A shard whose sweep was stopped early.
-    #[error("shard {shard} was stopped early, run it again")]
-    Incomplete {
-        /// The shard.
-        shard: Shard,
-    },
+    #[error("shard {0} was stopped early, run it again")]
+    Incomplete(Shard),
 }
 
 // The descriptors that a figure would have on a sensor of infinitely many, infinitely small cells.

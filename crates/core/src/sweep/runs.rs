@@ -202,7 +202,7 @@ impl<'a> Sweeper<'a> {
             for (group, spans) in self.groups.iter_mut().zip(spans) {
                 group.add_flips(self.steps, row, y, spans);
             }
-            if self.groups.iter().any(|group| group.exact.stopped()) {
+            if self.groups.iter().any(|group| group.exact.stopped) {
                 return false;
             }
         }
