@@ -19,9 +19,10 @@ mod session;
 mod source;
 mod unix;
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::{self, ErrorKind, Seek};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -94,7 +95,16 @@ pub fn acquire(
     stop: &AtomicBool,
     consumer: &mut AcquireSink<'_>,
 ) -> Result<(), ReadError> {
-    let mut session = Session::new(source, options, stop, consumer);
+    // A reader whose input was ended because no more is wanted may still have a frame.
+    let is_done = Cell::new(false);
+    let mut consumer = |event: AcquireEvent<'_>| {
+        if is_done.get() || consumer(event).is_break() {
+            is_done.set(true);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    };
+    let mut session = Session::new(source, options, stop, &is_done, &mut consumer);
     let recording = source.open_recording(options)?;
     if let Some((path, file, format)) = &recording {
         let metadata = metadata_beside(path).unwrap_or_else(|error| {

@@ -25,17 +25,12 @@ const UNEVEN: f64 = 0.1;
 /// ```
 #[derive(Clone, Debug)]
 pub struct FrameRate {
-    bursts: VecDeque<Burst>,
+    /// The number of frames of each burst, and its length in seconds.
+    bursts: VecDeque<(f64, f64)>,
     most: usize,
     /// The burst that has not ended: the time of its first frame, and its number of frames.
-    open: Option<(f64, u32)>,
+    open: Option<(f64, f64)>,
     falls: usize,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Burst {
-    frames: u32,
-    seconds: f64,
 }
 
 impl FrameRate {
@@ -55,7 +50,7 @@ impl FrameRate {
         if let Some((start, frames)) = &mut self.open {
             let seconds = time - *start;
             if (0.0..TOGETHER).contains(&seconds) {
-                *frames += 1;
+                *frames += 1.0;
                 return;
             }
             if seconds >= TOGETHER {
@@ -63,19 +58,18 @@ impl FrameRate {
                 if self.bursts.len() == self.most {
                     self.bursts.pop_front();
                 }
-                self.bursts.push_back(Burst { frames, seconds });
+                self.bursts.push_back((frames, seconds));
             }
             self.falls += usize::from(seconds < 0.0);
         }
-        self.open = Some((time, 1));
+        self.open = Some((time, 1.0));
     }
 
     /// The mean time from a frame to the next, in seconds, without gaps. None if all frames have come in one
     /// burst: their times do not show the rate.
     pub fn seconds_per_frame(&self) -> Option<f64> {
-        let (frames, seconds) = self.usual().fold((0.0, 0.0), |(frames, seconds), burst| {
-            (frames + f64::from(burst.frames), seconds + burst.seconds)
-        });
+        let frames: f64 = self.usual().map(|(frames, _)| frames).sum();
+        let seconds: f64 = self.usual().map(|(_, seconds)| seconds).sum();
         Some(to_nanoseconds(seconds / frames)).filter(|&step| step > 0.0)
     }
 
@@ -83,9 +77,9 @@ impl FrameRate {
     /// more than a tenth of the times between gaps differ, or if most times are gaps or go back.
     pub(crate) fn even_seconds_per_frame(&self) -> Option<f64> {
         let step = self.seconds_per_frame()?;
-        let is_even = |burst: &Burst| {
-            let expected = f64::from(burst.frames) * step;
-            (burst.seconds - expected).abs() <= UNEVEN * expected
+        let is_even = |&(frames, seconds): &(f64, f64)| {
+            let expected = frames * step;
+            (seconds - expected).abs() <= UNEVEN * expected
         };
         let usual = self.usual().count();
         let breaks = self.bursts.len() - usual + self.falls;
@@ -93,13 +87,13 @@ impl FrameRate {
         (10 * even >= 9 * usual && breaks < usual).then_some(step)
     }
 
-    fn usual(&self) -> impl Iterator<Item = &Burst> {
-        let mut lengths: Vec<f64> = self.bursts.iter().map(|burst| burst.seconds).collect();
+    fn usual(&self) -> impl Iterator<Item = &(f64, f64)> {
+        let mut lengths: Vec<f64> = self.bursts.iter().map(|burst| burst.1).collect();
         lengths.sort_by(f64::total_cmp);
         let median = lengths.get(lengths.len().saturating_sub(1) / 2);
         let longest = median.map_or(GAP, |median| GAP.max(3.0 * median));
         let bursts = self.bursts.iter();
-        bursts.filter(move |burst| burst.seconds <= longest)
+        bursts.filter(move |(_, seconds)| *seconds <= longest)
     }
 }
 

@@ -81,9 +81,6 @@ pub struct FrameRecorder {
     counted: u64,
     written: Instant,
     left_out: u64,
-    /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have started again,
-    /// as when a recording is played in a loop.
-    numbers: Option<(u64, u64)>,
     rate: FrameRate,
     /// Whether frames carry times, so that they are not only those of arrival.
     carries_times: bool,
@@ -129,7 +126,6 @@ impl FrameRecorder {
             counted: 0,
             written: Instant::now(),
             left_out: 0,
-            numbers: None,
             rate: FrameRate::over(MOST_BURSTS),
             carries_times: false,
         })
@@ -153,8 +149,7 @@ impl FrameRecorder {
         self.left_out
     }
 
-    /// Changes the metadata, also in the file once there is one. Marks of frames before the first recorded one are left
-    /// out.
+    /// Changes the metadata, also in the file once there is one.
     ///
     /// # Errors
     /// If the file cannot be written, or if another program has replaced the recording.
@@ -229,7 +224,10 @@ impl FrameRecorder {
             self.left_out += 1;
             return Ok(());
         }
-        self.note(frame, time);
+        if let Some(time) = time {
+            self.rate.add(time);
+            self.carries_times |= frame.time.is_some();
+        }
         if self.records == 0 {
             self.begin(size)?;
         }
@@ -248,19 +246,9 @@ impl FrameRecorder {
         self.tick()
     }
 
-    fn note(&mut self, frame: &Frame, time: Option<f64>) {
-        if let Some(time) = time {
-            self.rate.add(time);
-            self.carries_times |= frame.time.is_some();
-        }
-        let (first, last) = self.numbers.unwrap_or((frame.number, frame.number));
-        let first = if frame.number < last { 0 } else { first };
-        self.numbers = Some((first, frame.number));
-    }
-
     fn begin(&mut self, size: FrameSize) -> Result<(), RecorderError> {
         let array = NewFile::with_content(&self.path, &header(size, 0), self.existing)?;
-        let metadata = NewFile::with_content(&self.beside(), &self.text(), self.existing)?;
+        let metadata = NewFile::with_content(&self.beside(), &self.metadata.text(), self.existing)?;
         let file = array.persist()?;
         if let Err(error) = metadata.persist() {
             // Another program has taken the name: the array would be beside its file.
@@ -277,13 +265,6 @@ impl FrameRecorder {
         self.path.with_extension("json")
     }
 
-    fn text(&self) -> Vec<u8> {
-        let mut metadata = self.metadata.clone();
-        let first = self.numbers.map_or(0, |(first, _)| first);
-        metadata.marks.retain(|mark| mark.number >= first);
-        metadata.text()
-    }
-
     /// Writes the metadata beside the array, if there is one, unless its name now belongs to another file.
     fn write_metadata(&self) -> Result<(), RecorderError> {
         let Some(file) = &self.file else {
@@ -297,7 +278,7 @@ impl FrameRecorder {
         }
         Ok(storage::write(
             &self.beside(),
-            &self.text(),
+            &self.metadata.text(),
             Existing::Replaced,
         )?)
     }
@@ -464,7 +445,6 @@ impl From<FileError> for RecorderError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::recording::FrameMark;
 
     fn begun(path: &Path) -> FrameRecorder {
         let metadata = RecordingMetadata::default();
@@ -481,10 +461,6 @@ mod tests {
         frame
     }
 
-    fn mark(number: u64) -> FrameMark {
-        FrameMark { number, time: None }
-    }
-
     #[test]
     fn metadata_that_is_too_large_is_not_called_damaged() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -497,27 +473,6 @@ mod tests {
             let read = metadata_beside(&path).map_err(|error| error.to_string());
             let is_too_large = read.is_err_and(|said| said.contains("larger than 4 MiB"));
             assert_eq!(is_too_large, !is_read);
-        }
-    }
-
-    #[test]
-    fn marks_are_kept_unless_their_frames_came_before_the_recording() {
-        for (numbers, marks, kept) in [
-            (&[5, 6][..], &[4, 5, 6][..], &[5, 6][..]),
-            // The numbers began again.
-            (&[5, 6, 0, 1], &[1], &[1]),
-        ] {
-            let folder = tempfile::tempdir().expect("a folder");
-            let path = folder.path().join("a.npy");
-            let mut recorder = begun(&path);
-            let marked = marks.iter().copied().map(mark).collect();
-            recorder.describe(|own| own.marks = marked).expect("kept");
-            for &number in numbers {
-                recorder.add(&numbered(number), None).expect("recorded");
-            }
-            recorder.finish().expect("finished");
-            let kept: Vec<_> = kept.iter().copied().map(mark).collect();
-            assert_eq!(beside(&path).marks, kept);
         }
     }
 

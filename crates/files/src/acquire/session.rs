@@ -1,5 +1,6 @@
 //! What an acquisition knows while it runs. The input and the reader's sink take turns with it.
 
+use std::cell::Cell;
 use std::fs::File;
 use std::io;
 use std::ops::ControlFlow;
@@ -18,26 +19,6 @@ use crate::formats::recording::{
 
 /// The time without a change after which a file is complete, if it has not grown since it was opened.
 const UNCHANGED: Duration = Duration::from_secs(2);
-
-/// A function that takes the reports, until it wants no more.
-struct Consumer<'a, 'b> {
-    take: &'a mut AcquireSink<'b>,
-    is_done: bool,
-}
-
-impl Consumer<'_, '_> {
-    /// Reports an event, unless no more is wanted: a reader whose input was ended by that may still have a frame.
-    fn report(&mut self, event: AcquireEvent<'_>) -> ControlFlow<()> {
-        if !self.is_done {
-            self.is_done = (self.take)(event).is_break();
-        }
-        if self.is_done {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    }
-}
 
 /// Whether a file grows while it is read.
 struct Growth {
@@ -77,7 +58,9 @@ pub(super) struct Session<'a, 'b> {
     pub(super) counts: StreamCounts,
     source: &'a FrameSource,
     stop: &'a AtomicBool,
-    consumer: Consumer<'a, 'b>,
+    /// Whether the consumer wants no more.
+    is_done: &'a Cell<bool>,
+    consumer: &'a mut AcquireSink<'b>,
     ticked: Instant,
     silence: SilenceWatch,
     times: ArrivalClock,
@@ -102,6 +85,7 @@ impl<'a, 'b> Session<'a, 'b> {
         source: &'a FrameSource,
         options: &'a AcquireOptions,
         stop: &'a AtomicBool,
+        is_done: &'a Cell<bool>,
         consumer: &'a mut AcquireSink<'b>,
     ) -> Self {
         let now = Instant::now();
@@ -110,10 +94,8 @@ impl<'a, 'b> Session<'a, 'b> {
             counts: StreamCounts::default(),
             source,
             stop,
-            consumer: Consumer {
-                take: consumer,
-                is_done: false,
-            },
+            is_done,
+            consumer,
             ticked: now,
             silence: SilenceWatch::new(now),
             times: ArrivalClock::default(),
@@ -150,16 +132,16 @@ impl<'a, 'b> Session<'a, 'b> {
     }
 
     pub(super) fn report(&mut self, event: AcquireEvent<'_>) -> ControlFlow<()> {
-        self.consumer.report(event)
+        (self.consumer)(event)
     }
 
     pub(super) fn report_end(&mut self) {
-        let _ = self.consumer.report(AcquireEvent::Ended(&self.counts));
+        let _ = (self.consumer)(AcquireEvent::Ended(&self.counts));
     }
 
     /// Whether no more is wanted.
     pub(super) fn is_stopped(&self) -> bool {
-        self.consumer.is_done || self.stop.load(Ordering::Relaxed)
+        self.is_done.get() || self.stop.load(Ordering::Relaxed)
     }
 
     /// The error that ended the reading, if the sink has met one.
@@ -176,7 +158,7 @@ impl<'a, 'b> Session<'a, 'b> {
             return ControlFlow::Continue(());
         }
         self.ticked = Instant::now();
-        self.consumer.report(AcquireEvent::Tick(&self.counts))
+        (self.consumer)(AcquireEvent::Tick(&self.counts))
     }
 
     /// Reports a tick, if one is due, and whether the source is silent.
@@ -199,7 +181,7 @@ impl<'a, 'b> Session<'a, 'b> {
         if matches!(self.source, FrameSource::File(path) if !path.is_file()) {
             reason += "; its file was moved or removed";
         }
-        self.consumer.report(AcquireEvent::Silent {
+        (self.consumer)(AcquireEvent::Silent {
             counts: &self.counts,
             reason: &reason,
         })
@@ -250,7 +232,7 @@ impl<'a, 'b> Session<'a, 'b> {
             && !growth.is_endless
             && !std::mem::replace(&mut self.has_followed, true)
         {
-            let _ = self.consumer.report(AcquireEvent::Follows);
+            let _ = (self.consumer)(AcquireEvent::Follows);
         }
         true
     }

@@ -17,7 +17,7 @@
 //! terminal, the screen's live page opens instead ([`request`]).
 //!
 //! ```text
-//! acquire -> ChannelGate -> WatchRecording: each frame of the channel
+//! acquire -> ChannelGate -> FrameRecorder: each frame of the channel
 //!                        -> the first frames wait, if a tare is made -> Answers -> standard output
 //!         -> SourceReports: oddities, errors -> standard error
 //! ```
@@ -36,16 +36,15 @@ use taxel_core::quote::as_argument;
 use taxel_files::acquire::{
     AcquireEvent, FrameRecorder, FrameSource, Playback, RecorderError, acquire,
 };
-use taxel_files::formats::recording::{
-    ChannelChoice, ChannelInfo, RecordingMetadata, StreamCounts, no_channel,
-};
+use taxel_files::formats::recording::{ChannelChoice, ChannelInfo, StreamCounts, no_channel};
+use taxel_files::formats::value::counted;
 use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::commands::model;
 use crate::cli::commands::recognise::FrameNamer;
 use crate::cli::commands::watch::answers::Answers;
-use crate::cli::commands::watch::recording::{SourceReports, WatchRecording};
+use crate::cli::commands::watch::recording::SourceReports;
 use crate::cli::error::CliError;
 use crate::cli::input::recording::{self as input_recording, RecordingFile};
 use crate::cli::input::shapes::Shelf;
@@ -63,7 +62,7 @@ struct Watcher<'a> {
     processing: Processing,
     /// The tare that is made of the first frames, and these frames; None if none is made any more.
     tare: Option<(TareFrames, Vec<Frame>)>,
-    recording: Option<WatchRecording<'a>>,
+    recording: Option<FrameRecorder>,
     unrecorded: Option<CliError>,
     answers: Answers,
     frame: Frame,
@@ -88,7 +87,7 @@ pub(crate) fn watch(
     check(&source, asked)?;
     // Errors in these are reported before a recording begins.
     let lines = line_writer(asked, &processing, shelf, &signals.stopped)?;
-    let recording = WatchRecording::create(&source, asked).map_err(CliError::Recorder)?;
+    let recording = recording::begin(&source, asked).map_err(CliError::Recorder)?;
     let wanted_tare = asked.processing.tare.filter(|&frames| frames > 0);
     let wanted_tare = wanted_tare.map(|frames| (TareFrames::new(frames), Vec::new()));
     let is_live = source.arrives(asked.options.playback);
@@ -140,14 +139,8 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
     let source = FrameSource::new(&asked.source);
     check_readable(&source)?;
     check(&source, asked)?;
-    if let Some(path) = &asked.write {
-        // The recording is created and dropped again: no file appears before the first frame.
-        let metadata = RecordingMetadata::default();
-        let begun = source
-            .refuse_as_target(path)
-            .and_then(|()| FrameRecorder::create(path, asked.existing, &metadata));
-        drop(begun.map_err(CliError::Recorder)?);
-    }
+    // The recording is created and dropped again: no file appears before the first frame.
+    drop(recording::begin(&source, asked).map_err(CliError::Recorder)?);
     let mut request = WatchRequest::new(&asked.source);
     request.options = asked.options.clone();
     request.processing = input_recording::processing(&asked.processing)?;
@@ -220,15 +213,13 @@ impl Watcher<'_> {
         let Some(recording) = &mut self.recording else {
             return Ok(());
         };
-        let error = match write(&mut recording.recorder).map_err(CliError::Recorder) {
+        let error = match write(recording).map_err(CliError::Recorder) {
             Err(error) if self.answers.go_on_alone() => error,
             written => return written,
         };
         self.reports.say(&format!("{error}; the answers go on"));
-        if let Some(recording) = self.recording.take() {
-            // Any error here follows from the first one, which is reported.
-            let _ = recording.finish(true, &mut self.reports);
-        }
+        // Any error here follows from the first one, which is reported.
+        let _ = self.end_recording(true);
         self.unrecorded = Some(error);
         Ok(())
     }
@@ -308,6 +299,27 @@ impl Watcher<'_> {
         Ok(())
     }
 
+    /// Ends the recording, and reports the frames that are not in it. `explained` tells whether the error of the watch
+    /// explains a missing file: the file could not be created, or the source could not be read.
+    fn end_recording(&mut self, explained: bool) -> Result<(), CliError> {
+        let (Some(recorder), Some(path)) = (self.recording.take(), &self.asked.write) else {
+            return Ok(());
+        };
+        let left_out = recorder.left_out();
+        if left_out > 0 {
+            let frames = counted(left_out, "frame");
+            self.reports
+                .say(&format!("{frames} of another size not recorded"));
+        }
+        let frames = recorder.finish().map_err(CliError::Recorder)?;
+        if frames == 0 && !explained {
+            let path = path.display();
+            self.reports
+                .say(&format!("no frame came, so {path} was not written"));
+        }
+        Ok(())
+    }
+
     /// Ends the recording and the answers. Returns the first error in this order: of recording, of writing answers,
     /// of the frames, of the source. A tare that lacks frames is an error of the frames, unless the source has
     /// failed.
@@ -321,19 +333,16 @@ impl Watcher<'_> {
         if let (Some(error), Some(recording)) =
             (failure.as_ref().or(damage.as_ref()), &mut self.recording)
         {
-            recording.recorder.note_reason(&error.to_string());
+            recording.note_reason(&error.to_string());
         }
         if ended_well {
             failure = failure.or_else(|| self.unfinished());
         }
-        let recording = self.recording.take();
-        let recorded = recording.map(|recording| {
-            // That no frame came is no news if the source cannot be read.
-            let explained = is_unreadable || matches!(failure, Some(CliError::Recorder(_)));
-            recording.finish(explained, &mut self.reports)
-        });
+        // That no frame came is no news if the source cannot be read.
+        let explained = is_unreadable || matches!(failure, Some(CliError::Recorder(_)));
+        let recorded = self.end_recording(explained);
         let written = self.answers.finish(&mut self.reports);
-        recorded.unwrap_or(Ok(()))?;
+        recorded?;
         self.unrecorded.map_or(Ok(()), Err)?;
         written?;
         failure.or(damage).map_or(Ok(()), Err)

@@ -1,6 +1,5 @@
 //! The recording of a watched source, in the file of `--write`.
 
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use taxel_files::acquire::{
@@ -13,50 +12,21 @@ use taxel_files::{ReadError, ReadErrorKind};
 use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::error::{CliError, note_advice};
 
-/// A recording; see [`FrameRecorder`].
-pub(super) struct WatchRecording<'a> {
-    path: &'a Path,
-    pub(super) recorder: FrameRecorder,
-}
-
-impl<'a> WatchRecording<'a> {
-    /// Begins the recording that is asked for; None if none is. No file appears before the first frame.
-    pub(super) fn create(
-        source: &FrameSource,
-        asked: &'a WatchArguments,
-    ) -> Result<Option<Self>, RecorderError> {
-        let Some(path) = &asked.write else {
-            return Ok(None);
-        };
-        source.refuse_as_target(path)?;
-        let metadata = RecordingMetadata {
-            source: source.name(),
-            rule: asked.processing.set_rule(),
-            ..RecordingMetadata::default()
-        };
-        let recorder = FrameRecorder::create(path, asked.existing, &metadata)?;
-        Ok(Some(Self { path, recorder }))
-    }
-
-    /// Ends the recording, and reports the frames that are not in it. `explained` tells whether the error of the watch
-    /// explains a missing file: the file could not be created, or the source could not be read.
-    pub(super) fn finish(
-        self,
-        explained: bool,
-        reports: &mut SourceReports<'_>,
-    ) -> Result<(), CliError> {
-        let left_out = self.recorder.left_out();
-        if left_out > 0 {
-            let frames = counted(left_out, "frame");
-            reports.say(&format!("{frames} of another size not recorded"));
-        }
-        let frames = self.recorder.finish().map_err(CliError::Recorder)?;
-        if frames == 0 && !explained {
-            let path = self.path.display();
-            reports.say(&format!("no frame came, so {path} was not written"));
-        }
-        Ok(())
-    }
+/// Begins the recording that is asked for; None if none is. No file appears before the first frame.
+pub(super) fn begin(
+    source: &FrameSource,
+    asked: &WatchArguments,
+) -> Result<Option<FrameRecorder>, RecorderError> {
+    let Some(path) = &asked.write else {
+        return Ok(None);
+    };
+    source.refuse_as_target(path)?;
+    let metadata = RecordingMetadata {
+        source: source.name(),
+        rule: asked.processing.set_rule(),
+        ..RecordingMetadata::default()
+    };
+    FrameRecorder::create(path, asked.existing, &metadata).map(Some)
 }
 
 const REPORT: Duration = Duration::from_secs(1);
