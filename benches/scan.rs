@@ -40,9 +40,8 @@ fn model(keys: usize) -> Model {
             // Three in four taxels are active.
             imprint.set_word(row, next(&mut state) | next(&mut state));
         }
-        let key = ImprintKey::of(&imprint);
-        if (key.width(), key.height()) == (6, 6) {
-            table.add(&key);
+        if imprint.bounds().is_some_and(|bounds| bounds.area() == 36) {
+            table.add(&ImprintKey::of(&imprint));
         }
     }
     Model::of_table(head, &table, |_| [ShapeCount::new(0, 1)]).expect("a model")

@@ -92,14 +92,8 @@ fn seven_figures_are_told_apart_as_often_as_published() {
     assert_eq!(given("na,p").right, 13_074_891);
     assert_eq!(format!("{:.2}", given("cg_cd").error()), "0.41");
     let rounding: Rounding = "cg_cd=0.01".parse().expect("a rounding");
-    let rounded = GivenDescriptors::new(
-        "cg_cd"
-            .parse::<GivenDescriptors>()
-            .expect("one")
-            .descriptors()
-            .into(),
-        vec![rounding],
-    );
+    let mut rounded: GivenDescriptors = "cg_cd".parse().expect("one");
+    rounded.roundings = vec![rounding];
     assert_eq!(format!("{:.2}", rounded.evaluate(&model).error()), "0.54");
 
     // No choice of descriptors passes the limit, and each chosen descriptor improves the result.
@@ -391,7 +385,9 @@ fn answers_say_how_far_they_can_be_trusted() {
     assert!(answer.ranking.windows(2).all(|pair| pair[0].1 >= pair[1].1));
     let best = answer.ranking[0].1;
     let touches = [bar];
-    let strict = model.recognise(Evidence::of(&touches).reject_below(best + 0.01));
+    let mut strict = Evidence::of(&touches);
+    strict.reject_below = Some(best + 0.01);
+    let strict = model.recognise(strict);
     assert_eq!((strict.state, strict.shape), (AnswerState::Rejected, None));
 
     // Two equal touches count twice.
@@ -494,7 +490,12 @@ fn two_names_for_one_shape_can_never_be_told_apart() {
     let at_rim = |touches: &[Imprint]| model.recognise(Evidence::of(touches)).at_rim;
     assert!(at_rim(&[bar, rim]) && at_rim(&[rim, bar]) && !at_rim(&[bar, bar]));
     // A probability that just reaches the limit is not rejected.
-    let rejecting = |least| model.recognise(Evidence::of(&[bar]).reject_below(least));
+    let rejecting = |least| {
+        let touches = [bar];
+        let mut evidence = Evidence::of(&touches);
+        evidence.reject_below = Some(least);
+        model.recognise(evidence)
+    };
     assert_eq!(rejecting(0.5), answer);
     let rejected = rejecting(0.500_001);
     assert_eq!(
@@ -527,7 +528,7 @@ fn nearest_neighbours_with_equal_features_vote_together() {
     for descriptors in ["cg_cd", "cg_cd,cg_cd_direction"] {
         let given: GivenDescriptors = descriptors.parse().expect("descriptors");
         let settings = ClassifierSettings {
-            descriptors: Some(given.descriptors().to_vec()),
+            descriptors: Some(given.descriptors.clone()),
             sample: usize::MAX,
             ..ClassifierSettings::default()
         };
@@ -547,10 +548,10 @@ fn in_large_steps_no_taxel_equals_one() {
     };
     let shapes = vec![shape("small", 0.4), shape("larger", 0.55)];
     let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
-    let given: GivenDescriptors = "na".parse().expect("a descriptor");
+    let mut given: GivenDescriptors = "na".parse().expect("a descriptor");
     assert_eq!(given.evaluate(&model).keys, 2);
-    let rounded = given.rounded(vec!["na=10".parse().expect("a rounding")]);
-    let evaluation = rounded.evaluate(&model);
+    given.roundings = vec!["na=10".parse().expect("a rounding")];
+    let evaluation = given.evaluate(&model);
     assert_eq!((evaluation.keys, evaluation.error()), (1, 0.5));
 }
 

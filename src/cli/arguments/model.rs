@@ -672,13 +672,13 @@ fn check_classifier(matches: &ArgMatches) -> Result<(), CliError> {
 
 fn check_roundings(matches: &ArgMatches) -> Result<(), CliError> {
     let roundings = matches.get_many::<Rounding>("round").into_iter().flatten();
-    let keys: Vec<_> = roundings.map(Rounding::descriptor).collect();
+    let keys: Vec<_> = roundings.map(|rounding| rounding.descriptor).collect();
     let given = matches.get_one::<GivenDescriptors>("given");
     for (index, key) in keys.iter().enumerate() {
         let name = key.key();
         let reason = if keys[..index].contains(key) {
             format!("for {name}, which has a step already")
-        } else if given.is_some_and(|given| !given.descriptors().contains(key)) {
+        } else if given.is_some_and(|given| !given.descriptors.contains(key)) {
             format!("for {name}, which --given does not name")
         } else {
             continue;
@@ -735,6 +735,6 @@ fn classifiers(matches: &ArgMatches) -> ClassifierSettings {
     classifiers.templates = limit("templates", classifiers.templates);
     classifiers.seed = number_of(matches, "seed", classifiers.seed);
     let given = matches.get_one::<GivenDescriptors>("given");
-    classifiers.descriptors = given.map(|given| given.descriptors().to_vec());
+    classifiers.descriptors = given.map(|given| given.descriptors.clone());
     classifiers
 }

@@ -38,7 +38,8 @@ pub(crate) fn confusion(
     let text = match &asked.of {
         Evaluated::Imprints => shown(asked, &Evaluation::of(&model), None, charset),
         Evaluated::Given(given) => {
-            let given = given.clone().rounded(asked.roundings.clone());
+            let mut given = given.clone();
+            given.roundings.clone_from(&asked.roundings);
             shown(asked, &given.evaluate(&model), None, charset)
         }
         Evaluated::Classifier(classifier) => {
@@ -209,9 +210,9 @@ fn advice(asked: &ConfusionArguments) -> String {
         asked
             .roundings
             .iter()
-            .any(|own| own.descriptor().key() == key)
+            .any(|own| own.descriptor.key() == key)
     };
-    let mut keys = given.descriptors().iter().map(|own| own.key());
+    let mut keys = given.descriptors.iter().map(|own| own.key());
     let fine = keys.find(|key| key.starts_with("cg_cd") && !is_rounded(key));
     fine.map_or_else(String::new, |key| {
         let step = if key == "cg_cd" { "0.01" } else { "1" };

@@ -71,8 +71,8 @@ pub(crate) fn degradation(
     for &dead in &asked.dead {
         for &value in &values {
             let noise = Noise::new(value)?;
-            let touches = NoisyTouches::new(sensor.size(), noise, asked.touches, asked.seed);
-            let touches = touches.with_random_dead(dead);
+            let mut touches = NoisyTouches::new(sensor.size(), noise, asked.touches, asked.seed);
+            touches.random_dead = dead;
             let rate = match &given {
                 None => model.recognition_rate(&touches, &noise, &progress),
                 Some(given) => given.rate(model, &touches, &progress),
@@ -171,8 +171,12 @@ fn left_out(model: &Model, sensor: &Sensor) -> Option<String> {
 }
 
 fn given_of(asked: &NoiseArguments, all_asked: &ConfusionArguments) -> Option<GivenDescriptors> {
-    let given = asked.given.clone()?;
-    Some(given.rounded(all_asked.roundings.clone()))
+    let descriptors = asked.given.clone()?.descriptors;
+    let roundings = all_asked.roundings.clone();
+    Some(GivenDescriptors {
+        descriptors,
+        roundings,
+    })
 }
 
 fn noise_points(table: &[NoiseRow]) -> Vec<(u32, Vec<(f64, f64)>)> {

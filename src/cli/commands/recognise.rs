@@ -183,9 +183,7 @@ impl Recogniser<'_> {
                 imprint: other.size(),
             });
         }
-        if let Some(least) = self.asked.reject {
-            evidence = evidence.reject_below(least);
-        }
+        evidence.reject_below = self.asked.reject;
         Ok(self.model.recognise(evidence))
     }
 

@@ -9,10 +9,10 @@
 
 use std::ffi::{OsStr, OsString};
 
-use taxel_core::pose::{Axis, DecimalRange, Ranges};
+use taxel_core::pose::{Axis, DecimalRange};
 use taxel_core::progress::Progress;
 use taxel_core::quote::shortened_message;
-use taxel_core::recognition::{CellPositions, Model, Separation, TrainingError};
+use taxel_core::recognition::{CellPositions, GridSteps, Model, Separation, TrainingError};
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::Name;
 use taxel_files::formats::file::has_ending;
@@ -179,9 +179,9 @@ fn set(
         for text in departures(&model, asked) {
             note(&text, charset);
         }
-        let separation = Separation::new(model.shapes().to_vec())?
-            .with_positions(positions)
-            .with_angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
+        let mut separation = Separation::new(model.shapes().to_vec())?;
+        let angles = asked.angles.unwrap_or(model.ranges()[Axis::Angle]);
+        separation.steps = GridSteps { positions, angles };
         return Ok((separation, model.sensor().threshold()));
     }
     let no_shape = |name: &str| shelf.imprint(name).is_err();
@@ -193,11 +193,10 @@ fn set(
             error: "a model; give one model or several shapes, not both".to_owned(),
         });
     }
-    let mut separation = Separation::new(shapes::read_set(&asked.set, shelf)?)?
-        .with_angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));
-    if let Some(positions) = asked.positions {
-        separation = separation.with_positions(positions);
-    }
+    let mut separation = Separation::new(shapes::read_set(&asked.set, shelf)?)?;
+    let steps = &mut separation.steps;
+    steps.angles = asked.angles.unwrap_or(steps.angles);
+    steps.positions = asked.positions.unwrap_or(steps.positions);
     Ok((separation, Sensor::default().threshold()))
 }
 

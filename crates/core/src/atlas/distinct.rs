@@ -137,26 +137,23 @@ impl Atlas {
 
     /// Returns the imprint with a number; None if there is none.
     pub fn entry(&self, id: u32) -> Option<AtlasEntry> {
-        let index = wide(id);
-        let summary = self.summaries.get(index)?;
-        Some(self.described(index, summary))
+        (wide(id) < self.len()).then(|| self.described(wide(id)))
     }
 
-    fn described(&self, index: usize, summary: &ImprintSummary) -> AtlasEntry {
+    fn described(&self, index: usize) -> AtlasEntry {
         let tally = self.counter.tallies()[index];
         AtlasEntry {
             id: narrow(index),
             imprint: self.layout.imprint(self.counter.key(index)),
             count: tally.count,
             first_pose: tally.first,
-            summary: *summary,
+            summary: self.summaries[index],
         }
     }
 
     /// Iterates over all imprints in order.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = AtlasEntry> + ExactSizeIterator {
-        let summaries = self.summaries.iter().enumerate();
-        summaries.map(|(index, summary)| self.described(index, summary))
+        (0..self.len()).map(|index| self.described(index))
     }
 
     /// Returns the number of an imprint; None if no pose leaves it.

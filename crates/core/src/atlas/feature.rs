@@ -8,8 +8,8 @@
 
 use std::sync::LazyLock;
 
-use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, Value};
-use crate::description::{RegionKind, each_region, is_main};
+use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension};
+use crate::description::{RegionKind, each_region};
 use crate::imprint::Imprint;
 
 /// A number that describes an imprint's main region.
@@ -38,7 +38,7 @@ impl Feature {
     /// Returns the value of the feature; None if it does not exist. Only the feature's own descriptor is computed.
     pub fn value(&self, description: &Description) -> Option<f64> {
         let (mut index, mut found) = (0, None);
-        each_part((self.descriptor.measure)(description), |value| {
+        (self.descriptor.measure)(description).each(|value| {
             if index == self.part {
                 found = Some(value);
             }
@@ -108,25 +108,11 @@ pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64
     for descriptor in DESCRIPTORS {
         let mut indices = first..first + descriptor.parts.len();
         first = indices.end;
-        each_part((descriptor.measure)(description), |value| {
+        (descriptor.measure)(description).each(|value| {
             if let Some(index) = indices.next() {
                 take(index, value);
             }
         });
-    }
-}
-
-fn each_part(value: Value, mut take: impl FnMut(f64)) {
-    match value {
-        Value::None => {}
-        Value::Count(count) => take(f64::from(count)),
-        Value::Number(number) => take(number),
-        Value::Point(point) => [point.x, point.y].into_iter().for_each(take),
-        Value::Pair(pair) => pair.into_iter().for_each(take),
-        Value::Rect(rect) => {
-            let sides = [rect.left, rect.top, rect.right, rect.bottom];
-            sides.into_iter().map(f64::from).for_each(take);
-        }
     }
 }
 
@@ -157,7 +143,8 @@ impl ImprintSummary {
             summary.pieces = summary.pieces.saturating_add(1);
             let best = summary.description.as_ref().map(|best| best.nae);
             // For most pieces, the bounds alone show that they are too small.
-            if is_main(region.bounds().area(), best) && is_main(region.area(), best) {
+            let is_larger = |area: u32| best.is_none_or(|best| area > best);
+            if is_larger(region.bounds().area()) && is_larger(region.area()) {
                 summary.description = Some(Description::of(region));
             }
         });
@@ -168,6 +155,7 @@ impl ImprintSummary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::Value;
 
     /// Otherwise the numbers of a value would not belong to the features of its descriptor.
     #[test]
@@ -179,7 +167,7 @@ mod tests {
                 let description = Description::of(region);
                 for (descriptor, measured) in DESCRIPTORS.iter().zip(&mut measured) {
                     let mut numbers = 0;
-                    each_part((descriptor.measure)(&description), |_| numbers += 1);
+                    (descriptor.measure)(&description).each(|_| numbers += 1);
                     let is_none = (descriptor.measure)(&description) == Value::None;
                     let stated = if is_none { 0 } else { descriptor.parts.len() };
                     assert_eq!(numbers, stated, "{} of {rows}", descriptor.key);

@@ -78,15 +78,6 @@ enum Quantity {
     Feature(usize),
 }
 
-impl Quantity {
-    fn is_share(self) -> bool {
-        match self {
-            Self::Feature(index) => features()[index].descriptor.dimension == Dimension::Share,
-            _ => false,
-        }
-    }
-}
-
 /// Returns true if a value and a number fulfil a relation; the last argument tells whether they count as equal.
 type Relation = fn(f64, f64, bool) -> bool;
 
@@ -209,7 +200,9 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
         return Err(joined(","));
     }
     // The hundredth of a decimal, not of its rounded value: 70% is 0.7, but 70 * 0.01 is not.
-    let in_hundredths = typed.strip_suffix('%').filter(|_| quantity.is_share());
+    let is_share = matches!(quantity, Quantity::Feature(index)
+        if features()[index].descriptor.dimension == Dimension::Share);
+    let in_hundredths = typed.strip_suffix('%').filter(|_| is_share);
     let number = match in_hundredths {
         Some(number) => Cow::from(format!("{number}e-2")),
         None => Cow::from(typed),
@@ -302,14 +295,6 @@ impl SortDirection {
             Self::Descending => Self::Ascending,
         }
     }
-
-    /// Returns the order, in this direction, of two keys that have an ascending order.
-    fn apply(self, ascending: Ordering) -> Ordering {
-        match self {
-            Self::Ascending => ascending,
-            Self::Descending => ascending.reverse(),
-        }
-    }
 }
 
 /// Returns the numbers of all imprints, sorted by a key. In both directions, imprints with equal keys stay in the order
@@ -332,7 +317,8 @@ pub fn sorted(atlas: &Atlas, by: SortKey<'_>, direction: SortDirection) -> Vec<u
     let mut ids: Vec<(Option<f64>, u32)> = keys.zip(0..count).collect();
     // The sort is stable, and the numbers are in order already. Many keys are equal, which makes a stable sort faster.
     ids.sort_by(|(one, _), (other, _)| match (one, other) {
-        (Some(one), Some(other)) => direction.apply(one.total_cmp(other)),
+        (Some(one), Some(other)) if direction == SortDirection::Ascending => one.total_cmp(other),
+        (Some(one), Some(other)) => other.total_cmp(one),
         (Some(_), None) => Ordering::Less,
         (None, Some(_)) => Ordering::Greater,
         (None, None) => Ordering::Equal,

@@ -41,15 +41,10 @@ impl Histogram {
             (low.min(value), high.max(value))
         });
         let most = most.min(MOST_INTERVALS);
-        let (start, width, bins) = if low > high {
-            let (start, width, _) = if feature.circular {
-                around(most)
-            } else {
-                (0.0, 1.0, 0)
-            };
-            (start, width, 0)
-        } else if feature.circular {
+        let (start, width, bins) = if feature.circular {
             around(most)
+        } else if low > high {
+            (0.0, 1.0, 0)
         } else {
             let whole = found().all(|value| value.fract() == 0.0);
             straight(low, high, if whole { 1.0 } else { 0.0 }, most)
@@ -57,7 +52,7 @@ impl Histogram {
         let mut histogram = Self {
             start,
             width,
-            poses: vec![0; bins],
+            poses: vec![0; if low > high { 0 } else { bins }],
             without: 0,
         };
         let values = values.iter().copied().chain(std::iter::repeat(None));

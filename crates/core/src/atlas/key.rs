@@ -89,16 +89,6 @@ impl ImprintKey {
         self.borrowed().imprint()
     }
 
-    /// Returns the number of columns of the bounding box.
-    pub fn width(&self) -> u8 {
-        self.width
-    }
-
-    /// Returns the number of rows of the bounding box.
-    pub fn height(&self) -> u8 {
-        self.height
-    }
-
     pub(crate) fn borrowed(&self) -> KeyRef<'_> {
         KeyRef {
             height: self.height,
@@ -267,7 +257,7 @@ mod tests {
                 key.imprint(),
                 Some(imprint.resized(MatrixSize::of(side, side)))
             );
-            assert_eq!((key.width(), key.height()), (side, side));
+            assert_eq!((key.width, key.height), (side, side));
             let index = table.intern(key.borrowed());
             assert_eq!(
                 (table.intern(key.borrowed()), table.find(&key)),
@@ -297,7 +287,7 @@ mod tests {
         ]
         .map(read);
         let first = images[0].first_image();
-        assert_eq!((first.width(), first.height()), (4, 3));
+        assert_eq!((first.width, first.height), (4, 3));
         for (index, image) in images.iter().enumerate() {
             assert_eq!(image.first_image(), first, "{image:?}");
             assert!(images[..index].iter().all(|other| other != image));

@@ -84,19 +84,13 @@ impl Table {
         let room = self.imprints.next_multiple_of(PART) - self.imprints;
         let (first, rest) = new.split_at(room.min(new.len()));
         if let Some(part) = self.parts.last_mut() {
-            part.extend(
-                first
-                    .iter()
-                    .map(|own| FeatureRow::of(own, &mut self.extremes)),
-            );
+            let extremes = &mut self.extremes;
+            part.extend(first.iter().map(|own| FeatureRow::of(own, extremes)));
         }
         let parts = rest.par_chunks(PART).map(|summaries| {
             let (mut part, mut extremes) = (Vec::with_capacity(PART), NOTHING);
-            part.extend(
-                summaries
-                    .iter()
-                    .map(|own| FeatureRow::of(own, &mut extremes)),
-            );
+            let rows = summaries.iter();
+            part.extend(rows.map(|own| FeatureRow::of(own, &mut extremes)));
             (part, extremes)
         });
         for (part, extremes) in parts.collect::<Vec<_>>() {

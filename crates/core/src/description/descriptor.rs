@@ -44,6 +44,21 @@ impl Value {
             _ => None,
         }
     }
+
+    /// Calls `take` with each number of the value, in the order of [`Descriptor::parts`].
+    pub(crate) fn each(self, mut take: impl FnMut(f64)) {
+        match self {
+            Self::None => {}
+            Self::Count(count) => take(f64::from(count)),
+            Self::Number(number) => take(number),
+            Self::Point(point) => [point.x, point.y].into_iter().for_each(take),
+            Self::Pair(pair) => pair.into_iter().for_each(take),
+            Self::Rect(rect) => {
+                let sides = [rect.left, rect.top, rect.right, rect.bottom];
+                sides.into_iter().map(f64::from).for_each(take);
+            }
+        }
+    }
 }
 
 /// The quantity that a descriptor measures. It decides how a value is converted to millimetres.
@@ -117,11 +132,9 @@ impl Descriptor {
         }
     }
 
-    const fn named_in_hole(self, name_in_hole: &'static str) -> Self {
-        Self {
-            name_in_hole,
-            ..self
-        }
+    const fn named_in_hole(mut self, name: &'static str) -> Self {
+        self.name_in_hole = name;
+        self
     }
 
     const fn with_parts(self, parts: &'static [&'static str]) -> Self {
@@ -129,25 +142,19 @@ impl Descriptor {
     }
 
     /// Marks a descriptor of the imprint's position.
-    const fn of_place(self) -> Self {
-        Self {
-            of_place: true,
-            ..self
-        }
+    const fn of_place(mut self) -> Self {
+        self.of_place = true;
+        self
     }
 
-    const fn zero_of_nothing(self, zero: Value) -> Self {
-        Self {
-            of_nothing: zero,
-            ..self
-        }
+    const fn zero_of_nothing(mut self, zero: Value) -> Self {
+        self.of_nothing = zero;
+        self
     }
 
-    const fn not_in_answers(self) -> Self {
-        Self {
-            in_answer: false,
-            ..self
-        }
+    const fn not_in_answers(mut self) -> Self {
+        self.in_answer = false;
+        self
     }
 
     /// Returns the description for a region of a kind, in a few words.

@@ -71,10 +71,6 @@ impl Description {
         DVec2::from(self.doubled_centre().map(f64::from)) / 2.0
     }
 
-    fn sides(&self) -> DVec2 {
-        DVec2::from(self.whole_sides().map(f64::from))
-    }
-
     /// Returns P, the length of the outline of the filled region in cell sides: that of the chain between the centres
     /// of its outline taxels ([`ChainSteps`]), so 0 for a single taxel.
     pub fn p(&self) -> f64 {
@@ -93,8 +89,8 @@ impl Description {
 
     /// Returns the longer side of the upright rectangle divided by the shorter one.
     pub fn side_ratio(&self) -> f64 {
-        let sides = self.sides();
-        sides.max_element() / sides.min_element()
+        let [width, height] = self.whole_sides().map(f64::from);
+        width.max(height) / width.min(height)
     }
 
     /// Returns NA divided by the area of the upright rectangle: above 0, up to 1.

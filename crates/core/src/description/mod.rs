@@ -12,5 +12,4 @@ mod descriptor;
 
 pub use descriptor::{DESCRIPTORS, Descriptor, Dimension, Value};
 pub use measures::{ChainSteps, Description, ExactValue};
-pub(crate) use region::is_main;
 pub use region::{Region, RegionKind, each_region, main_region, regions};

@@ -4,6 +4,7 @@
 //! carry of an addition fills the whole run at once.
 
 use std::borrow::Cow;
+use std::cmp::Reverse;
 
 use crate::imprint::{Bounds, Imprint};
 use crate::parameter::named;
@@ -18,21 +19,7 @@ pub enum RegionKind {
     Hole,
 }
 
-impl RegionKind {
-    /// Returns the name of the kind, as in JSON and on the screen.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Exterior => "exterior",
-            Self::Hole => "hole",
-        }
-    }
-}
-
-named!(
-    RegionKind,
-    "region",
-    &[RegionKind::Exterior, RegionKind::Hole]
-);
+named!(RegionKind, "region", [Exterior "exterior", Hole "hole"]);
 
 /// A piece or a hole; never empty. The region may borrow its taxels, because an imprint takes half a kilobyte.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -143,25 +130,10 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
 /// Returns the index of the main region, the one that is selected first and that sweeps describe: the exterior with the
 /// largest filled area, or the first of several equal ones. None if there are no exteriors.
 pub fn main_region(regions: &[Region]) -> Option<usize> {
-    let exteriors = regions
-        .iter()
-        .enumerate()
-        .filter(|(_, region)| region.kind == RegionKind::Exterior);
-    let largest = |best: Option<(usize, u32)>, (index, region): (usize, &Region)| {
-        let area = region.area();
-        if is_main(area, best.map(|(_, area)| area)) {
-            Some((index, area))
-        } else {
-            best
-        }
-    };
-    exteriors.fold(None, largest).map(|(index, _)| index)
-}
-
-/// Returns true if an exterior with this filled area becomes the main region in place of the best one so far. The first
-/// of equal ones stays.
-pub(crate) fn is_main(area: u32, best: Option<u32>) -> bool {
-    best.is_none_or(|best| area > best)
+    let regions = regions.iter().enumerate();
+    let exteriors = regions.filter(|(_, region)| region.kind == RegionKind::Exterior);
+    let main = exteriors.max_by_key(|&(index, region)| (region.area(), Reverse(index)));
+    main.map(|(index, _)| index)
 }
 
 fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {

@@ -244,12 +244,14 @@ impl fmt::Display for FrameSize {
 }
 
 /// The error for a frame that cannot be processed, or for settings that do not fit it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FrameError {
     /// A crop, mask, gain or tare does not fit the size of the frame, or too many cells are left. A frame of another
     /// size may fit.
+    #[error("{0}")]
     Size(String),
     /// A threshold or a part of a tare is not a number, or out of range.
+    #[error("{what}: {} is out of range (allowed: {allowed})", short(*found))]
     Rule {
         /// The name of the value: its key in JSON.
         what: &'static str,
@@ -259,6 +261,7 @@ pub enum FrameError {
         allowed: &'static str,
     },
     /// The lower of two thresholds is above the higher one.
+    #[error("low {} is above high {}", short(*low), short(*high))]
     Order {
         /// The lower threshold.
         low: f64,
@@ -266,6 +269,10 @@ pub enum FrameError {
         high: f64,
     },
     /// There are fewer frames than a tare needs.
+    #[error(
+        "the tare needs {}, but there {} only {frames}",
+        counted(*wanted, "frame"), if *frames == 1 { "is" } else { "are" }
+    )]
     Tare {
         /// The number of frames so far.
         frames: u64,
@@ -273,8 +280,10 @@ pub enum FrameError {
         wanted: u64,
     },
     /// The noise rule is used without a tare that measures the noise.
+    #[error("a threshold from noise needs a tare of at least two frames")]
     NoTare,
     /// Anything else, described by the text.
+    #[error("{0}")]
     Invalid(String),
 }
 
@@ -284,35 +293,6 @@ impl FrameError {
         matches!(self, Self::Size(_))
     }
 }
-
-impl fmt::Display for FrameError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Size(text) | Self::Invalid(text) => f.write_str(text),
-            Self::Rule {
-                what,
-                found,
-                allowed,
-            } => {
-                let found = short(*found);
-                write!(f, "{what}: {found} is out of range (allowed: {allowed})")
-            }
-            Self::Order { low, high } => {
-                write!(f, "low {} is above high {}", short(*low), short(*high))
-            }
-            Self::Tare { frames, wanted } => {
-                let wanted = counted(*wanted, "frame");
-                let verb = if *frames == 1 { "is" } else { "are" };
-                write!(f, "the tare needs {wanted}, but there {verb} only {frames}")
-            }
-            Self::NoTare => {
-                f.write_str("a threshold from noise needs a tare of at least two frames")
-            }
-        }
-    }
-}
-
-impl std::error::Error for FrameError {}
 
 /// Returns a threshold or a part of a tare if it is in its range.
 pub(super) fn in_range(

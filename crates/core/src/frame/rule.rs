@@ -3,6 +3,7 @@ use crate::frame::recorded::{FrameError, VALUES, in_range};
 use crate::frame::tare::Tare;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
+use crate::parameter::named;
 
 /// The rule that decides which values make a taxel active. A value equal to a threshold is active; a cell without a
 /// value never is.
@@ -172,17 +173,7 @@ pub enum RuleOrigin {
     Key,
 }
 
-impl RuleOrigin {
-    /// Returns the name of the origin, as in answers and descriptions.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Flag => "flag",
-            Self::File => "file",
-            Self::Settings => "settings",
-            Self::Key => "key",
-        }
-    }
-}
+named!(RuleOrigin, "origin", [Flag "flag", File "file", Settings "settings", Key "key"]);
 
 #[cfg(test)]
 mod tests {

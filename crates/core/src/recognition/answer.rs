@@ -40,7 +40,9 @@ named!(
 pub struct Evidence<'a> {
     touches: &'a [Imprint],
     noise: Option<&'a Noise>,
-    reject_below: Option<f64>,
+    /// An answer that is less probable than this, from 0 to 1, is rejected. With None, 0 or less, or NaN, no answer is
+    /// rejected; with more than 1, every answer is.
+    pub reject_below: Option<f64>,
 }
 
 impl<'a> Evidence<'a> {
@@ -57,21 +59,9 @@ impl<'a> Evidence<'a> {
     /// Assumes that taxels fail as the noise says, and a prior uniform over poses and places. None means that taxels
     /// never fail.
     #[must_use]
-    pub fn under(self, noise: impl Into<Option<&'a Noise>>) -> Self {
-        Self {
-            noise: noise.into(),
-            ..self
-        }
-    }
-
-    /// Rejects an answer that is less probable than this, from 0 to 1. With 0 or less, or NaN, no answer is rejected;
-    /// with more than 1, every answer is.
-    #[must_use]
-    pub fn reject_below(self, probability: f64) -> Self {
-        Self {
-            reject_below: Some(probability),
-            ..self
-        }
+    pub fn under(mut self, noise: impl Into<Option<&'a Noise>>) -> Self {
+        self.noise = noise.into();
+        self
     }
 }
 

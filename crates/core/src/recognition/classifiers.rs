@@ -15,7 +15,7 @@ use crate::parameter::named;
 use crate::parameter::number::share;
 use crate::progress::Progress;
 use crate::recognition::evaluation::{ConfusionMatrix, Evaluation};
-use crate::recognition::given::{GivenTable, ShapeDescriptor};
+use crate::recognition::given::{self, ShapeDescriptor};
 use crate::recognition::model::{Model, first_of_most, float};
 use crate::recognition::simulation::Draw;
 
@@ -242,7 +242,7 @@ struct FeatureTable {
 
 impl FeatureTable {
     fn new(model: &Model, descriptors: Option<&[ShapeDescriptor]>) -> Self {
-        let descriptions = GivenTable::new(model).descriptions;
+        let descriptions = given::descriptions(model);
         let (mut names, mut dropped) = (Vec::new(), Vec::new());
         let mut kept: Vec<(Vec<f64>, f64, f64)> = Vec::new();
         let is_wanted = |feature: &&Feature| {
@@ -548,7 +548,7 @@ mod tests {
             ("bar", Figure::rectangle(6.0, 3.0).on(&sensor)),
         ];
         let shapes = shapes.map(|(name, figure)| NamedShape::new(name, figure.expect("in range")));
-        let steps = GridSteps::new(10, 45).expect("divisors");
+        let steps = GridSteps::of(10, "0:315:45");
         let training = Training::fitting(shapes.to_vec(), steps).expect("they fit");
         let model = training.run().expect("not stopped");
         let reached = |sample, seed| {
@@ -572,7 +572,7 @@ mod tests {
     fn every_classifier_reports_all_keys_and_can_be_stopped() {
         let sensor = Sensor::default();
         let bar = Figure::rectangle(6.0, 3.0).on(&sensor).expect("in range");
-        let steps = GridSteps::new(4, 45).expect("divisors");
+        let steps = GridSteps::of(4, "0:315:45");
         let training = Training::fitting(vec![NamedShape::new("bar", bar)], steps);
         let model = training.expect("it fits").run().expect("not stopped");
         for &classifier in Classifier::ALL {
@@ -606,12 +606,11 @@ mod tests {
             ("bar", Figure::rectangle(6.0, 3.0).on(&sensor)),
         ];
         let shapes = shapes.map(|(name, figure)| NamedShape::new(name, figure.expect("in range")));
-        let steps = GridSteps::new(10, 45).expect("divisors");
+        let steps = GridSteps::of(10, "0:315:45");
         let training = Training::fitting(shapes.to_vec(), steps).expect("they fit");
         let model = training.run().expect("not stopped");
         let table = FeatureTable::new(&model, None);
-        let empty = GivenTable::new(&model);
-        assert!(empty.descriptions.iter().any(Option::is_none));
+        assert!(given::descriptions(&model).iter().any(Option::is_none));
         for count in ["na", "nae", "ce", "area"] {
             let kept = table.names.iter().any(|name| name == count);
             let copy = table.dropped.iter();

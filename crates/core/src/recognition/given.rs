@@ -84,29 +84,10 @@ impl std::fmt::Display for ShapeDescriptor {
 /// the step: `cg_cd=0.01`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
-    descriptor: ShapeDescriptor,
-    step: f64,
-}
-
-impl Rounding {
-    /// Creates a rounding to multiples of `step`, in the descriptor's own unit.
-    ///
-    /// # Errors
-    /// Returns an error if the step is not from 1e-9 to 1e9.
-    pub fn new(descriptor: ShapeDescriptor, step: f64) -> Result<Self, GivenError> {
-        let rounding = Self { descriptor, step };
-        // Below this a step is finer than the numbers themselves.
-        if (1e-9..=1e9).contains(&step) {
-            Ok(rounding)
-        } else {
-            Err(no_rounding(&rounding.to_string()))
-        }
-    }
-
-    /// Returns the step, in the descriptor's own unit.
-    pub fn step(&self) -> f64 {
-        self.step
-    }
+    /// The descriptor that is measured in steps.
+    pub descriptor: ShapeDescriptor,
+    /// The step in the descriptor's own unit, from 1e-9 to 1e9.
+    pub step: f64,
 }
 
 impl std::str::FromStr for Rounding {
@@ -116,7 +97,14 @@ impl std::str::FromStr for Rounding {
         let error = || no_rounding(&shortened(text));
         let (descriptor, step) = text.split_once('=').ok_or_else(error)?;
         let step = step.trim().parse().map_err(|_| error())?;
-        Self::new(descriptor.parse()?, step)
+        let descriptor = descriptor.parse()?;
+        let rounding = Self { descriptor, step };
+        // Below this a step is finer than the numbers themselves.
+        if (1e-9..=1e9).contains(&step) {
+            Ok(rounding)
+        } else {
+            Err(no_rounding(&rounding.to_string()))
+        }
     }
 }
 
@@ -139,38 +127,21 @@ impl std::fmt::Display for Rounding {
 /// exactly ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A missing value agrees only with a missing value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GivenDescriptors {
-    descriptors: Vec<ShapeDescriptor>,
-    roundings: Vec<Rounding>,
+    /// The descriptors.
+    pub descriptors: Vec<ShapeDescriptor>,
+    /// The roundings of some of them.
+    pub roundings: Vec<Rounding>,
 }
 
 impl GivenDescriptors {
-    /// Creates a list of descriptors, some of them rounded.
-    pub fn new(descriptors: Vec<ShapeDescriptor>, roundings: Vec<Rounding>) -> Self {
-        Self {
-            descriptors,
-            roundings,
-        }
-    }
-
-    /// Returns the same descriptors, some of them rounded.
-    #[must_use]
-    pub fn rounded(self, roundings: Vec<Rounding>) -> Self {
-        Self { roundings, ..self }
-    }
-
-    /// Returns the descriptors.
-    pub fn descriptors(&self) -> &[ShapeDescriptor] {
-        &self.descriptors
-    }
-
     /// Returns the limit of one touch if only these descriptors are known.
     pub fn evaluate(&self, model: &Model) -> Evaluation {
-        let table = GivenTable::new(model);
-        let mut classes = table.one_class();
+        let descriptions = descriptions(model);
+        let mut classes = vec![0; descriptions.len()];
         for &descriptor in &self.descriptors {
-            classes = table.refined(&classes, descriptor, &self.roundings);
+            classes = refined(&descriptions, &classes, descriptor, &self.roundings);
         }
-        table.evaluate(&classes)
+        evaluate(model, &classes)
     }
 
     /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
@@ -182,9 +153,8 @@ impl GivenDescriptors {
         touches: &NoisyTouches,
         progress: &dyn Progress,
     ) -> Option<RecognitionRate> {
-        let table = GivenTable::new(model);
         let mut counts: HashMap<Vec<ExactValue>, Vec<u128>> = HashMap::new();
-        for (key, description) in table.descriptions.iter().enumerate() {
+        for (key, description) in descriptions(model).iter().enumerate() {
             let own = counts.entry(self.values(description.as_ref()));
             let own = own.or_insert_with(|| vec![0; model.shapes().len()]);
             for &count in model.counts(key) {
@@ -223,7 +193,10 @@ impl std::str::FromStr for GivenDescriptors {
     fn from_str(text: &str) -> Result<Self, GivenError> {
         let descriptors = text.split(',').map(str::parse);
         let descriptors = descriptors.collect::<Result<_, _>>()?;
-        Ok(Self::new(descriptors, Vec::new()))
+        Ok(Self {
+            descriptors,
+            roundings: Vec::new(),
+        })
     }
 }
 
@@ -234,67 +207,48 @@ impl std::fmt::Display for GivenDescriptors {
     }
 }
 
-pub(super) struct GivenTable<'a> {
-    model: &'a Model,
-    /// The description of each key, in their order; None for the empty key.
-    pub(super) descriptions: Vec<Option<Description>>,
+/// Returns the description of each key, in their order; None for the empty key.
+pub(super) fn descriptions(model: &Model) -> Vec<Option<Description>> {
+    let describe = |key| ImprintSummary::of(&model.keys().imprint(key)?).description;
+    let keys = (0..model.keys().len()).into_par_iter();
+    keys.with_min_len(256).map(describe).collect()
 }
 
 /// For each key, the number of its class. Classes are numbered from 0, in the order of their first keys.
 type Classes = Vec<u32>;
 
-impl<'a> GivenTable<'a> {
-    pub(super) fn new(model: &'a Model) -> Self {
-        let describe = |key| ImprintSummary::of(&model.keys().imprint(key)?).description;
-        let keys = (0..model.keys().len()).into_par_iter();
-        Self {
-            model,
-            descriptions: keys.with_min_len(256).map(describe).collect(),
+/// Returns the classes that remain if one more descriptor is known.
+fn refined(
+    descriptions: &[Option<Description>],
+    classes: &Classes,
+    descriptor: ShapeDescriptor,
+    roundings: &[Rounding],
+) -> Classes {
+    let mut numbers = HashMap::new();
+    let members = classes.iter().zip(descriptions);
+    let number = members.map(|(&class, description)| {
+        let next = narrow(numbers.len());
+        let value = descriptor.value(roundings, description.as_ref());
+        *numbers.entry((class, value)).or_insert(next)
+    });
+    number.collect()
+}
+
+fn evaluate(model: &Model, classes: &Classes) -> Evaluation {
+    let mut counts: Vec<Vec<ShapeCount>> = Vec::new();
+    for (key, &class) in classes.iter().enumerate() {
+        let class = wide(class);
+        if class == counts.len() {
+            counts.push(Vec::new());
+        }
+        for &count in model.counts(key) {
+            add_count(&mut counts[class], count);
         }
     }
-
-    fn one_class(&self) -> Classes {
-        vec![0; self.descriptions.len()]
-    }
-
-    /// Returns the classes that remain if one more descriptor is known.
-    fn refined(
-        &self,
-        classes: &Classes,
-        descriptor: ShapeDescriptor,
-        roundings: &[Rounding],
-    ) -> Classes {
-        let mut numbers = HashMap::new();
-        let members = classes.iter().zip(&self.descriptions);
-        let number = members.map(|(&class, description)| {
-            let next = narrow(numbers.len());
-            let value = descriptor.value(roundings, description.as_ref());
-            *numbers.entry((class, value)).or_insert(next)
-        });
-        number.collect()
-    }
-
-    fn evaluate(&self, classes: &Classes) -> Evaluation {
-        let mut counts: Vec<Vec<ShapeCount>> = Vec::new();
-        for (key, &class) in classes.iter().enumerate() {
-            let class = wide(class);
-            if class == counts.len() {
-                counts.push(Vec::new());
-            }
-            for &count in self.model.counts(key) {
-                add_count(&mut counts[class], count);
-            }
-        }
-        Evaluation::of_classes(self.model, counts.iter().map(Vec::as_slice))
-    }
+    Evaluation::of_classes(model, counts.iter().map(Vec::as_slice))
 }
 
 impl Rounding {
-    /// Returns the descriptor that is measured in steps.
-    pub fn descriptor(&self) -> ShapeDescriptor {
-        self.descriptor
-    }
-
     /// Returns the number of steps that is nearest to a number. Directions of 180° and −180° are the same one, if a
     /// whole number of steps makes a turn.
     #[expect(
@@ -315,20 +269,12 @@ impl Rounding {
     }
 
     fn rounded(&self, value: Value) -> ExactValue {
-        let steps = |number| self.steps(number);
-        let mut rounded = [0; 4];
-        match value {
-            Value::None => return None,
-            Value::Count(count) => rounded[0] = steps(f64::from(count)),
-            Value::Number(number) => rounded[0] = steps(number),
-            Value::Point(point) => [rounded[0], rounded[1]] = [steps(point.x), steps(point.y)],
-            Value::Pair(pair) => [rounded[0], rounded[1]] = pair.map(steps),
-            Value::Rect(rect) => {
-                let sides = [rect.left, rect.top, rect.right, rect.bottom];
-                rounded = sides.map(|side| steps(f64::from(side)));
-            }
-        }
-        Some(rounded)
+        let (mut rounded, mut index) = ([0; 4], 0);
+        value.each(|number| {
+            rounded[index] = self.steps(number);
+            index += 1;
+        });
+        (index > 0).then_some(rounded)
     }
 }
 
@@ -358,35 +304,31 @@ impl Model {
     /// first in the table), until no descriptor improves the result. Returns them in the order in which they were
     /// chosen.
     pub fn choose_descriptors(&self, roundings: &[Rounding]) -> Vec<ChosenDescriptor> {
-        let table = GivenTable::new(self);
-        let mut classes = table.one_class();
+        let descriptions = descriptions(self);
+        let mut classes = vec![0; descriptions.len()];
         let mut chosen: Vec<ChosenDescriptor> = Vec::new();
-        let mut right = table.evaluate(&classes).right;
+        let mut right = evaluate(self, &classes).right;
         loop {
-            let is_open = |one: &ShapeDescriptor| chosen.iter().all(|own| own.descriptor != *one);
-            let tried = ShapeDescriptor::all().filter(is_open).map(|descriptor| {
-                let classes = table.refined(&classes, descriptor, roundings);
-                let evaluation = table.evaluate(&classes);
-                let step = ChosenDescriptor {
-                    descriptor,
-                    evaluation,
-                };
-                (step, classes)
-            });
-            let best = tried.reduce(|best, next| {
-                if next.0.evaluation.right > best.0.evaluation.right {
-                    next
-                } else {
-                    best
+            let mut best = None;
+            for descriptor in ShapeDescriptor::all() {
+                if chosen.iter().any(|own| own.descriptor == descriptor) {
+                    continue;
                 }
-            });
-            match best {
-                Some((step, refined)) if step.evaluation.right > right => {
-                    (right, classes) = (step.evaluation.right, refined);
-                    chosen.push(step);
+                let refined = refined(&descriptions, &classes, descriptor, roundings);
+                let evaluation = evaluate(self, &refined);
+                if evaluation.right > right {
+                    right = evaluation.right;
+                    best = Some((descriptor, evaluation, refined));
                 }
-                _ => return chosen,
             }
+            let Some((descriptor, evaluation, refined)) = best else {
+                return chosen;
+            };
+            classes = refined;
+            chosen.push(ChosenDescriptor {
+                descriptor,
+                evaluation,
+            });
         }
     }
 }

@@ -182,45 +182,36 @@ impl Model {
     /// Looks up the key of the imprint itself and, if larger distances matter, the keys of all imprints that differ by
     /// one taxel. None if that is not enough.
     fn near(&self, imprint: &Imprint, reach: u32) -> Option<Distances> {
-        let nowhere = shift_count((0, 0), imprint.size());
-        let at = |imprint: &Imprint, sums: &mut [u64]| {
-            // The empty key is the same in every place.
-            let times = if imprint.is_empty() { nowhere } else { 1 };
-            for count in self.counts_of(imprint) {
-                sums[usize::from(count.shape)] += count.poses * times;
-            }
-        };
-        let shapes = self.shapes().len();
-        let mut sums = [vec![0; shapes], vec![0; shapes]];
-        at(imprint, &mut sums[0]);
-        let exact = sums[0].iter().any(|&sum| sum > 0);
-        let transposed = |sums: &[Vec<u64>]| {
-            let own = |shape: usize| sums.iter().map(|sums| sums[shape]).collect();
-            (0..shapes).map(own).collect()
-        };
-        if reach == 0 {
-            return exact.then(|| Distances {
-                least: 0,
-                touches: transposed(&sums[..1]),
-                method: SearchMethod::Exact,
-            });
-        }
-        if !exact {
+        if self.counts_of(imprint).is_empty() {
             // The least distance may be 1, but then distance 2 matters too.
             return None;
         }
-        let mut flipped = *imprint;
-        for row in 0..imprint.rows() {
-            for column in 0..imprint.columns() {
-                flipped.toggle(column, row);
-                at(&flipped, &mut sums[1]);
-                flipped.toggle(column, row);
+        let nowhere = shift_count((0, 0), imprint.size());
+        let mut touches = vec![vec![0; wide(reach) + 1]; self.shapes().len()];
+        let mut add = |imprint: &Imprint, distance: usize| {
+            // The empty key is the same in every place.
+            let times = if imprint.is_empty() { nowhere } else { 1 };
+            for count in self.counts_of(imprint) {
+                touches[usize::from(count.shape)][distance] += count.poses * times;
+            }
+        };
+        add(imprint, 0);
+        let mut method = SearchMethod::Exact;
+        if reach > 0 {
+            method = SearchMethod::OneFlip;
+            let mut flipped = *imprint;
+            for row in 0..imprint.rows() {
+                for column in 0..imprint.columns() {
+                    flipped.toggle(column, row);
+                    add(&flipped, 1);
+                    flipped.toggle(column, row);
+                }
             }
         }
         Some(Distances {
             least: 0,
-            touches: transposed(&sums),
-            method: SearchMethod::OneFlip,
+            touches,
+            method,
         })
     }
 
@@ -249,11 +240,7 @@ fn weighed(touches: &[u64], noise: &Noise) -> f64 {
 
 /// Returns ln(e^one + e^other).
 fn log_of_sum(one: f64, other: f64) -> f64 {
-    let (low, high) = if one < other {
-        (one, other)
-    } else {
-        (other, one)
-    };
+    let (low, high) = (one.min(other), one.max(other));
     if low == f64::NEG_INFINITY {
         return high;
     }

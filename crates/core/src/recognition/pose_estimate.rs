@@ -53,10 +53,8 @@ impl AngleEstimate {
     /// of the period, the first is below 0.
     #[must_use]
     pub fn ends(&self) -> (i64, i64) {
-        let (first, count) = (
-            i64::from(self.shortest_arc.0),
-            i64::from(self.shortest_arc.1),
-        );
+        let (first, count) = self.shortest_arc;
+        let (first, count) = (i64::from(first), i64::from(count));
         let (last, degrees) = (first + count - 1, i64::from(whole_degrees(self.period)));
         if last < degrees {
             (first, last)
@@ -148,8 +146,7 @@ impl Model {
             let source = grid.source_at(grid.pose(own.number)).ok()?;
             Some(PlacedSource { source, by: own.by })
         });
-        let sources = sources.collect();
-        Some((estimate, sources))
+        Some((estimate, sources.collect()))
     }
 }
 
@@ -176,9 +173,12 @@ struct SeenPose {
 fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<SeenPose> {
     let distance = |own: &SeenPose| {
         // In units of the deviation; 0 if there is none.
-        let over = |from: f64, deviation: f64| {
-            let share = from / deviation;
-            if deviation > 0.0 { share } else { 0.0 }
+        let over = |from, deviation| {
+            if deviation > 0.0 {
+                from / deviation
+            } else {
+                0.0
+            }
         };
         let [x, y, angle] = own.place;
         let dx = over(x - estimate.position[0], estimate.standard_deviation[0]);
@@ -330,7 +330,7 @@ mod tests {
 
     #[test]
     fn the_poses_of_an_imprint_agree_with_its_count_and_with_a_sum_by_hand() {
-        let steps = GridSteps::new(10, 5).expect("divisors");
+        let steps = GridSteps::of(10, "0:355:5");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
         let grids = training.grids().to_vec();
         let model = training.run().expect("not stopped");
@@ -392,7 +392,7 @@ mod tests {
 
     #[test]
     fn a_shard_counts_its_own_poses_only() {
-        let steps = GridSteps::new(4, 30).expect("divisors");
+        let steps = GridSteps::of(4, "0:330:30");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
         let grid = training.grids()[1].clone();
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(21));
@@ -424,7 +424,7 @@ mod tests {
     /// Angles at which a heptagon looks alike count as one.
     #[test]
     fn a_heptagon_repeats_every_seventh_of_a_turn() {
-        let steps = GridSteps::new(4, 1).expect("divisors");
+        let steps = GridSteps::of(4, "0:359:1");
         let mut shapes = equal_figures();
         shapes.retain(|shape| shape.name == "heptagon");
         let training = Training::fitting(shapes, steps).expect("it fits");

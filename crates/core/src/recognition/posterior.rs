@@ -6,6 +6,7 @@
 
 use std::cmp::Ordering;
 
+use crate::index::lower_word;
 use crate::parameter::number::share;
 use crate::recognition::model::float;
 
@@ -130,11 +131,6 @@ impl Odds {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "this is its purpose")]
-fn low(number: u128) -> u64 {
-    number as u64
-}
-
 /// Returns the product of some positive factors in base 2⁶⁴, the last digit first.
 fn digits(factors: &[u64]) -> Vec<u64> {
     let mut digits = vec![1];
@@ -142,11 +138,11 @@ fn digits(factors: &[u64]) -> Vec<u64> {
         let mut carry = 0;
         for digit in &mut digits {
             let product = u128::from(*digit) * u128::from(factor) + carry;
-            *digit = low(product);
+            *digit = lower_word(product);
             carry = product >> 64;
         }
         if carry > 0 {
-            digits.push(low(carry));
+            digits.push(lower_word(carry));
         }
     }
     digits

@@ -8,7 +8,7 @@ use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, 
 use crate::progress::Progress;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{NamedShape, check_shapes};
-use crate::recognition::training::{CellPositions, Training, TrainingError, angles_only, fit};
+use crate::recognition::training::{GridSteps, Training, TrainingError, angles_only, fit};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -53,8 +53,8 @@ named!(SizeAxis, "axis", [Scale "scale", Pitch "pitch_mm"]);
 #[derive(Clone, Debug)]
 pub struct Separation {
     shapes: Vec<NamedShape>,
-    positions: CellPositions,
-    angles: DecimalRange,
+    /// The positions and angles; [`GridSteps::FINE`] unless they are set.
+    pub steps: GridSteps,
 }
 
 /// The limit of one touch for one size and one threshold.
@@ -110,29 +110,14 @@ impl Separation {
         check_shapes(&shapes)?;
         Ok(Self {
             shapes,
-            positions: CellPositions::FINE,
-            angles: Ranges::default()[Axis::Angle],
+            steps: GridSteps::FINE,
         })
-    }
-
-    /// Sets the number of positions of a cell in each direction.
-    #[must_use]
-    pub fn with_positions(mut self, positions: CellPositions) -> Self {
-        self.positions = positions;
-        self
-    }
-
-    /// Sets the angles.
-    #[must_use]
-    pub fn with_angles(mut self, angles: DecimalRange) -> Self {
-        self.angles = angles;
-        self
     }
 
     /// Returns the number of touches of one point, for reports of progress.
     pub fn touches(&self) -> u64 {
-        let cell = u64::from(self.positions.get()).pow(2);
-        cell * self.angles.count() * self.shapes.len() as u64
+        let cell = u64::from(self.steps.positions.get()).pow(2);
+        cell * self.steps.angles.count() * self.shapes.len() as u64
     }
 
     /// Returns the training for a scale and a threshold.
@@ -151,7 +136,7 @@ impl Separation {
             zooms.push(given);
         }
         let sources: Vec<&Source> = scaled.iter().map(|shape| &shape.source).collect();
-        let (sensor, ranges) = fit(&reach, &sources, self.positions, self.angles)?;
+        let (sensor, ranges) = fit(&reach, &sources, self.steps)?;
         let grid = |(shape, zooms): (&NamedShape, &GivenRanges)| {
             let sensor = sensor.with(Parameter::Threshold, threshold);
             let sensor = sensor.map_err(|error| TrainingError::grid(&shape.name, error))?;
@@ -170,7 +155,7 @@ impl Separation {
         shape: &NamedShape,
         scale: f64,
     ) -> Result<(NamedShape, GivenRanges), TrainingError> {
-        let mut given = angles_only(self.angles);
+        let mut given = angles_only(self.steps.angles);
         let mut scaled = shape.clone();
         match &shape.source {
             Source::Figure(figure) => scaled.source = enlarged(figure, &shape.name, scale)?.into(),
@@ -233,11 +218,9 @@ impl Separation {
         threshold: f64,
         progress: &dyn Progress,
     ) -> Result<Vec<SeparationPoint>, TrainingError> {
-        let values = axis.smallest_first(values);
-        let points = values.into_iter();
-        points
-            .map(|value| self.at(axis, value, threshold, progress))
-            .collect()
+        let values = axis.smallest_first(values).into_iter();
+        let points = values.map(|value| self.at(axis, value, threshold, progress));
+        points.collect()
     }
 
     /// Returns the smallest size with at most this error. Takes the first such size of the scan, then tries nine values
@@ -317,10 +300,9 @@ mod tests {
     }
 
     fn coarse(shapes: Vec<NamedShape>) -> Separation {
-        let separation = Separation::new(shapes).expect("a set");
+        let mut separation = Separation::new(shapes).expect("a set");
+        separation.steps = GridSteps::of(10, "0:355:5");
         separation
-            .with_positions(CellPositions::COARSE)
-            .with_angles("0:355:5".parse().expect("a range"))
     }
 
     /// Shapes that are enlarged by hand and trained like any other set give the same touches and keys.
@@ -372,15 +354,13 @@ mod tests {
             NamedShape::new("small", figure(Figure::triangle(4.0)).expect("in range")),
         ];
         for positions in [1, 5, 20, 25] {
-            let steps = crate::recognition::GridSteps::new(positions, 10).expect("divisors");
+            let steps = GridSteps::of(positions, "0:350:10");
             let training = Training::fitting(shapes.clone(), steps).expect("they fit");
             let side = training.grids()[0].sensor().side();
             assert_eq!(side, 16);
             let limit = Evaluation::of(&training.run().expect("not stopped"));
-            let separation = Separation::new(shapes.clone()).expect("a set");
-            let separation =
-                separation.with_positions(CellPositions::new(positions).expect("divides"));
-            let separation = separation.with_angles("0:350:10".parse().expect("a range"));
+            let mut separation = Separation::new(shapes.clone()).expect("a set");
+            separation.steps = steps;
             let point = separation.at(SizeAxis::Scale, 1.0, 0.5, &ToTheEnd);
             let point = point.expect("it fits");
             assert_eq!(

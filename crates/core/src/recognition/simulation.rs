@@ -115,7 +115,10 @@ impl ShapeRate {
 pub struct NoisyTouches {
     size: MatrixSize,
     noise: Noise,
-    random_dead: u32,
+    /// The number of additional dead taxels, at first 0. They are drawn anew for each touch, and the classifier knows
+    /// which they are. So touches are independent, and the standard error includes how much sensors with different dead
+    /// taxels differ. The same seed draws the same dead taxels for any noise.
+    pub random_dead: u32,
     per_shape: u64,
     seed: u64,
 }
@@ -130,17 +133,6 @@ impl NoisyTouches {
             random_dead: 0,
             per_shape,
             seed,
-        }
-    }
-
-    /// Returns the same touches with `count` additional dead taxels. They are drawn anew for each touch, and the
-    /// classifier knows which they are. So touches are independent, and the standard error includes how much sensors
-    /// with different dead taxels differ. The same seed draws the same dead taxels for any noise.
-    #[must_use]
-    pub fn with_random_dead(self, count: u32) -> Self {
-        Self {
-            random_dead: count,
-            ..self
         }
     }
 }
@@ -355,20 +347,29 @@ impl Model {
         let draws = Draw::all(self, |_| 1);
         let shapes = self.shapes().len() as u64;
         let of_shape = |(shape, draw): (usize, &Draw)| {
-            let run = |counts: RunCounts, run: u64| {
+            let run = |mut counts: RunCounts, run: u64| {
                 let task = run.wrapping_mul(shapes).wrapping_add(shape as u64);
                 let mut random = generator(seed, task);
-                let length = self.run_until(until, draw, shape, &mut random);
-                let flow = progress.add(1);
-                flow.is_continue().then(|| counts.with(length))
+                let run = self.run_until(until, draw, shape, &mut random);
+                let right = run.is_some_and(|(_, right)| right);
+                add_runs(
+                    &mut counts,
+                    run.map(|(length, _)| length),
+                    [1, right.into()],
+                );
+                progress.add(1).is_continue().then_some(counts)
             };
-            (0..runs)
-                .into_par_iter()
-                .try_fold(RunCounts::default, run)
-                .try_reduce(RunCounts::default, |one, other| Some(one.sum(&other)))
+            let sum = |mut one: RunCounts, other: RunCounts| {
+                for (length, more) in other {
+                    add_runs(&mut one, length, more);
+                }
+                Some(one)
+            };
+            let counted = (0..runs).into_par_iter().try_fold(RunCounts::new, run);
+            counted.try_reduce(RunCounts::new, sum)
         };
         let counts = draws.iter().enumerate().map(of_shape);
-        counts.map(|own| Some(own?.summary())).collect()
+        counts.map(|own| Some(summary(&own?))).collect()
     }
 
     /// Returns the number of touches of one run, and whether it ended with the right shape. None if the run was
@@ -394,60 +395,43 @@ impl Model {
     }
 }
 
-/// The counts of the runs of a shape. They are whole numbers, so their order does not matter, and they take no more
-/// memory for more runs.
-#[derive(Default)]
-struct RunCounts {
-    runs: u64,
-    right: u64,
-    /// The number of runs of each length that reached the probability.
-    of_length: BTreeMap<u32, u64>,
+/// The runs of a shape by their number of touches (None for abandoned ones): how many, and how many of them ended with
+/// the right shape. The counts are whole numbers, so their order does not matter, and they take no more memory for more
+/// runs.
+type RunCounts = BTreeMap<Option<u32>, [u64; 2]>;
+
+/// Returns the mean and its standard error. Both are None if a run was abandoned: without it, the mean would be too
+/// small.
+fn summary(counts: &RunCounts) -> TouchesUntil {
+    let reached = || {
+        counts
+            .iter()
+            .filter_map(|(length, own)| Some(((*length)?, own[0])))
+    };
+    let sum_of = |value: &dyn Fn(f64) -> f64| -> f64 {
+        let values = reached().map(|(length, runs)| value(length.into()) * float(runs));
+        values.sum()
+    };
+    let runs = counts.values().map(|[runs, _]| runs).sum();
+    let reaching = reached().map(|(_, runs)| runs).sum();
+    let mean = (reaching == runs && runs > 0).then(|| sum_of(&|length| length) / float(runs));
+    let standard_error = mean.filter(|_| runs > 1).map(|mean| {
+        let squares = sum_of(&|length| (length - mean) * (length - mean));
+        (squares / float(runs - 1) / float(runs)).sqrt()
+    });
+    TouchesUntil {
+        mean,
+        standard_error,
+        reached: reaching,
+        runs,
+        right: counts.values().map(|[_, right]| right).sum(),
+    }
 }
 
-impl RunCounts {
-    /// Counts a run: its number of touches, and whether it ended with the right shape; None if it was abandoned.
-    fn with(mut self, run: Option<(u32, bool)>) -> Self {
-        self.runs += 1;
-        if let Some((length, right)) = run {
-            self.right += u64::from(right);
-            *self.of_length.entry(length).or_default() += 1;
-        }
-        self
-    }
-
-    fn sum(mut self, other: &Self) -> Self {
-        self.runs += other.runs;
-        self.right += other.right;
-        for (&length, runs) in &other.of_length {
-            *self.of_length.entry(length).or_default() += runs;
-        }
-        self
-    }
-
-    /// Returns the mean and its standard error. Both are None if a run was abandoned: without it, the mean would be too
-    /// small.
-    fn summary(&self) -> TouchesUntil {
-        let runs = self.runs;
-        let reached = self.of_length.values().sum();
-        let sum_of = |value: &dyn Fn(f64) -> f64| -> f64 {
-            let lengths = self.of_length.iter();
-            lengths
-                .map(|(&length, &runs)| value(length.into()) * float(runs))
-                .sum()
-        };
-        let mean = (reached == runs && runs > 0).then(|| sum_of(&|length| length) / float(runs));
-        let standard_error = mean.filter(|_| runs > 1).map(|mean| {
-            let squares = sum_of(&|length| (length - mean) * (length - mean));
-            (squares / float(runs - 1) / float(runs)).sqrt()
-        });
-        TouchesUntil {
-            mean,
-            standard_error,
-            reached,
-            runs,
-            right: self.right,
-        }
-    }
+fn add_runs(counts: &mut RunCounts, length: Option<u32>, more: [u64; 2]) {
+    let [runs, right] = counts.entry(length).or_default();
+    *runs += more[0];
+    *right += more[1];
 }
 
 #[cfg(test)]
@@ -503,7 +487,8 @@ mod tests {
         let model = training.expect("a set").run().expect("not stopped");
         let noise = Noise::new(0.0).expect("in range");
         let rate = |seed| {
-            let touches = NoisyTouches::new(sensor.size(), noise, 200, seed).with_random_dead(2);
+            let mut touches = NoisyTouches::new(sensor.size(), noise, 200, seed);
+            touches.random_dead = 2;
             let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
             rate.expect("not stopped")
         };
@@ -581,13 +566,16 @@ mod tests {
     }
 
     fn summary(runs: &[Option<(u32, bool)>]) -> TouchesUntil {
-        let counts = runs.iter().copied();
-        let half = counts
-            .clone()
-            .take(1)
-            .fold(RunCounts::default(), RunCounts::with);
-        let rest = counts.skip(1).fold(RunCounts::default(), RunCounts::with);
-        half.sum(&rest).summary()
+        let mut counts = RunCounts::new();
+        for run in runs {
+            let right = run.is_some_and(|(_, right)| right);
+            add_runs(
+                &mut counts,
+                run.map(|(length, _)| length),
+                [1, right.into()],
+            );
+        }
+        super::summary(&counts)
     }
 
     #[test]

@@ -232,20 +232,13 @@ impl<'a> Training<'a> {
 }
 
 fn keys_of(counted: &CountedImprints) -> (KeyTable, Vec<u64>) {
-    const CHUNK: usize = 4096;
-    let chunks: Vec<Vec<(ImprintKey, u64)>> = (0..counted.len().div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let indices = chunk * CHUNK..counted.len().min((chunk + 1) * CHUNK);
-            let key = |index| {
-                let (imprint, count) = counted.get(index);
-                (ImprintKey::of(&imprint), count)
-            };
-            indices.map(key).collect()
-        })
-        .collect();
+    let key = |index| {
+        let (imprint, count) = counted.get(index);
+        (ImprintKey::of(&imprint), count)
+    };
+    let imprints = (0..counted.len()).into_par_iter().with_min_len(4096);
     let (mut keys, mut counts) = (KeyTable::default(), Vec::new());
-    for (key, count) in chunks.into_iter().flatten() {
+    for (key, count) in imprints.map(key).collect::<Vec<_>>() {
         let slot = keys.intern(key.borrowed());
         if slot == counts.len() {
             counts.push(0);
@@ -321,43 +314,39 @@ impl CellPositions {
     }
 }
 
-/// The steps of a grid of poses: one cell of positions, all angles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// The steps of a grid of poses: one cell of positions, and the angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GridSteps {
-    positions: CellPositions,
-    degrees: u16,
+    /// The number of positions of a cell in each direction.
+    pub positions: CellPositions,
+    /// The angles in degrees.
+    pub angles: DecimalRange,
 }
 
 impl GridSteps {
     /// Hundredths of a cell and whole degrees, as in a sweep.
     pub const FINE: Self = Self {
         positions: CellPositions::FINE,
-        degrees: 1,
+        angles: DecimalRange::from_units(0, 1, 0, 360),
     };
 
     /// Tenths of a cell and every second degree: one in 200 poses of [`Self::FINE`].
     pub const COARSE: Self = Self {
         positions: CellPositions::COARSE,
-        degrees: 2,
+        angles: DecimalRange::from_units(0, 2, 0, 180),
     };
 
-    /// Creates steps from the number of positions of a cell in each direction, a divisor of 100, and the degrees from
-    /// one angle to the next, a divisor of 360. None if one is not a divisor.
-    pub fn new(positions: u8, degrees: u16) -> Option<Self> {
-        let positions = CellPositions::new(positions)?;
-        let divides = degrees > 0 && 360_u16.is_multiple_of(degrees);
-        divides.then_some(Self { positions, degrees })
-    }
-
-    fn angles(self) -> DecimalRange {
-        let count = u64::from(360 / self.degrees);
-        DecimalRange::from_units(0, self.degrees.into(), 0, count)
+    #[cfg(test)]
+    pub(super) fn of(positions: u8, angles: &str) -> Self {
+        let positions = CellPositions::new(positions).expect("a divisor of 100");
+        let angles = angles.parse().expect("a range");
+        Self { positions, angles }
     }
 }
 
 impl Training<'_> {
     /// Creates a training on the smallest square sensor, at least 16 × 16, that cuts off none of the shapes in any of
-    /// the poses: one cell of positions around its middle, all angles.
+    /// the poses: one cell of positions around its middle, the given angles.
     ///
     /// # Errors
     /// Returns [`TrainingError::Large`] if no sensor is large enough, or the errors of [`Training::new`].
@@ -367,10 +356,10 @@ impl Training<'_> {
     ) -> Result<Self, TrainingError> {
         let shapes: Vec<NamedShape> = shapes.into_iter().collect();
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
-        let given = angles_only(steps.angles());
+        let given = angles_only(steps.angles);
         let reach = Reach::of_all(sources.iter().copied(), Anchor::Centre, &given)
             .map_err(|error| TrainingError::grid("the set", error))?;
-        let (sensor, ranges) = fit(&reach, &sources, steps.positions, steps.angles())?;
+        let (sensor, ranges) = fit(&reach, &sources, steps)?;
         Self::new(shapes, sensor, Anchor::Centre, ranges)
     }
 }
@@ -386,11 +375,11 @@ pub(super) fn angles_only(angles: DecimalRange) -> GivenRanges {
 pub(super) fn fit(
     reach: &Reach,
     sources: &[&Source],
-    positions: CellPositions,
-    angles: DecimalRange,
+    steps: GridSteps,
 ) -> Result<(Sensor, Ranges), TrainingError> {
     let sides = SensorSides::at_least(LEAST_SIDE);
-    let found = reach.smallest_sensor(sources, &angles_only(angles), sides, positions.step());
+    let angles = angles_only(steps.angles);
+    let found = reach.smallest_sensor(sources, &angles, sides, steps.positions.step());
     found.ok_or(TrainingError::Large)
 }
 
@@ -401,7 +390,7 @@ mod tests {
 
     #[test]
     fn equal_figures_cover_thirty_cells_and_are_hard_to_tell_apart() {
-        let steps = GridSteps::new(10, 5).expect("divisors");
+        let steps = GridSteps::of(10, "0:355:5");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
         let grid = &training.grids()[0];
         assert_eq!(grid.sensor().columns(), 16);
@@ -422,15 +411,10 @@ mod tests {
     }
 
     #[test]
-    fn steps_that_are_not_divisors_are_refused() {
+    fn positions_that_are_not_divisors_are_refused() {
         for positions in [0, 7, 101] {
-            assert_eq!(GridSteps::new(positions, 1), None);
+            assert_eq!(CellPositions::new(positions), None);
         }
-        for degrees in [0, 7, 361] {
-            assert_eq!(GridSteps::new(10, degrees), None);
-        }
-        let steps = GridSteps::new(1, 360).expect("divisors");
-        assert_eq!(steps.angles().to_string(), "0");
     }
 
     /// On 16 × 16, the centre of a disc can move by a whole cell if its radius is 7.5, by 0.6 cells if it is 7.7, and
@@ -440,7 +424,7 @@ mod tests {
         let fit = |radius: f64, positions| {
             let disc = Figure::ellipse(radius, radius).on(&Sensor::LARGEST);
             let shapes = vec![NamedShape::new("disc", disc.expect("in range"))];
-            let steps = GridSteps::new(positions, 360).expect("divisors");
+            let steps = GridSteps::of(positions, "0");
             let training = Training::fitting(shapes, steps).expect("it fits");
             let grid = &training.grids()[0];
             let range = grid.ranges()[Axis::X0].to_string();
@@ -458,7 +442,7 @@ mod tests {
 
     #[test]
     fn figures_of_default_sizes_are_told_apart_by_any_touch() {
-        let steps = GridSteps::new(20, 3).expect("divisors");
+        let steps = GridSteps::of(20, "0:357:3");
         let training = Training::fitting(default_figures(), steps).expect("they fit");
         let model = training.run().expect("not stopped");
         assert_eq!(Evaluation::of(&model).error(), 0.0);
