@@ -407,12 +407,11 @@ impl Library {
     /// # Errors
     /// If the folder exists but cannot be read.
     pub fn foreign_files(&self) -> Result<Vec<PathBuf>, LibraryError> {
-        let is_foreign = |path: &PathBuf| {
+        let mut foreign = paths_in(&self.folder)?;
+        foreign.retain(|path| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             !name.starts_with('.') && name != models::FOLDER && name_of(path).is_none()
-        };
-        let mut foreign = paths_in(&self.folder)?;
-        foreign.retain(is_foreign);
+        });
         Ok(foreign)
     }
 }

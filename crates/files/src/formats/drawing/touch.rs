@@ -174,19 +174,17 @@ impl Drawing {
 
     fn legend_of_taxels(&self, svg: &mut Svg, description: Option<&Description>) {
         let all = self.imprint.count();
-        let (what, na, others) = match description.map(|own| (own.kind, own.na)) {
-            Some((RegionKind::Hole, na)) => {
-                (format!("taxels of the hole described: {na}"), na, all)
-            }
-            Some((RegionKind::Exterior, na)) if na == all => {
-                (format!("active taxels: {na}"), na, 0)
-            }
-            Some((RegionKind::Exterior, na)) => (
-                format!("active taxels of the region described: {na}"),
-                na,
-                all - na,
-            ),
-            None => ("no active taxels".to_owned(), 0, all),
+        let (kind, na) = description.map_or((RegionKind::Exterior, 0), |own| (own.kind, own.na));
+        let what = match kind {
+            _ if description.is_none() => "no active taxels".to_owned(),
+            RegionKind::Hole => format!("taxels of the hole described: {na}"),
+            RegionKind::Exterior if na == all => format!("active taxels: {na}"),
+            RegionKind::Exterior => format!("active taxels of the region described: {na}"),
+        };
+        let others = if kind == RegionKind::Hole {
+            all
+        } else {
+            all - na
         };
         let (low, high) = sign_box(svg.legend(&what));
         if na > 0 {

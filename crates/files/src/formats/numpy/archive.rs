@@ -141,18 +141,15 @@ impl<R: Read + Seek> ArrayReader<R> {
         if found == format {
             return parsed(&header);
         }
-        let kind = |format: &str| match format {
-            ATLAS_FORMAT => Some("an atlas of taxel sweep"),
-            MODEL_FORMAT => Some("a model"),
-            _ => None,
-        };
-        Err(ReadError::new(match (kind(&found), kind(format)) {
-            (Some(found), Some(expected)) => format!("{found}, expected {expected}"),
+        let text = match found.as_str() {
+            ATLAS_FORMAT => "an atlas of taxel sweep, expected a model".to_owned(),
+            MODEL_FORMAT => "a model, expected an atlas of taxel sweep".to_owned(),
             _ => {
                 let found = shortened(&found);
                 format!("format: {found:?} is unknown to this version, which reads {format:?}")
             }
-        }))
+        };
+        Err(ReadError::new(text))
     }
 
     /// Reads and discards all other arrays: damage to an array is only found at its end, and an archive must not pass
