@@ -95,28 +95,30 @@ fn a_caller_decides_whether_a_wrong_frame_is_left_out() {
             (firsts, damage, read.err().map(|error| error.to_string()))
         };
         let (go_on, stop) = (ControlFlow::Continue(()), ControlFlow::Break(()));
+        let leaving_out = ReadOptions {
+            leaves_out: true,
+            ..ReadOptions::default()
+        };
         let (firsts, damage, error) = read_with(&ReadOptions::default(), go_on);
         assert_eq!((&firsts[..], damage.len()), (&[1.0][..], 0), "{text}");
         let error = error.expect("the second frame is wrong");
         let expected = (vec![1.0, 5.0], vec![error.clone()], None);
-        assert_eq!(
-            read_with(&ReadOptions::default().leaving_out(), go_on),
-            expected
-        );
+        assert_eq!(read_with(&leaving_out, go_on), expected);
         let expected = (vec![1.0], vec![error.clone()], Some(error));
-        assert_eq!(
-            read_with(&ReadOptions::default().leaving_out(), stop),
-            expected
-        );
+        assert_eq!(read_with(&leaving_out, stop), expected);
     }
 }
 
 #[test]
 fn times_count_from_the_first_frame_even_if_a_wrong_one_before_it_is_left_out() {
     let text = "00:00:01 -> 5 6\n\n00:00:02 -> 1 2\n00:00:02 -> 3 4\n\n00:00:03.5 -> 1 2\n00:00:03.5 -> 3 4\n";
-    let options = ReadOptions::default().with_size(frame_size(2, 2));
+    let options = ReadOptions {
+        size: Some(frame_size(2, 2)),
+        leaves_out: true,
+        ..ReadOptions::default()
+    };
     let mut times = Vec::new();
-    let read = read(Cursor::new(text), &options.leaving_out(), &mut |event| {
+    let read = read(Cursor::new(text), &options, &mut |event| {
         if let RecordingEvent::Frame(frame) = event {
             times.push(frame.time);
         }

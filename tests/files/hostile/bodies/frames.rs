@@ -13,12 +13,18 @@ use super::{is_short, refused};
 /// Reads a recording in any format: without and with rows and columns that may fit, and with wrong frames left out.
 pub(crate) fn recording(bytes: &[u8]) -> bool {
     let size = FrameSize::new(5, 4).expect("1 to 512");
-    let with_size = ReadOptions::default().with_size(size);
+    let with_size = ReadOptions {
+        size: Some(size),
+        ..ReadOptions::default()
+    };
     let mut is_read = false;
     for options in [
         ReadOptions::default(),
         with_size.clone(),
-        with_size.leaving_out(),
+        ReadOptions {
+            leaves_out: true,
+            ..with_size
+        },
     ] {
         let mut processing = Processing::default();
         processing.rule = Rule::percent(50.0).ok();

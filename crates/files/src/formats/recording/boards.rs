@@ -7,6 +7,7 @@
 //! | `MatSense` | `5B`, cells, `5D` | `5C 00`, `5C 01`, `5C 02` stand for the cells `5C`, `5B`, `5D` |
 
 use std::io::{self, BufRead};
+use std::mem;
 
 use taxel_core::frame::{Frame, FrameSize};
 use taxel_core::parameter::number::counted;
@@ -124,10 +125,7 @@ impl<'a, 'b> Board<'a, 'b> {
         options: &'a ReadOptions,
         sink: &'a mut Sink<'b>,
     ) -> Result<Self, Stop> {
-        let info = || ChannelInfo {
-            size: Some(size),
-            ..ChannelInfo::default()
-        };
+        let info = || ChannelInfo::of_size(size);
         let channel = sink.channel(None, info)?;
         let frame = Frame::new(size);
         Ok(Self {
@@ -256,7 +254,7 @@ impl MarkedFrames<'_, '_> {
 
     fn withdraw(&mut self) -> Result<(), Stop> {
         if let Start::Marker { shown } = &mut self.start
-            && std::mem::take(shown)
+            && mem::take(shown)
         {
             self.board.sink.event(RecordingEvent::Withdrawn)?;
         }
@@ -306,10 +304,9 @@ impl MarkedFrames<'_, '_> {
             self.board.lose(1, &self.bytes, GARBLED)?;
         }
         self.bytes.drain(..gone);
-        self.start = if nearest.is_some() {
-            Start::Marker { shown: false }
-        } else {
-            Start::Anywhere
+        self.start = match nearest {
+            Some(_) => Start::Marker { shown: false },
+            None => Start::Anywhere,
         };
         Ok(true)
     }
@@ -346,7 +343,7 @@ fn framing(
     let whole = |framing: &'static Framing| {
         let mut frame = SplitFrame::new(framing, cells, options);
         head.iter()
-            .filter(|&&byte| frame.take(byte) == Part::Whole)
+            .filter(|&&byte| matches!(frame.take(byte), Part::Whole(_)))
             .count()
     };
     let (ended, bracketed) = (whole(&ENDED), whole(&BRACKETED));
@@ -389,14 +386,11 @@ pub(super) fn matsense(
         for &byte in &bytes {
             match frame.take(byte) {
                 Part::More => {}
-                Part::Whole => board.give(&frame.values)?,
-                Part::Torn => {
-                    let found = counted(frame.found as u64, "byte");
-                    board.lose(
-                        1,
-                        &frame.values,
-                        &format!("a frame of {found}, expected {cells}"),
-                    )?;
+                Part::Whole(bytes) => board.give(&bytes)?,
+                Part::Torn { bytes, found } => {
+                    let found = counted(found as u64, "byte");
+                    let message = format!("a frame of {found}, expected {cells}");
+                    board.lose(1, &bytes, &message)?;
                 }
             }
         }
@@ -409,28 +403,23 @@ pub(super) fn matsense(
 }
 
 /// What a byte makes of a frame.
-#[derive(PartialEq)]
 enum Part {
     More,
-    Whole,
-    Torn,
+    Whole(Vec<u8>),
+    Torn { bytes: Vec<u8>, found: usize },
 }
 
 /// A frame between an end and the next one.
-#[expect(clippy::struct_excessive_bools, reason = "the states of two framings")]
 struct SplitFrame {
     framing: &'static Framing,
     cells: usize,
-    /// The cells of the frame so far, at most as many as it has.
+    /// The cells of the frame so far, at most as many as it has; a wrong escape is none.
     values: Vec<u8>,
     found: usize,
     /// Whether an end or a beginning has come: what precedes it may be the rest of a frame.
     is_synced: bool,
     is_inside: bool,
     is_escaped: bool,
-    is_broken: bool,
-    /// Whether the frame has ended, so that the next byte begins another one.
-    is_over: bool,
 }
 
 impl SplitFrame {
@@ -443,35 +432,31 @@ impl SplitFrame {
             is_synced: false,
             is_inside: framing.open.is_none() && !options.is_joined,
             is_escaped: false,
-            is_broken: false,
-            is_over: false,
         }
     }
 
     fn take(&mut self, byte: u8) -> Part {
-        if std::mem::take(&mut self.is_over) {
-            self.values.clear();
-            (self.found, self.is_escaped, self.is_broken) = (0, false, false);
-        }
         let opens = self.framing.open == Some(byte);
         if opens || byte == self.framing.close {
-            let is_whole = !opens
-                && self.is_inside
-                && !self.is_broken
+            let begins = opens || self.framing.open.is_none();
+            let is_whole = mem::replace(&mut self.is_inside, begins)
                 && !self.is_escaped
+                && !opens
                 && self.found == self.cells;
-            let is_torn = self.is_synced && self.found > 0;
-            (self.is_synced, self.is_over) = (true, true);
-            self.is_inside = opens || self.framing.open.is_none();
-            return match (is_whole, is_torn) {
-                (true, _) => Part::Whole,
-                (false, true) => Part::Torn,
-                (false, false) => Part::More,
+            self.is_escaped = false;
+            let is_synced = mem::replace(&mut self.is_synced, true);
+            let (bytes, found) = (mem::take(&mut self.values), mem::take(&mut self.found));
+            return if is_whole && bytes.len() == found {
+                Part::Whole(bytes)
+            } else if is_synced && found > 0 {
+                Part::Torn { bytes, found }
+            } else {
+                Part::More
             };
         }
         let escape = self.framing.escape.filter(|_| self.is_inside);
         let value = match escape {
-            Some((_, cells)) if std::mem::take(&mut self.is_escaped) => {
+            Some((_, cells)) if mem::take(&mut self.is_escaped) => {
                 cells.get(usize::from(byte)).copied()
             }
             Some((mark, _)) if mark == byte => {
@@ -482,7 +467,6 @@ impl SplitFrame {
             _ if !self.is_inside && b"\r\n".contains(&byte) => return Part::More,
             _ => Some(byte),
         };
-        self.is_broken |= value.is_none();
         self.found += 1;
         if self.values.len() < self.cells {
             self.values.extend(value);

@@ -89,22 +89,6 @@ impl FromStr for TimeColumn {
     }
 }
 
-impl ReadOptions {
-    /// Sets the size of a frame, for files that do not state it.
-    #[must_use]
-    pub fn with_size(mut self, size: FrameSize) -> Self {
-        self.size = Some(size);
-        self
-    }
-
-    /// Lets wrong frames be left out.
-    #[must_use]
-    pub fn leaving_out(mut self) -> Self {
-        self.leaves_out = true;
-        self
-    }
-}
-
 /// The name of a channel without a name.
 pub(crate) const UNNAMED_CHANNEL: &str = "unnamed";
 
@@ -143,6 +127,14 @@ pub struct ChannelInfo {
 }
 
 impl ChannelInfo {
+    /// A channel of which only the size is known.
+    pub(super) fn of_size(size: FrameSize) -> Self {
+        Self {
+            size: Some(size),
+            ..Self::default()
+        }
+    }
+
     /// Returns the name by which a channel is listed and chosen: `unnamed` if the recording gives it none.
     pub fn shown_name(&self) -> &str {
         self.name.as_deref().unwrap_or(UNNAMED_CHANNEL)

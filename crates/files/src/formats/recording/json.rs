@@ -96,10 +96,7 @@ pub(super) fn read(
             Ok(line) => {
                 let size = frame.size();
                 let name = line.channel.as_ref().map(Name::text);
-                let channel = sink.channel(name.as_deref(), || ChannelInfo {
-                    size: Some(size),
-                    ..ChannelInfo::default()
-                })?;
+                let channel = sink.channel(name.as_deref(), || ChannelInfo::of_size(size))?;
                 let before = *sizes.entry(channel).or_insert(size);
                 if before == size {
                     let clock = &mut sink.state.clock;
@@ -201,7 +198,7 @@ impl FrameLine {
         let mut others = self.others.iter();
         let (unit, value) = others.find_map(|(name, value)| Some((time_name(name)?, value)))?;
         if unit.is_some() {
-            clock.set_unit(unit);
+            clock.unit = unit;
         }
         match value {
             Value::Number(number) => {

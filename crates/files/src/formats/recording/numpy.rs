@@ -278,10 +278,7 @@ fn report(
     let mut channels = Vec::new();
     for cells in &layout.channels {
         let name = array.or(cells.name.as_deref());
-        channels.push(sink.channel(name, || ChannelInfo {
-            size: Some(cells.size),
-            ..ChannelInfo::default()
-        })?);
+        channels.push(sink.channel(name, || ChannelInfo::of_size(cells.size))?);
         let (rows, columns) = (cells.size.rows(), cells.size.columns());
         // Few sensors are that large, so a row may well be a frame.
         let is_large = rows.max(columns) > MAX_SIDE.into();
@@ -311,7 +308,7 @@ fn frames(
     };
     let mut input = ordered.as_slice().chain(input);
     let mut clock = FrameClock::default();
-    clock.set_unit(layout.time.as_ref().and_then(|(_, time)| time.unit));
+    clock.unit = layout.time.as_ref().and_then(|(_, time)| time.unit);
     let (mut frame, mut record) = (Frame::default(), Vec::new());
     for number in 0..layout.frames {
         record.clear();
@@ -510,7 +507,7 @@ fn times<R: Read + Seek>(
         return Err(ReadError::new(message));
     }
     let mut clock = FrameClock::default();
-    clock.set_unit(time.unit);
+    clock.unit = time.unit;
     let times = bytes
         .chunks_exact(size)
         .map(|bytes| time.seconds(bytes, &mut clock))

@@ -81,7 +81,8 @@ impl StreamReader {
         let size = options.size.or(options.stream_size);
         let options = ReadOptions {
             size,
-            ..options.clone().leaving_out()
+            leaves_out: true,
+            ..options.clone()
         };
         Self {
             format: options.format,

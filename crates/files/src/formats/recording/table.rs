@@ -288,7 +288,7 @@ impl Table<'_, '_> {
                 (Ok(true), Some(mut layout)) => {
                     layout.is_parted |= layout.in_rows && self.options.is_joined;
                     self.tell(&layout)?;
-                    self.sink.state.clock.set_unit(layout.time_unit);
+                    self.sink.state.clock.unit = layout.time_unit;
                     return Ok(Some(layout));
                 }
                 (Ok(_), Some(_)) => {}

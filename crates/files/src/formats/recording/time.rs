@@ -126,14 +126,6 @@ pub(in crate::formats) enum Time {
 }
 
 impl Time {
-    /// Reads the time in a field whose value is `number`.
-    pub(super) fn read(field: &[u8], number: f64, unit: TimeUnit) -> Self {
-        match picoseconds(field, unit) {
-            Some(exact) => Self::Picoseconds(exact),
-            None => Self::Seconds(unit.seconds(number)),
-        }
-    }
-
     pub(super) fn of_whole(whole: i128, unit: TimeUnit) -> Self {
         Self::Picoseconds(whole * i128::from(unit.picoseconds()))
     }
@@ -313,18 +305,13 @@ fn two_digits(text: &str, most: i32) -> Option<i32> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::formats) struct FrameClock {
     /// The unit of numbers; None if it is not named, until the size of the first number decides it.
-    unit: Option<TimeUnit>,
+    pub(super) unit: Option<TimeUnit>,
     start: Option<Time>,
     midnights: Midnights,
     assumed: Option<TimeUnit>,
 }
 
 impl FrameClock {
-    /// Sets the unit of the numbers to come; None if nothing names it.
-    pub(super) fn set_unit(&mut self, unit: Option<TimeUnit>) {
-        self.unit = unit;
-    }
-
     /// Returns the unit of a number. If nothing names it, the size of the first number decides it for all.
     pub(super) fn unit(&mut self, number: f64) -> TimeUnit {
         if let Some(unit) = self.unit {
@@ -339,7 +326,8 @@ impl FrameClock {
     /// Returns the time in a field whose value is `number`.
     pub(super) fn number(&mut self, field: &[u8], number: f64) -> Time {
         let unit = self.unit(number);
-        Time::read(field, number, unit)
+        let exact = picoseconds(field, unit).map(Time::Picoseconds);
+        exact.unwrap_or(Time::Seconds(unit.seconds(number)))
     }
 
     /// Returns the time of a timestamp. Must be called once for each timestamp, in their order.

@@ -221,10 +221,7 @@ pub(in crate::formats::recording) fn read(
             match read {
                 Ok(size) => {
                     before = Some(size);
-                    let info = || ChannelInfo {
-                        size: Some(size),
-                        ..ChannelInfo::default()
-                    };
+                    let info = || ChannelInfo::of_size(size);
                     let channel = sink.channel(None, info)?;
                     frame.reset(size);
                     frame.values_mut().copy_from_slice(whole.cells());
