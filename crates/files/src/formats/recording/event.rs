@@ -371,7 +371,7 @@ impl<'a> Sink<'a> {
     pub(in crate::formats) fn unread_time(
         &mut self,
         channel: usize,
-        text: String,
+        text: &str,
     ) -> Result<(), Stop> {
         if std::mem::replace(&mut self.state.lacks_time, true) {
             return Ok(());

@@ -652,7 +652,7 @@ impl Table<'_, '_> {
                 self.sink.note(&note)?;
             }
             if let Some(text) = unread.take() {
-                self.sink.unread_time(channel, text)?;
+                self.sink.unread_time(channel, &text)?;
             }
             frame.time = time;
             frame.label.clone_from(&taken.label);
