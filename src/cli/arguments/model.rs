@@ -142,7 +142,7 @@ fn positions() -> Arg {
 fn parse_positions(text: &str) -> Result<CellPositions, &'static str> {
     let number = text.trim().parse::<u8>().ok();
     number
-        .and_then(|number| CellPositions::new(number))
+        .and_then(CellPositions::new)
         .ok_or("expected 1, 2, 4, 5, 10, 20, 25, 50 or 100")
 }
 

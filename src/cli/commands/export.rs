@@ -52,7 +52,7 @@ impl Export {
         pitch: Option<f64>,
     ) -> Result<Begun, CliError> {
         let mut drawing = Drawing::new(imprint);
-        drawing.title = title.to_owned();
+        title.clone_into(&mut drawing.title);
         drawing.heat = heat.cloned();
         drawing.pitch_mm = pitch;
         self.begin_with(&drawing)

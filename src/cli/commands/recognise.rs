@@ -322,7 +322,12 @@ const NO_IMPRINT: &str = "imprint: null, as of a frame without a threshold; set 
 #[derive(Deserialize)]
 #[serde(expecting = "an object with an imprint, touches or a frame")]
 struct LineKeys {
+    /// The inner value is None for `null`, as of a frame without a threshold.
     #[serde(default, deserialize_with = "given")]
+    #[expect(
+        clippy::option_option,
+        reason = "a missing key and null have messages of their own"
+    )]
     imprint: Option<Option<Imprint>>,
     touches: Option<Vec<Imprint>>,
     frame: Option<Box<RawValue>>,

@@ -297,7 +297,7 @@ fn fill_sensor(
 ) -> Result<(), Refusal> {
     let (is_filled, found) = if let SettingKind::Format { fill } = row.kind {
         let name = string(value)?;
-        let format = Format::of_stream(&name).ok();
+        let format = Format::of_stream(name).ok();
         let is_known = format.is_some() || name == AUTO;
         (is_known && fill(sensors, FormatSetting(format)), name)
     } else {

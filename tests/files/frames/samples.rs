@@ -52,8 +52,10 @@ const SAMPLES: [(&str, &str, bool, Option<f64>); 14] = [
 
 /// Reads a sample, or a part of one, with the flags that it needs.
 fn read_sample(name: &str, bytes: &[u8], named: bool) -> Recorded {
-    let mut options = ReadOptions::default();
-    options.size = named.then(|| frame_size(4, 5));
+    let mut options = ReadOptions {
+        size: named.then(|| frame_size(4, 5)),
+        ..ReadOptions::default()
+    };
     // Behind the cells are a number and milliseconds.
     if name == "plain.csv" {
         options.label_column = "21".parse().ok();
