@@ -36,37 +36,68 @@ pub enum FigureKind {
     Octagon,
 }
 
-named!(
-    FigureKind,
-    "figure",
-    [
-        Ellipse "ellipse",
-        Rectangle "rectangle",
-        Triangle "triangle",
-        Pentagon "pentagon",
-        Hexagon "hexagon",
-        Heptagon "heptagon",
-        Octagon "octagon",
-    ]
-);
+/// All that tells the kinds apart; forms, files, flags and checks follow from it.
+struct Kind {
+    name: &'static str,
+    /// The sizes, then position, angle and thickness.
+    parameters: &'static [Parameter],
+    /// 0 for an ellipse.
+    corners: u8,
+}
 
-impl FigureKind {
-    /// The number of corners; 0 for an ellipse.
-    fn corners(self) -> u8 {
-        match self {
-            Self::Ellipse => 0,
-            Self::Triangle => 3,
-            Self::Rectangle => 4,
-            Self::Pentagon => 5,
-            Self::Hexagon => 6,
-            Self::Heptagon => 7,
-            Self::Octagon => 8,
+/// The kinds in the order of [`FigureKind`].
+const KINDS: [Kind; 7] = {
+    use Parameter::{Angle, Length, RadiusX, RadiusY, Side, Thickness, Width, X0, Y0};
+    const fn regular(name: &'static str, corners: u8) -> Kind {
+        Kind {
+            name,
+            parameters: &[Side, X0, Y0, Angle, Thickness],
+            corners,
         }
     }
+    [
+        Kind {
+            name: "ellipse",
+            parameters: &[RadiusX, RadiusY, X0, Y0, Angle, Thickness],
+            corners: 0,
+        },
+        Kind {
+            name: "rectangle",
+            parameters: &[Length, Width, X0, Y0, Angle, Thickness],
+            corners: 4,
+        },
+        regular("triangle", 3),
+        regular("pentagon", 5),
+        regular("hexagon", 6),
+        regular("heptagon", 7),
+        regular("octagon", 8),
+    ]
+};
 
-    /// Returns the names of all kinds, in the order of [`Self::ALL`].
+impl FigureKind {
+    /// All seven kinds, in the paper's order.
+    pub const ALL: &'static [Self] = &[
+        Self::Ellipse,
+        Self::Rectangle,
+        Self::Triangle,
+        Self::Pentagon,
+        Self::Hexagon,
+        Self::Heptagon,
+        Self::Octagon,
+    ];
+
+    fn row(self) -> &'static Kind {
+        &KINDS[self as usize]
+    }
+
+    /// Returns the names of all kinds, in the same order.
     pub fn names() -> Vec<&'static str> {
         Self::ALL.iter().map(|kind| kind.name()).collect()
+    }
+
+    /// Returns the name of the kind, as in files, in flags and on the screen.
+    pub fn name(self) -> &'static str {
+        self.row().name
     }
 
     /// Returns a hint for a word that means a figure but is not its name: "circle" or "square".
@@ -81,12 +112,7 @@ impl FigureKind {
     /// Returns the parameters of the kind in the order of forms: sizes, position, angle, thickness. A figure may lack
     /// the thickness.
     pub fn parameters(self) -> &'static [Parameter] {
-        use Parameter::{Angle, Length, RadiusX, RadiusY, Side, Thickness, Width, X0, Y0};
-        match self {
-            Self::Ellipse => &[RadiusX, RadiusY, X0, Y0, Angle, Thickness],
-            Self::Rectangle => &[Length, Width, X0, Y0, Angle, Thickness],
-            _ => &[Side, X0, Y0, Angle, Thickness],
-        }
+        self.row().parameters
     }
 
     /// Returns the one or two parameters that give the figure's size.
@@ -95,6 +121,8 @@ impl FigureKind {
         &own[..own.len() - 4]
     }
 }
+
+named!(FigureKind, "figure", FigureKind::ALL);
 
 /// A figure on the sensory plane. Its values are always finite, and its sizes and its thickness are above 0.
 ///
@@ -270,7 +298,7 @@ impl Figure {
     /// The number of rotations within a full turn that map the figure onto itself; None if all do.
     pub(crate) fn rotations(&self) -> Option<u32> {
         let [one, other] = self.sizes();
-        match self.kind.corners() {
+        match self.kind.row().corners {
             _ if one != other => Some(2),
             0 => None,
             corners => Some(corners.into()),
@@ -279,7 +307,7 @@ impl Figure {
 
     /// The sides of the bounding rectangle before rotation; None for a regular polygon, whose sides are no decimals.
     pub(crate) fn box_sides(&self) -> Option<[f64; 2]> {
-        match self.kind.corners() {
+        match self.kind.row().corners {
             0 => Some(self.sizes().map(|radius| 2.0 * radius)),
             4 => Some(self.sizes()),
             _ => None,
@@ -294,7 +322,7 @@ impl Figure {
     /// The thickness of a figure of these sizes, if it leaves room for a hole, and the least thickness that does not.
     fn hole<T: Real>(&self, [one, other]: [T; 2]) -> Option<(T, T)> {
         let thickness = T::decimal(self.get(Parameter::Thickness)?);
-        let most = match self.kind.corners() {
+        let most = match self.kind.row().corners {
             0 => one.min(other),
             4 => one.min(other) * T::HALF,
             corners => {
@@ -383,7 +411,7 @@ impl Solid for Figure {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
         use Parameter::{Angle, X0, Y0};
         let place = [X0, Y0, Angle].map(|parameter| T::decimal(self.values.of(parameter)));
-        match self.kind.corners() {
+        match self.kind.row().corners {
             0 | 4 => self.draw_in_box(place, pen),
             corners => self.draw_regular(corners, place, pen),
         }
