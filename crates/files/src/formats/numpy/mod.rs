@@ -64,7 +64,7 @@ impl Number {
         let &[order, kind, size] = code.as_bytes() else {
             return None;
         };
-        (b"<>|=".contains(&order) && KNOWN.contains(&&[kind, size])).then_some(Self {
+        (b"<>|=".contains(&order) && KNOWN.contains(&&[kind, size])).then(|| Self {
             kind,
             size: size - b'0',
             big_endian: order == b'>',
