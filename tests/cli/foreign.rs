@@ -72,7 +72,6 @@ np.savetxt('default.csv', a, delimiter=',')
 np.savetxt('short.csv', a, delimiter=';', fmt='%d')
 np.savetxt('spaces.dat', a)
 np.savetxt('headed.csv', a, delimiter=',', fmt='%g', header='sixteen columns')
-np.savetxt('named.csv', a, delimiter=',', fmt='%g', header=','.join(f'c{i}' for i in range(16)), comments='')
 np.save('half.npy', a.astype('<f2'))
 np.save('mask.npy', a.astype('u1') * 255)
 for row in a:
@@ -89,7 +88,6 @@ for row in a:
         "short.csv",
         "spaces.dat",
         "headed.csv",
-        "named.csv",
     ] {
         export(folder.path(), &format!("{name} back.txt --force"));
         let back = std::fs::read_to_string(folder.path().join("back.txt"));
