@@ -115,6 +115,14 @@ fn the_format_of_a_stream_does_not_depend_on_its_pieces() {
         ]
         .concat(),
     );
+    // A long line ends in another piece than it begins in.
+    body("stream")(include_bytes!("found/format_between_line_ends"));
+}
+
+/// The size of a number was computed before its code was found to be unknown.
+#[test]
+fn a_type_code_whose_size_is_no_digit_is_refused() {
+    body("exchange")(include_bytes!("found/npy_size_below_0"));
 }
 
 /// A compressed name of sixteen megabytes takes a few kilobytes: 65,536 topics used up all memory.
