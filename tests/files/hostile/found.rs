@@ -115,8 +115,9 @@ fn the_format_of_a_stream_does_not_depend_on_its_pieces() {
         ]
         .concat(),
     );
-    // A long line ends in another piece than it begins in.
+    // A line ends in another piece than it begins in.
     body("stream")(include_bytes!("found/format_between_line_ends"));
+    body("stream")(include_bytes!("found/format_among_line_ends"));
 }
 
 /// The size of a number was computed before its code was found to be unknown.

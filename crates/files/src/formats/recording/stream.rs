@@ -180,19 +180,18 @@ fn look(
         let is_all = count == 0 || head.len() >= LOOKED_AT;
         loop {
             let rest = &head[seen..head.len().min(LOOKED_AT)];
-            // The same steps however far the pieces reach.
-            let most = STEP.max(seen / 8);
+            // The same steps however far the pieces reach. Markers decide at once.
+            let most = if seen < MARKERS {
+                1
+            } else {
+                STEP.max(seen / 8)
+            };
             let line = rest
                 .iter()
                 .take(most)
                 .position(|&byte| byte == b'\n')
                 .filter(|_| lines < MOST_LINES);
-            // Markers decide at once.
-            let step = match line {
-                _ if seen < MARKERS => 1,
-                Some(end) => end + 1,
-                None => most,
-            };
+            let step = line.map_or(most, |end| end + 1);
             if rest.len() < step {
                 break;
             }
