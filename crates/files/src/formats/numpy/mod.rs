@@ -1,4 +1,4 @@
-//! Arrays in numpy's file formats: NPY, a header and the numbers, and [NPZ](archive), a zip of such files.
+//! Arrays in numpy's file formats: NPY, a header and the numbers, and NPZ, a zip of such files.
 //!
 //! Headers are written in version 1.0 and numbers little-endian, the last axis fastest. Headers of versions 1 to 3 are
 //! read, with numbers of any real type in either byte order and either order of axes, or records of several fields.
