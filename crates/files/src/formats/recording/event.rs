@@ -31,8 +31,8 @@ pub struct ReadOptions {
     /// Whether a wrong frame is reported as [`RecordingEvent::Damage`] and left out, as in a stream or in a file that is
     /// still being written; otherwise the first one ends the reading with its error.
     pub leaves_out: bool,
-    /// Whether the first byte begins a frame, as that of a file does; a stream may have been joined anywhere. What
-    /// precedes its first boundary between frames is dropped.
+    /// Whether the first byte may lie inside a frame, as in a stream that was joined anywhere. What precedes its first
+    /// boundary between frames is dropped.
     pub is_joined: bool,
 }
 
