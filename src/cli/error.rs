@@ -76,8 +76,6 @@ pub(crate) enum CliError {
     BuiltInSet { name: Name },
     #[error("{name} is built in and cannot be deleted")]
     BuiltInModel { name: Name },
-    #[error("{0}")]
-    NoSet(String),
     #[error("{name}: none of its imprints fits on {size} taxels")]
     NoTouch { name: String, size: MatrixSize },
     #[error("no model named {name:?}; 'taxel model list' shows all{near}")]

@@ -221,7 +221,9 @@ impl Surroundings {
         let model = asked.naming.find(&self.shelf)?;
         let recording = frames::open(asked)?;
         let progress = |poses| ProgressDisplay::new(poses, false, self.charset);
-        let model = model.map(|model| model.ready(&progress)).transpose()?;
+        let model = model
+            .map(|model| model::ready(model, &progress))
+            .transpose()?;
         let noise = asked.naming.noise_with(processing.view.mask.as_ref());
         let mut answers = BufWriter::new(io::stdout().lock());
         let output = FramesOutput {

@@ -12,12 +12,12 @@ use taxel_core::recognition::{Classifier, ClassifierEvaluation, Evaluation, Mode
 use taxel_files::formats::file::has_ending;
 use taxel_files::formats::value::percent;
 use taxel_files::formats::{ConfusionMap, json};
-use taxel_files::storage::check_writable;
+use taxel_files::storage::{FoundModel, check_writable};
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::{ConfusionArguments, Evaluated};
 use crate::cli::commands::export::{put, written};
-use crate::cli::commands::model::{self, FoundModel};
+use crate::cli::commands::model;
 use crate::cli::commands::noise;
 use crate::cli::error::{CliError, MOST_PAIRED};
 use crate::cli::input::shapes::Shelf;
@@ -33,7 +33,9 @@ pub(crate) fn confusion(
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
     check(asked, &model)?;
-    let model = model.ready(&|poses| ProgressDisplay::new(poses, asked.quiet, charset))?;
+    let model = model::ready(model, &|poses| {
+        ProgressDisplay::new(poses, asked.quiet, charset)
+    })?;
     let as_json = asked.form == EvaluationForm::Json;
     let text = match &asked.of {
         Evaluated::Imprints => shown(asked, &Evaluation::of(&model), None, charset),

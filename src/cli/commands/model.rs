@@ -17,13 +17,12 @@ use taxel_core::recognition::{
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::sweep::Shard;
-use taxel_files::ReadError;
 use taxel_files::formats::value::{counted, grouped, percent};
 use taxel_files::formats::{Name, json};
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
-    ModelCache, ModelChoice, ModelFolder, cached_or_trained, check_writable, load_model,
-    load_whole_model, model_hash, save_model, unknown_set,
+    FoundModel, ModelCache, ModelChoice, ModelFolder, Models, check_writable, load_model,
+    model_hash, save_model,
 };
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
@@ -146,101 +145,34 @@ fn stored(shelf: &Shelf) -> Result<Vec<(Name, PathBuf)>, CliError> {
     Ok(models.list()?)
 }
 
-/// Returns true if there is a model of this name in the library. The file is not opened: a damaged model counts
-/// too.
-pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
-    folder(shelf).is_ok_and(|models| models.find(name).is_some())
-}
-
-/// A model that was found but may have to be trained first, so that other errors can be reported before a training.
-#[derive(Debug)]
-pub(crate) enum FoundModel {
-    Read(Box<Model>),
-    BuiltIn(Training<'static>),
-}
-
-impl FoundModel {
-    pub(crate) fn shapes(&self) -> &[NamedShape] {
-        match self {
-            Self::Read(model) => model.shapes(),
-            Self::BuiltIn(training) => training.shapes(),
-        }
-    }
-
-    pub(crate) fn sensor(&self) -> Sensor {
-        match self {
-            Self::Read(model) => *model.sensor(),
-            Self::BuiltIn(training) => training.head().sensor,
-        }
-    }
-
-    /// Returns the model. A built-in set comes from the user's cache, or if it is not there, it is trained, which
-    /// takes some seconds; `display` makes the display of its progress. Signals are not caught meanwhile: nothing
-    /// would have to be removed.
-    pub(crate) fn ready(self, display: &dyn Fn(u64) -> ProgressDisplay) -> Result<Model, CliError> {
-        let training = match self {
-            Self::Read(model) => return Ok(*model),
-            Self::BuiltIn(training) => training,
-        };
-        let cache = ModelCache::of_user();
-        cached_or_trained(cache.as_ref(), training, |training| {
-            let memory = MemoryGuard::new(
-                None,
-                "train a model of fewer shapes or coarser steps (taxel model train)",
-            );
-            let display = display(training.poses());
-            let model = memory.limit(&display, |progress| training.with_progress(progress).run());
-            Ok(model.map_err(CliError::Memory)??)
-        })
+/// The models that a command may name.
+pub(crate) fn models(shelf: &Shelf) -> Models {
+    Models {
+        folder: folder(shelf).ok(),
+        cache: ModelCache::of_user(),
     }
 }
 
 pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<FoundModel, CliError> {
-    found(which, shelf, &load_whole_model)
+    let found = models(shelf).find(ModelChoice::from_text(which));
+    found.map_err(CliError::Archive)
 }
 
-fn found(
-    which: &OsStr,
-    shelf: &Shelf,
-    load: &dyn Fn(&Path) -> Result<Model, ReadError>,
-) -> Result<FoundModel, CliError> {
-    let path = match choice(which, shelf)? {
-        ModelChoice::Stored(name) => {
-            let path = folder(shelf)?.find(&name);
-            path.ok_or_else(|| unknown(which, shelf))?
-        }
-        ModelChoice::File(path) => path,
-        own => {
-            let training = own.training().ok_or_else(|| unknown(which, shelf))?;
-            return Ok(FoundModel::BuiltIn(training?));
-        }
-    };
-    Ok(FoundModel::Read(Box::new(
-        load(&path).map_err(CliError::Archive)?,
-    )))
-}
-
-pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliError> {
-    let name = which.to_str().and_then(|name| Name::new(name).ok());
-    // Built-in sets come before models and files of their names, so that nothing changes the meaning of the default;
-    // `./figures` is the file.
-    let is_there = |choice: &ModelChoice| match choice {
-        ModelChoice::Stored(name) => is_kept(name, shelf),
-        _ => true,
-    };
-    if let Some(choice) = name.map(ModelChoice::from_name).filter(is_there) {
-        return Ok(choice);
-    }
-    // A broken link is a file, too: the reason why it cannot be opened is reported.
-    if Path::new(which).symlink_metadata().is_ok() {
-        return Ok(ModelChoice::File(which.into()));
-    }
-    Err(unknown(which, shelf))
-}
-
-fn unknown(which: &OsStr, shelf: &Shelf) -> CliError {
-    let stored = folder(shelf).map_or_else(|_| Vec::new(), |models| models.names());
-    CliError::NoSet(unknown_set(&which.to_string_lossy(), &stored))
+/// Returns a model that was found. A built-in set that is not in the cache is trained, which takes some seconds;
+/// `display` makes the display of its progress. Signals are not caught meanwhile: nothing would have to be removed.
+pub(crate) fn ready(
+    found: FoundModel,
+    display: &dyn Fn(u64) -> ProgressDisplay,
+) -> Result<Model, CliError> {
+    found.ready(|training| {
+        let memory = MemoryGuard::new(
+            None,
+            "train a model of fewer shapes or coarser steps (taxel model train)",
+        );
+        let display = display(training.poses());
+        let model = memory.limit(&display, |progress| training.with_progress(progress).run());
+        Ok(model.map_err(CliError::Memory)??)
+    })
 }
 
 /// Shows the card of a model, in words or as a JSON object. Both include the evaluation of one touch
@@ -251,8 +183,15 @@ pub(crate) fn show(
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let model = found(which, shelf, &load_model)?;
-    let model = model.ready(&|poses| ProgressDisplay::new(poses, false, charset))?;
+    let models = models(shelf);
+    let choice = models.locate(ModelChoice::from_text(which));
+    let choice = choice.map_err(CliError::Archive)?;
+    let model = match models.file(&choice) {
+        Some(path) => load_model(&path).map_err(CliError::Archive)?,
+        None => ready(find(which, shelf)?, &|poses| {
+            ProgressDisplay::new(poses, false, charset)
+        })?,
+    };
     let limit = Evaluation::of(&model);
     if json {
         return Ok(json::ascii(&card_json(&model, &limit)) + "\n");

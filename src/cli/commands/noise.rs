@@ -294,7 +294,9 @@ pub(crate) fn touches(
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
-    let model = model.ready(&|poses| ProgressDisplay::new(poses, asked.quiet, charset))?;
+    let model = model::ready(model, &|poses| {
+        ProgressDisplay::new(poses, asked.quiet, charset)
+    })?;
     let signals = Signals::catch()?;
     let all = asked.runs * model.shapes().len() as u64;
     let display = ProgressDisplay::counting("runs", all, asked.quiet, charset);

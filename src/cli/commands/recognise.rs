@@ -21,10 +21,11 @@ use taxel_files::formats::job::{FrameRows, RuleRecord};
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{Content, json};
 use taxel_files::memory::MemoryGuard;
+use taxel_files::storage::FoundModel;
 
 use crate::cli::arguments::frames::NamingArguments;
 use crate::cli::arguments::recognise::RecogniseArguments;
-use crate::cli::commands::model::{self, FoundModel};
+use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::lines::{self, LineInput, MAX_LINE};
@@ -45,7 +46,7 @@ pub(crate) fn recognise(
     if let Some(expected) = &asked.expect {
         check_expected(expected, model.shapes())?;
     }
-    let model = model.ready(&|poses| ProgressDisplay::new(poses, false, charset))?;
+    let model = model::ready(model, &|poses| ProgressDisplay::new(poses, false, charset))?;
     let recogniser = Recogniser {
         asked,
         model: &model,

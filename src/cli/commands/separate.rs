@@ -14,7 +14,6 @@ use taxel_core::progress::Progress;
 use taxel_core::quote::shortened_message;
 use taxel_core::recognition::{CellPositions, GridSteps, Model, Separation, TrainingError};
 use taxel_core::sensor::Sensor;
-use taxel_files::formats::Name;
 use taxel_files::formats::file::has_ending;
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{ModelChoice, check_writable};
@@ -173,7 +172,9 @@ fn set(
         && is_model(what, shelf)
     {
         let model = model::find(what, shelf)?;
-        let model = model.ready(&|poses| ProgressDisplay::new(poses, asked.quiet, charset))?;
+        let model = model::ready(model, &|poses| {
+            ProgressDisplay::new(poses, asked.quiet, charset)
+        })?;
         let positions = asked.positions.or_else(|| positions_of(&model));
         let positions = positions.unwrap_or(CellPositions::FINE);
         for text in departures(&model, asked) {
@@ -204,14 +205,11 @@ fn set(
 /// over a shape of the library of the same name, and the shape over a built-in set; a file is a model if it ends in
 /// `.npz`.
 fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
-    let Some(name) = what.to_str().and_then(|name| Name::new(name).ok()) else {
-        return has_ending(what, "npz");
-    };
-    let built_in = || {
-        let choice = ModelChoice::from_name(name.clone());
-        ModelChoice::BUILT_IN.contains(&choice) && shelf.imprint(name.as_str()).is_err()
-    };
-    has_ending(what, "npz") || model::is_kept(&name, shelf) || built_in()
+    match model::models(shelf).locate(ModelChoice::from_text(what)) {
+        Ok(ModelChoice::Stored(_)) => true,
+        Ok(ModelChoice::File(_)) | Err(_) => has_ending(what, "npz"),
+        Ok(built_in) => shelf.imprint(built_in.name()).is_err(),
+    }
 }
 
 fn departures(model: &Model, asked: &SeparateArguments) -> Vec<String> {

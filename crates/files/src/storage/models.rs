@@ -13,6 +13,7 @@ use taxel_core::quote::{did_you_mean, shortened};
 use taxel_core::recognition::{
     GridSteps, Model, NamedShape, Training, TrainingError, default_figures, equal_figures,
 };
+use taxel_core::sensor::Sensor;
 use taxel_core::sweep::Shard;
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -24,6 +25,7 @@ use crate::storage::error::FileError;
 use crate::storage::file::{
     self, Existing, check_writable, make_folder, open, paths_in, sync_folder, wrong,
 };
+use crate::storage::library::below_home;
 use crate::storage::shipped;
 
 /// The folder of the models in that of a library.
@@ -283,9 +285,11 @@ impl ModelChoice {
         own.cloned().unwrap_or(Self::Stored(name))
     }
 
-    /// Reads the text after `:recognise`: the name of a set or model, otherwise the path of a file.
-    pub fn from_text(text: &str) -> Self {
-        Name::new(text).map_or_else(|_| Self::File(text.into()), Self::from_name)
+    /// Reads what a user types for a model: the name of a set or model, otherwise the path of a file.
+    pub fn from_text(text: impl AsRef<OsStr>) -> Self {
+        let text = text.as_ref();
+        let name = text.to_str().and_then(|text| Name::new(text).ok());
+        name.map_or_else(|| Self::File(text.into()), Self::from_name)
     }
 
     fn built_in(&self) -> Option<BuiltIn> {
@@ -341,6 +345,113 @@ impl fmt::Display for ModelChoice {
     }
 }
 
+/// The models that can be chosen: built-in sets, those of a library, and files.
+#[derive(Clone, Debug, Default)]
+pub struct Models {
+    /// The stored models; None without a library.
+    pub folder: Option<ModelFolder>,
+    /// Where trained built-in sets are kept; None to train them each time.
+    pub cache: Option<ModelCache>,
+}
+
+impl Models {
+    /// The names of the stored models.
+    pub fn names(&self) -> Vec<Name> {
+        self.folder.iter().flat_map(ModelFolder::names).collect()
+    }
+
+    /// The file of a choice, if it is read from one. A path may begin with `~`.
+    pub fn file(&self, choice: &ModelChoice) -> Option<PathBuf> {
+        match choice {
+            ModelChoice::Stored(name) => self.folder.as_ref()?.find(name),
+            ModelChoice::File(path) => {
+                let below_home = path.to_str().and_then(below_home);
+                Some(below_home.unwrap_or_else(|| path.clone()))
+            }
+            _ => None,
+        }
+    }
+
+    /// What a choice means here: a name that no stored model has may be that of a file in the working folder.
+    ///
+    /// # Errors
+    /// If there is neither a model nor a file of that name.
+    pub fn locate(&self, choice: ModelChoice) -> Result<ModelChoice, ReadError> {
+        let choice = match &choice {
+            ModelChoice::Stored(name) if self.file(&choice).is_none() => {
+                ModelChoice::File(name.as_str().into())
+            }
+            _ => choice,
+        };
+        match (self.file(&choice), &choice) {
+            // A broken link is a file, too: the reason why it cannot be opened is reported.
+            (Some(file), ModelChoice::File(path)) if file.symlink_metadata().is_err() => {
+                let unknown = unknown_set(&path.to_string_lossy(), &self.names());
+                Err(ReadError::new(unknown))
+            }
+            _ => Ok(choice),
+        }
+    }
+
+    /// Reads the model of a file, or prepares the training of a built-in set.
+    ///
+    /// # Errors
+    /// Those of [`Self::locate`] and [`load_whole_model`].
+    pub fn find(&self, choice: ModelChoice) -> Result<FoundModel, ReadError> {
+        let choice = self.locate(choice)?;
+        if let Some(path) = self.file(&choice) {
+            return Ok(FoundModel::Read(Box::new(load_whole_model(&path)?)));
+        }
+        match choice.training() {
+            Some(Ok(training)) => Ok(FoundModel::BuiltIn(training, self.cache.clone())),
+            Some(Err(error)) => Err(ReadError::new(error.to_string())),
+            // It was deleted in between.
+            None => Err(ReadError::new(unknown_set(choice.name(), &self.names()))),
+        }
+    }
+}
+
+/// A model that was found but may have to be trained first, so that other errors can be reported before a training.
+#[derive(Clone, Debug)]
+pub enum FoundModel {
+    /// From a file.
+    Read(Box<Model>),
+    /// A built-in set, and the cache that may have its model.
+    BuiltIn(Training<'static>, Option<ModelCache>),
+}
+
+impl FoundModel {
+    /// The shapes in their order.
+    pub fn shapes(&self) -> &[NamedShape] {
+        match self {
+            Self::Read(model) => model.shapes(),
+            Self::BuiltIn(training, _) => training.shapes(),
+        }
+    }
+
+    /// The sensor that touched them.
+    pub fn sensor(&self) -> Sensor {
+        match self {
+            Self::Read(model) => *model.sensor(),
+            Self::BuiltIn(training, _) => *training.grids()[0].sensor(),
+        }
+    }
+
+    /// The model itself: as it was read, from the cache, or else made by `train`.
+    ///
+    /// # Errors
+    /// The errors of `train`.
+    pub fn ready<E>(
+        self,
+        train: impl FnOnce(Training<'static>) -> Result<Model, E>,
+    ) -> Result<Model, E> {
+        match self {
+            Self::Read(model) => Ok(*model),
+            Self::BuiltIn(training, cache) => cached_or_trained(cache.as_ref(), training, train),
+        }
+    }
+}
+
 /// The message for an unknown set; it lists the built-in sets and the stored models.
 pub fn unknown_set(name: &str, stored: &[Name]) -> String {
     let own = ModelChoice::BUILT_IN.iter().map(ModelChoice::name);
@@ -358,7 +469,6 @@ mod tests {
     use taxel_core::figure::Figure;
     use taxel_core::pose::{Anchor, Axis, Ranges};
     use taxel_core::recognition::Evaluation;
-    use taxel_core::sensor::Sensor;
 
     use super::*;
 

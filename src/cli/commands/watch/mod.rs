@@ -38,6 +38,7 @@ use taxel_files::acquire::{
 };
 use taxel_files::formats::recording::{ChannelChoice, ChannelInfo, StreamCounts, no_channel};
 use taxel_files::formats::value::counted;
+use taxel_files::storage::ModelChoice;
 use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::arguments::frames::WatchArguments;
@@ -129,7 +130,9 @@ fn line_writer(
         let Some(found) = found else {
             return lines.write(&mut |_, _| ());
         };
-        let model = found.ready(&|poses| ProgressDisplay::new(poses, true, Charset::Ascii))?;
+        let model = model::ready(found, &|poses| {
+            ProgressDisplay::new(poses, true, Charset::Ascii)
+        })?;
         let namer = FrameNamer::new(&model, noise.as_ref());
         lines.write(&mut |line, imprint| namer.extend(line, imprint))
     })
@@ -149,8 +152,10 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
     request.processing.least = asked.processing.least;
     request.tare = asked.processing.tare.unwrap_or_default();
     request.own_tare = asked.processing.tare.is_none();
-    let model = asked.naming.model.as_ref();
-    request.model = model.map(|model| model::choice(model, shelf)).transpose()?;
+    if let Some(model) = &asked.naming.model {
+        let choice = model::models(shelf).locate(ModelChoice::from_text(model));
+        request.model = Some(choice.map_err(CliError::Archive)?);
+    }
     request.noise = asked.naming.noise;
     request.write = asked.write.clone().map(|path| (path, asked.existing));
     Ok(request)
