@@ -23,10 +23,9 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::app::state::App;
+use crate::tui::grid::{CellSize, Grid, Look, RULER, Window};
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::matrix::layout::{AxisWindow, RULER, TaxelGrid, TaxelSize};
-use crate::tui::matrix::view;
 use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::theme::{Role, Theme, spelling};
 use crate::tui::widget::write;
@@ -144,23 +143,23 @@ impl Comparison {
         }
     }
 
-    fn grid(&self, area: Rect) -> TaxelGrid {
+    fn grid(&self, area: Rect) -> Grid {
         let [first, _] = &*self.imprints;
         let room = area.width.saturating_sub(RULER);
         let size = if 2 * u16::from(first.columns()) <= room {
-            TaxelSize::Square(1)
+            CellSize::Square(1)
         } else {
-            TaxelSize::Narrow
+            CellSize::Narrow
         };
         // A low view has a row before it has numbers of columns.
         let above = if area.height > 2 { 2 } else { 1 };
         let lines = area.height.saturating_sub(above);
-        TaxelGrid {
+        Grid {
             x: area.x + RULER,
             y: area.y + above,
             size,
-            columns: AxisWindow::after(self.left, first.columns(), room / size.columns()),
-            rows: AxisWindow::after(self.top, first.rows(), lines),
+            columns: Window::after(self.left, first.columns(), room / size.columns()),
+            rows: Window::after(self.top, first.rows(), lines),
         }
     }
 
@@ -207,23 +206,21 @@ impl Comparison {
         };
         let title = format!("{meaning}  {arrows}");
         write::text(buffer, area, theme, title.trim_end(), Role::Title);
-        // A number that does not fit would touch the descriptors.
-        let line = write::left_of(write::row(area, 1), grid.x + grid.characters().0);
-        if grid.y > line.y {
-            view::draw_columns(theme, &grid, buffer, line);
+        if grid.y > area.y + 1 {
+            // A number that does not fit would touch the descriptors.
+            grid.draw_columns(theme, buffer, grid.characters().0);
         }
-        view::draw_rows(theme, &grid, buffer, area);
-        for (y, row) in grid.rows.visible() {
-            for (x, column) in grid.columns.visible() {
-                let active = (first.get(column, row), second.get(column, row));
-                let (signs, role) = signs(theme, view, active);
-                for (place, sign) in grid.cell_rect(x, y).positions().zip(signs) {
-                    if let Some(target) = buffer.cell_mut(place) {
-                        target.set_char(sign).set_style(theme.style(role));
-                    }
-                }
+        grid.draw_rows(theme, buffer);
+        grid.draw(buffer, |column, row| {
+            let active = (first.get(column, row), second.get(column, row));
+            let (signs, role) = signs(theme, view, active);
+            let style = theme.style(role);
+            Look {
+                signs,
+                fill: ' ',
+                style,
             }
-        }
+        });
     }
 
     /// Draws the descriptors of both imprints and their differences. If they do not fit, the differences are left

@@ -33,6 +33,8 @@ pub mod history;
 
 pub mod compare;
 
+pub mod grid;
+
 pub mod matrix;
 
 pub mod form;

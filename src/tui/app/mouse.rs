@@ -125,7 +125,10 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         return inside(panes.content).then_some(Target::Panel);
     }
     let grid = app.grid().filter(|_| inside(panes.matrix))?;
-    let (column, row) = grid.taxel(column, row, app.cursor())?;
+    // Of two that share a character, the one with the cursor is meant, otherwise the upper one.
+    let cursor = app.cursor();
+    let own = grid.at(column, row).find(|&taxel| taxel == cursor);
+    let (column, row) = own.or_else(|| grid.at(column, row).next())?;
     let whole = grid.columns.is_whole() && grid.rows.is_whole();
     Some(Target::Taxel(column, row, whole))
 }

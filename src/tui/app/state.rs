@@ -20,13 +20,14 @@ use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::view::Panes;
 use crate::tui::explore::results::Results;
 use crate::tui::form::state::FormMemory;
+use crate::tui::grid::Grid;
 use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::live::message::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
-use crate::tui::matrix::layout::TaxelGrid;
+use crate::tui::matrix::view::grid;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::widget::theme::Theme;
 
@@ -296,10 +297,8 @@ impl App {
         self.display == Display::Imprint && compared.is_none()
     }
 
-    pub(in crate::tui) fn grid(&self) -> Option<TaxelGrid> {
-        let area = self.panes()?.matrix;
-        let (imprint, seen) = (&self.reading().imprint, self.seen());
-        Some(TaxelGrid::of(area, imprint, seen, self.halves()))
+    pub(in crate::tui) fn grid(&self) -> Option<Grid> {
+        Some(grid(self, self.panes()?.matrix))
     }
 
     pub(in crate::tui) fn seen(&self) -> Bounds {

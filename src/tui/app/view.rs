@@ -30,9 +30,8 @@ use crate::tui::app::menu;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::status::{self, title};
-use crate::tui::matrix::layout::{RULER, TaxelSize};
-use crate::tui::matrix::panel;
-use crate::tui::matrix::view::MatrixView;
+use crate::tui::grid::{CellSize, RULER, beside_rulers};
+use crate::tui::matrix::{self, panel};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below, right_of};
 
@@ -51,18 +50,17 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
         return None;
     };
     menu::draw(theme, buffer, &menu::menu(app, panes.menu));
-    let matrix = MatrixView::of(app);
     let covers = |slot| matches!(slot, Slot::Screen | Slot::Body);
     if !app.pane().map(Page::slot).is_some_and(covers) {
         let title = title(app);
         write::text(buffer, panes.title, theme, &title, Role::Text);
     }
-    let panel = |buffer: &mut Buffer, area: Rect| panel::draw(&matrix, theme, buffer, area);
+    let panel = |buffer: &mut Buffer, area: Rect| panel::draw(app, buffer, area);
     let mut cursor = None;
     match (app.pane(), panes.panel) {
         (Some(page), beside) if page.slot() == Slot::Panel => {
             if beside.is_some() || app.narrow_pane == NarrowPane::Matrix {
-                cursor = matrix.draw(theme, buffer, panes.matrix);
+                cursor = matrix::view::draw(app, buffer, panes.matrix);
             }
             if beside.is_some() || app.narrow_pane == NarrowPane::Panel {
                 let area = panes.area(Slot::Panel);
@@ -72,7 +70,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
         }
         (Some(page), _) => {
             if page.slot() == Slot::Form {
-                matrix.draw(theme, buffer, panes.matrix);
+                matrix::view::draw(app, buffer, panes.matrix);
                 if let Some(area) = panes.form_panel {
                     panel(buffer, area);
                 }
@@ -82,11 +80,11 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
             cursor = page.draw(theme, app.keymap(), buffer, area);
         }
         (None, Some(beside)) => {
-            cursor = matrix.draw(theme, buffer, panes.matrix);
+            cursor = matrix::view::draw(app, buffer, panes.matrix);
             panel(buffer, beside);
         }
         (None, None) if app.narrow_pane == NarrowPane::Panel => panel(buffer, panes.content),
-        (None, None) => cursor = matrix.draw(theme, buffer, panes.matrix),
+        (None, None) => cursor = matrix::view::draw(app, buffer, panes.matrix),
     }
     // A name and a command are typed in the line of notices.
     cursor = status::draw(app, buffer, &panes).or(cursor);
@@ -211,13 +209,14 @@ fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
     } else {
         content
     };
-    let fitting = |room: Rect| TaxelSize::fitting(imprint, room, halves);
+    let cells = (imprint.columns(), imprint.rows());
+    let fitting = |room: Rect| CellSize::fitting(cells, beside_rulers(room), halves);
     let size = match (fitting(room), fitting(beside(WIDE_PANEL))) {
-        (TaxelSize::Square(_), large @ TaxelSize::Square(_)) => large,
-        (TaxelSize::Square(_), _) => TaxelSize::Square(1),
+        (CellSize::Square(_), large @ CellSize::Square(_)) => large,
+        (CellSize::Square(_), _) => CellSize::Square(1),
         (small, _) => small,
     };
-    size.matrix_width(imprint).min(room.width)
+    (RULER + size.columns() * u16::from(cells.0)).min(room.width)
 }
 
 fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {

@@ -23,10 +23,10 @@ use crate::tui::app::page::Wheel;
 use crate::tui::explore::message::{ExploreMessage, ListColumn};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::view::ResultsTab;
+use crate::tui::grid::{draw_thumbnail, thumbnail_size};
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::thumbnail;
 use crate::tui::widget::write::{self, narrow};
 
 const VALUE: usize = 8;
@@ -279,7 +279,7 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
     let Some((_, first)) = results.rows_from(results.list.selected()).next() else {
         return;
     };
-    let (width, height) = thumbnail::size(theme, &first.imprint);
+    let (width, height) = thumbnail_size(theme, &first.imprint);
     let (width, height) = (
         width.min(area.width),
         height.min(area.height.saturating_sub(1)),
@@ -307,7 +307,7 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
         };
         let caption = format!("{sign} imprint {}", entry.id);
         write::text(buffer, place, theme, &caption, Role::Key);
-        thumbnail::draw(theme, &entry.imprint, buffer, write::below(place, 1));
+        draw_thumbnail(theme, &entry.imprint, buffer, write::below(place, 1));
     }
 }
 

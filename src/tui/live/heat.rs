@@ -16,13 +16,13 @@ use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
 use taxel_files::formats::value::measured;
 
+use crate::tui::grid::{RULER, Window};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
 use crate::tui::live::trend;
-use crate::tui::matrix::layout::{AxisWindow, RULER};
+use crate::tui::widget::shades;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::thumbnail;
 use crate::tui::widget::write::{self, below, right_of};
 
 pub(super) struct HeatMap<'a> {
@@ -60,12 +60,12 @@ impl<'a> HeatMap<'a> {
         };
         let imprint = self.reading.imprint.as_ref()?;
         let any = !imprint.is_empty();
-        any.then(|| format!("{} {marked}", thumbnail::edge(self.theme)))
+        any.then(|| format!("{} {marked}", shades::edge(self.theme)))
     }
 
     /// Returns the visible columns and rows, counted from 0, as a long and a short text; None if all are visible.
     pub(super) fn window(&self) -> Option<[String; 2]> {
-        let span = |axis: AxisWindow| {
+        let span = |axis: Window| {
             let last = axis.first + axis.count.saturating_sub(1);
             format!("{}-{last}", axis.first)
         };
@@ -142,8 +142,8 @@ impl<'a> HeatMap<'a> {
                 (sign, self.theme.style(role))
             }
             _ => (
-                thumbnail::shade(self.theme, share),
-                thumbnail::style(self.theme, share),
+                shades::shade(self.theme, share),
+                shades::style(self.theme, share),
             ),
         }
     }
@@ -196,7 +196,7 @@ impl<'a> HeatMap<'a> {
         }
         put(buffer, area, (middle.0 - 1, middle.1), sign, style);
         if self.is_marked(column, row) {
-            put(buffer, area, middle, thumbnail::edge(self.theme), style);
+            put(buffer, area, middle, shades::edge(self.theme), style);
         }
     }
 
@@ -238,10 +238,10 @@ impl<'a> HeatMap<'a> {
             return put(buffer, area, at, sign, style);
         }
         if marked {
-            return put(buffer, area, at, thumbnail::edge(self.theme), style);
+            return put(buffer, area, at, shades::edge(self.theme), style);
         }
-        if thumbnail::has_halves(self.theme) {
-            let colors = [upper, lower].map(|share| thumbnail::color(self.theme, share));
+        if shades::has_halves(self.theme) {
+            let colors = [upper, lower].map(|share| shades::color(self.theme, share));
             let (sign, style) = match colors {
                 [Some(upper), Some(lower)] => ('▀', Style::new().fg(upper).bg(lower)),
                 [Some(upper), None] => ('▀', Style::new().fg(upper)),
@@ -272,10 +272,10 @@ impl<'a> HeatMap<'a> {
             text
         };
         let mark = match &self.reading.imprint {
-            Some(imprint) if imprint.get(column, row) => thumbnail::edge(self.theme),
+            Some(imprint) if imprint.get(column, row) => shades::edge(self.theme),
             _ => ' ',
         };
-        let style = thumbnail::style(self.theme, self.share(column, row));
+        let style = shades::style(self.theme, self.share(column, row));
         for (x, sign) in (at.0..).zip(format!("{text:>width$}{mark}").chars()) {
             put(buffer, area, (x, at.1), sign, style);
         }
@@ -317,7 +317,7 @@ fn put(buffer: &mut Buffer, area: Rect, (x, y): (u16, u16), sign: char, style: S
 
 /// Returns the scale of the shades: the lower end of the range, the shades, the upper end and the unit.
 pub(super) fn scale(theme: &Theme, (low, high): (f64, f64), unit: &str) -> String {
-    let shades: String = thumbnail::shades(theme).iter().skip(1).collect();
+    let shades: String = shades::shades(theme).iter().skip(1).collect();
     format!("{} {shades} {}{unit}", measured(low, 7), measured(high, 7))
 }
 
@@ -366,8 +366,8 @@ impl CellForm {
 pub(super) struct HeatGrid {
     /// The form of all taxels; it is the same within a map.
     pub(super) form: CellForm,
-    pub(super) columns: AxisWindow,
-    pub(super) rows: AxisWindow,
+    pub(super) columns: Window,
+    pub(super) rows: Window,
     /// The columns of the row ruler and the lines of the column ruler, before the first taxel; 0 without a ruler.
     pub(super) rulers: (u16, u16),
 }
@@ -388,13 +388,13 @@ impl HeatGrid {
             (0, 0)
         };
         let (width, lines) = (area.width - rulers.0, area.height - rulers.1);
-        let columns = AxisWindow::showing(columns, width / wide, near.0..near.0 + 1, 1);
+        let columns = Window::showing(columns, width / wide, near.0..near.0 + 1, 1);
         // The same two taxels share a character while the window moves.
         let (step, lines) = match form {
             CellForm::Half => (2, lines.saturating_mul(2)),
             _ => (1, lines / high),
         };
-        let rows = AxisWindow::showing(rows, lines, near.1..near.1 + 1, step);
+        let rows = Window::showing(rows, lines, near.1..near.1 + 1, step);
         Self {
             form,
             columns,
@@ -405,7 +405,7 @@ impl HeatGrid {
 
     /// Returns the nearest hidden taxel in a direction from a given one; None if there is none.
     pub(super) fn beyond(&self, towards: Arrow, (column, row): (u8, u8)) -> Option<(u8, u8)> {
-        let next = |axis: AxisWindow| {
+        let next = |axis: Window| {
             let (before, after) = axis.hidden();
             let last = axis.first + axis.count;
             (before.then(|| axis.first - 1), after.then_some(last))

@@ -1,11 +1,9 @@
 //! The matrix and the descriptors beside it.
 //!
 //! ```text
-//! layout   places of the taxels        view     draws the taxels
-//! update   messages without a page     usable   which keys do something now
+//! view     draws the taxels            layers   lines over them
+//! panel    the descriptors             update   messages without a page
 //! ```
-
-pub mod layout;
 
 pub mod layers;
 

@@ -14,12 +14,12 @@ use taxel_files::formats::value::{counted, grouped, percent};
 
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::grid::draw_thumbnail;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::recognise::state::RecogniseMessage;
 use crate::tui::recognise::trained::{TrainedModel, onto};
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::thumbnail;
 use crate::tui::widget::write::{self, narrow};
 
 #[derive(Clone, Debug)]
@@ -303,7 +303,7 @@ impl Confusion {
             Role::Text,
         );
         if let (Some(area), Some(imprint)) = (panes.picture, &example.imprint) {
-            thumbnail::draw(theme, imprint, buffer, area);
+            draw_thumbnail(theme, imprint, buffer, area);
         }
     }
 }

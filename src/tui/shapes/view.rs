@@ -17,12 +17,12 @@ use taxel_files::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::grid::draw_thumbnail;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::shapes::state::{ListDialog, ListPurpose};
 use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::thumbnail;
 use crate::tui::widget::write::{self, narrow};
 
 const BESIDE: usize = 18;
@@ -207,7 +207,7 @@ fn draw_preview(
             say(&facts, Role::Text);
             // The imprint has the same height for most shapes.
             let end = say(&source, Role::Quiet).max(4);
-            thumbnail::draw(theme, imprint, buffer, write::below(area, end));
+            draw_thumbnail(theme, imprint, buffer, write::below(area, end));
         }
         Err(reason) => {
             say("broken:", Role::Error);

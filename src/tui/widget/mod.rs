@@ -18,4 +18,4 @@ pub mod plot;
 
 pub mod write;
 
-pub mod thumbnail;
+pub mod shades;

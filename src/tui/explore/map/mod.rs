@@ -24,10 +24,11 @@ use crate::tui::explore::map::layout::{LETTERS, MapPane, VisiblePoses, letter, s
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::view::{NOTHING_TO_DRAW, ResultsTab};
+use crate::tui::grid::draw_thumbnail;
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::plot::draw_no_room;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::{thumbnail, write};
+use crate::tui::widget::write;
 
 pub static TAB: ResultsTab = ResultsTab {
     title: "map",
@@ -324,6 +325,6 @@ fn draw_pose(theme: &Theme, results: &Results, pane: &MapPane, buffer: &mut Buff
             height: below.height.saturating_sub(1),
             ..below
         };
-        thumbnail::draw(theme, &imprint, buffer, below);
+        draw_thumbnail(theme, &imprint, buffer, below);
     }
 }
