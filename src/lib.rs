@@ -1,4 +1,5 @@
-//! The program taxel: `cli` is the command line, `tui` the screen. Both are public only for tests, benchmarks and
+//! The program taxel: `cli` is the command line, `tui` the screen, and
+//! `frames` what both do with frames of a sensor. They are public only for tests, benchmarks and
 //! other packages of the program; the libraries are `taxel-core` and `taxel-files`.
 
 // Compiles and runs the examples of the README and of the guide to the library as tests of the documentation.
@@ -14,4 +15,5 @@ struct LibraryGuide;
 compile_error!("taxel needs a Unix-like system; on Windows use WSL");
 
 pub mod cli;
+pub mod frames;
 pub mod tui;

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use taxel::frames::Pipeline;
 use taxel::tui::app::message::{Message, WorkerEvent};
 use taxel::tui::live::message::{
     FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, RecordedFrames, SourceState,
@@ -37,17 +38,20 @@ fn set(change: impl FnOnce(&mut WatchRequest)) -> Session {
 
 /// Sets a threshold like a flag does.
 fn ruled(request: &mut WatchRequest, rule: Rule) {
-    request.rule = Some(SetRule {
-        rule,
-        least: 0,
-        from: RuleOrigin::Flag,
-    });
+    let (least, from) = (0, RuleOrigin::Flag);
+    let rule = Some(SetRule { rule, least, from });
+    request.pipeline.processing.apply_rule(rule);
+}
+
+fn tared(request: &mut WatchRequest, frames: u64) {
+    let processing = request.pipeline.processing.clone();
+    request.pipeline = Pipeline::new(processing, Some(frames), RuleOrigin::Flag);
 }
 
 /// Sets a threshold by noise, with a tare of the first frames.
 fn by_noise(request: &mut WatchRequest, tare: u64) {
     ruled(request, Rule::noise(4.0).expect("in range"));
-    request.tare = tare;
+    tared(request, tare);
 }
 
 #[test]
@@ -192,7 +196,7 @@ fn a_tare_is_set_and_given_up() {
 
 #[test]
 fn the_progress_of_a_tare_is_shown() {
-    let mut page = set(|request| request.tare = 4);
+    let mut page = set(|request| tared(request, 4));
     shows(&page, &["tare: 0 of 4 frames"]);
     page.frames(3);
     shows(
@@ -207,7 +211,7 @@ fn the_progress_of_a_tare_is_shown() {
     shows(&page, &["frame 3", "tared", "tare       4 frames"]);
     hides(&page, &["tare:"]);
     // If the source is watched again before the tare is made, the tare starts again.
-    let mut page = set(|request| request.tare = 4);
+    let mut page = set(|request| tared(request, 4));
     page.frames(3);
     then(&mut page, "<Esc>w", &["tare: 0 of 4 frames"]);
     // A key makes the tare from the frames so far, or gives it up.
@@ -219,7 +223,7 @@ fn the_progress_of_a_tare_is_shown() {
 
 #[test]
 fn a_recording_of_too_few_frames_for_the_tare_is_an_error() {
-    let mut page = set(|request| request.tare = 9);
+    let mut page = set(|request| tared(request, 9));
     page.frames(20);
     let lacking = "! the tare needs 9 frames, but there are only 8";
     shows(&page, &["frame 7", "ended", "tare       none", lacking]);
@@ -338,7 +342,7 @@ fn gain_of(columns: u8, rows: u8, gain: f64) -> Matrix<f64> {
 #[test]
 fn a_frame_that_cannot_be_processed_is_still_shown() {
     let mut page = set(|request| {
-        request.processing.gain = Some(gain_of(2, 2, 1.0));
+        request.pipeline.processing.gain = Some(gain_of(2, 2, 1.0));
     });
     page.frames(2);
     shows(&page, &["frame 1  0.1 s", "! the gain has 2 columns"]);
@@ -810,12 +814,12 @@ fn the_range_and_the_first_threshold_depend_on_the_values_shown() {
     then(&mut page, "vT", &["range      0 ░▒▓█ 5000"]);
     // A masked cell is ignored, whatever it sends.
     let mask: Imprint = "#.".parse().expect("an imprint");
-    let mut page = opened(&|request| request.processing.view.mask = Some(mask));
+    let mut page = opened(&|request| request.pipeline.processing.view.mask = Some(mask));
     shows(&page, &["range      0 ░▒▓█ 1000"]);
     page.frames(3);
     shows(&page, &["range      0 ░▒▓█ 2000"]);
     let mut page = opened(&|request| {
-        request.processing.gain = Some(gain_of(2, 1, 0.01));
+        request.pipeline.processing.gain = Some(gain_of(2, 1, 0.01));
     });
     shows(&page, &["range      0 ░▒▓█ 50\n"]);
     then(&mut page, "+", &["threshold  25\n"]);

@@ -5,12 +5,11 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use taxel_core::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
+use taxel_core::frame::{FrameSize, LARGEST_VALUE, Processing, Rule, RuleOrigin, SetRule};
 use taxel_files::acquire::AcquireOptions;
 use taxel_files::formats::recording::Format;
 
-use crate::tui::live::history::HISTORY_BYTES;
-use crate::tui::live::message::WatchRequest;
+use crate::frames::{HISTORY_BYTES, Pipeline, WatchRequest};
 
 fn fill<T, U: TryFrom<T>>(value: T, field: &mut Option<U>) -> bool {
     *field = U::try_from(value).ok();
@@ -259,11 +258,11 @@ impl SensorSettings {
         let mut request = WatchRequest::new("");
         self.apply(&mut request.options);
         let least = self.least().unwrap_or_default();
-        request.processing.least = least;
         let from = RuleOrigin::Settings;
-        request.rule = self.rule().map(|rule| SetRule { rule, least, from });
-        request.tare = self.tare().unwrap_or_default();
-        request.own_tare = self.tare().is_none();
+        let mut processing = Processing::default();
+        processing.least = least;
+        processing.apply_rule(self.rule().map(|rule| SetRule { rule, least, from }));
+        request.pipeline = Pipeline::new(processing, self.tare(), from);
         request.history_bytes = self.history_bytes();
         request
     }

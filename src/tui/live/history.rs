@@ -11,9 +11,6 @@ use crate::tui::live::message::ProvisionalChange;
 use crate::tui::live::reading::hold;
 use crate::tui::live::update::LiveRefusal;
 
-/// The memory for frames, in bytes, unless another size is set.
-pub const HISTORY_BYTES: usize = 32 << 20;
-
 /// The maximum number of bursts that the rate is computed from: two seconds of a fast source.
 const RATED: usize = 20;
 
@@ -393,6 +390,7 @@ mod tests {
     use taxel_core::frame::FrameSize;
 
     use super::*;
+    use crate::frames::HISTORY_BYTES;
 
     #[test]
     fn the_oldest_frames_are_dropped_when_memory_is_full() {

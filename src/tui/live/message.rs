@@ -1,13 +1,11 @@
 //! Requests to the live page, and reports from its source.
 
-use std::ffi::OsStr;
 use std::fmt;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use taxel_core::frame::{Frame, FrameError, FrameSize, Processing, Rule, RuleOrigin, SetRule};
+use taxel_core::frame::{Frame, FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number;
 use taxel_core::quote::shortened;
@@ -15,10 +13,11 @@ use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDi
 use taxel_files::acquire::{AcquireOptions, FrameSource, Playback};
 use taxel_files::formats::recording::{ChannelInfo, Format, StreamCounts};
 use taxel_files::formats::value::decimal;
-use taxel_files::storage::{Existing, ModelChoice};
+use taxel_files::storage::ModelChoice;
 
+pub use crate::frames::WatchRequest;
+pub use crate::frames::recording::RecordedFrames;
 use crate::tui::keys::key::Arrow;
-use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::prompt::read;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -164,13 +163,6 @@ impl SourceGaps {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RecordedFrames {
-    pub frames: u64,
-    /// The number of frames that were left out because they are of another size.
-    pub left_out: u64,
-}
-
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum SourceState {
     #[default]
@@ -188,77 +180,6 @@ pub enum SourceState {
 impl SourceState {
     pub fn is_final(&self) -> bool {
         matches!(self, Self::Ended | Self::Failed(_))
-    }
-}
-
-#[derive(Clone, Debug)]
-pub struct WatchRequest {
-    /// The source as it was named; what a path refers to is found when it is watched.
-    pub source: FrameSource,
-    pub options: AcquireOptions,
-    pub baud_named: bool,
-    /// The processing of frames: crop, flip, turn, mask and gain.
-    pub processing: Processing,
-    /// The threshold; None takes the threshold of the recording, if it has one.
-    pub rule: Option<SetRule>,
-    /// The number of first frames that a tare is made of; 0 for no tare.
-    pub tare: u64,
-    pub own_tare: bool,
-    pub write: Option<(PathBuf, Existing)>,
-    pub model: Option<ModelChoice>,
-    /// The noise for that comparison: how often a taxel flips.
-    pub noise: Option<Noise>,
-    /// The memory for the frames that can be scrubbed through, in bytes.
-    pub history_bytes: usize,
-}
-
-impl PartialEq for WatchRequest {
-    /// Returns true if both are the same object in memory; a request never changes.
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self, other)
-    }
-}
-
-impl WatchRequest {
-    pub fn new(source: impl AsRef<OsStr>) -> Self {
-        Self {
-            source: FrameSource::named(source),
-            options: AcquireOptions::default(),
-            baud_named: false,
-            processing: Processing::default(),
-            rule: None,
-            tare: 0,
-            own_tare: true,
-            write: None,
-            model: None,
-            noise: None,
-            history_bytes: HISTORY_BYTES,
-        }
-    }
-
-    #[must_use]
-    pub fn for_source(&self, source: impl AsRef<OsStr>) -> Self {
-        Self {
-            source: FrameSource::named(source),
-            ..self.clone()
-        }
-    }
-
-    pub fn noise(&self) -> Option<Noise> {
-        let noise = self.noise?;
-        Some(match self.processing.view.mask {
-            Some(mask) => noise.with_dead(mask),
-            None => noise,
-        })
-    }
-
-    /// Returns the name of the source for messages, without folders.
-    pub fn name(&self) -> String {
-        let name = self.source.name();
-        match &self.source {
-            FrameSource::File(_) => name.rsplit('/').next().unwrap_or(&name).to_owned(),
-            _ => name,
-        }
     }
 }
 
@@ -449,7 +370,8 @@ impl NamedSource {
 
     /// Returns the request for this source; `settings` provides what is not given.
     pub fn request(&self, settings: &WatchRequest) -> WatchRequest {
-        let mut request = settings.for_source(&self.name);
+        let mut request = settings.clone();
+        request.source = FrameSource::named(&self.name);
         request.baud_named = self.baud.is_some();
         let options = &mut request.options;
         options.size = FrameSize::of_sides(self.columns, self.rows).or(options.size);
@@ -461,9 +383,9 @@ impl NamedSource {
         }
         request.model = self.model.clone().or(request.model);
         if let Some(rule) = self.rule {
-            let least = request.rule.as_ref().map_or(0, |set| set.least);
-            let from = RuleOrigin::Flag;
-            request.rule = Some(SetRule { rule, least, from });
+            let processing = &mut request.pipeline.processing;
+            let (least, from) = (processing.least, RuleOrigin::Flag);
+            processing.apply_rule(Some(SetRule { rule, least, from }));
         }
         request
     }
@@ -541,11 +463,11 @@ mod tests {
             )
         );
         assert_eq!(whole.model, Some(ModelChoice::EqualFigures));
-        let rule = whole.rule.expect("a rule");
-        assert_eq!(rule.rule, Rule::at_least(10.0).expect("in range"));
+        let rule = whole.pipeline.processing.rule;
+        assert_eq!(rule, Some(Rule::at_least(10.0).expect("in range")));
         let plain = request("a--b.csv").expect("no flags");
         assert_eq!(
-            (plain.source.name(), plain.rule),
+            (plain.source.name(), plain.pipeline.processing.rule),
             ("a--b.csv".to_owned(), None)
         );
         for (text, error) in [

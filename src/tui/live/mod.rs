@@ -4,7 +4,7 @@
 //! message          requests by keys and commands, and reports from the source
 //! history          the most recent frames, as many as fit into a given amount of memory
 //! reading          values, imprint and descriptors of one frame
-//! tare             the values that are subtracted, and how they are determined
+//! threshold        the threshold, as keys change it
 //! state            the state of the page: how the shown frame is processed
 //! trend            force and contact over the history
 //! heat             the heat map, with the edge of the imprint
@@ -18,7 +18,7 @@ pub mod history;
 
 pub mod reading;
 
-pub mod tare;
+mod threshold;
 
 pub mod state;
 

@@ -2,20 +2,21 @@
 
 use std::sync::Arc;
 
-use taxel_core::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule};
+use taxel_core::frame::{Frame, FrameError, Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
 use taxel_core::recognition::Noise;
 use taxel_files::acquire::FrameSource;
 use taxel_files::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use taxel_files::storage::ModelChoice;
 
+use crate::frames::{Pipeline, Taring};
 use crate::tui::live::history::{FrameCursor, FrameMarks, ProvisionalOutcome};
 use crate::tui::live::message::{
     FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, SourceGaps, SourceState,
     WatchRequest,
 };
 use crate::tui::live::reading::{HeatLayer, LiveDisplay, LiveReading, ShadeRange};
-use crate::tui::live::tare::{self, LiveTare};
+use crate::tui::live::threshold;
 use crate::tui::live::trend::{Plotted, Trend};
 use crate::tui::live::update::LiveRefusal;
 use crate::tui::widget::write::other;
@@ -31,8 +32,9 @@ const RANGED: usize = 1000;
 pub struct Live {
     request: Arc<WatchRequest>,
     number: u64,
-    /// The processing of a frame before it is shown: view, tare, threshold.
-    pub(in crate::tui) processing: Processing,
+    /// How a frame is processed before it is shown.
+    pub(in crate::tui) pipeline: Pipeline,
+    tare_error: Option<FrameError>,
     converted: Option<(Rule, Rule)>,
     /// Whether the threshold or the tare has changed since they were last written into a recording.
     is_viewed_anew: bool,
@@ -44,7 +46,6 @@ pub struct Live {
     pub(super) layer: HeatLayer,
     pub display: LiveDisplay,
     range: ShadeRange,
-    pub(super) tare: LiveTare,
     /// The number of frames that were never drawn, because others came before the screen was drawn again.
     not_drawn: u64,
     pub(in crate::tui) recording: RecordingState,
@@ -60,8 +61,9 @@ pub struct Live {
 
 impl Live {
     pub fn new(request: Arc<WatchRequest>, number: u64) -> Self {
-        let mut live = Self {
-            processing: request.processing.clone(),
+        Self {
+            pipeline: request.pipeline.clone(),
+            tare_error: None,
             converted: None,
             is_viewed_anew: false,
             cursor: FrameCursor::new(request.history_bytes),
@@ -72,7 +74,6 @@ impl Live {
             layer: HeatLayer::Tared,
             display: LiveDisplay::default(),
             range: ShadeRange::default(),
-            tare: LiveTare::new(&request),
             not_drawn: 0,
             recording: RecordingState::default(),
             marks: FrameMarks::default(),
@@ -83,9 +84,7 @@ impl Live {
             error: None,
             request,
             number,
-        };
-        live.set_rule(live.request.rule);
-        live
+        }
     }
 
     pub fn request(&self) -> &Arc<WatchRequest> {
@@ -121,12 +120,12 @@ impl Live {
     /// Returns why a requested tare is missing; otherwise why the shown frame cannot be processed, or why it has no
     /// imprint.
     pub fn error(&self) -> Option<&FrameError> {
-        self.tare.error().or(self.error.as_ref())
+        self.tare_error.as_ref().or(self.error.as_ref())
     }
 
     pub fn no_imprint(&self) -> LiveRefusal {
-        match (&self.error, self.tare.progress()) {
-            _ if self.reading.is_some() && self.processing.rule.is_none() => {
+        match (&self.error, self.pipeline.progress()) {
+            _ if self.reading.is_some() && self.pipeline.processing.rule.is_none() => {
                 LiveRefusal::NoThreshold
             }
             (Some(error), _) => LiveRefusal::NoImprint(error.clone()),
@@ -138,7 +137,7 @@ impl Live {
     }
 
     pub fn rule(&self) -> Option<SetRule> {
-        self.processing.applied_rule()
+        self.pipeline.rule()
     }
 
     pub fn not_drawn(&self) -> u64 {
@@ -191,7 +190,7 @@ impl Live {
         let is_changed = std::mem::take(&mut self.is_viewed_anew) | self.marks.take_change();
         is_changed.then(|| RecordedView {
             rule: self.rule(),
-            tare: self.processing.tare.clone(),
+            tare: self.pipeline.processing.tare.clone(),
             marks: self.marks.own_from(self.recording.from()),
         })
     }
@@ -262,7 +261,7 @@ impl Live {
         for frame in &batch.frames {
             self.add(frame);
         }
-        let tare_fails = self.status.state.is_final() && self.tare.end_of_source();
+        let tare_fails = self.status.state.is_final() && self.end_tare();
         if self.cursor.follows() {
             let unseen = batch.frames.len().saturating_sub(1);
             self.not_drawn += unseen as u64;
@@ -279,29 +278,36 @@ impl Live {
     }
 
     fn take_channel(&mut self, channel: &ChannelInfo) {
-        if self.processing.rule.is_none() {
-            self.set_rule(channel.own_rule(self.processing.least));
-        }
         self.marks.recorded.clone_from(&channel.marks);
-        self.retare(|tare, processing| tare.take_own(channel, processing));
+        self.repipe(|pipeline| pipeline.begin(channel));
+    }
+
+    fn end_tare(&mut self) -> bool {
+        let was = self.pipeline.progress().is_some();
+        self.tare_error = self.pipeline.end().or(self.tare_error.take());
+        was
     }
 
     fn add(&mut self, frame: &Arc<Frame>) {
         self.measure(frame);
         self.cursor.push(frame);
         self.trend.keep(self.cursor.frames());
-        self.retare(|tare, processing| tare.add(frame, processing));
+        self.tare_error = match self.repipe(|pipeline| pipeline.add_to_tare(frame)) {
+            Ok(Taring::LeftOut(error)) | Err(error) => Some(error),
+            Ok(Taring::Done) => self.tare_error.take(),
+            Ok(_) => None,
+        };
     }
 
     /// Adds the values of a frame to the range, and its force and contact to the plot.
     fn measure(&mut self, frame: &Frame) {
-        if let Ok(processed) = self.processing.run(frame) {
+        if let Ok(processed) = self.pipeline.processing.run(frame) {
             self.range.add([processed.raw, processed.tared]);
             self.trend.push(Some(&processed));
             return;
         }
         // Without the tare that a threshold by noise needs there are values, but no force.
-        if let Ok(values) = self.processing.values(frame) {
+        if let Ok(values) = self.pipeline.processing.values(frame) {
             self.range.add(values);
         }
         self.trend.push(None);
@@ -316,13 +322,16 @@ impl Live {
         }
     }
 
-    /// Changes the tare. If another tare is subtracted afterwards, the range is computed again from the last frames.
-    fn retare<T>(&mut self, act: impl FnOnce(&mut LiveTare, &mut Processing) -> T) -> T {
-        let before = self.tare.origin();
-        let done = act(&mut self.tare, &mut self.processing);
-        if self.tare.origin() != before {
+    /// Changes the tare or the threshold. Afterwards range and plot are computed again from the last frames.
+    fn repipe<T>(&mut self, act: impl FnOnce(&mut Pipeline) -> T) -> T {
+        let before = (self.pipeline.origin(), self.pipeline.rule());
+        let done = act(&mut self.pipeline);
+        let after = (self.pipeline.origin(), self.pipeline.rule());
+        if after != before {
             self.is_viewed_anew = true;
-            self.range.begin_anew();
+            if after.0 != before.0 {
+                self.range.begin_anew();
+            }
             self.measure_again();
         }
         done
@@ -330,41 +339,36 @@ impl Live {
 
     pub fn tare_now(&mut self) -> Result<u64, LiveRefusal> {
         let frames = self.cursor.up_to_shown(TARED)?;
-        self.retare(|tare, processing| tare.of_last(&frames, processing))?;
+        self.repipe(|pipeline| pipeline.tare_of(frames.iter().map(Arc::as_ref)))?;
+        self.tare_error = None;
         self.read();
         Ok(frames.len() as u64)
     }
 
     pub fn drop_tare(&mut self) -> bool {
-        let any = self.retare(LiveTare::give_up);
+        let any = self.repipe(Pipeline::drop_tare);
+        self.tare_error = None;
         self.read();
         any
     }
 
-    fn set_rule(&mut self, rule: Option<SetRule>) {
-        if self.rule() != rule {
-            self.is_viewed_anew = true;
-            self.processing.apply_rule(rule);
-            self.measure_again();
-        }
-    }
-
     /// Returns true if neither a tare nor a gain changes the values.
     pub fn shows_raw(&self) -> bool {
-        self.tare.origin().is_none() && self.processing.gain.is_none()
+        self.pipeline.origin().is_none() && self.pipeline.processing.gain.is_none()
     }
 
     pub fn choose(&mut self, rule: Rule) {
-        let (least, from) = (self.processing.least, RuleOrigin::Key);
-        self.set_rule(Some(SetRule { rule, least, from }));
+        let (least, from) = (self.pipeline.processing.least, RuleOrigin::Key);
+        let set = Some(SetRule { rule, least, from });
+        self.repipe(|pipeline| pipeline.processing.apply_rule(set));
         self.read();
     }
 
     /// Moves the threshold up or down by a step that depends on the largest value so far. Without a threshold, one is
     /// set. A threshold out of range changes nothing.
     pub fn step_threshold(&mut self, direction: i8) {
-        let rule = self.processing.rule;
-        if let Ok(rule) = tare::step(rule, direction, self.range.tared_top()) {
+        let rule = self.pipeline.processing.rule;
+        if let Ok(rule) = threshold::step(rule, direction, self.range.tared_top()) {
             self.choose(rule);
         }
     }
@@ -374,11 +378,11 @@ impl Live {
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
         let largest = largest.filter(|&largest| largest > 0.0);
         let largest = largest.unwrap_or(self.range.tared_top());
-        let rule = self.processing.rule;
+        let rule = self.pipeline.processing.rule;
         let former = self.converted.filter(|(made, _)| rule == Some(*made));
         let other = match former {
             Some((_, former)) => Ok(former),
-            None => tare::other_unit(rule, largest),
+            None => threshold::other_unit(rule, largest),
         };
         if let Ok(other) = other {
             self.choose(other);
@@ -493,7 +497,8 @@ impl Live {
         self.recording.refusal = None;
         self.cursor.restart();
         self.marks.clear();
-        self.tare.restart();
+        self.pipeline.restart();
+        self.tare_error = None;
         self.read();
         self.status.state = SourceState::Waiting;
         self.status.gaps = SourceGaps::default();
@@ -515,13 +520,13 @@ impl Live {
     /// A threshold by noise needs a tare. Without one, the result lacks the imprint, and the error is omitted while
     /// the tare is being made.
     fn read_frame(&mut self, frame: Arc<Frame>) -> (Option<LiveReading>, Option<FrameError>) {
-        match LiveReading::of(Arc::clone(&frame), &mut self.processing, self.layer) {
+        match LiveReading::of(Arc::clone(&frame), &mut self.pipeline.processing, self.layer) {
             Ok(reading) => (Some(reading), None),
             Err(FrameError::NoTare) => {
-                let rule = self.processing.rule.take();
-                let reading = LiveReading::of(frame, &mut self.processing, self.layer);
-                self.processing.rule = rule;
-                let is_made = self.tare.progress().is_some();
+                let rule = self.pipeline.processing.rule.take();
+                let reading = LiveReading::of(frame, &mut self.pipeline.processing, self.layer);
+                self.pipeline.processing.rule = rule;
+                let is_made = self.pipeline.progress().is_some();
                 let error = (!is_made).then_some(FrameError::NoTare);
                 (reading.ok(), error)
             }

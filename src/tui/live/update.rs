@@ -23,7 +23,7 @@ use crate::tui::live::message::{
 };
 use crate::tui::live::reading::{self, HeatLayer};
 use crate::tui::live::state::Live;
-use crate::tui::live::{tare, view};
+use crate::tui::live::{threshold, view};
 use crate::tui::prompt::state::CommandDialog;
 use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork};
 
@@ -49,7 +49,7 @@ fn set_threshold(app: &mut App, rule: Rule) {
         return;
     };
     page.choose(rule);
-    let value = tare::text(rule, &page.unit());
+    let value = threshold::text(rule, &page.unit());
     let text = format!("{}: threshold {value}", page.request().name());
     inform(app, text);
 }
@@ -66,7 +66,7 @@ fn watch_with(app: &mut App, size: FrameSize) -> Option<Effect> {
     }
     let mut request = WatchRequest::clone(page.request());
     request.options.size = Some(size);
-    request.rule = page.rule();
+    request.pipeline.processing.apply_rule(page.rule());
     Some(watch(app, &Arc::new(request)))
 }
 
@@ -185,10 +185,10 @@ fn refuse_recording(app: &mut App, page: &Live, refused: &LiveRefusal) {
 /// Returns the notice about a tare that was made just now of this number of frames. If the page stays at a frame, these
 /// end with it, and the notice says so.
 fn tare_of(page: &Live, frames: u64) -> String {
-    let origin = page.tare.origin().filter(|_| !page.cursor.follows());
-    match (origin.and_then(|origin| origin.number), frames) {
-        (Some(number), 1) => format!("tare of frame {number}"),
-        (Some(number), _) => format!("tare of the {frames} frames up to frame {number}"),
+    let origin = page.pipeline.origin().filter(|_| !page.cursor.follows());
+    match (origin.and_then(|origin| origin.last), frames) {
+        (Some((number, _)), 1) => format!("tare of frame {number}"),
+        (Some((number, _)), _) => format!("tare of the {frames} frames up to frame {number}"),
         (None, 1) => "tare of 1 frame".to_owned(),
         (None, _) => format!("tare of the last {}", counted(frames, "frame")),
     }
@@ -288,7 +288,7 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
         unit: channel.and_then(|channel| channel.unit.clone()),
         pitch_mm: channel.and_then(|channel| channel.pitch_mm),
         rule: page.rule(),
-        tare: page.processing.tare.clone(),
+        tare: page.pipeline.processing.tare.clone(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
         // Frames that were marked before are not in the recording.
         marks: Vec::new(),
@@ -581,7 +581,7 @@ mod tests {
     #[test]
     fn a_threshold_set_by_key_still_drops_small_pieces() {
         let mut request = WatchRequest::new("none");
-        request.processing.least = 4;
+        request.pipeline.processing.least = 4;
         let mut page = Live::new(Arc::new(request), 7);
         let mut frame = Frame::new(FrameSize::new(8, 8).expect("an allowed size"));
         frame.values_mut()[9] = 30.0;

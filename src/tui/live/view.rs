@@ -28,7 +28,7 @@ use crate::tui::live::heat::{HeatGrid, HeatMap, LivePanes, cells, scale};
 use crate::tui::live::message::{LiveMessage, NamedImprint, Naming, RecordedFrames, SourceState};
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
-use crate::tui::live::tare::{self, progress_text};
+use crate::tui::live::threshold::{self, progress_text};
 use crate::tui::live::trend;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -437,7 +437,7 @@ fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
             shorter,
         };
     };
-    let text = tare::text(set.rule, &live.unit());
+    let text = threshold::text(set.rule, &live.unit());
     match set.from {
         RuleOrigin::File => PanelLine::up_to(label, format!("{text}, of the file"), ", of"),
         RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => {
@@ -450,21 +450,21 @@ fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
 /// frames; no age for a tare made after the shown frame. For a tare that is being made, returns how many of its
 /// frames have come.
 fn tare(live: &Live) -> String {
-    if let Some(progress) = live.tare.progress() {
+    if let Some(progress) = live.pipeline.progress() {
         return progress_text(progress);
     }
-    let Some(origin) = live.tare.origin() else {
+    let Some(origin) = live.pipeline.origin() else {
         return "none".to_owned();
     };
     let frames = counted(origin.frames, "frame");
     let shown = live.reading().map(|reading| &reading.frame);
-    let age = shown.and_then(|frame| match (frame.time, origin.time) {
+    let age = shown.and_then(|frame| match (frame.time, origin.last.and_then(|(_, time)| time)) {
         (Some(now), Some(then)) if now > then => {
             Some(format!(", {} s ago", value::decimal(now - then, 1)))
         }
         (Some(_), Some(_)) => None,
         _ => {
-            let frames = frame.number.checked_sub(origin.number?)?;
+            let frames = frame.number.checked_sub(origin.last?.0)?;
             Some(format!(", {} ago", counted(frames, "frame")))
         }
     });
@@ -577,11 +577,11 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
         _ => {}
     }
     let layer = match live.layer {
-        HeatLayer::Tared if live.tare.origin().is_none() => HeatLayer::Raw,
+        HeatLayer::Tared if live.pipeline.origin().is_none() => HeatLayer::Raw,
         layer => layer,
     };
     say(8, layer.name().to_owned(), Role::Quiet);
-    if let Some(progress) = live.tare.progress() {
+    if let Some(progress) = live.pipeline.progress() {
         say(4, format!("tare: {}", progress_text(progress)), Role::Focus);
     }
     if live.cursor.holds_peak() {

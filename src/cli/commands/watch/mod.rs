@@ -53,7 +53,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::line_writer::LineWriter;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
-use crate::tui::live::message::WatchRequest;
+use crate::frames::{Pipeline, WatchRequest};
 use crate::tui::runtime::check_source;
 
 struct Watcher<'a> {
@@ -146,12 +146,12 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
     drop(recording::begin(&source, asked).map_err(CliError::Recorder)?);
     let mut request = WatchRequest::new(&asked.source);
     request.options = asked.options.clone();
-    request.processing = input_recording::processing(&asked.processing)?;
-    request.rule = asked.processing.set_rule();
+    let mut processing = input_recording::processing(&asked.processing)?;
+    processing.least = asked.processing.least;
+    processing.apply_rule(asked.processing.set_rule());
+    let (tare, from) = (asked.processing.tare, asked.processing.tare_from);
+    request.pipeline = Pipeline::new(processing, tare, from);
     request.history_bytes = asked.history_bytes;
-    request.processing.least = asked.processing.least;
-    request.tare = asked.processing.tare.unwrap_or_default();
-    request.own_tare = asked.processing.tare.is_none();
     if let Some(model) = &asked.naming.model {
         let choice = model::models(shelf).locate(ModelChoice::from_text(model));
         request.model = Some(choice.map_err(CliError::Archive)?);

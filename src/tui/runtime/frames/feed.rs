@@ -103,7 +103,7 @@ impl FrameFeed {
         };
         let metadata = RecordingMetadata {
             source: request.source.name(),
-            rule: request.rule,
+            rule: request.pipeline.rule(),
             ..RecordingMetadata::default()
         };
         source::found(&request.source)
