@@ -39,7 +39,7 @@ use crate::cli::error::CliError;
 use crate::cli::output::charset::{Charset, note};
 use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::output::progress::ProgressDisplay;
-use crate::cli::output::sweep_summary::SweepSummary;
+use crate::cli::output::sweep_summary;
 use crate::cli::signals::{self, Signals};
 
 impl Wanted {
@@ -168,11 +168,10 @@ fn write(
 }
 
 fn text(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset) -> String {
-    let summary = SweepSummary::new(result, start.elapsed());
     if wanted.json {
-        summary.json()
+        sweep_summary::json(result, start.elapsed())
     } else {
-        summary.text(charset)
+        sweep_summary::text(result, start.elapsed(), charset)
     }
 }
 

@@ -1,14 +1,12 @@
 //! Answers to touches, for people and as JSON.
 
-use std::fmt::Write;
-
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::{differing, short};
-use taxel_core::pose::{Anchor, Axis, Placed, Pose, PoseGrid, Ranges};
+use taxel_core::pose::{Anchor, Axis, DecimalRange, Placed, Pose, PoseGrid, Ranges};
 use taxel_core::recognition::{
     AngleEstimate, Answer, AnswerState, Evidence, Model, Nearest, Noise, PoseEstimate, SearchMethod,
 };
@@ -17,19 +15,12 @@ use taxel_files::formats::value::{self, decimal, deviation, percent};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::bar;
-use crate::cli::output::plot::{canvas_of_taxels, character};
+use crate::cli::output::plot::draw_over;
 use crate::tui::widget::plot::DotCanvas;
 
 const SHOWN: usize = 8;
 
 const BAR: usize = 30;
-
-#[derive(Serialize)]
-struct NearestJson<'a> {
-    name: &'a str,
-    distance: u32,
-    imprint: &'a Imprint,
-}
 
 pub(crate) struct AnswerJson<'a> {
     pub(crate) model: &'a Model,
@@ -47,6 +38,17 @@ pub(crate) struct AnswerJson<'a> {
 
 impl Serialize for AnswerJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Ranked<'a> {
+            name: &'a str,
+            probability: f64,
+        }
+        #[derive(Serialize)]
+        struct NearestJson<'a> {
+            name: &'a str,
+            distance: u32,
+            imprint: &'a Imprint,
+        }
         let name = |shape: usize| self.model.shapes()[shape].name.as_str();
         let answer = self.answer;
         let mut map = serializer.serialize_map(None)?;
@@ -81,12 +83,6 @@ impl Serialize for AnswerJson<'_> {
     }
 }
 
-#[derive(Serialize)]
-struct Ranked<'a> {
-    name: &'a str,
-    probability: f64,
-}
-
 /// An answer for people: the name and how far it can be trusted, bars, and the nearest imprint.
 /// ```text
 /// ellipse: likely
@@ -108,29 +104,41 @@ pub(crate) struct AnswerText<'a> {
 
 impl AnswerText<'_> {
     pub(crate) fn text(&self, charset: Charset) -> String {
-        let touches = [*self.touch];
+        let (touch, answer) = (self.touch, self.answer);
+        let touches = [*touch];
         let evidence = Evidence::of(&touches).under(self.noise.as_ref());
         let nearest = self.model.nearest_of(evidence);
-        let mut text = self.verdict(nearest.is_some());
+        let mut text = self.verdict(nearest.is_some()) + "\n";
         // If no imprint of the model fits on the matrix, nothing was compared.
         if let (Some(noise), Some(nearest)) = (self.noise, &nearest) {
-            // Cannot fail: the text is kept in memory.
-            let _ = writeln!(
-                text,
-                "noise {}: {}",
-                short(noise.flip()),
-                compared(self.answer.method)
-            );
-            let unexplained = noise.unexplained(self.touch, nearest.distance);
-            if let Some(warning) = unexplained.filter(|_| !self.answer.ranking.is_empty()) {
-                let _ = writeln!(text, "{warning}");
+            let compared = match answer.method {
+                SearchMethod::Exact => "only the imprint itself is looked up",
+                SearchMethod::OneFlip => "compared with imprints that differ by at most one taxel",
+                SearchMethod::Scan => "compared with every imprint of the model in every place",
+            };
+            text += &format!("noise {}: {compared}\n", short(noise.flip()));
+            if let Some(warning) = noise.unexplained(touch, nearest.distance)
+                && !answer.ranking.is_empty()
+            {
+                text += &format!("{warning}\n");
             }
         }
-        if self.answer.at_rim {
+        if answer.at_rim {
             text += "the imprint reaches the rim of the matrix: it may be cut off\n";
         }
-        text += &self.ranking(charset);
-        text += &self.nearest(nearest);
+        let top = self.top.unwrap_or(SHOWN);
+        let shown = answer.ranking.iter().take(top);
+        let names = charset.column(shown.clone().map(|&(shape, _)| self.name(shape)));
+        for (name, &(_, probability)) in names.iter().zip(shown) {
+            let (bar, percent) = (bar(probability, BAR, charset), percent(probability));
+            text += &format!("  {name}  {bar:<BAR$}  {percent:>7}\n");
+        }
+        if answer.ranking.len() > top {
+            text += &format!("  and {} more\n", answer.ranking.len() - top);
+        }
+        if let Some(nearest) = nearest.filter(|nearest| nearest.distance > 0) {
+            text += &self.nearest(&nearest);
+        }
         charset.lines(&text)
     }
 
@@ -144,92 +152,50 @@ impl AnswerText<'_> {
         match (self.answer.state, self.answer.shape) {
             (AnswerState::Tied, _) => {
                 let tied = self.answer.tied.iter().map(|&shape| self.name(shape));
-                let tied: Vec<&str> = tied.collect();
-                format!("{}: tied\n", tied.join(" or "))
+                tied.collect::<Vec<_>>().join(" or ") + ": tied"
             }
             (AnswerState::Rejected, _) => {
-                "rejected: no shape reaches the probability of --reject\n".to_owned()
+                "rejected: no shape reaches the probability of --reject".to_owned()
             }
-            (state, Some(shape)) => format!("{}: {}\n", self.name(shape), state.name()),
+            (state, Some(shape)) => format!("{}: {}", self.name(shape), state.name()),
             (_, None) if any_fits => {
-                "unknown: no shape of the model leaves this imprint\n".to_owned()
+                "unknown: no shape of the model leaves this imprint".to_owned()
             }
             (_, None) => format!(
-                "unknown: no imprint of the model fits on {} × {} taxels\n",
-                self.touch.columns(),
-                self.touch.rows()
+                "unknown: no imprint of the model fits on {} taxels",
+                self.touch.size()
             ),
         }
     }
 
-    fn ranking(&self, charset: Charset) -> String {
-        let top = self.top.unwrap_or(SHOWN);
-        let shown = self.answer.ranking.iter().take(top);
-        let names = charset.column(shown.clone().map(|&(shape, _)| self.name(shape)));
-        let mut text = String::new();
-        for (name, &(_, probability)) in names.iter().zip(shown) {
-            let (bar, percent) = (bar(probability, BAR, charset), percent(probability));
-            // Cannot fail: the text is kept in memory.
-            let _ = writeln!(text, "  {name}  {bar:<BAR$}  {percent:>7}");
-        }
-        let rest = self.answer.ranking.len().saturating_sub(top);
-        if rest > 0 {
-            let _ = writeln!(text, "  and {rest} more");
-        }
-        text
-    }
-
-    fn nearest(&self, nearest: Option<Nearest>) -> String {
-        let Some(nearest) = nearest.filter(|nearest| nearest.distance > 0) else {
-            return String::new();
-        };
-        let (name, distance) = (self.name(nearest.shape), nearest.distance);
+    /// Draws the touch and the nearest imprint in one matrix.
+    fn nearest(&self, nearest: &Nearest) -> String {
         let dead = self.noise.as_ref().and_then(Noise::dead);
-        format!(
-            "nearest: {name}, {}\n{}\
-             \x20 # both   + only in the touch   - only in the nearest imprint{}\n",
-            differing(distance),
-            differences(self.touch, &nearest.imprint, dead),
-            if dead.is_some() { "   x dead" } else { "" }
-        )
-    }
-}
-
-fn compared(method: SearchMethod) -> &'static str {
-    match method {
-        SearchMethod::Exact => "only the imprint itself is looked up",
-        SearchMethod::OneFlip => "compared with imprints that differ by at most one taxel",
-        SearchMethod::Scan => "compared with every imprint of the model in every place",
-    }
-}
-
-/// Draws two imprints in the matrix of the touch: `#` both, `+` only the touch, `-` only the nearest, `.` neither,
-/// `x` dead.
-fn differences(touch: &Imprint, nearest: &Imprint, dead: Option<&Imprint>) -> String {
-    let mut text = String::new();
-    for row in 0..touch.rows() {
-        text.push_str("  ");
-        for column in 0..touch.columns() {
-            let is_dead = dead.is_some_and(|dead| dead.get(column, row));
-            text.push(match (touch.get(column, row), nearest.get(column, row)) {
-                _ if is_dead => 'x',
+        let sign = |column, row| {
+            let is = |imprint: &Imprint| imprint.get(column, row);
+            match (is(self.touch), is(&nearest.imprint)) {
+                _ if dead.is_some_and(is) => 'x',
                 (true, true) => '#',
                 (true, false) => '+',
                 (false, true) => '-',
                 (false, false) => '.',
-            });
+            }
+        };
+        let (name, distance) = (self.name(nearest.shape), differing(nearest.distance));
+        let mut text = format!("nearest: {name}, {distance}\n");
+        for row in 0..self.touch.rows() {
+            let row: String = (0..self.touch.columns())
+                .map(|column| sign(column, row))
+                .collect();
+            text += &format!("  {row}\n");
         }
-        text.push('\n');
+        text += "  # both   + only in the touch   - only in the nearest imprint";
+        text + if dead.is_some() { "   x dead\n" } else { "\n" }
     }
-    text
 }
 
-const DOTS: f64 = 4.0;
-
-const PIECES: u16 = 128;
-
 #[derive(Serialize)]
-pub(crate) struct PoseJson<'a> {
+struct PoseJson<'a> {
     name: &'a str,
     poses: u64,
     centre: [f64; 2],
@@ -243,29 +209,18 @@ pub(crate) struct PoseJson<'a> {
 }
 
 /// The angle of a pose, in degrees from 0 to the period: mean, standard deviation, and the fewest consecutive whole
-/// degrees that contain 95 % of the poses.
+/// degrees that contain 95 % of the poses. They may pass the period and continue at 0.
 #[derive(Serialize)]
 struct AngleJson {
     mean: Option<f64>,
     sd: Option<f64>,
     /// The degrees after which the shape looks the same; written without a point if whole.
-    #[serde(serialize_with = "integer_if_whole")]
-    period: f64,
-    /// The first of the consecutive degrees.
+    period: serde_json::Value,
     from: u32,
-    /// The number of consecutive degrees; they may pass the period and continue at 0.
     degrees: u32,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
-#[expect(clippy::cast_possible_truncation, reason = "at most 360")]
-fn integer_if_whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    match number.fract() {
-        0.0 => serializer.serialize_i64(*number as i64),
-        _ => serializer.serialize_f64(*number),
-    }
-}
-
+/// Where the shape of an answer lies.
 pub(crate) struct PoseReport {
     name: String,
     estimate: PoseEstimate,
@@ -290,14 +245,13 @@ impl PoseReport {
         let [x, y] = estimate.position;
         let angle = estimate.angle.as_ref().map_or(0.0, |angle| {
             let (first, count) = angle.shortest_arc;
-            angle
-                .mean
-                .unwrap_or(f64::from(first) + f64::from(count) / 2.0)
+            let middle = f64::from(first) + f64::from(count) / 2.0;
+            angle.mean.unwrap_or(middle)
         });
         let own = *model.ranges();
         let still = Ranges::from_fn(|axis| match axis {
             Axis::ZoomX | Axis::ZoomY => own[axis].part(0..1).unwrap_or(own[axis]),
-            _ => taxel_core::pose::DecimalRange::whole(0),
+            _ => DecimalRange::whole(0),
         });
         let source = named.source.clone();
         let grid = PoseGrid::new(source, Sensor::LARGEST, Anchor::Centre, still).ok()?;
@@ -316,7 +270,7 @@ impl PoseReport {
         })
     }
 
-    pub(crate) fn json(&self) -> PoseJson<'_> {
+    fn json(&self) -> PoseJson<'_> {
         let estimate = &self.estimate;
         let [x, y] = estimate.position;
         let in_mm = |pair: [f64; 2]| self.pitch_mm.map(|pitch| pair.map(|cells| cells * pitch));
@@ -331,7 +285,11 @@ impl PoseReport {
             angle: estimate.angle.as_ref().map(|angle| AngleJson {
                 mean: angle.mean,
                 sd: angle.standard_deviation,
-                period: angle.period,
+                #[expect(clippy::cast_possible_truncation, reason = "at most 360")]
+                period: match angle.period.fract() {
+                    0.0 => (angle.period as i64).into(),
+                    _ => angle.period.into(),
+                },
                 from: angle.shortest_arc.0,
                 degrees: angle.shortest_arc.1,
             }),
@@ -348,33 +306,24 @@ impl PoseReport {
             None => "; it looks the same at every angle\n".to_owned(),
             Some(angle) => format!("\n{}\n", angle_in_words(angle, estimate.poses)),
         };
-        charset.lines(&(text + &self.drawn(touch, charset)))
+        charset.lines(&text) + &self.drawn(touch, charset)
     }
 
+    /// Draws the outline over the touch.
     fn drawn(&self, touch: &Imprint, charset: Charset) -> String {
-        let mut outline = Outline(canvas_of_taxels(touch.columns(), touch.rows()));
+        let (columns, lines) = (u16::from(touch.columns()), u16::from(touch.rows()));
+        let mut outline = Outline(DotCanvas::new(2 * columns, lines));
         self.placed.draw(&mut outline);
         let (full, empty) = charset.taxels();
-        let mut rows: Vec<Vec<char>> = (0..touch.rows())
-            .map(|row| {
-                let taxels = (0..touch.columns()).flat_map(|column| {
-                    let sign = if touch.get(column, row) { full } else { empty };
-                    sign.chars()
-                });
-                taxels.collect()
-            })
-            .collect();
-        for (column, row, dots) in outline.0.characters() {
-            let cell = rows.get_mut(usize::from(row));
-            if let Some(cell) = cell.and_then(|row| row.get_mut(usize::from(column))) {
-                *cell = character(dots, charset);
-            }
+        let mut rows = Vec::new();
+        for row in 0..touch.rows() {
+            let taxel = |column| if touch.get(column, row) { full } else { empty };
+            let taxels = (0..touch.columns()).flat_map(|column| taxel(column).chars());
+            rows.push(taxels.collect::<Vec<char>>());
         }
-        let lines = rows.into_iter().map(|row| {
-            let row: String = row.into_iter().collect();
-            format!("  {}\n", row.trim_end())
-        });
-        lines.collect()
+        draw_over(&mut rows, &outline.0, charset);
+        let line = |row: Vec<char>| format!("  {}\n", row.iter().collect::<String>().trim_end());
+        rows.into_iter().map(line).collect()
     }
 }
 
@@ -388,31 +337,33 @@ fn angle_in_words(angle: &AngleEstimate, poses: u64) -> String {
     format!("angle {mean}° ± {spread}°{repeats}; {arc}")
 }
 
+/// Draws an outline. A taxel is two characters wide, so it has four dots in both directions.
 struct Outline(DotCanvas);
-
-impl Outline {
-    fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
-        let place = |(x, y): (f64, f64)| (x * DOTS, y * DOTS);
-        self.0.line(place(from), place(to));
-    }
-}
 
 impl Pen<f64> for Outline {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
-        self.line((from.x, from.y), (to.x, to.y));
+        let place = |point: Point<f64>| (4.0 * point.x, 4.0 * point.y);
+        self.0.line(place(from), place(to));
     }
 
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
+        const PIECES: u16 = 128;
+        let Ellipse {
+            centre,
+            across,
+            along,
+            ..
+        } = *ellipse;
         let at = |piece: u16| {
             let turn = std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES);
             let (sin, cos) = libm::sincos(turn);
-            (
-                ellipse.centre.x + ellipse.across.x * cos + ellipse.along.x * sin,
-                ellipse.centre.y + ellipse.across.y * cos + ellipse.along.y * sin,
-            )
+            Point {
+                x: centre.x + across.x * cos + along.x * sin,
+                y: centre.y + across.y * cos + along.y * sin,
+            }
         };
         for piece in 0..PIECES {
-            self.line(at(piece), at(piece + 1));
+            self.edge(at(piece), at(piece + 1));
         }
     }
 }

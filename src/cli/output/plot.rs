@@ -1,4 +1,4 @@
-//! Draws a curve in a terminal, in Braille or in ASCII strokes.
+//! Draws a curve in a terminal, in Braille or in ASCII strokes, and the values of a frame in shades.
 //!
 //! ```text
 //! 0.62 ⠉⠢⢄
@@ -11,7 +11,8 @@ use taxel_core::matrix::Matrix;
 use taxel_files::formats::value::{self, characters, decimal, fitting};
 
 use crate::cli::output::charset::Charset;
-use crate::tui::widget::plot::{DOTS, DotCanvas, glyph};
+use crate::cli::output::report::ruled;
+use crate::tui::widget::plot::{DotCanvas, glyph};
 use crate::tui::widget::theme::Theme;
 
 const SIZE: (u16, u16) = (60, 12);
@@ -23,7 +24,7 @@ pub(crate) fn lines(y: &str, x: &str, points: &[(f64, f64)], charset: Charset) -
     let highest = over(|point| point.1).fold(0.0, f64::max);
     let left = over(|point| point.0).fold(f64::INFINITY, f64::min);
     let right = over(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
-    if points.is_empty() || right <= left || highest <= 0.0 {
+    if right <= left || highest <= 0.0 {
         return String::new();
     }
     let mut canvas = DotCanvas::new(SIZE.0, SIZE.1);
@@ -37,70 +38,54 @@ pub(crate) fn lines(y: &str, x: &str, points: &[(f64, f64)], charset: Charset) -
     for pair in points.windows(2) {
         canvas.line(place(&pair[0]), place(&pair[1]));
     }
-    let rows = drawn(&canvas, charset);
-    let (top, bottom) = (decimal(highest, 4), "0");
+    let mut rows = vec![vec![' '; usize::from(SIZE.0)]; usize::from(SIZE.1)];
+    draw_over(&mut rows, &canvas, charset);
+    let top = decimal(highest, 4);
     let margin = top.len().max(y.len());
     let mut text = format!("{y:>margin$}\n");
     for (index, row) in rows.iter().enumerate() {
         let mark = match index {
-            0 => top.as_str(),
-            _ if index + 1 == rows.len() => bottom,
+            0 => &top,
+            _ if index + 1 == rows.len() => "0",
             _ => "",
         };
+        let row: String = row.iter().collect();
         text += &format!("{mark:>margin$} |{}\n", row.trim_end());
     }
     let (left, right) = (decimal(left, 6), decimal(right, 6));
     let room = usize::from(SIZE.0).saturating_sub(left.len() + right.len());
-    let axis = format!("{left}{x:^room$}{right}");
-    text + &format!("{:>margin$}  {}\n", "", axis)
+    text + &format!("{:>margin$}  {left}{x:^room$}{right}\n", "")
 }
 
-fn drawn(canvas: &DotCanvas, charset: Charset) -> Vec<String> {
-    let mut rows = vec![vec![' '; usize::from(SIZE.0)]; usize::from(SIZE.1)];
+/// Draws the dots of a canvas over rows of characters, as far as they reach.
+pub(crate) fn draw_over(rows: &mut [Vec<char>], canvas: &DotCanvas, charset: Charset) {
+    let theme = Theme::plain(charset == Charset::Ascii);
     for (column, row, dots) in canvas.characters() {
-        rows[usize::from(row)][usize::from(column)] = character(dots, charset);
+        let row = rows.get_mut(usize::from(row));
+        if let Some(place) = row.and_then(|row| row.get_mut(usize::from(column))) {
+            *place = glyph(&theme, dots);
+        }
     }
-    rows.into_iter()
-        .map(|row| row.into_iter().collect())
-        .collect()
 }
 
-pub(crate) fn character(dots: u8, charset: Charset) -> char {
-    glyph(&Theme::plain(charset == Charset::Ascii), dots)
-}
-
-pub(crate) fn canvas_of_taxels(columns: u8, rows: u8) -> DotCanvas {
-    let across = u16::from(columns) * (4 / DOTS.0);
-    let down = u16::from(rows) * (4 / DOTS.1);
-    DotCanvas::new(across, down)
-}
-
-/// Draws the values of all cells, a line for each row, with numbers of columns and rows as beside imprints, and a
-/// legend of the shades. A cell of 0 or less is a dot; a cell without a value is blank.
+/// Draws the values of all cells, with numbers of columns and rows as beside imprints, and a legend of the shades. A
+/// cell of 0 or less is a dot; a cell without a value is blank.
 pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> String {
     let largest = values.values().iter().copied().fold(0.0, f64::max);
     let ascii = charset == Charset::Ascii;
-    let (zero, shades) = (value::character(0.0, ascii), &characters(ascii)[1..]);
-    let ruler: Vec<String> = (0..values.columns())
-        .step_by(2)
-        .map(|column| format!("{column:<4}"))
-        .collect();
-    let mut text = format!("    {}\n", ruler.concat().trim_end());
-    for row in 0..values.rows() {
-        let mut line = format!("{row:>2}  ");
-        for &value in values.row(row) {
+    let zero = value::character(0.0, ascii);
+    let map = ruled(values.size(), |column, row| {
+        let shade = match values.row(row)[usize::from(column)] {
             // If no value is above 0, there is no share.
-            let shade = match value {
-                value if value <= 0.0 => zero,
-                value => value::character(value / largest, ascii),
-            };
-            line.extend([shade, if shade == zero { ' ' } else { shade }]);
-        }
-        text += line.trim_end();
-        text.push('\n');
-    }
-    let scale: String = shades.iter().collect();
-    text + &format!("0 {scale} {}{unit}\n", fitting(largest, 9))
+            value if value <= 0.0 => zero,
+            value => value::character(value / largest, ascii),
+        };
+        [shade, if shade == zero { ' ' } else { shade }]
+            .iter()
+            .collect::<String>()
+    });
+    let scale: String = characters(ascii)[1..].iter().collect();
+    map + &format!("0 {scale} {}{unit}\n", fitting(largest, 9))
 }
 
 #[cfg(test)]
@@ -122,22 +107,14 @@ mod tests {
             rows[13].trim().starts_with("0.5") && rows[13].ends_with('2'),
             "{text}"
         );
-        assert!(rows[1].len() < rows[12].len(), "{text}");
-        let braille = |sign: char| ('\u{2801}'..'\u{2900}').contains(&sign);
-        let dotted = lines("error", "scale", &points, Charset::Unicode);
-        assert!(
-            dotted.chars().filter(|&sign| braille(sign)).count() > 50,
-            "{dotted}"
-        );
         assert_eq!(lines("error", "scale", &[(1.0, 0.5)], Charset::Ascii), "");
     }
 
     #[test]
     fn shades_divide_the_range_evenly() {
-        let mut values = Matrix::filled(MatrixSize::new(6, 1).expect("an allowed size"), 0.0);
-        values
-            .values_mut()
-            .copy_from_slice(&[0.0, f64::NAN, 1.0, 25.0, 26.0, 100.0]);
+        let size = MatrixSize::new(6, 1).expect("an allowed size");
+        let values = vec![0.0, f64::NAN, 1.0, 25.0, 26.0, 100.0];
+        let values = Matrix::from_values(size, values).expect("as many");
         assert_eq!(
             heat_map(&values, " kPa", Charset::Unicode),
             "    0   2   4\n 0  ·   ░░░░▒▒██\n0 ░▒▓█ 100 kPa\n"

@@ -1,32 +1,32 @@
-//! The progress of a sweep, on standard error: a bar on a terminal; otherwise, as in the log of a job, a line every ten
-//! seconds; with `--quiet` nothing. This is the only place of the command line that writes escape codes.
+//! The progress of long work, on standard error: a bar on a terminal; otherwise, as in the log of a job, a line every ten
+//! seconds. This is the only place of the command line that writes escape codes.
 
-use std::io::{IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use taxel_core::lock::try_locked;
 use taxel_core::progress::Progress;
 use taxel_files::formats::value::grouped;
 
 use crate::cli::output::charset::Charset;
 
-const PAUSE: Duration = Duration::from_secs(10);
+const BAR: u64 = 40;
+
+const CLEAR: &str = "\r\x1b[K";
 
 pub(crate) struct ProgressDisplay {
     noun: &'static str,
     all: u64,
     done: AtomicU64,
-    shown: Shown,
-}
-
-enum Shown {
-    Nothing,
-    Bar(ProgressBar),
-    Lines(Instant, Mutex<Instant>),
+    start: Instant,
+    /// When it is shown next; None if it never is.
+    due: Option<Mutex<Instant>>,
+    pause: Duration,
+    /// The signs of the bar for what is done and what is left; None if there is no terminal.
+    bar: Option<[&'static str; 2]>,
 }
 
 impl ProgressDisplay {
@@ -35,80 +35,63 @@ impl ProgressDisplay {
     }
 
     pub(crate) fn counting(noun: &'static str, all: u64, quiet: bool, charset: Charset) -> Self {
-        let shown = if quiet {
-            Shown::Nothing
-        } else if std::io::stderr().is_terminal() {
-            let bar = ProgressBar::with_draw_target(Some(all), ProgressDrawTarget::stderr());
-            let template = "{bar:40} {percent} %  {rate}  {eta} left";
-            let characters = match charset {
-                Charset::Ascii => "#>-",
-                Charset::Unicode => "█▌░",
-            };
-            let style = ProgressStyle::with_template(template);
-            // There are millions of poses per second, for which the library's own format would show decimals.
-            let rate = move |state: &ProgressState, text: &mut dyn std::fmt::Write| {
-                // Cannot fail: the text is kept in memory.
-                let _ = write!(text, "{:.0} {noun}/s", state.per_sec());
-            };
-            bar.set_style(
-                style
-                    .unwrap_or_else(|_| ProgressStyle::default_bar())
-                    .with_key("rate", rate)
-                    .progress_chars(characters),
-            );
-            Shown::Bar(bar)
-        } else {
-            let now = Instant::now();
-            Shown::Lines(now, Mutex::new(now))
-        };
+        let bar = io::stderr().is_terminal().then_some(match charset {
+            Charset::Ascii => ["#", "-"],
+            Charset::Unicode => ["█", "░"],
+        });
+        let pause = Duration::from_millis(if bar.is_some() { 100 } else { 10_000 });
+        let start = Instant::now();
         Self {
             noun,
             all,
             done: AtomicU64::new(0),
-            shown,
-        }
-    }
-
-    /// Shows that `poses` more are done. Any thread may call it.
-    fn show(&self, poses: u64) {
-        let done = self.done.fetch_add(poses, Ordering::Relaxed) + poses;
-        match &self.shown {
-            Shown::Nothing => {}
-            Shown::Bar(bar) => bar.set_position(done),
-            Shown::Lines(start, last) => {
-                // If another thread is writing a line, this one need not.
-                let Some(mut last) = try_locked(last) else {
-                    return;
-                };
-                if last.elapsed() >= PAUSE {
-                    *last = Instant::now();
-                    // The sweep goes on if standard error cannot be written to.
-                    let _ = std::io::stderr()
-                        .lock()
-                        .write_all(self.line(done, start.elapsed()).as_bytes());
-                }
-            }
+            start,
+            due: (!quiet).then(|| Mutex::new(start + pause)),
+            pause,
+            bar,
         }
     }
 
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     fn line(&self, done: u64, elapsed: Duration) -> String {
-        let share = done as f64 / self.all as f64;
-        let left = elapsed.as_secs_f64() * (1.0 / share - 1.0);
-        format!(
-            "{} of {} {}, {:.0} %, {left:.0} s left\n",
-            grouped(done),
-            grouped(self.all),
-            self.noun,
-            share * 100.0
-        )
+        let (seconds, share) = (elapsed.as_secs_f64(), done as f64 / self.all as f64);
+        let (percent, left) = (share * 100.0, seconds * (1.0 / share - 1.0));
+        let noun = self.noun;
+        let Some([full, empty]) = self.bar else {
+            let (done, all) = (grouped(done), grouped(self.all));
+            return format!("{done} of {all} {noun}, {percent:.0} %, {left:.0} s left\n");
+        };
+        let length = (done * BAR / self.all.max(1)).min(BAR) as usize;
+        let bar = full.repeat(length) + &empty.repeat(BAR as usize - length);
+        let rate = done as f64 / seconds;
+        format!("{CLEAR}{bar} {percent:.0} %  {rate:.0} {noun}/s  {left:.0} s left")
     }
 }
 
+/// What cannot be written is left out: the work goes on.
+fn write(text: &str) {
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
 impl Progress for ProgressDisplay {
-    fn add(&self, done: u64) -> ControlFlow<()> {
-        self.show(done);
+    fn add(&self, more: u64) -> ControlFlow<()> {
+        let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
+        // If another thread is writing, this one need not.
+        if let Some(mut due) = self.due.as_ref().and_then(try_locked)
+            && *due <= Instant::now()
+        {
+            *due = Instant::now() + self.pause;
+            write(&self.line(done, self.start.elapsed()));
+        }
         ControlFlow::Continue(())
+    }
+}
+
+impl Drop for ProgressDisplay {
+    fn drop(&mut self) {
+        if self.bar.is_some() && self.due.is_some() {
+            write(CLEAR);
+        }
     }
 }
 
@@ -118,8 +101,14 @@ mod tests {
 
     #[test]
     fn a_line_tells_what_is_left() {
-        let progress = ProgressDisplay::new(1000, true, Charset::Ascii);
-        let line = progress.line(250, Duration::from_secs(10));
+        let mut progress = ProgressDisplay::new(1000, true, Charset::Ascii);
+        let elapsed = Duration::from_secs(10);
+        progress.bar = None;
+        let line = progress.line(250, elapsed);
         assert_eq!(line, "250 of 1,000 poses, 25 %, 30 s left\n");
+        progress.bar = Some(["#", "-"]);
+        let bar = format!("{}{}", "#".repeat(10), "-".repeat(30));
+        let expected = format!("{CLEAR}{bar} 25 %  25 poses/s  30 s left");
+        assert_eq!(progress.line(250, elapsed), expected);
     }
 }

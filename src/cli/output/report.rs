@@ -11,11 +11,10 @@
 //! NA     active taxels                         8            1
 //! NAE    filled taxels                         9            1
 //! ```
-//! The rulers count columns and rows from 0. The number of a column is at its left edge, where x has this value. In
-//! the table a row is a descriptor and a column is a region; regions that do not fit into 80 columns follow in
-//! another block below. Lengths are in cells; if the pitch is known, another row gives them in mm.
+//! The number of a column is at its left edge, where x has this value. Regions that do not fit into 80 columns follow
+//! in another block below. If the pitch is known, lengths and areas are in mm too.
 
-use std::fmt::Write;
+use std::fmt::Display;
 use std::iter;
 
 use taxel_core::description::{
@@ -23,7 +22,7 @@ use taxel_core::description::{
 };
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::short;
-use taxel_core::sensor::Sensor;
+use taxel_core::sensor::{MatrixSize, Sensor};
 use taxel_core::source::Source;
 use taxel_core::touch::reaches_beyond;
 use taxel_files::formats::{DescribedImprint, json, value};
@@ -34,9 +33,7 @@ use crate::cli::output::charset::Charset;
 const WIDTH: usize = 80;
 
 pub(crate) fn json(imprint: &Imprint) -> String {
-    let mut line = json::text(&DescribedImprint(imprint));
-    line.push('\n');
-    line
+    json::text(&DescribedImprint(imprint)) + "\n"
 }
 
 pub(crate) fn beyond(source: &Source, sensor: &Sensor) -> Option<String> {
@@ -55,71 +52,56 @@ pub(crate) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64
     format!("{columns} × {rows} taxels{cells}{threshold}, NA {na} in all")
 }
 
-/// Returns the whole report: the matrix, the lines `made` about its source, and the table of its regions. With
-/// `pitch`, the side of a cell in mm, lengths and areas are given in mm and mm² too.
+/// Returns the whole report: the matrix, the lines `made` about its source, and the table of its regions.
 pub(crate) fn table(
     imprint: &Imprint,
     made: &[String],
     pitch: Option<f64>,
     charset: Charset,
 ) -> String {
-    let mut text = matrix(imprint, charset);
-    text.push('\n');
+    let (active, inactive) = charset.taxels();
+    let taxel = |column, row| {
+        if imprint.get(column, row) {
+            active
+        } else {
+            inactive
+        }
+    };
+    let mut text = ruled(imprint.size(), taxel) + "\n";
     for line in made {
         text += &charset.line(line);
         text.push('\n');
     }
     text.push('\n');
-    let descriptions: Vec<Description> = regions(imprint).iter().map(Description::of).collect();
-    if descriptions.is_empty() {
-        text += "no active taxels, so no regions to describe\n";
-        return text;
+    let regions: Vec<Description> = regions(imprint).iter().map(Description::of).collect();
+    if regions.is_empty() {
+        return text + "no active taxels, so no regions to describe\n";
     }
-    text + &blocks(
-        &labels(&descriptions, pitch, charset),
-        &columns(&descriptions, pitch, charset),
-    )
+    text + &region_table(&regions, pitch, charset)
 }
 
-fn matrix(imprint: &Imprint, charset: Charset) -> String {
-    let (active, inactive) = charset.taxels();
-    let ruler: Vec<String> = (0..imprint.columns())
-        .step_by(2)
-        .map(|column| format!("{column:<4}"))
-        .collect();
+/// Draws a matrix with the numbers of its columns and rows. A cell takes two characters.
+pub(crate) fn ruled<T: Display>(size: MatrixSize, cell: impl Fn(u8, u8) -> T) -> String {
     let mut text = String::from("    ");
-    line(&mut text, &ruler.concat());
-    for row in 0..imprint.rows() {
-        let cell = |column| {
-            if imprint.get(column, row) {
-                active
-            } else {
-                inactive
-            }
-        };
-        let cells: String = (0..imprint.columns()).map(cell).collect();
-        line(&mut text, &format!("{row:>2}  {cells}"));
+    for column in (0..size.columns()).step_by(2) {
+        text += &format!("{column:<4}");
     }
-    text
+    text.truncate(text.trim_end().len());
+    for row in 0..size.rows() {
+        let cells: String = (0..size.columns())
+            .map(|column| cell(column, row).to_string())
+            .collect();
+        text += format!("\n{row:>2}  {cells}").trim_end();
+    }
+    text + "\n"
 }
 
-fn line(text: &mut String, line: &str) {
-    text.push_str(line.trim_end());
-    text.push('\n');
-}
+/// A row of the table: its label, its descriptor, and the factor applied to the values (the pitch, or 100 for percent).
+type Row = (String, &'static Descriptor, f64);
 
-/// A row of the table: a descriptor, the factor that is applied to its values (the pitch, or 100 for percent), and
-/// the label on the left.
-struct TableRow {
-    descriptor: &'static Descriptor,
-    factor: f64,
-    label: String,
-}
-
-/// Returns the rows of the table. `holes` tells whether a region is a hole, whose taxels are not active. With a
-/// pitch, each length is followed by the same length in mm, and each area by the same area in mm².
-fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
-    let mut all = Vec::new();
+/// Returns the rows of the table. `holes` tells whether a region is a hole, whose taxels are not active.
+fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<Row> {
+    let mut rows = Vec::new();
     for descriptor in DESCRIPTORS {
         let (factor, unit) = match descriptor.dimension {
             // An area is in taxels, as its name says.
@@ -128,90 +110,58 @@ fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
             Dimension::Direction => (1.0, ", degrees"),
             Dimension::Share => (100.0, ", %"),
         };
-        let name = if holes && descriptor.key == "na" {
-            "taxels"
-        } else {
-            descriptor.name
-        };
-        all.push(TableRow {
-            descriptor,
-            factor,
-            label: format!("{:<5}  {name}{unit}", descriptor.symbol),
-        });
+        let is_any = holes && descriptor.key == "na";
+        let name = if is_any { "taxels" } else { descriptor.name };
+        let label = format!("{:<5}  {name}{unit}", descriptor.symbol);
+        rows.push((label, descriptor, factor));
         let metric = match (descriptor.dimension, pitch) {
             (Dimension::Length, Some(pitch)) => Some((pitch, "mm")),
             (Dimension::Area, Some(pitch)) => Some((pitch * pitch, "mm²")),
             _ => None,
         };
-        all.extend(metric.map(|(factor, unit)| TableRow {
-            descriptor,
-            factor,
-            label: format!("{:<5}  in {unit}", ""),
-        }));
+        rows.extend(
+            metric.map(|(factor, unit)| (format!("{:<5}  in {unit}", ""), descriptor, factor)),
+        );
     }
-    all
+    rows
 }
 
-fn labels(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<String> {
-    let holes = descriptions.iter().any(|it| it.kind == RegionKind::Hole);
+/// Returns the table: a row for each descriptor, a column for each region with a heading such as `hole 2`.
+fn region_table(regions: &[Description], pitch: Option<f64>, charset: Charset) -> String {
+    let holes = regions.iter().any(|it| it.kind == RegionKind::Hole);
     let rows = table_rows(pitch, holes);
-    charset.column(iter::once("").chain(rows.iter().map(|row| &*row.label)))
-}
-
-fn widest(cells: &[String]) -> usize {
-    let widths = cells.iter().map(|cell| cell.chars().count());
-    widths.fold(0, usize::max)
-}
-
-/// Returns a column for each region, with a heading such as `hole 2` in the first cell. Each is padded to its own
-/// width.
-fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<Vec<String>> {
-    let rows = table_rows(pitch, false);
-    let (mut exteriors, mut holes) = (0, 0);
-    let column = |description: &Description| {
-        let number = match description.kind {
-            RegionKind::Exterior => &mut exteriors,
-            RegionKind::Hole => &mut holes,
-        };
-        *number += 1;
-        let mut column = vec![format!("{} {number}", description.kind.name())];
-        column.extend(rows.iter().map(|row| {
-            let value = (row.descriptor.measure)(description);
-            let text = value::times(value, row.factor, 4);
+    let labels = charset.column(iter::once("").chain(rows.iter().map(|row| &*row.0)));
+    let column = |(index, region): (usize, &Description)| {
+        let same = |other: &&Description| other.kind == region.kind;
+        let number = regions[..=index].iter().filter(same).count();
+        let mut column = vec![format!("{} {number}", region.kind.name())];
+        column.extend(rows.iter().map(|(_, descriptor, factor)| {
+            let text = value::times((descriptor.measure)(region), *factor, 4);
             charset.line(text.as_deref().unwrap_or("–")).into_owned()
         }));
-        let width = widest(&column);
-        column
-            .iter()
-            .map(|cell| format!("{cell:>width$}"))
-            .collect()
+        let widest = column.iter().map(|cell| cell.chars().count()).max();
+        (widest.unwrap_or(0), column)
     };
-    descriptions.iter().map(column).collect()
-}
-
-/// Puts columns side by side, as many as fit into [`WIDTH`], and the others into further blocks below, each with the
-/// labels.
-fn blocks(labels: &[String], mut columns: &[Vec<String>]) -> String {
-    let width = |column: &[String]| column.first().map_or(0, |cell| cell.chars().count());
-    let mut text = String::new();
-    while !columns.is_empty() {
-        let mut used = width(labels);
-        let fitting = columns.iter().take_while(|column| {
-            used += 2 + width(column);
+    let columns: Vec<(usize, Vec<String>)> = regions.iter().enumerate().map(column).collect();
+    let (mut text, mut rest) = (String::new(), &columns[..]);
+    while !rest.is_empty() {
+        let mut used = labels[0].chars().count();
+        let fitting = rest.iter().take_while(|(width, _)| {
+            used += 2 + width;
             used <= WIDTH
         });
-        let (block, rest) = columns.split_at(fitting.count().max(1));
-        columns = rest;
-        if !text.is_empty() {
+        let (block, others) = rest.split_at(fitting.count().max(1));
+        for (index, label) in labels.iter().enumerate() {
+            let cells: String = block
+                .iter()
+                .map(|(width, column)| format!("  {:>width$}", column[index]))
+                .collect();
+            text += format!("{label}{cells}").trim_end();
             text.push('\n');
         }
-        for (index, label) in labels.iter().enumerate() {
-            let mut row = label.clone();
-            for cell in block.iter().filter_map(|column| column.get(index)) {
-                // Cannot fail: the text is kept in memory.
-                let _ = write!(row, "  {cell}");
-            }
-            line(&mut text, &row);
+        rest = others;
+        if !rest.is_empty() {
+            text.push('\n');
         }
     }
     text
