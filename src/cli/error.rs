@@ -22,14 +22,16 @@ use taxel_files::formats::value::counted;
 use taxel_files::storage::{FileError, LibraryError};
 use taxel_files::{ReadError, ReadErrorKind};
 
+use crate::cli::failure::Failure;
 use crate::cli::input::content::InputError;
-use crate::cli::output::charset::Charset;
 use crate::tui::script::runner;
 
 pub(crate) const MOST_PAIRED: usize = 4096;
 
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CliError {
+    #[error("{}", .0.text)]
+    Failure(Failure),
     #[error(transparent)]
     Usage(#[from] clap::Error),
     #[error("--{flag} has no effect {reason}")]
@@ -121,10 +123,6 @@ pub(crate) enum CliError {
         name: Option<String>,
         failure: runner::ScriptFailure,
     },
-    #[error("{name:?} already exists and is not replaced")]
-    Recorded { name: String },
-    #[error("{name}: cannot record: {}", write_reason(error))]
-    Record { name: String, error: io::Error },
     #[error("{0}")]
     Memory(String),
     #[error("{}", with_flag(.0))]
@@ -243,6 +241,7 @@ impl CliError {
     pub(crate) fn status(&self) -> u8 {
         match self {
             _ if self.is_closed_pipe() => 0,
+            Self::Failure(failure) => failure.status,
             Self::Usage(_)
             | Self::Unused { .. }
             | Self::Settings { .. }
@@ -261,12 +260,19 @@ impl CliError {
         }
     }
 
-    pub(crate) fn message(&self, charset: Charset) -> Option<String> {
-        match self {
-            _ if self.is_closed_pipe() => None,
-            Self::Script { .. } => Some(charset.lines(&format!("error: {self}\n"))),
-            Self::Usage(error) => Some(charset.lines(&error.render().to_string())),
-            _ => Some(format!("error: {}\n", charset.line(&self.to_string()))),
-        }
+    /// The same as a [`Failure`].
+    pub(crate) fn failure(&self) -> Failure {
+        let failure = match self {
+            Self::Usage(error) => Failure::of_arguments(error),
+            Self::Script { .. } => Failure::new(self.to_string()).with_lines(),
+            _ => Failure::new(self.to_string()),
+        };
+        failure.with_status(self.status())
+    }
+}
+
+impl From<Failure> for CliError {
+    fn from(failure: Failure) -> Self {
+        Self::Failure(failure)
     }
 }

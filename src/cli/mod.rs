@@ -1,12 +1,10 @@
 //! The command line: `taxel COMMAND`, as defined in `arguments`. Without a command the screen opens.
 //!
-//! A command passes through the folders of this room, which are declared below in this order:
 //! ```text
-//! arguments -> clap (arguments/definitions) -> Request (arguments/request)
-//!   + settings: flag, environment, file, default (settings/)
-//!   -> Surroundings::run, below -> commands/, a file or folder each; shapes and files come from input/
-//!   -> text or JSON (output/) -> standard output
-//! CliError (error.rs) -> message on standard error, exit status
+//! arguments -> clap -> Program, below -> Command, a struct each in commands/
+//!   + settings: flag, environment, file, default (settings/) -> Context
+//!   -> its run(&Context); shapes and files come from input/ -> text or JSON (output/) -> standard output
+//! Failure (failure.rs) -> message on standard error, exit status
 //! ```
 //!
 //! Answers go to standard output. Messages go to standard error, one line each; those about failures start with
@@ -25,13 +23,15 @@
 
 mod error;
 
+pub(crate) mod failure;
+
 mod signals;
 
 mod output;
 
 mod input;
 
-mod arguments;
+pub(crate) mod arguments;
 
 pub mod settings;
 
@@ -41,30 +41,77 @@ use std::ffi::OsString;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use clap::FromArgMatches;
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 
-use crate::tui::live::message::WatchRequest;
-use arguments::definitions;
 use arguments::flags::Form;
 use arguments::frames::FramesArguments;
+use arguments::help::{ABOUT, EXAMPLES};
 use arguments::library::LibraryCommand;
 use arguments::model::ModelRequest;
-use arguments::request::{self, Invocation, Request};
+use arguments::parameters::Given;
+use arguments::request::{self, Request};
 use arguments::sweep::{SweepArguments, Swept};
 use arguments::touch::Kept;
+use commands::completions::Completions;
+use commands::config::Config;
 use commands::export::{self, Exported};
 use commands::frames::{self, FramesOutput};
+use commands::man::Man;
 use commands::recognise::{self, FrameNamer};
-use commands::{
-    Summary, confusion, library, man, model, noise, screen, script, separate, sweep, touch, watch,
-};
+use commands::screen::{self, Look, Screen};
+use commands::{Summary, confusion, library, model, noise, script, separate, sweep, touch, watch};
 use error::CliError;
+use failure::Failure;
 use input::lines::LineInput;
 use input::shapes::Shelf;
-use output::charset::{Charset, note};
+use output::charset::Charset;
 use output::progress::ProgressDisplay;
-use settings::resolved::Effective;
+use settings::resolved::{Chosen, Effective, Loaded};
+
+#[derive(Debug, clap::Parser)]
+#[command(name = "taxel", version = env!("TAXEL_VERSION"), about = ABOUT, after_help = EXAMPLES)]
+struct Program {
+    #[command(flatten)]
+    screen: Screen,
+    #[command(flatten)]
+    global: Global,
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+/// The flags of all commands.
+#[derive(Debug, clap::Args)]
+struct Global {
+    /// The library's folder
+    #[arg(long, global = true, value_name = "DIR", help_heading = "Library")]
+    library: Option<PathBuf>,
+    /// Use this settings file instead of your own
+    #[arg(long, global = true, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Use ASCII only, as if the locale were not UTF-8
+    #[arg(long, global = true)]
+    ascii: bool,
+}
+
+/// The commands; those that are still read by hand are in `arguments/request.rs`.
+#[derive(Debug, clap::Subcommand)]
+enum Command {
+    Config(Config),
+    Completions(Completions),
+    Man(Man),
+}
+
+impl Command {
+    fn run(self, cx: &Context) -> Result<(), Failure> {
+        match self {
+            Self::Config(command) => command.run(cx),
+            Self::Completions(command) => command.run(cx),
+            Self::Man(command) => command.run(cx),
+        }
+    }
+}
 
 /// Runs the program with the given arguments and returns its exit status. The first argument is the program's own name.
 ///
@@ -73,56 +120,116 @@ use settings::resolved::Effective;
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     signals::outlive_file_limit();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let mut charset = Charset::of(&arguments, std::env::var_os);
-    let failure = match perform(arguments, &mut charset) {
-        Ok(status) => return status,
-        Err(failure) => failure,
+    Charset::of(&arguments, std::env::var_os).set();
+    let Err(failure) = perform(arguments) else {
+        return 0;
     };
-    if let Some(message) = failure.message(charset) {
+    if let Some(message) = failure.message(Charset::current()) {
         // If not even this can be written, the exit status still tells.
         let _ = io::stderr().lock().write_all(message.as_bytes());
     }
-    failure.status()
+    failure.status
 }
 
-/// Reads the arguments and runs their command. Returns the exit status.
-///
-/// `characters` is the character set for messages. It starts as that of the locale and becomes that of the settings,
-/// which are known only after the arguments are read.
-fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, CliError> {
-    let Invocation {
-        request,
-        library_named,
-        settings,
-    } = request::read(arguments)?;
-    let charset = settings.charset(*characters);
-    *characters = charset;
-    let shelf = Shelf::new(settings.library.clone(), library_named);
-    let surroundings = Surroundings {
+fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
+    let (matches, mut definition) = match request::read(arguments) {
+        Ok(read) => read,
+        Err(error) if error.use_stderr() => return Err(error.into()),
+        Err(help) => {
+            let help = help.render().to_string();
+            return write(Charset::current().lines(&help).as_bytes());
+        }
+    };
+    let global = Global::from_arg_matches(&matches)?;
+    let loaded = match (matches.subcommand_name(), global.config) {
+        // The output of these does not depend on settings.
+        (Some("completions" | "man"), _) | (Some("script"), None) => Loaded::default(),
+        (_, asked) => Loaded::find(asked)?,
+    };
+    let by_hand = matches
+        .subcommand()
+        .filter(|(name, _)| !<Command as clap::Subcommand>::has_subcommand(name));
+    let watch = by_hand.filter(|(name, _)| *name == "watch");
+    let look = watch
+        .map(|(_, own)| Look::from_arg_matches(own))
+        .transpose()?;
+    let look = look.unwrap_or_default();
+    let chosen = Chosen {
+        color: look.color,
+        theme: look.theme,
+        no_mouse: look.no_mouse,
+        ascii: global.ascii,
+        library: global.library.clone(),
+        sensor: by_hand.map_or_else(Given::default, |(_, own)| Given::of(own)),
+    };
+    let settings = Effective::new(loaded, chosen, std::env::var_os)?;
+    let charset = settings.charset(Charset::current());
+    charset.set();
+    let shelf = Shelf::new(settings.library.clone(), global.library.is_some());
+    let cx = Context {
         settings,
         shelf,
         charset,
     };
-    surroundings.run(request)
+    if let Some((name, own)) = by_hand {
+        let request = request::request(name, own, &mut definition, &cx.settings)?;
+        return Ok(cx.run(request)?);
+    }
+    let program = Program::from_arg_matches(&matches)?;
+    match program.command {
+        Some(command) => command.run(&cx),
+        None => program.screen.run(&cx),
+    }
 }
 
-struct Surroundings {
-    settings: Effective,
-    shelf: Shelf,
-    charset: Charset,
+/// What every command has at hand.
+#[derive(Debug)]
+pub(crate) struct Context {
+    pub(crate) settings: Effective,
+    pub(crate) shelf: Shelf,
+    pub(crate) charset: Charset,
 }
 
-impl Surroundings {
-    fn run(&self, request: Request) -> Result<u8, CliError> {
+impl Context {
+    /// Prints lines of text to standard output.
+    pub(crate) fn print(&self, text: &str) -> Result<(), Failure> {
+        self.write(self.charset.lines(text).as_bytes())
+    }
+
+    pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
+        write(bytes)
+    }
+
+    /// Writes a line to standard error. If it cannot be written, it is dropped: it is not part of the answer.
+    pub(crate) fn note(&self, text: &str) {
+        output::charset::note(text, self.charset);
+    }
+}
+
+fn write(bytes: &[u8]) -> Result<(), Failure> {
+    let mut output = io::stdout().lock();
+    let written = output.write_all(bytes).and_then(|()| output.flush());
+    Ok(written.map_err(CliError::Write)?)
+}
+
+// The commands that are still read by hand.
+impl Context {
+    fn run(&self, request: Request) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         match request {
-            Request::Screen(size, record) => return self.screen(size, record, None),
             // On a terminal, a page shows the frames; in a pipeline, they are answered in lines.
             Request::Watch(asked) if !asked.json && io::stdout().is_terminal() => {
-                return self.screen(None, None, Some(watch::request(&asked, shelf)?));
+                let request = watch::request(&asked, shelf)?;
+                return Ok(screen::open(
+                    self,
+                    &self.settings,
+                    None,
+                    None,
+                    Some(request),
+                )?);
             }
             Request::Watch(asked) => {
-                return watch::watch(&asked, shelf, &mut |text| note(text, charset));
+                watch::watch(&asked, shelf, &mut |text| self.note(text))?;
             }
             Request::Recognise(asked) => {
                 recognise::recognise(&asked, shelf, charset, &mut io::stdout().lock())?;
@@ -135,12 +242,12 @@ impl Surroundings {
                 self.touch(&picture, sensor, form, &kept)?;
             }
             Request::Describe(what, form) => {
-                print(&touch::content(&shelf.find(&what)?, form, charset))?;
+                self.print(&touch::content(&shelf.find(&what)?, form, charset))?;
             }
             Request::Export(what, export, pitch) => {
                 match export::export(shelf, &what, &export, pitch)? {
-                    Exported::Content(content) => write(&content)?,
-                    Exported::Said(said) => print(&(charset.line(&said).into_owned() + "\n"))?,
+                    Exported::Content(content) => self.write(&content)?,
+                    Exported::Said(said) => self.print(&(said + "\n"))?,
                 }
             }
             Request::Batch(file, sensor, jobs) => {
@@ -153,35 +260,14 @@ impl Surroundings {
             }
             Request::Sweep(asked) => self.sweep(*asked)?,
             Request::Merge(files, wanted) => {
-                print_summary(sweep::merge(&files, &wanted, charset)?)?;
+                self.print_summary(sweep::merge(&files, &wanted, charset)?)?;
             }
             Request::Model(request) => self.model(request)?,
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
             Request::Library(asked) => self.library(asked)?,
-            Request::Help(text) => print(&charset.lines(&text))?,
-            Request::Settings => print(&self.settings.text(charset))?,
             Request::Script(asked) => script::run(&asked, &self.settings, shelf, charset)?,
-            Request::Completions(shell) => {
-                let mut script = Vec::new();
-                clap_complete::generate(shell, &mut definitions::all(), "taxel", &mut script);
-                write(&script)?;
-            }
-            Request::Man(None) => write(&man::main_page()?)?,
-            Request::Man(Some(folder)) => {
-                print(&(charset.line(&man::write(&folder)?).into_owned() + "\n"))?;
-            }
         }
-        Ok(0)
-    }
-
-    fn screen(
-        &self,
-        size: Option<(u16, u16)>,
-        record: Option<PathBuf>,
-        watched: Option<WatchRequest>,
-    ) -> Result<u8, CliError> {
-        let (shelf, charset) = (&self.shelf, self.charset);
-        screen::screen(&self.settings, size, record, shelf, charset, watched)
+        Ok(())
     }
 
     fn touch(
@@ -192,9 +278,9 @@ impl Surroundings {
         kept: &Kept,
     ) -> Result<(), CliError> {
         let touched = touch::touch(source, sensor, form, kept, &self.shelf, self.charset)?;
-        write(&touched.answer)?;
+        self.write(&touched.answer)?;
         for text in &touched.notes {
-            note(text, self.charset);
+            self.note(text);
         }
         Ok(())
     }
@@ -208,11 +294,11 @@ impl Surroundings {
         let (grid, taken) = sweep::grid(source, sensor, asked.anchor, &asked.ranges)?;
         if !asked.wanted.quiet {
             for text in &taken {
-                note(text, self.charset);
+                self.note(text);
             }
         }
         let (shard, jobs, wanted) = (asked.shard, asked.jobs, &asked.wanted);
-        print_summary(sweep::sweep(&grid, shard, jobs, wanted, self.charset)?)
+        self.print_summary(sweep::sweep(&grid, shard, jobs, wanted, self.charset)?)
     }
 
     /// Runs `taxel frames`. If an error occurs, the answers made before it are still printed.
@@ -235,18 +321,23 @@ impl Surroundings {
                 .as_ref()
                 .map(|model| FrameNamer::new(model, noise.as_ref())),
             answers: &mut answers,
-            notes: &mut |text| note(text, self.charset),
+            notes: &mut |text| self.note(text),
         };
         let done = frames::frames(asked, recording, &processing, output);
         answers.flush().map_err(CliError::Write)?;
         done
     }
 
+    fn print_summary(&self, summary: Summary) -> Result<(), CliError> {
+        self.print(&summary.text)?;
+        summary.written
+    }
+
     fn model(&self, request: ModelRequest) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let text = match request {
             ModelRequest::Train(asked) => {
-                return print_summary(model::train(&asked, shelf, charset)?);
+                return self.print_summary(model::train(&asked, shelf, charset)?);
             }
             ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
             ModelRequest::List(json) => model::list(json, shelf, charset)?,
@@ -255,14 +346,14 @@ impl Surroundings {
             ModelRequest::Touches(asked) => noise::touches(&asked, shelf, charset)?,
             ModelRequest::Separate(asked) => separate::separate(&asked, shelf, charset)?,
         };
-        print(&text)
+        Ok(self.print(&text)?)
     }
 
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let is_list = matches!(asked, LibraryCommand::List(_));
         if let Some(text) = library::missing(shelf).filter(|_| is_list) {
-            note(&text, charset);
+            self.note(&text);
         }
         let text = match asked {
             LibraryCommand::List(json) => library::list(shelf, json, charset)?,
@@ -276,15 +367,15 @@ impl Surroundings {
             }
             LibraryCommand::Path => {
                 let folder = shelf.library()?.folder().to_owned();
-                return write(&path_line(&folder, io::stdout().is_terminal(), charset));
+                return Ok(self.write(&path_line(&folder, io::stdout().is_terminal(), charset))?);
             }
             LibraryCommand::Check(json) => {
                 let (text, result) = library::check(shelf, json, charset)?;
-                print(&text)?;
+                self.print(&text)?;
                 return result;
             }
         };
-        print(&text)
+        Ok(self.print(&text)?)
     }
 }
 
@@ -297,23 +388,6 @@ fn path_line(path: &Path, on_terminal: bool, charset: Charset) -> Vec<u8> {
         .as_ref()
         .map_or(path.as_encoded_bytes(), String::as_bytes);
     [bytes, b"\n"].concat()
-}
-
-fn print(text: &str) -> Result<(), CliError> {
-    write(text.as_bytes())
-}
-
-fn print_summary(summary: Summary) -> Result<(), CliError> {
-    print(&summary.text)?;
-    summary.written
-}
-
-fn write(bytes: &[u8]) -> Result<(), CliError> {
-    let mut output = io::stdout().lock();
-    output
-        .write_all(bytes)
-        .and_then(|()| output.flush())
-        .map_err(CliError::Write)
 }
 
 #[cfg(test)]

@@ -1,27 +1,16 @@
 //! The program with all its commands and flags, for clap. The order of the calls is the order in the help.
 
-use std::path::PathBuf;
+use clap::{Command, CommandFactory};
 
-use clap::{Arg, Command, value_parser};
-
-use crate::cli::arguments::flags::{option, sensor};
-use crate::cli::arguments::help::{ABOUT, EXAMPLES};
-use crate::cli::arguments::program::{
-    ascii, completions, config, config_file, look, man, record, script, size,
-};
-use crate::cli::arguments::{flags, frames, library, model, recognise, sweep, touch};
+use crate::cli::Program;
+use crate::cli::arguments::program::script;
+use crate::cli::arguments::{frames, library, model, recognise, sweep, touch};
 
 /// Defines the program with all its commands. Completions and manual pages are made from this too, so a new command
 /// appears in them by itself.
 pub(crate) fn all() -> Command {
-    let program = Command::new("taxel")
-        .version(env!("TAXEL_VERSION"))
-        .about(ABOUT)
-        .after_help(EXAMPLES)
-        .args(sensor())
-        .args(look())
-        .args([size(), record()].map(|arg| arg.help_heading("Terminal")))
-        .args([folder(), config_file(), ascii()].map(|arg| arg.global(true)))
+    let program = Program::command()
+        .term_width(80)
         .subcommand(touch::figure())
         .subcommand(touch::picture())
         .subcommand(touch::describe())
@@ -34,16 +23,7 @@ pub(crate) fn all() -> Command {
         .subcommand(frames::command())
         .subcommand(frames::watch())
         .subcommand(library::command())
-        .subcommand(script())
-        .subcommand(config().args(sensor()))
-        .subcommand(completions())
-        .subcommand(man());
-    // These use no library, so their help does not list its flag.
-    let program = ["merge", "completions", "man"]
-        .into_iter()
-        .fold(program, |program, name| {
-            program.mut_subcommand(name, |command| command.arg(folder().hide(true)))
-        });
+        .subcommand(script());
     in_order(with_negative_numbers(program))
 }
 
@@ -79,12 +59,6 @@ fn with_negative_numbers(command: Command) -> Command {
         .mut_subcommands(with_negative_numbers)
 }
 
-fn folder() -> Arg {
-    option("library", "DIR", "The library's folder")
-        .value_parser(value_parser!(PathBuf))
-        .help_heading("Library")
-}
-
 const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Touch",
@@ -101,8 +75,6 @@ const GROUPS: [(&str, &[&str]); 5] = [
 
 const COLUMN: usize = 13;
 
-const WIDTH: usize = 65;
-
 /// Makes the help list the commands by groups. It is used only for reading arguments: it hides the commands, and
 /// completions and the manual would leave out hidden ones.
 pub(crate) fn grouped(mut all: Command) -> Command {
@@ -113,9 +85,7 @@ pub(crate) fn grouped(mut all: Command) -> Command {
         for name in commands {
             let about = all.find_subcommand(name).and_then(Command::get_about);
             if let Some(about) = about {
-                let about = flags::wrapped(&about.to_string(), WIDTH);
-                let indent = format!("\n  {:COLUMN$}", "");
-                template += &format!("  {name:<COLUMN$}{}\n", about.replace('\n', &indent));
+                template += &format!("  {name:<COLUMN$}{about}\n");
             }
         }
     }

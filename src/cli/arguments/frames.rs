@@ -522,7 +522,11 @@ pub(crate) fn watch() -> Command {
         .args(rules())
         .args(naming())
         .args([write, flags::replace().requires("write"), json()])
-        .args(program::look().map(|arg| arg.conflicts_with("json")))
+        .args(
+            program::look()
+                .into_iter()
+                .map(|arg| arg.conflicts_with("json")),
+        )
 }
 
 fn parse_speed(text: &str) -> Result<f64, String> {

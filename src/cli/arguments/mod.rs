@@ -8,6 +8,9 @@ pub(super) mod program;
 
 pub(super) mod flags;
 
+#[allow(dead_code, reason = "for commands that are still read by hand")]
+pub(crate) mod parameters;
+
 pub(super) mod touch;
 
 pub(super) mod sweep;

@@ -10,7 +10,6 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command};
-use clap_complete::Shell;
 use taxel_core::figure::FigureKind;
 use taxel_core::quote::{as_argument, joined};
 use taxel_core::sensor::Sensor;
@@ -18,7 +17,7 @@ use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
 
 use crate::cli::arguments::definitions;
-use crate::cli::arguments::flags::{self, Form, Given, misused, required, unhandled_subcommand};
+use crate::cli::arguments::flags::{self, Form, Given, required, unhandled_subcommand};
 use crate::cli::arguments::frames::{FramesArguments, WatchArguments};
 use crate::cli::arguments::library::LibraryCommand;
 use crate::cli::arguments::model::ModelRequest;
@@ -27,20 +26,11 @@ use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::arguments::sweep::{SweepArguments, Wanted};
 use crate::cli::arguments::touch::{self, Export, Kept};
 use crate::cli::error::CliError;
-use crate::cli::settings::resolved::{Chosen, Effective, Loaded, Pitch};
+use crate::cli::settings::resolved::{Effective, Pitch};
 
-#[derive(Clone, Debug)]
-pub(crate) struct Invocation {
-    pub(crate) request: Request,
-    pub(crate) library_named: bool,
-    pub(crate) settings: Effective,
-}
-
+/// A command that is read by hand.
 #[derive(Clone, Debug)]
 pub(crate) enum Request {
-    Help(String),
-    /// Open the screen: with this size instead of the terminal's, and recording into this file, if given.
-    Screen(Option<(u16, u16)>, Option<PathBuf>),
     Script(Script),
     Figure(Box<Source>, Sensor, Form, Kept),
     Picture(OsString, Given, Form, Kept),
@@ -56,9 +46,6 @@ pub(crate) enum Request {
     Frames(Box<FramesArguments>, Form, Kept),
     Watch(Box<WatchArguments>),
     Library(LibraryCommand),
-    Settings,
-    Completions(Shell),
-    Man(Option<PathBuf>),
 }
 
 /// Leaves out the texts below the flags in the help of a command and of its subcommands: `-h` prints usage and flags
@@ -69,57 +56,26 @@ fn without_notes(command: Command) -> Command {
         .mut_subcommands(without_notes)
 }
 
-pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
+/// What clap makes of the arguments, and the program's definition; or the help, if it is asked for.
+pub(crate) fn read(arguments: Vec<OsString>) -> Result<(ArgMatches, Command), clap::Error> {
     let has = |flag: &str| arguments.iter().any(|argument| argument == flag);
     let is_short = has("-h") && !has("--help");
     let all = definitions::all();
     let all = if is_short { without_notes(all) } else { all };
     let mut command = definitions::grouped(all);
-    let matches = match command.try_get_matches_from_mut(arguments) {
-        Ok(matches) => matches,
-        Err(error) if error.use_stderr() => {
-            return Err(with_tips(error).into());
+    let matches = command
+        .try_get_matches_from_mut(arguments)
+        .map_err(with_tips)?;
+    if let Some((name, own)) = matches.subcommand() {
+        if let Some(flag) = Given::of(&matches).first().or(of_screen(&matches)) {
+            let message = too_early(&flag, name, &command);
+            return Err(command.error(ErrorKind::ArgumentConflict, message));
         }
-        Err(help) => {
-            let none = Chosen::default();
-            return Ok(Invocation {
-                request: Request::Help(help.render().to_string()),
-                library_named: false,
-                settings: Effective::new(Loaded::default(), none, |_| None)?,
-            });
+        if let Some(message) = shared_input(deepest(own)) {
+            return Err(command.error(ErrorKind::ArgumentConflict, message));
         }
-    };
-    let asked = || matches.get_one::<PathBuf>("config").cloned();
-    let library_named = matches.contains_id("library");
-    let Some((name, own)) = matches.subcommand() else {
-        let settings = effective(Loaded::find(asked())?, &matches)?;
-        let size = matches.get_one("size").copied();
-        let record = matches.get_one::<PathBuf>("record").cloned();
-        return Ok(Invocation {
-            request: Request::Screen(size, record),
-            library_named,
-            settings,
-        });
-    };
-    if let Some(flag) = Given::of(&matches).first().or(of_screen(&matches)) {
-        let message = too_early(&flag, name, &command);
-        return Err(command.error(ErrorKind::ArgumentConflict, message).into());
     }
-    if let Some(message) = shared_input(deepest(own)) {
-        return Err(misused(&mut command, name, &message));
-    }
-    let loaded = match (name, asked()) {
-        // The output of these does not depend on settings.
-        ("completions" | "man", _) | ("script", None) => Loaded::default(),
-        (_, asked) => Loaded::find(asked)?,
-    };
-    let settings = effective(loaded, own)?;
-    let request = request(name, own, &mut command, &settings)?;
-    Ok(Invocation {
-        request,
-        library_named,
-        settings,
-    })
+    Ok((matches, command))
 }
 
 fn deepest(matches: &ArgMatches) -> &ArgMatches {
@@ -151,9 +107,12 @@ fn shared_input(matches: &ArgMatches) -> Option<String> {
 
 /// Returns the first given flag of the screen. Before a command such a flag would have no effect, so it is refused.
 fn of_screen(matches: &ArgMatches) -> Option<String> {
-    let flags = ["color", "theme", "no-mouse", "size", "record"];
+    let flags = ["color", "theme", "no_mouse", "size", "record"];
     let given = |flag: &&str| matches.value_source(flag) == Some(ValueSource::CommandLine);
-    flags.into_iter().find(given).map(str::to_owned)
+    flags
+        .into_iter()
+        .find(given)
+        .map(|flag| flag.replace('_', "-"))
 }
 
 fn too_early(flag: &str, name: &str, command: &Command) -> String {
@@ -167,11 +126,7 @@ fn too_early(flag: &str, name: &str, command: &Command) -> String {
     }
 }
 
-fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, CliError> {
-    Effective::new(loaded, Chosen::of(matches), std::env::var_os)
-}
-
-fn request(
+pub(crate) fn request(
     name: &str,
     own: &ArgMatches,
     command: &mut Command,
@@ -181,11 +136,10 @@ fn request(
     let form = || Form::of(own, settings);
     Ok(match name {
         "figure" => {
-            let (figure, sensor) = touch::source(own, command, "figure", settings)?;
+            let (figure, sensor) = touch::source(own, settings)?;
             let kept = Kept::of(own, command, "figure")?;
             Request::Figure(Box::new(figure), sensor, form()?, kept)
         }
-        "config" => Request::Settings,
         "picture" => {
             let kept = Kept::of(own, command, "picture")?;
             Request::Picture(what()?, Given::of(own), form()?, kept)
@@ -205,8 +159,6 @@ fn request(
         }
         "library" => Request::Library(LibraryCommand::of(own, settings)?),
         "script" => Request::Script(Script::of(own)),
-        "completions" => Request::Completions(required::<Shell>(own, "shell")?),
-        "man" => Request::Man(own.get_one::<PathBuf>("folder").cloned()),
         "sweep" => Request::Sweep(Box::new(SweepArguments::of(own, command, settings)?)),
         "merge" => {
             let files = own.get_many::<PathBuf>("files").into_iter().flatten();

@@ -151,7 +151,7 @@ impl SweepArguments {
             }
             Swept::Picture(picture.clone(), given)
         } else {
-            let (figure, sensor) = touch::source(matches, command, "sweep", settings)?;
+            let (figure, sensor) = touch::source(matches, settings)?;
             Swept::Figure(figure, sensor)
         };
         let anchor = matches.get_one::<Anchor>("anchor").copied();

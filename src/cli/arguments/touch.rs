@@ -25,7 +25,7 @@ use crate::cli::error::CliError;
 use crate::cli::settings::resolved::{Effective, Pitch};
 
 /// Defines `taxel figure KIND`, such as `taxel figure ellipse --x0 1.99 --radius-x 4`. There is a flag for each
-/// parameter of any kind; [`Given::foreign`](flags::Given::foreign) refuses those that the given kind does not
+/// parameter of any kind; [`Given::figure`](flags::Given::figure) refuses those that the given kind does not
 /// have. Angles are degrees clockwise as seen, lengths are in cell sides.
 pub(super) fn figure() -> Command {
     let kinds = FigureKind::names();
@@ -97,25 +97,10 @@ pub(super) fn batch() -> Command {
 
 pub(super) fn source(
     matches: &ArgMatches,
-    command: &mut Command,
-    name: &str,
     settings: &Effective,
 ) -> Result<(Source, Sensor), CliError> {
     let kind = required::<FigureKind>(matches, "kind")?;
     let given = Given::of(matches);
-    if let Some(parameter) = given.foreign(kind) {
-        let own = kind
-            .parameters()
-            .iter()
-            .map(|own| format!("--{}", own.flag()));
-        let message = format!(
-            "'--{}' does not belong to '{}', which takes {}",
-            parameter.flag(),
-            kind.name(),
-            joined(own, "and")
-        );
-        return Err(misused(command, name, &message));
-    }
     let sensor = settings.sensor;
     let figure = Source::Figure(given.figure(kind, &sensor)?);
     Ok((figure, sensor))

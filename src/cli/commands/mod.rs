@@ -32,6 +32,10 @@ pub(super) mod script;
 
 pub(super) mod man;
 
+pub(super) mod config;
+
+pub(super) mod completions;
+
 use crate::cli::error::CliError;
 
 #[derive(Debug)]

@@ -7,47 +7,111 @@
 use std::fs::File;
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, ErrorKind, Write};
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use taxel_files::formats::file::system_reason;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use taxel_files::formats::file::{system_reason, write_reason};
 use taxel_files::storage::ModelCache;
 
-use crate::cli::error::CliError;
-use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::{Charset, note};
-use crate::cli::settings::resolved::Effective;
+use crate::cli::Context;
+use crate::cli::arguments::parameters::{Given, SensorFlags};
+use crate::cli::failure::Failure;
+use crate::cli::output::charset::Charset;
+use crate::cli::settings::file::AUTO;
+use crate::cli::settings::resolved::{Choice, Effective};
 use crate::tui::app::message::{Message, WorkerEvent};
 use crate::tui::app::state::{App, Options};
 use crate::tui::live::message::{LiveMessage, WatchRequest};
 use crate::tui::runtime::World;
 use crate::tui::runtime::mailbox::{self, Sender};
-use crate::tui::script::command::of_options;
+use crate::tui::script::command::{of_options, size};
 use crate::tui::script::record::Recorder;
 use crate::tui::terminal;
 use crate::tui::terminal::input::Input;
 use crate::tui::terminal::settings::{Flags, TerminalSettings};
+use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// Runs the screen until the user quits, and returns the exit status.
-///
-/// With `watched`, it starts with the frames of this source.
-pub(crate) fn screen(
+/// How the screen looks, for terminals that do not describe themselves well.
+#[derive(Debug, Default, clap::Args)]
+pub(crate) struct Look {
+    /// Colours: auto, never, 16, 256 or true
+    #[arg(long, value_parser = choice(&ColorDepth::NAMES), value_name = "COLOR", hide_possible_values = true, help_heading = "Terminal")]
+    pub(crate) color: Option<Choice<ColorDepth>>,
+    /// Theme: auto, dark, light or mono
+    #[arg(long, value_parser = choice(&Palette::NAMES), value_name = "THEME", hide_possible_values = true, help_heading = "Terminal")]
+    pub(crate) theme: Option<Choice<Palette>>,
+    /// Leave the mouse to the terminal
+    #[arg(long, help_heading = "Terminal")]
+    pub(crate) no_mouse: bool,
+}
+
+fn choice<T: Copy + Send + Sync + 'static>(
+    names: &'static [(&'static str, T)],
+) -> impl TypedValueParser<Value = Choice<T>> {
+    let all = iter::once(AUTO).chain(names.iter().map(|(name, _)| *name));
+    PossibleValuesParser::new(all).map(|name| {
+        let found = names.iter().find(|(own, _)| *own == name);
+        found.map_or(Choice::Auto, |(_, value)| Choice::Made(*value))
+    })
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Screen {
+    #[command(flatten)]
+    sensor: SensorFlags,
+    #[command(flatten)]
+    look: Look,
+    /// Columns and rows of the screen
+    #[arg(long, value_name = "CxR", value_parser = size, help_heading = "Terminal")]
+    size: Option<(u16, u16)>,
+    /// Record what you type as a script in a new file, with the shapes that you use
+    #[arg(long, value_name = "FILE", help_heading = "Terminal")]
+    record: Option<PathBuf>,
+}
+
+impl Screen {
+    pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        let settings = cx.settings.with(&self.look, &self.sensor)?;
+        open(cx, &settings, self.size, self.record, None)
+    }
+}
+
+/// Shows the frames of a source on the screen.
+#[allow(dead_code, reason = "for commands that are still read by hand")]
+pub(crate) fn watch(cx: &Context, look: &Look, watched: WatchRequest) -> Result<(), Failure> {
+    let settings = cx.settings.with(look, &Given::default())?;
+    open(cx, &settings, None, None, Some(watched))
+}
+
+/// Runs the screen until the user quits.
+pub(crate) fn open(
+    cx: &Context,
     settings: &Effective,
     size: Option<(u16, u16)>,
     record: Option<PathBuf>,
-    shelf: &Shelf,
-    charset: Charset,
     watched: Option<WatchRequest>,
-) -> Result<u8, CliError> {
-    let terminal = terminal_settings(settings, size, charset);
+) -> Result<(), Failure> {
+    let flags = Flags {
+        color: settings.color,
+        palette: settings.theme,
+        // A locale that is not UTF-8 means ASCII; a UTF-8 locale tells nothing about the terminal's font.
+        ascii: settings
+            .ascii
+            .or((cx.charset == Charset::Ascii).then_some(true)),
+        no_mouse: !settings.mouse,
+        size,
+    };
+    let terminal = TerminalSettings::from_environment(std::env::var_os, &flags);
     let options = Options {
         sensor: settings.sensor,
         theme: terminal.theme(),
         // A different seed each time.
         seed: RandomState::new().hash_one(0),
     };
-    let world = World::new(shelf.library()?).with_model_cache(ModelCache::of_user());
-    let (sender, mailbox) = mailbox::new().map_err(CliError::Screen)?;
+    let world = World::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
+    let (sender, mailbox) = mailbox::new()?;
     let app = App::new(&options)
         .with_keymap(settings.keymap().clone())
         .with_watch_settings(settings.sensors().request());
@@ -66,29 +130,13 @@ pub(crate) fn screen(
         }
     };
     let ended = terminal::run(app, first, world, &terminal, (sender, mailbox), &mut watch);
-    let is_whole = record.is_none_or(|record| record.end(charset));
-    match ended.map_err(CliError::Screen)?.status() {
-        0 => Ok(u8::from(!is_whole)),
+    let is_whole = record.is_none_or(|record| record.end(cx));
+    match ended?.status() {
+        0 if is_whole => Ok(()),
+        0 => Err(Failure::silent(1)),
         // The reason that ended the program takes precedence.
-        status => Ok(status),
+        status => Err(Failure::silent(status)),
     }
-}
-
-fn terminal_settings(
-    settings: &Effective,
-    size: Option<(u16, u16)>,
-    charset: Charset,
-) -> TerminalSettings {
-    // A locale that is not UTF-8 means ASCII; a UTF-8 locale tells nothing about the terminal's font.
-    let ascii = (charset == Charset::Ascii).then_some(true);
-    let flags = Flags {
-        color: settings.color,
-        palette: settings.theme,
-        ascii: settings.ascii.or(ascii),
-        no_mouse: !settings.mouse,
-        size,
-    };
-    TerminalSettings::from_environment(std::env::var_os, &flags)
 }
 
 struct ScreenRecord {
@@ -104,14 +152,19 @@ struct ScreenRecord {
 
 impl ScreenRecord {
     /// Creates the file, which must not exist: it may be another record.
-    fn begin(path: &Path, options: &Options, sender: Sender) -> Result<Self, CliError> {
+    fn begin(path: &Path, options: &Options, sender: Sender) -> Result<Self, Failure> {
         let name = path.to_string_lossy().into_owned();
         let file = match File::create_new(path) {
             Ok(file) => file,
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                return Err(CliError::Recorded { name });
+                return Err(Failure::new(format!(
+                    "{name:?} already exists and is not replaced"
+                )));
             }
-            Err(error) => return Err(CliError::Record { name, error }),
+            Err(error) => {
+                let reason = write_reason(&error);
+                return Err(Failure::new(format!("{name}: cannot record: {reason}")));
+            }
         };
         let recorder = Recorder::new(&of_options(options));
         Ok(Self {
@@ -142,13 +195,15 @@ impl ScreenRecord {
     }
 
     /// Writes the last line, and returns true if the record is whole. If it is not, a note says why.
-    fn end(mut self, charset: Charset) -> bool {
+    fn end(mut self, cx: &Context) -> bool {
         let last = self.recorder.end();
         self.write(&last);
         if let Some(error) = &self.failed {
             let reason = system_reason(error);
-            let text = format!("error: {}: the record ends early: {reason}", self.name);
-            note(&text, charset);
+            cx.note(&format!(
+                "error: {}: the record ends early: {reason}",
+                self.name
+            ));
         }
         self.failed.is_none()
     }

@@ -8,11 +8,15 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::iter;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use taxel_core::quote::is_invisible;
 
 use crate::tui::widget::theme::spelling;
 use crate::tui::widget::write::width;
+
+/// Whether all output is ASCII; set once the arguments are read.
+static ASCII: AtomicBool = AtomicBool::new(false);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Charset {
@@ -21,6 +25,19 @@ pub(crate) enum Charset {
 }
 
 impl Charset {
+    /// The character set of all output. Functions that make text ask for it here, so that it is not passed on.
+    pub(crate) fn current() -> Self {
+        if ASCII.load(Ordering::Relaxed) {
+            Self::Ascii
+        } else {
+            Self::Unicode
+        }
+    }
+
+    pub(crate) fn set(self) {
+        ASCII.store(self == Self::Ascii, Ordering::Relaxed);
+    }
+
     /// Returns ASCII if an argument is `--ascii` or the locale is not UTF-8.
     ///
     /// This looks for `--ascii` before the arguments are parsed, so that a message about wrong arguments is in ASCII

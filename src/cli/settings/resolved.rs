@@ -9,13 +9,13 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use clap::ArgMatches;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_files::formats::file::{is_missing, system_reason};
 use taxel_files::storage::{LIBRARY_VARIABLE, below_home, usual_folder};
 
-use crate::cli::arguments::flags::Given;
+use crate::cli::arguments::parameters::Given;
+use crate::cli::commands::screen::Look;
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, Wrong};
@@ -100,6 +100,7 @@ fn open(path: &Path) -> io::Result<File> {
 #[derive(Clone, Debug)]
 pub(crate) struct Effective {
     loaded: Loaded,
+    chosen: Chosen,
     pub(crate) theme: Option<Palette>,
     pub(crate) color: Option<ColorDepth>,
     pub(crate) ascii: Option<bool>,
@@ -121,6 +122,7 @@ impl Effective {
         let config = &loaded.config;
         // https://no-color.org
         let no_color = || set("NO_COLOR").map(|_| Choice::Made(ColorDepth::Never));
+        let chosen_again = chosen.clone();
         let color = chosen.color.or_else(no_color).or(config.color);
         let ascii = chosen.ascii.then_some(Choice::Made(true));
         let library = chosen
@@ -142,7 +144,21 @@ impl Effective {
             sensor,
             pitch: is_pitched.then(|| sensor.pitch_mm()),
             loaded,
+            chosen: chosen_again,
         })
+    }
+
+    /// These settings with the flags of the screen and the sensor.
+    pub(crate) fn with(&self, look: &Look, sensor: &Given) -> Result<Self, CliError> {
+        let chosen = Chosen {
+            theme: look.theme,
+            color: look.color,
+            no_mouse: look.no_mouse,
+            sensor: sensor.clone(),
+            ascii: self.chosen.ascii,
+            library: self.chosen.library.clone(),
+        };
+        Self::new(self.loaded.clone(), chosen, std::env::var_os)
     }
 
     pub(crate) fn sensors(&self) -> &SensorSettings {
@@ -295,32 +311,6 @@ pub(crate) struct Chosen {
     pub(crate) no_mouse: bool,
     pub(crate) library: Option<PathBuf>,
     pub(crate) sensor: Given,
-}
-
-impl Chosen {
-    pub(crate) fn of(matches: &ArgMatches) -> Self {
-        let chosen = |name: &str| {
-            let chosen = matches.try_get_one::<String>(name).ok().flatten();
-            chosen.map(String::as_str)
-        };
-        let switched = |name: &str| {
-            let switch = matches.try_get_one::<bool>(name).ok().flatten();
-            switch.copied().unwrap_or(false)
-        };
-        Self {
-            theme: chosen("theme").map(|name| value_of(&Palette::NAMES, name)),
-            color: chosen("color").map(|name| value_of(&ColorDepth::NAMES, name)),
-            ascii: switched("ascii"),
-            no_mouse: switched("no-mouse"),
-            library: matches.get_one::<PathBuf>("library").cloned(),
-            sensor: Given::of(matches),
-        }
-    }
-}
-
-fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Choice<T> {
-    let found = names.iter().find(|(own, _)| *own == name);
-    found.map_or(Choice::Auto, |(_, value)| Choice::Made(*value))
 }
 
 /// The sources of the pitch in mm that are known before a stored shape is read.
