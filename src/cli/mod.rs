@@ -229,7 +229,10 @@ impl Context {
                 )?);
             }
             Request::Watch(asked) => {
-                watch::watch(&asked, shelf, &mut |text| self.note(text))?;
+                match watch::watch(&asked, shelf, &mut |text| self.note(text))? {
+                    0 => {}
+                    status => return Err(Failure::silent(status).into()),
+                }
             }
             Request::Recognise(asked) => {
                 recognise::recognise(&asked, shelf, charset, &mut io::stdout().lock())?;
