@@ -4,8 +4,8 @@
 //! ```text
 //! terminal   bytes -> Key
 //! keys       lookup(context, key) -> Message       one table of actions, one of default keys
-//! app        update(&mut App, Message) -> Effect   all changes of the state
-//! runtime    perform(Effect) -> Message            touches the world; then update again
+//! app        update(&mut App, Message)             all changes of the state
+//! jobs       disk, read, run(closure) -> Answer    threads; an answer is a closure over the state, too
 //! app        view(&App, &mut Frame)                reads the state and draws it
 //! ```
 //! A [`script::Session`] replaces the terminal by text and a buffer; everything between is the same code.
@@ -50,6 +50,8 @@ pub mod recognise;
 pub mod live;
 
 pub mod runtime;
+
+pub mod jobs;
 
 pub mod terminal;
 

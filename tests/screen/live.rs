@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use taxel::frames::Pipeline;
 use taxel::tui::app::message::{Message, WorkerEvent};
+use taxel::tui::app::update::on_worker;
 use taxel::tui::live::message::{
     FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, RecordedFrames, SourceState,
     WatchRequest,
@@ -273,7 +274,7 @@ fn a_notice_does_not_hide_a_lost_source() {
 
 /// Sends an event of the source of the first page.
 fn send(page: &mut Session, event: LiveEvent) {
-    page.send(Message::Worker(WorkerEvent::Live(1, event)));
+    page.answer(|app| on_worker(app, WorkerEvent::Live(1, event)));
 }
 
 /// Sends frames of these sides.
@@ -405,7 +406,7 @@ fn a_frozen_frame_is_the_shown_one_even_if_it_is_not_confirmed() {
             ..FrameBatch::default()
         };
         let event = LiveEvent::Arrived(Arc::new(batch));
-        page.send(Message::Worker(WorkerEvent::Live(1, event)));
+        page.answer(|app| on_worker(app, WorkerEvent::Live(1, event)));
     };
     let frozen = || {
         let mut page = watched(2, "");

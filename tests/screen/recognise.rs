@@ -6,11 +6,8 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-use taxel::tui::app::message::{Message, WorkerEvent};
-use taxel::tui::app::state::App;
-use taxel::tui::app::update::{next_work, update};
+use taxel::tui::app::message::Message;
 use taxel::tui::runtime::World;
-use taxel::tui::runtime::effect::{Effect, Work};
 use taxel::tui::script::Session;
 use taxel_core::figure::Figure;
 use taxel_core::pose::{Anchor, Axis, Ranges};
@@ -327,15 +324,15 @@ fn a_damaged_or_outdated_model_in_the_cache_is_trained_again() {
 /// A program whose workers run beside it, and the events that they report.
 struct Beside {
     session: Session,
-    told: Receiver<WorkerEvent>,
+    told: Receiver<()>,
 }
 
 impl Beside {
     fn new(keys: &str) -> Self {
         let (post, told) = channel();
-        let world = untrained().with_workers(Arc::new(move |told| {
+        let world = untrained().with_threads(Arc::new(move || {
             // The test may have ended.
-            let _ = post.send(told);
+            let _ = post.send(());
         }));
         let session = started(world, keys);
         Self { session, told }
@@ -345,8 +342,8 @@ impl Beside {
     fn until(&mut self, text: &str) {
         while !self.session.screen().contains(text) {
             let told = self.told.recv_timeout(DEADLINE);
-            let told = told.unwrap_or_else(|_| panic!("no {text:?} on\n{}", self.session.screen()));
-            self.session.send(Message::Worker(told));
+            told.unwrap_or_else(|_| panic!("no {text:?} on\n{}", self.session.screen()));
+            self.session.send(Message::Answered);
         }
     }
 }
@@ -418,20 +415,4 @@ fn a_notice_that_the_model_is_not_ready_goes_when_it_is() {
 fn poses_are_those_of_the_present_touch_even_if_the_page_was_closed() {
     let screen = session("r<Esc>f<Enter>:poses<Enter>").screen();
     assert!(!screen.contains("nothing is touched"), "{screen}");
-}
-
-#[test]
-fn a_search_for_poses_is_stopped_when_its_page_or_imprint_changes() {
-    let after = |app: &mut App, message| update(app, message).or_else(|| next_work(app));
-    let mut app = started(world(), "fr<Enter>r").app().clone();
-    let begun = after(&mut app, Message::Toggle);
-    assert!(
-        matches!(begun, Some(Effect::Work(Work::FindPoses(..)))),
-        "{begun:?}"
-    );
-    let stop = Some(Effect::Work(Work::StopFindingPoses));
-    let mut drawn_on = app.clone();
-    assert_eq!(after(&mut drawn_on, Message::Undo), stop);
-    assert_eq!(after(&mut drawn_on, Message::Toggle), None, "once");
-    assert_eq!(after(&mut app, Message::Cancel), stop);
 }

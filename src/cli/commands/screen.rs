@@ -21,7 +21,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::file::AUTO;
 use crate::cli::settings::resolved::{Choice, Effective};
-use crate::tui::app::message::{Message, WorkerEvent};
+use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
 use crate::tui::live::message::{LiveMessage, WatchRequest};
 use crate::tui::runtime::World;
@@ -188,8 +188,7 @@ impl ScreenRecord {
         if let Err(error) = self.file.write_all(lines.as_bytes()) {
             let reason = system_reason(&error);
             let reason = format!("{}: the record ends here: {reason}", self.name);
-            self.sender
-                .send(Message::Worker(WorkerEvent::Refused(reason)));
+            self.sender.send(Message::Refused(reason));
             self.failed = Some(error);
         }
     }

@@ -5,6 +5,8 @@
 //! belong to the document that they began on. The cursor stays where it was put; [`App::cursor`] keeps it on the
 //! sensor.
 
+use std::sync::Arc;
+
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::to_decimals;
@@ -13,14 +15,16 @@ use taxel_core::source::Source;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::Existing;
 
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::state::{App, MoveKind, Notice};
 use crate::tui::compare::{Comparison, heading};
+use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
-use crate::tui::runtime::effect::{Effect, FileRequest};
+use crate::tui::runtime::disk::files;
+use crate::tui::runtime::effect::Effect;
 
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Info(text.into()));
@@ -78,7 +82,6 @@ fn settle_elsewhere(app: &mut App) {
 }
 
 pub(in crate::tui) fn settle(app: &mut App) {
-    app.removed.clear();
     app.moves = None;
     if app.history.present().source.is_none() {
         let_go(app);
@@ -294,23 +297,33 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
     set(app, source, MoveKind::Zoom, &values);
 }
 
-/// Returns the request to write a new file. Shows a notice and returns None if its content cannot be made.
-pub(in crate::tui) fn write_file(
+/// Writes a file, unless its content cannot be made. If a file of that name exists, asks whether to replace it.
+pub(crate) fn write_file(
     app: &mut App,
     name: String,
     content: Result<Vec<u8>, String>,
-) -> Option<Effect> {
-    match content {
-        Ok(content) => Some(Effect::File(FileRequest::Write(
-            name,
-            content,
-            Existing::Kept,
-        ))),
-        Err(reason) => {
-            refuse(app, reason);
-            None
-        }
-    }
+    existing: Existing,
+) {
+    let content = match content {
+        Ok(content) => content,
+        Err(reason) => return refuse(app, reason),
+    };
+    let access = Arc::clone(&app.jobs.access);
+    app.jobs.disk(format!("Writing {name}"), move |_| {
+        let written = files::write(&access, &name, &content, existing);
+        answer(move |app| match written {
+            Ok(Some(path)) => inform(app, format!("written: {path}")),
+            Ok(None) => {
+                let again = name.clone();
+                let yes = move |app: &mut App| {
+                    write_file(app, again, Ok(content), Existing::Replaced);
+                };
+                let question = Question::replaces(&name, yes);
+                app.dialogs.push(Dialog::Question(question));
+            }
+            Err(reason) => refuse(app, reason),
+        })
+    });
 }
 
 /// Carries out the request of a prompt. The prompt stays open if the request is refused and no other page opens. If

@@ -8,6 +8,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::state::App;
 use crate::tui::compare::Comparison;
 use crate::tui::explore::prompts::{ExportDialog, FilterDialog};
 use crate::tui::explore::ranges::RangesForm;
@@ -26,7 +27,10 @@ use crate::tui::search::SearchDialog;
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::theme::Theme;
 
-#[derive(Clone, Debug)]
+#[expect(
+    missing_debug_implementations,
+    reason = "answers to questions are closures"
+)]
 pub enum Dialog {
     Form(Box<FormDialog>),
     List(ListDialog),
@@ -84,13 +88,15 @@ macro_rules! topmost {
 
 pub(in crate::tui) use topmost;
 
+pub type Act = Box<dyn FnOnce(&mut App)>;
+
 /// Leaving it without an answer does nothing.
-#[derive(Clone, Debug)]
+#[expect(missing_debug_implementations, reason = "its answers are closures")]
 pub struct Question {
     pub about: String,
     pub text: String,
-    pub yes: Message,
-    pub no: Option<Message>,
+    pub yes: Act,
+    pub no: Option<Act>,
     pub prompt: Option<Box<Dialog>>,
     pub saves_first: bool,
     pub meanings: Option<[&'static str; 2]>,
@@ -98,11 +104,15 @@ pub struct Question {
 }
 
 impl Question {
-    pub fn new(about: impl Into<String>, text: impl Into<String>, yes: Message) -> Self {
+    pub fn new(
+        about: impl Into<String>,
+        text: impl Into<String>,
+        yes: impl FnOnce(&mut App) + 'static,
+    ) -> Self {
         Self {
             about: about.into(),
             text: text.into(),
-            yes,
+            yes: Box::new(yes),
             no: None,
             prompt: None,
             saves_first: false,
@@ -111,7 +121,7 @@ impl Question {
         }
     }
 
-    pub fn replaces(name: &str, yes: Message) -> Self {
+    pub fn replaces(name: &str, yes: impl FnOnce(&mut App) + 'static) -> Self {
         Self::new(format!("{name:?} already exists."), "Replace it?", yes)
     }
 

@@ -107,7 +107,6 @@ pub struct History {
     /// change comes to nothing.
     future_before: Option<Vec<Revision>>,
     pub(in crate::tui) origins: Vec<DocumentOrigin>,
-    gone: Vec<(usize, DocumentOrigin)>,
 }
 
 impl History {
@@ -123,7 +122,6 @@ impl History {
             future: Vec::new(),
             future_before: None,
             origins,
-            gone: Vec::new(),
         }
     }
 
@@ -183,10 +181,8 @@ impl History {
         }
     }
 
-    pub fn origin_of(&self, document: &Document) -> usize {
-        let mut states = std::iter::once(&self.present).chain(self.past.iter().rev());
-        let found = states.find(|state| state.document == *document);
-        found.map_or(self.present.origin, |state| state.origin)
+    pub(crate) fn origin_index(&self) -> usize {
+        self.present.origin
     }
 
     /// Notes that a document of that origin is stored now, so that it can be found again.
@@ -200,38 +196,12 @@ impl History {
     /// Notes that the stored shape of that name is gone: everything that came from it would be lost.
     pub fn removed(&mut self, name: &str) {
         let gone = folded(name);
-        for (index, origin) in self.origins.iter_mut().enumerate() {
+        for origin in &mut self.origins {
             let own = origin.name.as_ref();
             let own = own.filter(|stored| stored.owner == ShapeOrigin::Own);
             if own.is_some_and(|stored| folded(&stored.name) == gone) {
-                // A shape that is deleted twice comes back as it was last.
-                let is_same = |(own, before): &(usize, DocumentOrigin)| {
-                    let stored = before.name.as_ref();
-                    *own == index && stored.is_some_and(|stored| folded(&stored.name) == gone)
-                };
-                self.gone.retain(|before| !is_same(before));
-                self.gone.push((index, origin.clone()));
                 origin.name = None;
                 origin.saved = Document::empty(origin.saved.sensor);
-            }
-        }
-    }
-
-    /// Notes that the deleted shape of that name is restored: documents that came from it have its name again, unless
-    /// they have another one now.
-    pub fn restored(&mut self, name: &str) {
-        let back = folded(name);
-        let is_back = |(_, origin): &mut (usize, DocumentOrigin)| {
-            let stored = origin.name.as_ref();
-            stored.is_some_and(|stored| folded(&stored.name) == back)
-        };
-        for (index, before) in self.gone.extract_if(.., is_back) {
-            if let Some(origin) = self
-                .origins
-                .get_mut(index)
-                .filter(|origin| origin.name.is_none())
-            {
-                *origin = before;
             }
         }
     }

@@ -6,16 +6,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use taxel_core::imprint::Imprint;
 use taxel_core::pose::{PoseGrid, PoseIndex};
-use taxel_files::formats::StoredShape;
-use taxel_files::storage::{Expected, LibraryEntry, LoadedShape};
+use taxel_files::formats::Name;
 
 use crate::tui::app::document::Document;
 use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
 use crate::tui::keys::key::{Arrow, Key};
-use crate::tui::live::message::{LiveEvent, LiveMessage, WatchRequest};
+use crate::tui::live::message::{LiveEvent, LiveMessage};
 use crate::tui::recognise::state::{RecogniseMessage, RecognitionEvent};
 
 #[derive(Clone, Debug, PartialEq)]
@@ -80,10 +78,7 @@ pub enum Message {
     Zoom(i8),
     Mouse(Mouse),
     Resized(u16, u16),
-    Recover,
-    GiveUp,
     Request(LibraryRequest),
-    Library(LibraryEvent),
     Become(Box<Document>),
     Command,
     Copy(Copied),
@@ -91,10 +86,10 @@ pub enum Message {
     Recognise(RecogniseMessage),
     OpenFile(String),
     WriteFile(String),
-    Overwrite(String, Vec<u8>),
-    File(FileEvent),
     Live(LiveMessage),
-    Worker(WorkerEvent),
+    /// There are answers of jobs.
+    Answered,
+    Refused(String),
     Unknown(Key),
     Redraw,
     /// Suspend the program, as Ctrl-Z does, until the shell continues it.
@@ -109,24 +104,6 @@ impl Message {
             Nudge(_) | Move(..) | Turn(_) | Zoom(_) | NudgeStep(_) | PutBack
         )
     }
-}
-
-/// Errors are sentences.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FileEvent {
-    Opened(String, OpenedFile),
-    Written(String),
-    /// The file was not written, because one of this name exists; with the content to write.
-    Exists(String, Vec<u8>),
-    Failed(String),
-    Source(Arc<WatchRequest>),
-    Paths(Vec<String>),
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum OpenedFile {
-    Shape(Box<StoredShape>),
-    Imprint(Box<Imprint>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -181,51 +158,9 @@ pub enum Purpose {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum LibraryRequest {
-    List,
-    Models,
-    Trash,
-    Read(Vec<String>),
+    Save(Name),
     Named(Purpose, String),
-    Store(Box<StoredShape>, Expected),
-    Deletable(String),
-    Remove(String),
     Restore(Option<String>),
-}
-
-impl LibraryRequest {
-    pub fn is_change(&self) -> bool {
-        matches!(self, Self::Store(..) | Self::Remove(_) | Self::Restore(_))
-    }
-}
-
-/// Errors are sentences.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LibraryEvent {
-    List(Result<Vec<LibraryEntry>, String>),
-    Models(Vec<String>),
-    Trash(Result<Vec<String>, String>),
-    Read(Vec<(String, Result<LoadedShape, String>)>),
-    Named(Purpose, Result<Box<LoadedShape>, String>),
-    Stored(String, u64),
-    NotStored(String),
-    /// The shape that was not stored because its file holds something else, the stamp of that content, and the reason
-    /// in words.
-    Differs(Box<StoredShape>, u64, String),
-    /// The name of a shape that can be deleted, or the reason why it cannot.
-    Deletable(Result<String, String>),
-    Removed(String),
-    Restored(String),
-    Recovered(Box<StoredShape>),
-    Found(Leftover),
-    GivenUp(String, Option<Leftover>),
-    NotGivenUp(String),
-    Failed(String),
-}
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Leftover {
-    pub what: String,
-    pub waiting: usize,
 }
 
 /// An event of a worker. It carries the number of its work; events of work that is no longer waited for are dropped.
@@ -233,10 +168,6 @@ pub struct Leftover {
 pub enum WorkerEvent {
     Progress(u64, SweepProgress),
     Estimate(Box<PoseGrid>, Duration),
-    Answered,
-    Waiting(Option<String>),
-    /// The request to the disk that the user no longer waits for, in a few words.
-    GivenUp(String),
     /// A sweep is over, at its end or because it was stopped.
     Swept(u64, Arc<Findings>),
     Angles(Arc<Findings>, PoseIndex, Result<Arc<AngleCurve>, String>),

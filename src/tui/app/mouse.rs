@@ -136,7 +136,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::app::message::LibraryEvent;
+    use crate::tui::app::change::begin_drawn;
     use crate::tui::app::state::Options;
     use crate::tui::app::update::update;
 
@@ -150,13 +150,15 @@ mod tests {
         let (first, last) = (taxels[0], taxels[taxels.len() - 1]);
         let mouse = |kind, (column, row)| Message::Mouse(Mouse { kind, column, row });
         update(&mut app, mouse(MouseKind::Press, first));
-        let drawn = app.unsaved_work().pop().expect("something is drawn");
-        let drawn = drawn.to_shape();
+        let drawn = app.reading().imprint;
         update(&mut app, mouse(MouseKind::Drag, last));
-        assert!(app.reading().imprint.count() > drawn.imprint.count());
-        let brought_back = LibraryEvent::Recovered(Box::new(drawn.clone()));
-        update(&mut app, Message::Library(brought_back));
+        assert!(app.reading().imprint.count() > drawn.count());
+        app.jobs.later(move |app| {
+            let sensor = app.history.present().sensor;
+            begin_drawn(app, sensor, &drawn, "another");
+        });
+        update(&mut app, Message::Answered);
         update(&mut app, mouse(MouseKind::Drag, first));
-        assert_eq!(app.reading().imprint, drawn.imprint);
+        assert_eq!(app.reading().imprint, drawn);
     }
 }

@@ -3,24 +3,24 @@
 //! All code may read it. While the program runs, only [`crate::tui::app::update`] and the functions that it calls
 //! change it, so all changes happen in the order of the messages.
 
-use std::collections::VecDeque;
+use std::fmt;
 
 use ratatui::layout::Rect;
 use taxel_core::imprint::{Bounds, Imprint};
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
-use taxel_files::formats::{Name, StoredShape};
-use taxel_files::storage::Expected;
+use taxel_files::formats::StoredShape;
 
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};
-use crate::tui::app::message::{LibraryRequest, Message};
+use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::view::Panes;
 use crate::tui::explore::results::Results;
 use crate::tui::form::state::FormMemory;
 use crate::tui::grid::Grid;
+use crate::tui::jobs::Jobs;
 use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::{Context, Keymap};
@@ -29,6 +29,7 @@ use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::matrix::view::grid;
 use crate::tui::recognise::state::Recognition;
+use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::widget::theme::Theme;
 
 #[derive(Clone, Copy, Debug)]
@@ -129,15 +130,18 @@ pub enum Notice {
     Failure(String),
 }
 
-#[derive(Clone, Debug)]
-pub(in crate::tui) struct UnfinishedSave {
-    pub(in crate::tui) shape: Box<StoredShape>,
-    pub(in crate::tui) document: Document,
-    pub(in crate::tui) origin: usize,
+/// A shape that is being saved, or that could not be saved before the program ended: the journal keeps it.
+#[derive(Debug)]
+pub(crate) struct Saving {
+    pub(crate) shape: Box<StoredShape>,
+    pub(crate) document: Document,
+    pub(crate) origin: usize,
 }
 
-#[derive(Clone, Debug)]
 pub struct App {
+    pub jobs: Jobs,
+    /// What the terminal is to do after this message.
+    pub(crate) terminal: Option<TerminalEffect>,
     pub(in crate::tui) history: History,
     shown: ReadDocument,
     /// The taxel that the cursor was put on: column, row. It may lie beyond a sensor that became smaller; so if the
@@ -152,15 +156,7 @@ pub struct App {
     /// The prompt that the last message came from, until the next action: it opens again if its request is refused.
     pub(in crate::tui) prompt: Option<Dialog>,
     pub(in crate::tui) notice: Option<Notice>,
-    /// The status line shows it while there is no notice.
-    pub(in crate::tui) waiting: Option<String>,
-    pub(in crate::tui) saving: VecDeque<UnfinishedSave>,
-    /// The shapes that could not be saved before the program ended, each with the reason. Nobody can be asked any more,
-    /// so the journal keeps them.
-    pub(in crate::tui) refused_at_end: Vec<(UnfinishedSave, String)>,
-    /// The names of the shapes that were removed since the last change of the document, the last one last: undo
-    /// restores them.
-    pub(in crate::tui) removed: Vec<String>,
+    pub(crate) saving: Option<Saving>,
     pub(in crate::tui) results: Option<Box<Results>>,
     pub(in crate::tui) recognition: Recognition,
     pub(in crate::tui) watch_settings: WatchRequest,
@@ -189,6 +185,8 @@ impl App {
     pub fn new(options: &Options) -> Self {
         let document = Document::empty(options.sensor);
         Self {
+            jobs: Jobs::without_library(),
+            terminal: None,
             cursor: (options.sensor.columns() / 2, options.sensor.rows() / 2),
             shown: ReadDocument::new(document.clone()),
             history: History::new(document),
@@ -200,10 +198,7 @@ impl App {
             dialogs: Vec::new(),
             prompt: None,
             notice: None,
-            waiting: None,
-            saving: VecDeque::new(),
-            refused_at_end: Vec::new(),
-            removed: Vec::new(),
+            saving: None,
             results: None,
             recognition: Recognition::new(options.seed),
             watch_settings: WatchRequest::new(""),
@@ -420,19 +415,13 @@ impl App {
         self.run_state != RunState::Running
     }
 
-    pub fn waiting(&self) -> Option<&str> {
-        self.waiting.as_deref()
-    }
-
     pub fn theme(&self) -> &Theme {
         &self.theme
     }
+}
 
-    /// Returns the message that stores the document under a name. It replaces no file, not even the one that the
-    /// document came from: if there is one, the library says what it holds now, and the user is asked.
-    pub(in crate::tui) fn storing(&self, name: Name) -> Message {
-        let present = self.history.present();
-        let shape = Box::new(present.to_shape(name, &Reading::of(present)));
-        Message::Request(LibraryRequest::Store(shape, Expected::Nothing))
+impl fmt::Debug for App {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("App")
     }
 }

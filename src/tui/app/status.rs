@@ -166,7 +166,7 @@ pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(Strin
         Notice::Info(text) => (text.clone(), Role::Key),
         Notice::Refusal(text) | Notice::Failure(text) => (format!("! {text}"), Role::Error),
     });
-    let waiting = || Some((app.waiting()?.to_owned(), Role::Key));
+    let waiting = || Some((app.jobs.waiting()?, Role::Key));
     let notice = notice.or_else(waiting);
     match (notice, top.and_then(Page::alarm)) {
         (Some((text, Role::Error)), Some(alarm)) => Some((format!("{text}; {alarm}"), Role::Error)),

@@ -1,17 +1,23 @@
 //! Unsaved work: what the question before quitting warns of, and what the journal keeps. Both come from the same list,
 //! so nothing that is asked about is missing in the journal.
 
-use taxel_core::source::Source;
-use taxel_files::formats::{Name, StoredShape};
-use taxel_files::storage::UNNAMED;
+use std::time::Duration;
 
+use taxel_core::source::Source;
+use taxel_files::formats::value::counted;
+use taxel_files::formats::{Name, StoredShape};
+use taxel_files::storage::{Library, LibraryError, Orphan, UNNAMED, shipped};
+
+use crate::tui::app::change::{inform, refuse, resume};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, StatePlace, UnsavedState};
-use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, RunState};
+use crate::tui::explore::ranges::about;
+use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::live::update::recording;
+use crate::tui::matrix::update::name_of_copy;
 
 /// A document that would be lost if the program died now.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,15 +31,6 @@ impl UnsavedWork {
     pub fn to_shape(&self) -> StoredShape {
         let reading = Reading::of(&self.document);
         self.document.to_shape(self.name.clone(), &reading)
-    }
-}
-
-impl From<&StoredShape> for UnsavedWork {
-    fn from(shape: &StoredShape) -> Self {
-        Self {
-            name: shape.name.clone(),
-            document: Document::of_shape(shape),
-        }
     }
 }
 
@@ -69,9 +66,10 @@ impl App {
         let kept = own
             .chain(previewed)
             .filter(|_| self.run_state != RunState::Quit);
-        let refused = self.refused_at_end.iter().map(|(save, _)| save);
-        let saving = self.saving.iter().chain(refused);
-        let saving = saving.map(|save| (Some(save.shape.name.clone()), &save.document));
+        let saving = self
+            .saving
+            .iter()
+            .map(|save| (Some(save.shape.name.clone()), &save.document));
         let mut works: Vec<UnsavedWork> = Vec::new();
         // First, because the user has given these a name.
         for (name, document) in saving.chain(kept) {
@@ -112,7 +110,7 @@ pub(in crate::tui) fn quit(app: &mut App) {
     let question = Question {
         saves_first: can_save_first(app),
         meanings: Some([lost, "stay"]),
-        ..Question::new(about, "Quit anyway?", Message::QuitNow)
+        ..Question::new(about, "Quit anyway?", |app| app.run_state = RunState::Quit)
     };
     app.dialogs.push(Dialog::Question(question));
 }
@@ -163,45 +161,121 @@ fn can_save_first(app: &App) -> bool {
     app.unsaved() && !app.is_being_saved(present) && !app.reading().imprint.is_empty()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tui::app::message::{LibraryEvent, LibraryRequest};
-    use crate::tui::app::state::Options;
-    use crate::tui::app::update::update;
-    use crate::tui::runtime::effect::Effect;
-
-    fn saving(app: &mut App) -> Box<StoredShape> {
-        let _ = update(app, Message::Toggle);
-        let message = app.storing(Name::new("mine").expect("a name"));
-        match update(app, message) {
-            Some(Effect::Library(LibraryRequest::Store(shape, _))) => shape,
-            other => panic!("{other:?}"),
+/// Offers the last unsaved work of programs that crashed, if there is any. No answer keeps it for the next start. While
+/// a sensor is watched the question waits below that page.
+pub fn offer(app: &mut App) {
+    let Some(orphan) = app.jobs.orphans.last() else {
+        return;
+    };
+    let of = match app.jobs.orphans.len() {
+        1 => String::new(),
+        all => format!(" (1 of {all})"),
+    };
+    let what = described(orphan);
+    let text = format!("There is unsaved work from last time{of}: {what}.");
+    let question = Question {
+        no: Some(Box::new(give_up)),
+        meanings: Some(["yes", "to the trash"]),
+        left: Some("ask next time"),
+        ..Question::new(text.clone(), "Restore it?", recover)
+    };
+    let live = |dialog: &Dialog| matches!(dialog, Dialog::Live(_));
+    match app.dialogs.iter().position(live) {
+        // A user who watches a sensor wants the keys of that page now, not those of a question.
+        Some(below) => {
+            app.dialogs.insert(below, Dialog::Question(question));
+            inform(
+                app,
+                format!("{text} It is offered when this page is closed."),
+            );
         }
+        None => app.dialogs.push(Dialog::Question(question)),
     }
+}
 
-    #[test]
-    fn a_save_that_is_refused_after_the_end_is_kept() {
-        let differs = |shape| LibraryEvent::Differs(shape, 7, "mine already exists".to_owned());
-        let not_stored = |_| LibraryEvent::NotStored("the disk is full".to_owned());
-        let answers: [&dyn Fn(Box<StoredShape>) -> LibraryEvent; 2] = [&differs, &not_stored];
-        for answer in answers {
-            for end in [Message::Quit, Message::Terminate] {
-                let mut app = App::new(&Options::plain(true));
-                let shape = saving(&mut app);
-                let kept = app.unsaved_work();
-                assert!(kept.len() == 1 && kept[0].name == shape.name);
-                let _ = update(&mut app, end);
-                assert!(app.ended(), "a shape that is being saved needs no question");
-                let _ = update(&mut app, Message::Library(answer(shape.clone())));
-                let kept: Vec<StoredShape> = app
-                    .unsaved_work()
-                    .iter()
-                    .map(UnsavedWork::to_shape)
-                    .collect();
-                assert_eq!(kept, [*shape], "under the name that it was to have");
-                assert_eq!(app.refused_at_end.len(), 1);
-            }
+/// Puts unsaved work of an earlier run onto the matrix. It keeps the name that it had, or was to be saved under.
+fn recover(app: &mut App) {
+    let Some(orphan) = app.jobs.orphans.pop() else {
+        return;
+    };
+    let shape = orphan.shape.clone();
+    app.jobs.adopted.push(orphan);
+    let document = Document::of_shape(&shape);
+    let origin = DocumentOrigin::unsaved(&document);
+    let origin = match shape.name.as_str() {
+        UNNAMED => {
+            let taxels = counted(shape.imprint.count(), "taxel");
+            origin.called(format!("{taxels} restored"))
         }
+        name => {
+            let is_shipped = shipped::get(name).is_some();
+            let proposed = is_shipped.then(|| name_of_copy(name));
+            let proposed = proposed.unwrap_or_else(|| name.to_owned());
+            origin
+                .called(format!("{name} restored"))
+                .proposing(proposed)
+        }
+    };
+    resume(app, origin, document);
+    let save = app.key_of(&action::SAVE);
+    inform(app, format!("restored; {save} saves it"));
+    offer(app);
+}
+
+fn give_up(app: &mut App) {
+    let Some(orphan) = app.jobs.orphans.pop() else {
+        return;
+    };
+    app.jobs.disk("Moving it to the trash", |library| {
+        let thrown = throw_away(library, orphan);
+        answer(|app| match thrown {
+            Ok(name) if app.jobs.orphans.is_empty() => inform(
+                app,
+                format!("the unsaved work is in the trash as {name}; :restore {name} brings it back"),
+            ),
+            Ok(name) => {
+                inform(app, format!("{name} is in the trash"));
+                offer(app);
+            }
+            Err(reason) => {
+                // The rest is offered again at the next start, too.
+                app.jobs.orphans.clear();
+                let text = "the unsaved work cannot be moved to the trash, and is offered again at the next start";
+                refuse(app, format!("{text}: {reason}"));
+            }
+        })
+    });
+}
+
+fn throw_away(library: &Library, orphan: Orphan) -> Result<String, LibraryError> {
+    let mut shape = orphan.shape.clone();
+    if let Ok(name) = Name::new(UNNAMED) {
+        shape = shape.renamed(name);
+    }
+    let thrown = library.throw_away(&shape)?;
+    orphan.discard();
+    Ok(thrown)
+}
+
+/// Returns the name, the size and the age of the work: `hexagon side 4.00, 40 taxels, about 12 minutes ago`.
+fn described(orphan: &Orphan) -> String {
+    let shape = &orphan.shape;
+    let called = match (shape.name.as_str(), &shape.source) {
+        (UNNAMED, Some(Source::Figure(figure))) => Some(figure.kind_and_sizes()),
+        (UNNAMED, Some(Source::Picture(picture))) => picture.name().map(str::to_owned),
+        (UNNAMED, None) => None,
+        (name, _) => Some(name.to_owned()),
+    };
+    let taxels = counted(shape.imprint.count(), "taxel");
+    let pieces = [called, Some(taxels), orphan.age().map(ago)];
+    pieces.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// Within the first minute, seconds would say nothing useful.
+fn ago(time: Duration) -> String {
+    if time < Duration::from_secs(60) {
+        "less than a minute ago".to_owned()
+    } else {
+        format!("{} ago", about(time))
     }
 }

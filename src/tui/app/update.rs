@@ -5,15 +5,16 @@
 
 use crate::tui::app::change::{from_prompt, give_prompt, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
-use crate::tui::app::message::{FileEvent, Message, WorkerEvent};
+use crate::tui::app::message::{Message, WorkerEvent};
 use crate::tui::app::mouse;
 use crate::tui::app::state::{App, Notice, RunState};
 use crate::tui::help::Help;
+use crate::tui::jobs::Answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Context;
-use crate::tui::live::message::LiveMessage;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
+use crate::tui::runtime::{self, reminders};
 use crate::tui::{
     compare, explore, form, help, history, live, matrix, prompt, recognise, search, shapes,
 };
@@ -21,18 +22,38 @@ use crate::tui::{
 /// The length, in bytes, from which nothing is added to a failure that nobody has read.
 const MOST_SAID: usize = 300;
 
-/// Handles a message. A notice stays until the next message that is not an answer to the last one.
-pub fn update(app: &mut App, message: Message) -> Option<Effect> {
+/// Handles a message, and applies the answers of jobs that have come. Returns what the terminal is to do.
+pub fn update(app: &mut App, message: Message) -> Option<TerminalEffect> {
+    changing(app, |app| {
+        let effect = handle(app, message);
+        runtime::perform(app, effect);
+    });
+    loop {
+        app.jobs.settle(app.dialogs.len());
+        if let Some(answer) = app.jobs.next_answer(app.dialogs.len()) {
+            changing(app, |app| on_answer(app, answer));
+        } else if let Some(effect) = next_work(app) {
+            changing(app, |app| runtime::perform(app, Some(effect)));
+        } else {
+            break;
+        }
+    }
+    let works = app.unsaved_work();
+    app.jobs.keep(works);
+    reminders::remember(app);
+    app.terminal.take()
+}
+
+fn changing(app: &mut App, change: impl FnOnce(&mut App)) {
     let before = app.attention();
-    let effect = handle(app, message);
+    change(app);
     app.read();
     app.follow(&before);
-    effect
 }
 
 /// Returns the next piece of work that an open page needs for its present state, such as a name for the imprint it
-/// shows; None if it needs no more. The runtime calls this after each message and its effects, until it returns None.
-pub fn next_work(app: &mut App) -> Option<Effect> {
+/// shows; None if it needs no more.
+fn next_work(app: &mut App) -> Option<Effect> {
     let work = recognise::update::next_work(app);
     let work = work.or_else(|| explore::work::next_work(app));
     work.or_else(|| live::update::next_work(app))
@@ -54,8 +75,10 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             unknown(app, key);
             return None;
         }
-        Message::Library(_) | Message::File(_) | Message::Worker(_) => {
-            return on_event(app, message);
+        Message::Answered => return None,
+        Message::Refused(reason) => {
+            refuse(app, reason);
+            return None;
         }
         Message::Mouse(mouse) => {
             let meant = mouse::act(app, mouse)?;
@@ -67,25 +90,13 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
     perform(app, message)
 }
 
-/// Handles what is not a message of the user. A failure stays until the next key: what is said after it stands beside
-/// it, so that it can be read.
-fn on_event(app: &mut App, event: Message) -> Option<Effect> {
+/// Applies the answer of a job. A failure stays until the next key: what is said after it stands beside it, so that it
+/// can be read.
+fn on_answer(app: &mut App, answer: Answer) {
     let is_failure = |notice: &mut Notice| matches!(notice, Notice::Failure(_));
     let unread = app.notice.take_if(is_failure);
     let before = app.notice.clone();
-    let effect = match event {
-        Message::Library(answer) => answered(app, |app| shapes::update::on_library(app, answer)),
-        Message::File(FileEvent::Source(request)) => {
-            let watch = LiveMessage::Watch(request);
-            answered(app, |app| live::update::act(app, &watch))
-        }
-        Message::File(answer) => answered(app, |app| matrix::update::on_file(app, answer)),
-        Message::Worker(event @ WorkerEvent::Recognition(_)) => {
-            answered(app, |app| on_worker(app, event))
-        }
-        Message::Worker(event) => on_worker(app, event),
-        _ => None,
-    };
+    answered(app, answer);
     let is_new = app.notice != before;
     app.notice = match (unread, app.notice.take()) {
         (Some(Notice::Failure(first)), Some(Notice::Info(then) | Notice::Refusal(then)))
@@ -96,15 +107,14 @@ fn on_event(app: &mut App, event: Message) -> Option<Effect> {
         (None, Some(Notice::Refusal(reason))) if is_new => Some(Notice::Failure(reason)),
         (unread, notice) => unread.or(notice),
     };
-    effect
 }
 
 /// Handles the answer to a request. If the request was refused, the prompt that it came from opens again: so the user
 /// can correct it, and the next keys do not reach the matrix. An answer without a notice leaves the old notice as it
 /// is.
-fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> Option<Effect> {
+fn answered(app: &mut App, answer: Answer) {
     let before = app.notice.take();
-    let effect = handle(app);
+    answer(app);
     match app.notice {
         None => {
             app.notice = before;
@@ -113,7 +123,6 @@ fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> O
         Some(Notice::Info(_)) => app.prompt = None,
         Some(Notice::Refusal(_) | Notice::Failure(_)) => app.dialogs.extend(app.prompt.take()),
     }
-    effect
 }
 
 fn perform(app: &mut App, message: Message) -> Option<Effect> {
@@ -137,6 +146,11 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
 
 /// Names the key that lists all keys or, in that list, the keys that scroll and search.
 fn unknown(app: &mut App, key: Key) {
+    if key == Key::Esc
+        && let Some(what) = app.jobs.give_up_reading(app.dialogs.len())
+    {
+        return inform(app, format!("{what}: stopped waiting"));
+    }
     if app.unknown_keys.contains(&key) {
         return;
     }
@@ -223,17 +237,29 @@ fn at_question(app: &mut App, question: Question, message: &Message) -> Option<E
     };
     match (message, prompt) {
         (Message::Accept, Some(prompt)) => {
-            from_prompt(app, *prompt, |app| matrix::update::act(app, yes))
+            return from_prompt(app, *prompt, |app| {
+                yes(app);
+                None
+            });
         }
-        (Message::Accept, None) => matrix::update::act(app, yes),
+        (Message::Accept, None) => yes(app),
         (_, prompt) => {
             app.dialogs.extend(prompt.map(|prompt| *prompt));
-            no.and_then(|no| matrix::update::act(app, no))
+            if let Some(no) = no {
+                no(app);
+            }
         }
     }
+    None
 }
 
-fn on_worker(app: &mut App, event: WorkerEvent) -> Option<Effect> {
+/// Handles an event of work that is no closure yet.
+pub fn on_worker(app: &mut App, event: WorkerEvent) {
+    let effect = worked(app, event);
+    runtime::perform(app, effect);
+}
+
+fn worked(app: &mut App, event: WorkerEvent) -> Option<Effect> {
     match event {
         WorkerEvent::Progress(number, progress) => {
             if !explore::work::on_progress(app, number, progress) {
@@ -255,10 +281,6 @@ fn on_worker(app: &mut App, event: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Recognition(event) => return recognise::update::on_worker(app, event),
         WorkerEvent::Live(number, event) => return live::update::on_worker(app, number, &event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
-        WorkerEvent::Waiting(what) => app.waiting = what,
-        WorkerEvent::GivenUp(what) => inform(app, format!("{what}: stopped waiting")),
-        // The runtime takes the answer itself.
-        WorkerEvent::Answered => {}
     }
     None
 }
@@ -271,38 +293,35 @@ mod tests {
     #[test]
     fn a_failure_stays_until_the_next_key() {
         let mut app = App::new(&Options::plain(true));
-        let mut after = |message| {
-            update(&mut app, message);
+        let after = |app: &mut App, said: fn(&mut App, String), text: &str| {
+            let text = text.to_owned();
+            app.jobs.later(move |app| said(app, text));
+            update(app, Message::Answered);
             app.notice.clone()
         };
-        let refused = |reason: &str| Message::Worker(WorkerEvent::Refused(reason.to_owned()));
-        let written = || Message::File(FileEvent::Written("b.svg".to_owned()));
         let failure = |text: &str| Some(Notice::Failure(text.to_owned()));
         let full = "a.json: no space left";
         for reason in [full, full] {
-            assert_eq!(after(refused(reason)), failure(full));
+            assert_eq!(after(&mut app, refuse, reason), failure(full));
         }
         let both = "a.json: no space left; written: b.svg";
-        assert_eq!(after(written()), failure(both));
-        assert_eq!(
-            after(Message::Worker(WorkerEvent::Waiting(None))),
-            failure(both)
-        );
+        assert_eq!(after(&mut app, inform, "written: b.svg"), failure(both));
         // It does not grow without end.
         for number in 0..99 {
-            after(refused(&format!("{number}: no space left")));
+            after(&mut app, refuse, &format!("{number}: no space left"));
         }
-        let Some(Notice::Failure(text)) = after(written()) else {
+        let Some(Notice::Failure(text)) = after(&mut app, inform, "written: b.svg") else {
             panic!("a failure");
         };
         assert!(
             text.starts_with(both) && text.len() < 2 * MOST_SAID,
             "{text}"
         );
-        assert_eq!(after(Message::Help), None);
+        update(&mut app, Message::Help);
+        assert_eq!(app.notice, None);
         // What the user is refused gives way to what is said next.
-        after(Message::Paste("text".to_owned()));
+        update(&mut app, Message::Paste("text".to_owned()));
         let said = Some(Notice::Info("written: b.svg".to_owned()));
-        assert_eq!(after(written()), said);
+        assert_eq!(after(&mut app, inform, "written: b.svg"), said);
     }
 }

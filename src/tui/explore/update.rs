@@ -247,7 +247,8 @@ fn export(app: &mut App, dialog: ExportDialog, name: String) -> Option<Effect> {
     let results = app.results_below()?;
     if let Some(file) = view::file(results, &name, tab_area(app, results)) {
         return from_prompt(app, Dialog::Export(dialog), |app| {
-            write_file(app, name, file)
+            write_file(app, name, file, Existing::Kept);
+            None
         });
     }
     if let Some(missing) = missing_poses(results, &name) {

@@ -32,6 +32,7 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::view::ResultPanes;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::runtime::effect::{Effect, Work};
+use crate::tui::runtime::perform;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -220,12 +221,16 @@ pub(in crate::tui) fn on_written(app: &mut App, number: u64, name: &str) {
 /// If not, the prompt for its name opens again.
 pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: &str) {
     if let Some(place) = finish(app, number) {
-        let yes = ExploreMessage::Write(name.to_owned(), Existing::Replaced);
+        let again = ExploreMessage::Write(name.to_owned(), Existing::Replaced);
+        let yes = |app: &mut App| {
+            let effect = act(app, again);
+            perform(app, effect);
+        };
         let kind = app.results_below().map(ExportKind::of);
         let prompt = kind.map(|kind| Dialog::Export(ExportDialog::new(name, kind)));
         let question = Question {
             prompt: prompt.map(Box::new),
-            ..Question::replaces(name, Message::Explore(yes))
+            ..Question::replaces(name, yes)
         };
         ask(app, place, Dialog::Question(question));
     }

@@ -520,7 +520,11 @@ impl Live {
     /// A threshold by noise needs a tare. Without one, the result lacks the imprint, and the error is omitted while
     /// the tare is being made.
     fn read_frame(&mut self, frame: Arc<Frame>) -> (Option<LiveReading>, Option<FrameError>) {
-        match LiveReading::of(Arc::clone(&frame), &mut self.pipeline.processing, self.layer) {
+        match LiveReading::of(
+            Arc::clone(&frame),
+            &mut self.pipeline.processing,
+            self.layer,
+        ) {
             Ok(reading) => (Some(reading), None),
             Err(FrameError::NoTare) => {
                 let rule = self.pipeline.processing.rule.take();

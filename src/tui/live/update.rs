@@ -8,13 +8,14 @@ use taxel_core::frame::{FrameError, FrameSize, Rule};
 use taxel_files::acquire::FrameSource;
 use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::formats::value::{counted, grouped};
-use taxel_files::storage::{Existing, ModelChoice};
+use taxel_files::storage::{Existing, ModelChoice, ModelFolder};
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, topmost};
-use crate::tui::app::message::{Endpoint, LibraryRequest, Message};
+use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::status;
+use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
@@ -25,7 +26,9 @@ use crate::tui::live::reading::{self, HeatLayer};
 use crate::tui::live::state::Live;
 use crate::tui::live::{threshold, view};
 use crate::tui::prompt::state::CommandDialog;
-use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork};
+use crate::tui::runtime::disk::files;
+use crate::tui::runtime::effect::{Effect, FrameWork};
+use crate::tui::runtime::perform;
 
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
 /// is open.
@@ -159,7 +162,14 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         // The next one may be a model of the user.
         LiveMessage::NameShape => {
             page.names.awaits_models = true;
-            return Some(Effect::Library(LibraryRequest::Models));
+            app.jobs.read("Listing the models", |library| {
+                let names = ModelFolder::of(library.folder()).names();
+                let names: Vec<String> = names.iter().map(ToString::to_string).collect();
+                answer(move |app| {
+                    let effect = name_by_next(app, &names);
+                    perform(app, effect);
+                })
+            });
         }
         LiveMessage::Again => return watch_again(app, page),
         LiveMessage::Source(source) => return check_source(app, source),
@@ -452,7 +462,19 @@ pub(super) fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect
         refuse(app, LiveRefusal::ReadOnce.to_string());
         return None;
     }
-    Some(Effect::File(FileRequest::Source(Arc::new(request))))
+    let (models, access) = (app.jobs.models().clone(), Arc::clone(&app.jobs.access));
+    app.jobs
+        .read(format!("Opening {}", request.name()), move |_| {
+            let found = files::watchable(Arc::new(request), &models, &access);
+            answer(|app| match found {
+                Ok(request) => {
+                    let effect = watch(app, &request);
+                    perform(app, Some(effect));
+                }
+                Err(refused) => refuse(app, refused),
+            })
+        });
+    None
 }
 
 /// Opens a page for a source, in place of the one before. Late reports of the source before have its own number, and

@@ -458,16 +458,18 @@ fn tare(live: &Live) -> String {
     };
     let frames = counted(origin.frames, "frame");
     let shown = live.reading().map(|reading| &reading.frame);
-    let age = shown.and_then(|frame| match (frame.time, origin.last.and_then(|(_, time)| time)) {
-        (Some(now), Some(then)) if now > then => {
-            Some(format!(", {} s ago", value::decimal(now - then, 1)))
-        }
-        (Some(_), Some(_)) => None,
-        _ => {
-            let frames = frame.number.checked_sub(origin.last?.0)?;
-            Some(format!(", {} ago", counted(frames, "frame")))
-        }
-    });
+    let age = shown.and_then(
+        |frame| match (frame.time, origin.last.and_then(|(_, time)| time)) {
+            (Some(now), Some(then)) if now > then => {
+                Some(format!(", {} s ago", value::decimal(now - then, 1)))
+            }
+            (Some(_), Some(_)) => None,
+            _ => {
+                let frames = frame.number.checked_sub(origin.last?.0)?;
+                Some(format!(", {} ago", counted(frames, "frame")))
+            }
+        },
+    );
     age.map_or(frames.clone(), |age| frames + &age)
 }
 

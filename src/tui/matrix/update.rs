@@ -14,34 +14,35 @@ use taxel_core::picture::Picture;
 use taxel_core::quote::shortened;
 use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
-use taxel_files::formats::{Drawing, ExportFormat, Name, StoredShape, value};
+use taxel_files::formats::{Content, Drawing, ExportFormat, Name, value};
 use taxel_files::storage::{Existing, ShapeOrigin, UNNAMED};
 
 use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
     shift, travel, turn, write_file, zoom,
 };
-use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
-use crate::tui::app::message::{
-    Copied, Endpoint, FileEvent, Layer, LibraryRequest, Message, OpenedFile,
-};
-use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState, UnfinishedSave};
+use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
+use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState};
 use crate::tui::app::unsaved::quit;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::work::explored;
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
+use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
-use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect};
-use crate::tui::shapes::state::{ListDialog, ListPurpose};
+use crate::tui::runtime::disk::files;
+use crate::tui::runtime::effect::{Effect, TerminalEffect};
+use crate::tui::shapes::state::ListPurpose;
+use crate::tui::shapes::update::open_list;
 use crate::tui::widget::write::around;
-use crate::tui::{explore, live, recognise};
+use crate::tui::{explore, live, recognise, shapes};
 
 /// Copied descriptors, the rectangle and the choice of a region all need a region, and show this notice if there is
 /// none.
@@ -50,29 +51,26 @@ const NO_REGION: &str = "no region: the matrix is empty";
 /// A new message has to be added here or to those that mean nothing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     use Message::{
-        Accept, Cancel, Choose, Decline, Defaults, Erase, Field, File, Library, Match, Mouse,
-        Paste, Redraw, Resized, Scroll, ScrollScreen, ScrollTo, Search, Select, Step, Suspend,
-        Terminate, ToEdge, ToField, Type, Unknown, Worker,
+        Accept, Answered, Cancel, Choose, Decline, Defaults, Erase, Field, Match, Mouse, Paste,
+        Redraw, Resized, Scroll, ScrollScreen, ScrollTo, Search, Select, Step, Suspend, Terminate,
+        ToEdge, ToField, Type, Unknown,
     };
     match message {
         Message::New => empty(app),
         Message::Become(document) => replace(app, *document),
-        Message::OpenFile(name) => return Some(Effect::File(FileRequest::Open(name))),
-        Message::WriteFile(name) => return write(app, name),
-        Message::Overwrite(name, content) => return Some(overwrite(name, content)),
+        Message::OpenFile(name) => open_file(app, name),
+        Message::WriteFile(name) => write(app, name),
         Message::Quit => quit(app),
         Message::QuitNow => app.run_state = RunState::Quit,
         Message::Copy(what) => return copy(app, what),
         Message::Explore(asked) => return explore::work::act(app, asked),
         Message::Live(asked) => return live::update::act(app, &asked),
         Message::Recognise(asked) => return recognise::update::act(app, asked),
-        Message::Request(request) => return Some(send(app, request)),
-        Message::Recover => return Some(Effect::Recover),
-        Message::GiveUp => return Some(Effect::GiveUp),
+        Message::Request(request) => shapes::update::act(app, request),
         Message::Compare => compare_with_before(app),
-        Message::Load => return Some(open_list(app, ListPurpose::Load)),
-        Message::Delete => return Some(open_list(app, ListPurpose::Delete)),
-        Message::Picture => return open_picture(app),
+        Message::Load => open_list(app, ListPurpose::Load),
+        Message::Delete => open_list(app, ListPurpose::Delete),
+        Message::Picture => open_picture(app),
         Message::Figure => open_form(app, FormDialog::figure(app.history.present(), &app.forms)),
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
         Message::Save => save(app),
@@ -84,7 +82,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::ToColumn(end) => to_column(app, end),
         Message::ToRow(end) => to_row(app, end),
         Message::Toggle => toggle(app),
-        Message::Undo => return undo(app),
+        Message::Undo => travel(app, History::undo, "undone", "nothing to undo"),
         Message::Redo => travel(app, History::redo, "redone", "nothing to redo"),
         Message::Region(by) => choose_region(app, by),
         Message::Display => next_display(app),
@@ -98,10 +96,32 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Zoom(direction) => zoom(app, direction),
         Message::NudgeStep(direction) => change_step(app, direction),
         // These mean something only on a page, or never reach the matrix: `app::update` handles them.
-        Accept | Cancel | Choose(_) | Decline | Defaults | Erase(_) | Field(_) | File(_)
-        | Library(_) | Match(_) | Mouse(_) | Paste(_) | Redraw | Resized(..) | Scroll(_)
-        | ScrollScreen(_) | ScrollTo(_) | Search | Select(_) | Step(_) | Suspend | Terminate
-        | ToEdge(_) | ToField(_) | Type(_) | Unknown(_) | Worker(_) => {}
+        Accept
+        | Cancel
+        | Choose(_)
+        | Decline
+        | Defaults
+        | Erase(_)
+        | Field(_)
+        | Match(_)
+        | Mouse(_)
+        | Paste(_)
+        | Redraw
+        | Resized(..)
+        | Scroll(_)
+        | ScrollScreen(_)
+        | ScrollTo(_)
+        | Search
+        | Select(_)
+        | Step(_)
+        | Suspend
+        | Terminate
+        | ToEdge(_)
+        | ToField(_)
+        | Type(_)
+        | Unknown(_)
+        | Answered
+        | Message::Refused(_) => {}
     }
     None
 }
@@ -123,23 +143,6 @@ fn compare_with_before(app: &mut App) {
     }
 }
 
-/// Takes note of a shape that is being saved.
-fn send(app: &mut App, request: LibraryRequest) -> Effect {
-    if let LibraryRequest::Store(shape, _) = &request {
-        begin_save(app, shape);
-    }
-    Effect::Library(request)
-}
-
-/// Undoes the last change. Right after shapes were deleted, restores them instead, the last one first.
-fn undo(app: &mut App) -> Option<Effect> {
-    if let Some(name) = app.removed.pop() {
-        return Some(Effect::Library(LibraryRequest::Restore(Some(name))));
-    }
-    travel(app, History::undo, "undone", "nothing to undo");
-    None
-}
-
 fn open_command(app: &mut App) {
     let prompt = CommandDialog::new(&app.commands);
     app.dialogs.push(Dialog::Command(prompt));
@@ -151,28 +154,10 @@ fn open_history(app: &mut App) {
     app.dialogs.push(Dialog::History(page));
 }
 
-/// Keys may change the matrix before the library answers.
-fn begin_save(app: &mut App, shape: &StoredShape) {
-    // From now on undo is about the drawing again, not about shapes that were deleted before.
-    app.removed.clear();
-    let present = app.history.present();
-    let own = present.to_shape(shape.name.clone(), &Reading::of(present));
-    let document = if own == *shape {
-        present.clone()
-    } else {
-        Document::of_shape(shape)
-    };
-    app.saving.push_back(UnfinishedSave {
-        shape: Box::new(shape.clone()),
-        origin: app.history.origin_of(&document),
-        document,
-    });
-}
-
 /// Opens the form of the picture on the matrix, or of the stored shape on the matrix as a picture; without either, the
 /// list to choose one from. The name in the form is the name of the picture, or else of the document. The notice says
 /// how to get to another shape, because the key for a picture leads here and no longer to the list.
-fn open_picture(app: &mut App) -> Option<Effect> {
+fn open_picture(app: &mut App) {
     let present = app.history.present();
     let (picture, name) = match (&present.source, app.loaded_imprint()) {
         (Some(Source::Picture(picture)), _) => {
@@ -180,13 +165,12 @@ fn open_picture(app: &mut App) -> Option<Effect> {
             (picture.clone(), name.unwrap_or("imprint"))
         }
         (None, Some((name, imprint))) => (Picture::at_home(*imprint).named(name), name),
-        _ => return Some(open_list(app, ListPurpose::Picture)),
+        _ => return open_list(app, ListPurpose::Picture),
     };
     let form = FormDialog::picture(present, picture, name.to_owned());
     open_form(app, form);
     let load = app.key_of(&action::LOAD);
     inform(app, format!("{load} loads another shape"));
-    None
 }
 
 /// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own, unless the
@@ -196,7 +180,7 @@ fn save(app: &mut App) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to save: the matrix is empty");
     }
-    if let Some(save) = app.saving.back() {
+    if let Some(save) = &app.saving {
         let text = format!("{} is still being saved", save.shape.name);
         return refuse(app, text);
     }
@@ -341,12 +325,6 @@ fn open_form(app: &mut App, form: FormDialog) {
     app.dialogs.push(Dialog::Form(Box::new(form)));
 }
 
-/// Opens the list of shapes, empty until the library answers.
-fn open_list(app: &mut App, purpose: ListPurpose) -> Effect {
-    app.dialogs.push(Dialog::List(ListDialog::new(purpose)));
-    Effect::Library(LibraryRequest::List)
-}
-
 fn has_none(app: &App) -> String {
     let (figure, place) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     if app.loaded_imprint().is_some() {
@@ -453,7 +431,7 @@ fn choose_region(app: &mut App, by: i8) {
 /// says why.
 pub(in crate::tui) fn is_usable(app: &App, message: &Message) -> bool {
     match message {
-        Message::Undo => !app.removed.is_empty() || app.history.can_undo(),
+        Message::Undo => app.history.can_undo(),
         // With a single region, the key brings it into sight.
         Message::Region(_) => !app.reading().regions.is_empty(),
         Message::Explore(ExploreMessage::Open) => explored(app).is_some(),
@@ -467,18 +445,12 @@ pub(in crate::tui) fn is_usable(app: &App, message: &Message) -> bool {
 
 const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg";
 
-/// Shows a notice and returns None if there is nothing to write, or if no format has that extension.
-pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
+fn write(app: &mut App, name: String) {
     if app.reading().imprint.is_empty() {
-        refuse(app, "nothing to write: the matrix is empty");
-        return None;
+        return refuse(app, "nothing to write: the matrix is empty");
     }
     let content = content(app, &name);
-    write_file(app, name, content)
-}
-
-pub(in crate::tui) fn overwrite(name: String, content: Vec<u8>) -> Effect {
-    Effect::File(FileRequest::Write(name, content, Existing::Replaced))
+    write_file(app, name, content, Existing::Kept);
 }
 
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
@@ -512,40 +484,26 @@ fn drawing(app: &App) -> Drawing {
     drawing
 }
 
-pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect> {
-    match answer {
-        FileEvent::Opened(name, file) => match opened(app, file) {
-            Ok(document) => {
-                let opened = format!("{name} opened");
-                let origin = DocumentOrigin::of(&document).called(&opened);
-                begin(app, origin, document);
-                app.history.choose(None);
-                inform(app, opened);
+fn open_file(app: &mut App, name: String) {
+    app.jobs.read(format!("Opening {name}"), move |_| {
+        let content = files::open(&name);
+        answer(move |app| {
+            let document = content.and_then(|content| match content {
+                Content::Shape(shape) => Ok(Document::of_shape(&shape)),
+                Content::Imprint(imprint) => of_imprint(app, &imprint),
+            });
+            match document {
+                Ok(document) => {
+                    let opened = format!("{name} opened");
+                    let origin = DocumentOrigin::of(&document).called(&opened);
+                    begin(app, origin, document);
+                    app.history.choose(None);
+                    inform(app, opened);
+                }
+                Err(reason) => refuse(app, format!("{name}: {reason}")),
             }
-            Err(reason) => refuse(app, format!("{name}: {reason}")),
-        },
-        FileEvent::Written(path) => inform(app, format!("written: {path}")),
-        FileEvent::Exists(name, content) => {
-            let question = Question::replaces(&name, Message::Overwrite(name.clone(), content));
-            app.dialogs.push(Dialog::Question(question));
-        }
-        FileEvent::Failed(reason) => refuse(app, reason),
-        // Handled by the live page.
-        FileEvent::Source(_) => {}
-        FileEvent::Paths(paths) => {
-            if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
-                command.complete_asked(&paths);
-            }
-        }
-    }
-    None
-}
-
-fn opened(app: &App, file: OpenedFile) -> Result<Document, String> {
-    match file {
-        OpenedFile::Shape(shape) => Ok(Document::of_shape(&shape)),
-        OpenedFile::Imprint(imprint) => of_imprint(app, &imprint),
-    }
+        })
+    });
 }
 
 /// What an imprint file does not say, such as pitch and threshold, is taken from the sensor in use.

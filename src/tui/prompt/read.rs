@@ -23,7 +23,7 @@ use taxel_files::formats::Name;
 use taxel_files::storage::ModelChoice;
 
 use crate::tui::app::document::Document;
-use crate::tui::app::message::{LibraryRequest, Message, Purpose};
+use crate::tui::app::message::{LibraryRequest, Message};
 use crate::tui::app::state::App;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::work::explored;
@@ -73,10 +73,7 @@ fn with_arguments(
     match (arguments, words) {
         (Arguments::Shape(purpose), _) => {
             let name = name_of(rest)?.to_string();
-            Ok(Message::Request(match purpose {
-                Purpose::Delete => LibraryRequest::Deletable(name),
-                purpose => LibraryRequest::Named(purpose, name),
-            }))
+            Ok(Message::Request(LibraryRequest::Named(purpose, name)))
         }
         (Arguments::File(FilePurpose::Open), _) => Ok(Message::OpenFile(rest.to_owned())),
         (Arguments::File(FilePurpose::Write), _) => Ok(Message::WriteFile(rest.to_owned())),
@@ -87,7 +84,7 @@ fn with_arguments(
         (Arguments::Name, _) if app.reading().imprint.is_empty() => {
             Err("nothing to save: the matrix is empty".to_owned())
         }
-        (Arguments::Name, _) => Ok(app.storing(name_of(rest)?)),
+        (Arguments::Name, _) => Ok(Message::Request(LibraryRequest::Save(name_of(rest)?))),
         (Arguments::Figure, [kind, words @ ..]) => figure(kind, words, app),
         (Arguments::Sensor, words) => sensor(words, app),
         (Arguments::Ranges, words) => explore(words, app),

@@ -5,17 +5,21 @@
 //! completes the word when it arrives.
 
 use taxel_files::formats::value::counted;
+use taxel_files::storage::{Library, ModelChoice, ModelFolder, ShapeOrigin};
 
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::message::{LibraryRequest, Message};
+use crate::tui::app::message::{LibraryRequest, Message, Purpose};
 use crate::tui::app::state::App;
+use crate::tui::jobs::answer;
 use crate::tui::keys::action::Arguments;
 use crate::tui::keys::key::Arrow;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::prompt::read::read;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
-use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect};
+use crate::tui::runtime::disk::files;
+use crate::tui::runtime::effect::{Effect, TerminalEffect};
+use crate::tui::shapes::update::sentence;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::{live, matrix};
 
@@ -95,17 +99,52 @@ fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
     let rest = line.split_once(' ').map_or("", |(_, rest)| rest);
     let last_word = rest.trim_start().to_owned();
     app.dialogs.push(Dialog::Command(dialog));
-    wanted.map(|names| names_for(names, last_word))
+    if let Some(wanted) = wanted {
+        complete_from_disk(app, wanted, last_word);
+    }
+    None
 }
 
-/// A model may also be a path.
-fn names_for(wanted: Arguments, last_word: String) -> Effect {
+/// Completes the last word by the names that may stand there. A model may also be a path.
+fn complete_from_disk(app: &mut App, wanted: Arguments, last_word: String) {
+    app.jobs.read("Listing the names", move |library| {
+        let names = names(library, wanted, &last_word);
+        answer(|app| match names {
+            Ok(names) => {
+                if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+                    command.complete_asked(&names);
+                }
+            }
+            Err(reason) => refuse(app, reason),
+        })
+    });
+}
+
+fn names(library: &Library, wanted: Arguments, last_word: &str) -> Result<Vec<String>, String> {
+    let sentence = |error| sentence(library, &error);
     match wanted {
-        Arguments::File(_) | Arguments::FrameSource => Effect::File(FileRequest::Paths(last_word)),
-        Arguments::Model if last_word.contains('/') => Effect::File(FileRequest::Paths(last_word)),
-        Arguments::Model => Effect::Library(LibraryRequest::Models),
-        Arguments::Deleted => Effect::Library(LibraryRequest::Trash),
-        _ => Effect::Library(LibraryRequest::List),
+        Arguments::File(_) | Arguments::FrameSource => Ok(files::paths(last_word)),
+        Arguments::Model if last_word.contains('/') => Ok(files::paths(last_word)),
+        Arguments::Model => {
+            let sets = ModelChoice::BUILT_IN.iter();
+            let sets = sets.map(|set| set.name().to_owned());
+            let own = ModelFolder::of(library.folder()).names().into_iter();
+            Ok(sets.chain(own.map(|name| name.to_string())).collect())
+        }
+        Arguments::Deleted => match library.deleted().map_err(sentence)? {
+            names if names.is_empty() => Err("nothing has been deleted".to_owned()),
+            names => Ok(names),
+        },
+        wanted => {
+            // Shipped shapes cannot be deleted or replaced.
+            let all = matches!(
+                wanted,
+                Arguments::Shape(Purpose::Load | Purpose::Picture | Purpose::Compare)
+            );
+            let entries = library.list().map_err(sentence)?.into_iter();
+            let offered = entries.filter(|entry| all || entry.origin == ShapeOrigin::Own);
+            Ok(offered.map(|entry| entry.name).collect())
+        }
     }
 }
 
@@ -122,7 +161,8 @@ pub(in crate::tui) fn in_name(
     match message {
         Message::Accept => match dialog.name() {
             Ok(name) => {
-                return ask(app, app.storing(name), Dialog::Name(dialog));
+                let save = Message::Request(LibraryRequest::Save(name));
+                return ask(app, save, Dialog::Name(dialog));
             }
             Err(error) => refuse(app, error.to_string()),
         },

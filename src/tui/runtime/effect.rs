@@ -8,7 +8,6 @@ use taxel_core::pose::{PoseGrid, PoseIndex};
 use taxel_files::formats::recording::{RecordedView, RecordingMetadata};
 use taxel_files::storage::{Existing, ModelChoice};
 
-use crate::tui::app::message::LibraryRequest;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::message::{NamingRequest, WatchRequest};
 use crate::tui::recognise::state::PoseSearch;
@@ -16,23 +15,9 @@ use crate::tui::recognise::trained::TrainedModel;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// A request to the library; its answer is a message, perhaps much later: a disk may hang.
-    Library(LibraryRequest),
-    Recover,
-    GiveUp,
-    /// A request about files; its answer is a message, perhaps much later, too.
-    File(FileRequest),
     Work(Work),
     Frames(FrameWork),
     Terminal(TerminalEffect),
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum FileRequest {
-    Open(String),
-    Write(String, Vec<u8>, Existing),
-    Source(Arc<WatchRequest>),
-    Paths(String),
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -15,6 +15,7 @@
 
 use std::cell::{Ref, RefCell};
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Rect};
@@ -23,12 +24,15 @@ use taxel_files::formats::value::escaped;
 
 use crate::tui::app::message::{Message, WorkerEvent};
 use crate::tui::app::state::{App, Notice, Options};
+use crate::tui::app::unsaved::offer;
+use crate::tui::app::update::{on_worker, update};
 use crate::tui::app::view::draw;
 use crate::tui::keys::key::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveEvent, LiveMessage, NamedSource, SourceState};
 use crate::tui::live::state::Live;
 use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
+use crate::tui::runtime::reminders::remind;
 use crate::tui::widget::theme::{Palette, Theme, letter};
 use crate::tui::widget::write;
 use crate::tui::widget::write::narrow;
@@ -36,7 +40,6 @@ use crate::tui::widget::write::narrow;
 #[derive(Debug)]
 pub struct Session {
     app: App,
-    world: World,
     screen: RefCell<DrawnScreen>,
 }
 
@@ -64,22 +67,20 @@ impl Session {
         Self::of(App::new(options), world, width, height)
     }
 
-    pub fn of(app: App, world: World, width: u16, height: u16) -> Self {
+    pub fn of(mut app: App, world: World, width: u16, height: u16) -> Self {
         let screen = DrawnScreen {
             buffer: Buffer::empty(Rect::new(0, 0, width, height)),
             cursor: None,
             is_stale: true,
         };
+        app.jobs = world;
         let mut session = Self {
             app,
-            world,
             screen: RefCell::new(screen),
         };
-        session.world.remind(&mut session.app);
-        let greeting = session.world.greeting();
-        for message in std::iter::once(Message::Resized(width, height)).chain(greeting) {
-            session.send(message);
-        }
+        remind(&mut session.app);
+        session.send(Message::Resized(width, height));
+        offer(&mut session.app);
         session
     }
 
@@ -96,8 +97,14 @@ impl Session {
 
     pub fn send(&mut self, message: Message) {
         // Effects on a real terminal are ignored.
-        let _ = self.world.handle(&mut self.app, message);
+        let _ = update(&mut self.app, message);
         self.screen.get_mut().is_stale = true;
+    }
+
+    /// Applies an act like the answer of a job.
+    pub fn answer(&mut self, act: impl FnOnce(&mut App) + Send + 'static) {
+        self.app.jobs.later(act);
+        self.send(Message::Answered);
     }
 
     /// Watches a source of frames; reads no frame yet.
@@ -116,11 +123,12 @@ impl Session {
 
     pub fn frames(&mut self, count: usize) -> usize {
         let mut frames = 0;
-        for message in self.world.next_frames(count) {
-            if let Message::Worker(WorkerEvent::Live(_, LiveEvent::Arrived(batch))) = &message {
+        let access = Arc::clone(&self.app.jobs.access);
+        for event in self.app.jobs.workers.frames.next(count, &access) {
+            if let WorkerEvent::Live(_, LiveEvent::Arrived(batch)) = &event {
                 frames += batch.frames.len();
             }
-            self.send(message);
+            self.answer(move |app| on_worker(app, event));
         }
         frames
     }

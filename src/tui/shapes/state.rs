@@ -32,7 +32,6 @@ pub struct ListDialog {
     read: HashMap<String, Result<LoadedShape, String>>,
     asked: HashSet<String>,
     pub(super) listed: bool,
-    accepted: bool,
 }
 
 impl ListDialog {
@@ -47,7 +46,6 @@ impl ListDialog {
             read: HashMap::new(),
             asked: HashSet::new(),
             listed: false,
-            accepted: false,
         }
     }
 
@@ -63,14 +61,6 @@ impl ListDialog {
         self.entries = entries;
         self.listed = true;
         self.apply_filter();
-    }
-
-    pub fn accept(&mut self, accepted: bool) {
-        self.accepted = accepted;
-    }
-
-    pub fn is_accepted(&self) -> bool {
-        self.accepted && self.choice().is_some_and(|(_, read)| read.is_some())
     }
 
     pub fn filter(&self) -> &str {

@@ -24,14 +24,17 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 use signal_hook::consts::SIGHUP;
 
-use crate::tui::app::message::{Message, WorkerEvent};
+use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
+use crate::tui::app::unsaved::offer;
+use crate::tui::app::update::{on_worker, update};
 use crate::tui::app::view::view;
 use crate::tui::keys::action;
 use crate::tui::live::update::last_page;
-use crate::tui::runtime::World;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::mailbox::{Mailbox, Sender};
+use crate::tui::runtime::reminders::remind;
+use crate::tui::runtime::{World, end, flush};
 use crate::tui::terminal::device::{Device, WriteOutcome};
 use crate::tui::terminal::input::{Input, InputReader};
 use crate::tui::terminal::screen::Screen;
@@ -51,11 +54,10 @@ pub fn run(
     (sender, mailbox): (Sender, Mailbox),
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
-    let post = Arc::new(move |event| sender.send(Message::Worker(event)));
-    let mut world = world.with_workers(post);
+    app.jobs = world.with_threads(Arc::new(move || sender.send(Message::Answered)));
     // Before signals are handled: if the disk hangs here, they still end the program.
-    world.remind(&mut app);
-    let mut event_loop = EventLoop::open(watch, app, world, *settings, mailbox)?;
+    remind(&mut app);
+    let mut event_loop = EventLoop::open(watch, app, *settings, mailbox)?;
     leave_on_panic();
     event_loop.first = first;
     let ended = catch_unwind(AssertUnwindSafe(|| {
@@ -67,9 +69,7 @@ pub fn run(
     }));
     if !matches!(ended, Ok(Ok(Outcome::Quit))) {
         // The end comes from outside: unsaved work stays in the journal.
-        let _ = event_loop
-            .world
-            .handle(&mut event_loop.app, Message::Terminate);
+        let _ = update(&mut event_loop.app, Message::Terminate);
     }
     // As in a pipeline: a script must see that the recording is incomplete.
     let failure = last_page(&event_loop.app).and_then(|page| page.recording().write_failure());
@@ -78,7 +78,7 @@ pub fn run(
         session::tell(&format!("error: {reason}\n"));
         quit = Outcome::RecordingFailed;
     }
-    for line in event_loop.world.end(&mut event_loop.app) {
+    for line in end(&mut event_loop.app) {
         session::tell(&line);
     }
     let left = session::leave(event_loop.pacing.is_asked());
@@ -108,7 +108,6 @@ fn leave_on_panic() {
 struct EventLoop<'a> {
     watch: &'a mut dyn FnMut(&Input),
     app: App,
-    world: World,
     settings: TerminalSettings,
     device: Device,
     signals: SignalReceiver,
@@ -145,7 +144,6 @@ impl<'a> EventLoop<'a> {
     fn open(
         watch: &'a mut dyn FnMut(&Input),
         app: App,
-        world: World,
         settings: TerminalSettings,
         mailbox: Mailbox,
     ) -> io::Result<Self> {
@@ -158,7 +156,6 @@ impl<'a> EventLoop<'a> {
         Ok(Self {
             watch,
             app,
-            world,
             settings,
             device,
             signals,
@@ -182,9 +179,7 @@ impl<'a> EventLoop<'a> {
         if let Some(first) = self.first.take() {
             self.update(first)?;
         }
-        if let Some(greeting) = self.world.greeting() {
-            self.update(greeting)?;
-        }
+        offer(&mut self.app);
         self.draw(false)?;
         while self.outcome.is_none() {
             let ready = self.wait(self.patience())?;
@@ -202,7 +197,6 @@ impl<'a> EventLoop<'a> {
                 }
                 self.read(&ready)?;
                 let has_frames = self.take_frames()?;
-                self.look_at_changes()?;
                 self.draw(has_frames)?;
             }
         }
@@ -214,26 +208,17 @@ impl<'a> EventLoop<'a> {
     fn patience(&self) -> Option<Duration> {
         let reader = self.reader.patience(self.pacing.is_waiting());
         let reader = reader.map(|patience| patience.saturating_sub(self.read_at.elapsed()));
-        let due = [self.frames_due, self.pacing.deadline, self.world.disk_due()];
+        let due = [self.frames_due, self.pacing.deadline, self.app.jobs.due()];
         let due = due.into_iter().flatten().min();
         let due = due.map(|due| due.saturating_duration_since(Instant::now()));
         reader.into_iter().chain(due).min()
-    }
-
-    /// Updates the note about what file changes wait for, if it has changed.
-    fn look_at_changes(&mut self) -> io::Result<()> {
-        let waiting = self.world.waiting();
-        if waiting.as_deref() == self.app.waiting() {
-            return Ok(());
-        }
-        self.update(Message::Worker(WorkerEvent::Waiting(waiting)))
     }
 
     /// Takes the frames that have come, if the last picture is old enough and the terminal has drawn it; frames that
     /// come meanwhile are taken together. Returns true if there were any.
     fn take_frames(&mut self) -> io::Result<bool> {
         self.frames_due = None;
-        if !self.world.has_frames() || self.pacing.is_waiting() {
+        if !self.app.jobs.workers.frames.has_new() || self.pacing.is_waiting() {
             return Ok(false);
         }
         let now = Instant::now();
@@ -243,10 +228,11 @@ impl<'a> EventLoop<'a> {
             return Ok(false);
         }
         self.frames_at = Some(now);
-        let Some(frames) = self.world.take_frames() else {
+        let Some(frames) = self.app.jobs.workers.frames.take() else {
             return Ok(false);
         };
-        self.update(frames)?;
+        self.app.jobs.later(move |app| on_worker(app, frames));
+        self.update(Message::Answered)?;
         Ok(true)
     }
 
@@ -340,7 +326,7 @@ impl<'a> EventLoop<'a> {
     }
 
     fn update(&mut self, message: Message) -> io::Result<()> {
-        match self.world.handle(&mut self.app, message) {
+        match update(&mut self.app, message) {
             None => {}
             Some(TerminalEffect::Redraw) => self.redraw(),
             Some(TerminalEffect::Suspend) => self.suspend()?,
@@ -385,8 +371,7 @@ impl<'a> EventLoop<'a> {
 
     /// Shows a message that something cannot be done here.
     fn refuse(&mut self, reason: &str) {
-        let message = Message::Worker(WorkerEvent::Refused(reason.to_owned()));
-        let _ = self.world.handle(&mut self.app, message);
+        crate::tui::app::change::refuse(&mut self.app, reason);
     }
 
     /// Forgets what the terminal shows, so that all of it is drawn next time.
@@ -410,9 +395,7 @@ impl<'a> EventLoop<'a> {
         let Ok(size) = ratatui::backend::Backend::size(self.screen.backend());
         let input = Input::Size(size.width, size.height);
         (self.watch)(&input);
-        let _ = self
-            .world
-            .handle(&mut self.app, Message::Resized(size.width, size.height));
+        let _ = update(&mut self.app, Message::Resized(size.width, size.height));
     }
 
     fn suspend(&mut self) -> io::Result<()> {
@@ -420,7 +403,7 @@ impl<'a> EventLoop<'a> {
             self.refuse("there is no shell to go back to");
             return Ok(());
         }
-        for line in self.world.flush(&mut self.app) {
+        for line in flush(&mut self.app) {
             session::tell(&line);
         }
         session::leave(self.pacing.is_asked())?;

@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use proptest::prelude::*;
-use taxel::tui::app::message::{Message, Mouse, MouseKind, WorkerEvent};
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 use taxel_files::storage::Library;
@@ -26,7 +26,7 @@ const DEADLINE: Duration = Duration::from_secs(60);
 /// A program whose workers run beside it, and the events that they report.
 struct Beside {
     session: Session,
-    told: Receiver<WorkerEvent>,
+    told: Receiver<()>,
 }
 
 impl Beside {
@@ -36,9 +36,9 @@ impl Beside {
 
     fn within(world: World, keys: &str) -> Self {
         let (post, told) = channel();
-        let world = world.with_workers(Arc::new(move |told| {
+        let world = world.with_threads(Arc::new(move || {
             // The test may have ended.
-            let _ = post.send(told);
+            let _ = post.send(());
         }));
         let session = started(world, keys);
         Self { session, told }
@@ -48,8 +48,8 @@ impl Beside {
     fn until(&mut self, text: &str) {
         while !self.session.screen().contains(text) {
             let told = self.told.recv_timeout(DEADLINE);
-            let told = told.unwrap_or_else(|_| panic!("no {text:?} on\n{}", self.session.screen()));
-            self.session.send(Message::Worker(told));
+            told.unwrap_or_else(|_| panic!("no {text:?} on\n{}", self.session.screen()));
+            self.session.send(Message::Answered);
         }
     }
 
@@ -68,8 +68,8 @@ impl Beside {
                 if screen.contains("stopped before anything was complete") {
                     break;
                 }
-                let told = self.told.recv_timeout(DEADLINE).expect("it stops");
-                self.session.send(Message::Worker(told));
+                self.told.recv_timeout(DEADLINE).expect("it stops");
+                self.session.send(Message::Answered);
             }
             self.press("<Esc>");
         }
@@ -180,27 +180,6 @@ fn keys_work_while_the_plot_of_angles_is_computed() {
 }
 
 #[test]
-fn a_plot_of_angles_that_fails_shows_the_error() {
-    let mut program = Beside::new("fr<Enter>");
-    program.press(":explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>");
-    program.until("distinct imprints");
-    program.then("6", &["computing"]);
-    let (findings, place) = loop {
-        match program.told.recv_timeout(DEADLINE).expect("it is told") {
-            WorkerEvent::Angles(findings, place, Ok(_)) => break (findings, place),
-            // Other events, for example about the disk.
-            other => program.session.send(Message::Worker(other)),
-        }
-    };
-    let failed = WorkerEvent::Angles(findings, place, Err("no memory".to_owned()));
-    program.session.send(Message::Worker(failed));
-    shows(
-        &program.session,
-        &["no memory", "the imprints of each angle cannot be computed"],
-    );
-}
-
-#[test]
 fn the_expected_time_is_shown_while_ranges_are_typed() {
     let mut program = Beside::new("fh<Enter>e");
     shows(&program.session, &["3,600,000 poses"]);
@@ -212,8 +191,8 @@ fn the_expected_time_is_shown_while_ranges_are_typed() {
     program.until("359,352,291,600 poses, about ");
     // Help covers the form when the time arrives, and a click asks for it like a key.
     program.press("<BS><BS>9<F1>");
-    let told = program.told.recv_timeout(DEADLINE).expect("it is told");
-    program.session.send(Message::Worker(told));
+    program.told.recv_timeout(DEADLINE).expect("it is told");
+    program.session.send(Message::Answered);
     program.then("<Esc>", &["poses, about "]);
     let anchor = |program: &mut Beside| {
         let screen = program.session.screen();
@@ -314,10 +293,7 @@ fn every_key_that_closes_the_dialog_stops_the_work() {
         program.session.send(leaving);
         shows(&program.session, &["stopping"]);
     }
-    while !matches!(
-        program.told.recv_timeout(DEADLINE),
-        Ok(WorkerEvent::Swept(..))
-    ) {}
+    program.until("before anything");
 }
 
 /// If only the chosen descriptor is visible, a notch of the wheel goes to the next one, like a key.
@@ -511,8 +487,8 @@ proptest! {
             program.press(key);
             // Some of the events, at some time.
             if width % 3 != 0 {
-                while let Ok(told) = program.told.try_recv() {
-                    program.session.send(Message::Worker(told));
+                while let Ok(()) = program.told.try_recv() {
+                    program.session.send(Message::Answered);
                 }
             }
             if height % 2 == 0 {

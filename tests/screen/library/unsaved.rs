@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
-use taxel::tui::app::message::{Message, WorkerEvent};
+use taxel::tui::app::message::Message;
 use taxel::tui::runtime::World;
 use taxel_files::storage::{Library, LibraryEntry, ShapeOrigin};
 
@@ -304,19 +304,13 @@ fn work_that_could_not_be_kept_is_kept_later() {
     std::fs::write(&journal, "in the way").expect("written");
     let (post, told) = channel();
     let world = World::new(Library::open(folder.path().to_owned()));
-    let world = world.with_workers(Arc::new(move |told| {
-        let _ = post.send(told);
+    let world = world.with_threads(Arc::new(move || {
+        let _ = post.send(());
     }));
     let mut session = started(world, "<Space>");
-    let reason = told.recv_timeout(Duration::from_secs(60));
-    let Ok(WorkerEvent::Refused(reason)) = reason else {
-        panic!("nothing is told: {reason:?}");
-    };
-    assert!(
-        reason.starts_with("unsaved work cannot be kept: "),
-        "{reason}"
-    );
-    session.send(Message::Worker(WorkerEvent::Refused(reason)));
+    told.recv_timeout(Duration::from_secs(60))
+        .expect("it is told");
+    session.send(Message::Answered);
     shows(&session, &["! unsaved work cannot be kept: "]);
     std::fs::remove_file(&journal).expect("removed");
     // Without a further change.

@@ -13,9 +13,7 @@ use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, imprint_file, read_content};
 use taxel_files::storage::{self, Existing, ModelChoice, below_home};
 
-use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::live::message::WatchRequest;
-use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::frames::source;
 use crate::tui::runtime::work::models::ModelStore;
 
@@ -24,29 +22,7 @@ const MOST: u64 = imprint_file::MAX_BYTES as u64;
 
 const MOST_PATHS: usize = 500;
 
-pub(in crate::tui::runtime) fn perform(
-    request: FileRequest,
-    models: &ModelStore,
-    access: &WriteAccess,
-) -> FileEvent {
-    match request {
-        FileRequest::Open(name) => match open(&name) {
-            Ok(file) => FileEvent::Opened(name, file),
-            Err(reason) => FileEvent::Failed(format!("{name}: {reason}")),
-        },
-        FileRequest::Write(name, content, existing) => match access.path(&name, existing) {
-            Ok(path) => write(&path, name, content, existing),
-            Err(refused) => FileEvent::Failed(refused),
-        },
-        FileRequest::Source(request) => match watchable(request, models, access) {
-            Ok(request) => FileEvent::Source(request),
-            Err(refused) => FileEvent::Failed(refused),
-        },
-        FileRequest::Paths(start) => FileEvent::Paths(paths(&start)),
-    }
-}
-
-fn watchable(
+pub(crate) fn watchable(
     mut request: Arc<WatchRequest>,
     models: &ModelStore,
     access: &WriteAccess,
@@ -69,7 +45,7 @@ fn refuse_baud(source: &FrameSource, request: &WatchRequest) -> Result<(), Strin
     }
 }
 
-fn open(name: &str) -> Result<OpenedFile, String> {
+pub(crate) fn open(name: &str) -> Result<Content, String> {
     let path = below_home(name).ok_or("no home folder, so ~ cannot be used")?;
     let sentence = |error: std::io::Error| format!("cannot read: {}", system_reason(&error));
     let kind = fs::metadata(&path).map_err(sentence)?;
@@ -78,8 +54,7 @@ fn open(name: &str) -> Result<OpenedFile, String> {
     }
     let bytes = beginning(&path).map_err(sentence)?;
     match read_content(&bytes) {
-        Ok(Content::Shape(shape)) => Ok(OpenedFile::Shape(Box::new(shape))),
-        Ok(Content::Imprint(imprint)) => Ok(OpenedFile::Imprint(Box::new(imprint))),
+        Ok(content) => Ok(content),
         Err(error) if may_be_recording(&bytes) => {
             Err(format!("{error}; if this is a recording, use :watch"))
         }
@@ -112,18 +87,23 @@ fn refuse_imprint(source: &FrameSource, request: &WatchRequest) -> Result<(), St
     Err(format!("{name}: {what}, not frames; :open opens it"))
 }
 
-fn write(path: &Path, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
-    match storage::write(path, &content, existing) {
-        Ok(()) => FileEvent::Written(absolute(path)),
-        Err(error) if error.exists() && existing == Existing::Kept => {
-            FileEvent::Exists(name, content)
-        }
-        Err(error) => FileEvent::Failed(error.to_string()),
+/// Writes a file. Returns its path; None if it exists and is to be kept.
+pub(crate) fn write(
+    access: &WriteAccess,
+    name: &str,
+    content: &[u8],
+    existing: Existing,
+) -> Result<Option<String>, String> {
+    let path = access.path(name, existing)?;
+    match storage::write(&path, content, existing) {
+        Ok(()) => Ok(Some(absolute(&path))),
+        Err(error) if error.exists() && existing == Existing::Kept => Ok(None),
+        Err(error) => Err(error.to_string()),
     }
 }
 
 /// Returns the absolute path of a written file; if it cannot be found, the path as it was given.
-pub(in crate::tui::runtime) fn absolute(path: &Path) -> String {
+pub(crate) fn absolute(path: &Path) -> String {
     let whole = std::path::absolute(path);
     let whole = whole.as_deref().unwrap_or(path);
     whole.to_string_lossy().into_owned()
@@ -131,7 +111,7 @@ pub(in crate::tui::runtime) fn absolute(path: &Path) -> String {
 
 /// Returns the paths that begin like this, as they are typed; folders end in a slash. Hidden ones are offered only if
 /// a dot was typed.
-fn paths(start: &str) -> Vec<String> {
+pub(crate) fn paths(start: &str) -> Vec<String> {
     let (folder, typed) = start
         .rfind('/')
         .map_or(("", start), |slash| start.split_at(slash + 1));
@@ -156,25 +136,21 @@ fn paths(start: &str) -> Vec<String> {
 /// hidden files, and may replace only files that it has written itself. `taxel script --allow-outside` lifts these
 /// limits.
 #[derive(Debug, Default)]
-pub(in crate::tui) struct WriteAccess {
+pub(crate) struct WriteAccess {
     /// The folder that a script is confined to; None for anywhere.
-    pub(in crate::tui::runtime) folder: Option<PathBuf>,
+    pub(crate) folder: Option<PathBuf>,
     written: Mutex<Vec<PathBuf>>,
 }
 
 impl WriteAccess {
-    pub(in crate::tui::runtime) fn below(folder: PathBuf) -> Self {
+    pub(crate) fn below(folder: PathBuf) -> Self {
         Self {
             folder: Some(folder),
             written: Mutex::default(),
         }
     }
 
-    pub(in crate::tui::runtime) fn path(
-        &self,
-        name: &str,
-        existing: Existing,
-    ) -> Result<PathBuf, String> {
+    pub(crate) fn path(&self, name: &str, existing: Existing) -> Result<PathBuf, String> {
         let Some(folder) = &self.folder else {
             return below_home(name)
                 .ok_or_else(|| format!("{name}: no home folder, so ~ cannot be used"));

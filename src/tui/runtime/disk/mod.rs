@@ -1,9 +1,3 @@
-//! Work with the disk, which may answer late, or never.
+//! Files that the screen opens and writes.
 
-pub(super) mod request;
-
-pub(super) mod queue;
-
-pub mod files;
-
-pub mod journal_writer;
+pub(crate) mod files;

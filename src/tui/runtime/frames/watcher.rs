@@ -27,7 +27,7 @@ use crate::tui::runtime::frames::source;
 use crate::tui::runtime::work::execution::{Execution, start, wait_until_finished};
 
 #[derive(Debug, Default)]
-pub(in crate::tui::runtime) struct FrameWatcher {
+pub(crate) struct FrameWatcher {
     /// The source; None before the first one and after the page was closed.
     watched: Option<Watched>,
     /// The thread of the last source, which may still read it after it was stopped.
@@ -158,13 +158,13 @@ impl FrameWatcher {
         Some((watched.number, watched.feed.recording()?))
     }
 
-    pub(in crate::tui::runtime) fn has_new(&self) -> bool {
+    pub(crate) fn has_new(&self) -> bool {
         let watched = self.watched.as_ref();
         watched.is_some_and(|watched| watched.feed.has_new())
     }
 
     /// Takes all frames and news that have come; None if there are none.
-    pub(in crate::tui::runtime) fn take(&self) -> Option<WorkerEvent> {
+    pub(crate) fn take(&self) -> Option<WorkerEvent> {
         let watched = self.watched.as_ref()?;
         let batch = watched.feed.take()?;
         Some(WorkerEvent::Live(
@@ -174,11 +174,7 @@ impl FrameWatcher {
     }
 
     /// Reads the next frames of the source, up to `count`, each as an event; for scripts, which have no clock.
-    pub(in crate::tui::runtime) fn next(
-        &mut self,
-        count: usize,
-        access: &WriteAccess,
-    ) -> Vec<WorkerEvent> {
+    pub(crate) fn next(&mut self, count: usize, access: &WriteAccess) -> Vec<WorkerEvent> {
         let Some(watched) = &mut self.watched else {
             return Vec::new();
         };

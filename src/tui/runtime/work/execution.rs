@@ -15,12 +15,10 @@ use taxel_files::memory::MemoryGuard;
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::explore::message::SweepProgress;
 
-pub(in crate::tui::runtime) const PATIENCE: Duration = Duration::from_millis(1500);
-
 const PAUSE: Duration = Duration::from_millis(5);
 
 #[derive(Clone)]
-pub(in crate::tui::runtime) enum Execution {
+pub(crate) enum Execution {
     AtOnce(PoseLimit),
     OnThreads(WorkerEventSink),
 }
@@ -42,16 +40,16 @@ impl fmt::Debug for Execution {
 
 /// A flag that stops the work in progress: on request, when the next work begins, and when it is dropped.
 #[derive(Debug, Default)]
-pub(in crate::tui::runtime) struct StopFlag(Arc<AtomicBool>);
+pub(crate) struct StopFlag(Arc<AtomicBool>);
 
 impl StopFlag {
-    pub(in crate::tui::runtime) fn renew(&mut self) -> Arc<AtomicBool> {
+    pub(crate) fn renew(&mut self) -> Arc<AtomicBool> {
         self.stop();
         self.0 = Arc::default();
         Arc::clone(&self.0)
     }
 
-    pub(in crate::tui::runtime) fn stop(&self) {
+    pub(crate) fn stop(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 }
@@ -62,27 +60,25 @@ impl Drop for StopFlag {
     }
 }
 
-pub(in crate::tui::runtime) fn start(
-    body: impl FnOnce() + Send + 'static,
-) -> Result<JoinHandle<()>, String> {
+pub(crate) fn start(body: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, String> {
     let thread = Builder::new().spawn(body);
     thread.map_err(|error| format!("cannot start a thread: {}", system_reason(&error)))
 }
 
 /// Waits for a thread to end, but not for longer than `patience`. It is not joined: a disk or a host that does not
 /// answer may hold it up.
-pub(in crate::tui::runtime) fn wait_until_finished(thread: &JoinHandle<()>, patience: Duration) {
+pub(crate) fn wait_until_finished(thread: &JoinHandle<()>, patience: Duration) {
     let begun = Instant::now();
     while !thread.is_finished() && begun.elapsed() < patience {
         std::thread::sleep(PAUSE);
     }
 }
 
-pub type WorkerEventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
+pub(crate) type WorkerEventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
 
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
-pub(in crate::tui::runtime) struct ProgressReporter<'a> {
+pub(crate) struct ProgressReporter<'a> {
     number: u64,
     post: &'a WorkerEventSink,
     start: Instant,
@@ -91,7 +87,7 @@ pub(in crate::tui::runtime) struct ProgressReporter<'a> {
 }
 
 impl<'a> ProgressReporter<'a> {
-    pub(in crate::tui::runtime) fn new(number: u64, post: &'a WorkerEventSink) -> Self {
+    pub(crate) fn new(number: u64, post: &'a WorkerEventSink) -> Self {
         let start = Instant::now();
         Self {
             number,
@@ -118,7 +114,7 @@ impl<'a> ProgressReporter<'a> {
     }
 }
 
-pub(in crate::tui::runtime) fn on_a_thread(
+pub(crate) fn on_a_thread(
     number: u64,
     post: &WorkerEventSink,
     work: impl FnOnce(&WorkerEventSink) + Send + 'static,
@@ -129,27 +125,24 @@ pub(in crate::tui::runtime) fn on_a_thread(
 }
 
 /// Turns a panic into an event; without it the program would wait for ever.
-pub(in crate::tui::runtime) fn guarded(
-    number: u64,
-    work: impl FnOnce() -> WorkerEvent,
-) -> WorkerEvent {
+pub(crate) fn guarded(number: u64, work: impl FnOnce() -> WorkerEvent) -> WorkerEvent {
     caught(work).unwrap_or_else(|message| WorkerEvent::Failed(number, message))
 }
 
-pub(in crate::tui::runtime) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+pub(crate) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let done = catch_unwind(AssertUnwindSafe(work));
     done.map_err(|_| "the work failed; this is a bug".to_owned())
 }
 
 /// The largest number of poses of a piece of work that is done at once; None for any number.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::tui::runtime) struct PoseLimit(pub(in crate::tui::runtime) Option<u64>);
+pub(crate) struct PoseLimit(pub(crate) Option<u64>);
 
 /// The progress of a piece of work on the screen. It knows nothing of memory, so work reports to it only within a guard.
-pub(in crate::tui::runtime) struct WorkProgress<'a>(Box<dyn Progress + 'a>);
+pub(crate) struct WorkProgress<'a>(Box<dyn Progress + 'a>);
 
 impl<'a> WorkProgress<'a> {
-    pub(in crate::tui::runtime) fn up_to(limit: PoseLimit) -> Self {
+    pub(crate) fn up_to(limit: PoseLimit) -> Self {
         let all = AtomicU64::new(0);
         Self(Box::new(move |poses| {
             let all = all.fetch_add(poses, Ordering::Relaxed) + poses;
@@ -157,10 +150,7 @@ impl<'a> WorkProgress<'a> {
         }))
     }
 
-    pub(in crate::tui::runtime) fn until(
-        stop: &'a AtomicBool,
-        clock: Option<&'a ProgressReporter<'a>>,
-    ) -> Self {
+    pub(crate) fn until(stop: &'a AtomicBool, clock: Option<&'a ProgressReporter<'a>>) -> Self {
         Self(Box::new(move |poses| {
             if let Some(clock) = clock {
                 clock.add(poses);
@@ -169,7 +159,7 @@ impl<'a> WorkProgress<'a> {
         }))
     }
 
-    pub(in crate::tui::runtime) fn within<T>(
+    pub(crate) fn within<T>(
         &self,
         memory: &MemoryGuard,
         work: impl FnOnce(&dyn Progress) -> T,

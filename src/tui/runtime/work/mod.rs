@@ -1,7 +1,7 @@
 //! Long work, on threads of its own.
 
-pub mod workers;
+pub(crate) mod workers;
 
-pub mod execution;
+pub(crate) mod execution;
 
-pub(super) mod models;
+pub(crate) mod models;

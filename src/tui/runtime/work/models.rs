@@ -35,13 +35,13 @@ use crate::tui::runtime::work::execution::{
 };
 
 #[derive(Clone, Debug, Default)]
-pub(in crate::tui::runtime) struct ModelStore {
+pub(crate) struct ModelStore {
     folder: Option<ModelFolder>,
-    pub(in crate::tui) cache: Option<ModelCache>,
+    pub(crate) cache: Option<ModelCache>,
 }
 
 impl ModelStore {
-    pub(in crate::tui::runtime) fn beside(library: &Library) -> Self {
+    pub(crate) fn beside(library: &Library) -> Self {
         Self {
             folder: Some(ModelFolder::of(library.folder())),
             cache: None,
@@ -49,11 +49,11 @@ impl ModelStore {
     }
 
     /// Returns the names of the user's models; none if the folder cannot be read.
-    pub(in crate::tui::runtime) fn names(&self) -> Vec<Name> {
+    pub(crate) fn names(&self) -> Vec<Name> {
         self.folder.iter().flat_map(ModelFolder::names).collect()
     }
 
-    pub(in crate::tui::runtime) fn model(
+    pub(crate) fn model(
         &self,
         choice: &ModelChoice,
         begins: &dyn Fn(u64),
@@ -90,7 +90,7 @@ impl ModelStore {
         }
     }
 
-    pub(in crate::tui::runtime) fn file(&self, choice: &ModelChoice) -> Result<PathBuf, String> {
+    pub(crate) fn file(&self, choice: &ModelChoice) -> Result<PathBuf, String> {
         let name = match choice {
             ModelChoice::File(path) => path.to_string_lossy().into_owned(),
             choice => choice.name().to_owned(),
@@ -110,7 +110,7 @@ impl ModelStore {
 
     /// Resolves a choice: as on the command line, a name that no model has may be the name of a file in the working
     /// folder.
-    pub(in crate::tui::runtime) fn located(&self, choice: ModelChoice) -> ModelChoice {
+    pub(crate) fn located(&self, choice: ModelChoice) -> ModelChoice {
         let ModelChoice::Stored(name) = &choice else {
             return choice;
         };
@@ -125,8 +125,8 @@ impl ModelStore {
 }
 
 #[derive(Debug, Default)]
-pub(in crate::tui::runtime) struct ModelWorker {
-    pub(in crate::tui::runtime) store: ModelStore,
+pub(crate) struct ModelWorker {
+    pub(crate) store: ModelStore,
     stop: StopFlag,
     thread: Option<JoinHandle<()>>,
 }
@@ -134,7 +134,7 @@ pub(in crate::tui::runtime) struct ModelWorker {
 impl ModelWorker {
     /// Prepares a model on a thread of its own. If work is done at once, returns the event instead. `known` is the
     /// model of the set so far, which stays if its file was not written again.
-    pub(in crate::tui::runtime) fn prepare(
+    pub(crate) fn prepare(
         &mut self,
         number: u64,
         choice: ModelChoice,
@@ -168,11 +168,11 @@ impl ModelWorker {
         None
     }
 
-    pub(in crate::tui::runtime) fn stop(&self) {
+    pub(crate) fn stop(&self) {
         self.stop.stop();
     }
 
-    pub(in crate::tui::runtime) fn end(&mut self) -> Option<JoinHandle<()>> {
+    pub(crate) fn end(&mut self) -> Option<JoinHandle<()>> {
         self.stop.stop();
         self.thread.take()
     }
@@ -215,7 +215,7 @@ struct OwnModel {
 }
 
 #[derive(Debug, Default)]
-pub(in crate::tui::runtime) struct ShapeNamer {
+pub(crate) struct ShapeNamer {
     number: u64,
     /// The model to name by, if there is no thread; it is prepared when the first imprint comes.
     here: Option<OwnModel>,
@@ -230,7 +230,7 @@ pub(in crate::tui::runtime) struct ShapeNamer {
 impl ShapeNamer {
     /// Prepares a model in place of the one before. Events carry the number of the source whose frames are named, and
     /// the number of the request.
-    pub(in crate::tui::runtime) fn begin(
+    pub(crate) fn begin(
         &mut self,
         number: u64,
         store: ModelStore,
@@ -278,7 +278,7 @@ impl ShapeNamer {
     }
 
     /// Names an imprint: at once, or later by an event.
-    pub(in crate::tui::runtime) fn name(&self, imprint: &Imprint) -> Option<WorkerEvent> {
+    pub(crate) fn name(&self, imprint: &Imprint) -> Option<WorkerEvent> {
         if let Some(imprints) = &self.imprints {
             // A thread that has ended has said why.
             let _ = imprints.send(*imprint);
@@ -305,7 +305,7 @@ impl ShapeNamer {
     }
 
     /// Stops naming. The thread ends by itself: an answer under way is not waited for.
-    pub(in crate::tui::runtime) fn end(&mut self) {
+    pub(crate) fn end(&mut self) {
         self.stop.stop();
         self.imprints = None;
         self.here = None;
@@ -313,7 +313,7 @@ impl ShapeNamer {
 
     /// Stops for good. Returns the thread that was begun last, also if it was stopped before: it may still write the
     /// model.
-    pub(in crate::tui::runtime) fn leave(&mut self) -> Option<JoinHandle<()>> {
+    pub(crate) fn leave(&mut self) -> Option<JoinHandle<()>> {
         self.end();
         self.thread.take()
     }

@@ -41,34 +41,34 @@ const WRITING: Duration = Duration::from_millis(400);
 const MEASURED: Duration = Duration::from_millis(30);
 
 #[derive(Debug, Default)]
-pub(in crate::tui) struct Workers {
+pub(crate) struct Workers {
     execution: Execution,
     working: StopFlag,
     measuring: StopFlag,
     finding_poses: StopFlag,
     writing: Option<JoinHandle<()>>,
-    pub(in crate::tui::runtime) models: ModelWorker,
-    pub(in crate::tui::runtime) frames: FrameWatcher,
-    pub(in crate::tui::runtime) namer: ShapeNamer,
-    pub(in crate::tui::runtime) access: Arc<WriteAccess>,
+    pub(crate) models: ModelWorker,
+    pub(crate) frames: FrameWatcher,
+    pub(crate) namer: ShapeNamer,
+    pub(crate) access: Arc<WriteAccess>,
 }
 
 impl Workers {
-    pub(in crate::tui::runtime) fn with(models: ModelStore) -> Self {
+    pub(crate) fn with(models: ModelStore) -> Self {
         let mut workers = Self::default();
         workers.models.store = models;
         workers
     }
 
-    pub(in crate::tui::runtime) fn post_to(&mut self, post: WorkerEventSink) {
+    pub(crate) fn post_to(&mut self, post: WorkerEventSink) {
         self.execution = Execution::OnThreads(post);
     }
 
-    pub(in crate::tui::runtime) fn stop_after(&mut self, poses: u64) {
+    pub(crate) fn stop_after(&mut self, poses: u64) {
         self.execution = Execution::AtOnce(PoseLimit(Some(poses)));
     }
 
-    pub(in crate::tui::runtime) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
+    pub(crate) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
             Work::Stop => {
                 self.working.stop();
@@ -101,7 +101,7 @@ impl Workers {
         }
     }
 
-    pub(in crate::tui::runtime) fn watch(
+    pub(crate) fn watch(
         &mut self,
         number: u64,
         request: Arc<WatchRequest>,
@@ -113,11 +113,7 @@ impl Workers {
     }
 
     /// Prepares the model that names the imprints of the source of that number; without a request, stops naming.
-    pub(in crate::tui::runtime) fn name_by(
-        &mut self,
-        number: u64,
-        naming: Option<Box<NamingRequest>>,
-    ) {
+    pub(crate) fn name_by(&mut self, number: u64, naming: Option<Box<NamingRequest>>) {
         match naming {
             Some(naming) => {
                 let store = self.models.store.clone();
@@ -319,7 +315,7 @@ const COARSER_MODEL: &str = "train the model in coarser steps to see poses";
 const POSES: usize = 13;
 
 /// Begins a search on a thread of its own, in place of the one before; or searches at once and returns the event.
-pub(in crate::tui::runtime) fn find(
+pub(crate) fn find(
     number: u64,
     request: Box<PoseSearch>,
     stop: &mut StopFlag,

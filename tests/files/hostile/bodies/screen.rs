@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::{App, Options};
-use taxel::tui::app::update::{next_work, update};
 use taxel::tui::keys::key::{Arrow, Key};
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::live::message::{LiveMessage, NamedSource};
@@ -114,11 +113,7 @@ fn shows_text(session: &Session) {
 
 /// Reads a line of the command line. The first byte chooses the contents of the matrix.
 pub(crate) fn command(bytes: &[u8]) -> bool {
-    thread_local! {
-        static APPS: [App; 3] = ["", "f<Enter>g", ":picture washer<Enter><Enter>"].map(|keys| {
-            session_of(keys).app().clone()
-        });
-    }
+    const STARTS: [&str; 3] = ["", "f<Enter>g", ":picture washer<Enter><Enter>"];
     let Some((&first, line)) = bytes.split_first() else {
         return false;
     };
@@ -131,19 +126,15 @@ pub(crate) fn command(bytes: &[u8]) -> bool {
     };
     let (completed, _) = complete(line, &[]);
     assert!(completed.trim_start().starts_with(line.trim_start()));
-    APPS.with(|apps| {
-        let app = &apps[usize::from(first) % apps.len()];
-        match read_command(line, app) {
-            Ok(message) => {
-                let mut app = app.clone();
-                // Requests to the outside world are not performed here.
-                let _ = update(&mut app, message).or_else(|| next_work(&mut app));
-                is_sound(&app);
-                true
-            }
-            Err(message) => refused(&message),
+    let mut session = session_of(STARTS[usize::from(first) % STARTS.len()]);
+    match read_command(line, session.app()) {
+        Ok(message) => {
+            session.send(message);
+            is_sound(session.app());
+            true
         }
-    })
+        Err(message) => refused(&message),
+    }
 }
 
 /// Reads a script without running it.
@@ -250,25 +241,16 @@ const STARTS: [&str; 11] = [
     "f<Enter>rt",
 ];
 
-/// Returns the program at a starting point. It keeps its results, so that no input has to compute them again.
-fn start(number: u8) -> App {
-    thread_local! {
-        static APPS: [App; STARTS.len()] = STARTS.map(|keys| {
-            session_of(&format!(":recognise bar<Enter><Esc>{keys}")).app().clone()
-        });
-    }
-    APPS.with(|apps| apps[usize::from(number) % apps.len()].clone())
-}
-
 /// Sends keys, pastes, mouse events, resizes and frames of a source, as the bytes say. The state is checked
 /// throughout, and the screen when it is drawn. Any bytes are valid input.
 pub(crate) fn session(bytes: &[u8]) -> bool {
     let mut bytes = Bytes(bytes);
-    let app = start(bytes.next().unwrap_or_default());
+    let start = STARTS[usize::from(bytes.next().unwrap_or_default()) % STARTS.len()];
     let number = bytes.next().unwrap_or_default();
     let (columns, rows) = bytes.size(number / 4);
-    let world = world().with_pose_limit(MOST_POSES);
-    let mut session = Session::of(app, world, columns, rows);
+    let mut session = session_of(&format!(":recognise bar<Enter><Esc>{start}"));
+    session.answer(|app| app.jobs.limit_poses(MOST_POSES));
+    session.resize(columns, rows);
     for number in 0..300 {
         let Some(byte) = bytes.next() else {
             break;
