@@ -1,8 +1,7 @@
 //! `taxel` without a command: opens the screen, and with `--record` records what is typed as a script.
 //!
-//! A record is a script (`taxel script`): the sensor and the look, then every key, every act of the mouse and every
-//! change of the screen's size. It has no shapes of the library and no frames. It is written as things happen, so that
-//! it survives a crash, and never replaces a file.
+//! A record is a script (`taxel script`): the sensor, the seed and the screen's size, then every key. It is written as
+//! things happen, so that it survives a crash, and never replaces a file.
 
 use std::fs::File;
 use std::hash::{BuildHasher, RandomState};
@@ -12,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use taxel_core::sensor::SENSOR_PARAMETERS;
 use taxel_files::formats::file::{system_reason, write_reason};
 use taxel_files::storage::ModelCache;
 
@@ -25,9 +25,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
 use crate::tui::live::message::{LiveMessage, WatchRequest};
 use crate::tui::runtime::World;
-use crate::tui::runtime::mailbox::{self, Sender};
-use crate::tui::script::command::{of_options, size};
-use crate::tui::script::record::Recorder;
+use crate::tui::script::command::size;
 use crate::tui::terminal;
 use crate::tui::terminal::input::Input;
 use crate::tui::terminal::settings::{Flags, TerminalSettings};
@@ -66,7 +64,7 @@ pub(crate) struct Screen {
     /// Columns and rows of the screen
     #[arg(long, value_name = "CxR", value_parser = size, help_heading = "Terminal")]
     size: Option<(u16, u16)>,
-    /// Record what you type as a script in a new file, with the shapes that you use
+    /// Record the keys that you type as a script in a new file
     #[arg(long, value_name = "FILE", help_heading = "Terminal")]
     record: Option<PathBuf>,
 }
@@ -106,55 +104,55 @@ pub(crate) fn open(
     let terminal = TerminalSettings::from_environment(std::env::var_os, &flags);
     let options = Options {
         sensor: settings.sensor,
-        theme: terminal.theme(),
+        theme: terminal.theme,
         // A different seed each time.
         seed: RandomState::new().hash_one(0),
     };
-    let world = World::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
-    let (sender, mailbox) = mailbox::new()?;
+    let mut world = World::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
     let app = App::new(&options)
         .with_keymap(settings.keymap().clone())
         .with_watch_settings(settings.sensors().request());
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
-    // What earlier runs remembered is not in a record.
-    let (world, mut record) = match record {
+    let mut record = match record {
         Some(path) => {
-            let record = ScreenRecord::begin(&path, &options, sender.clone())?;
-            (world.without_reminders(), Some(record))
+            // What earlier runs remembered is not in a record.
+            world = world.without_reminders();
+            Some(Record::begin(&path, &options)?)
         }
-        None => (world, None),
+        None => None,
     };
     let mut watch = |input: &Input| {
         if let Some(record) = &mut record {
-            record.input(input);
+            record.add(input);
         }
     };
-    let ended = terminal::run(app, first, world, &terminal, (sender, mailbox), &mut watch);
-    let is_whole = record.is_none_or(|record| record.end(cx));
-    match ended?.status() {
-        0 if is_whole => Ok(()),
-        0 => Err(Failure::silent(1)),
-        // The reason that ended the program takes precedence.
-        status => Err(Failure::silent(status)),
+    let status = terminal::run(app, first, world, &terminal, &mut watch)?;
+    match record.map(|record| (record.name, record.written)) {
+        Some((name, Err(error))) => {
+            let reason = system_reason(&error);
+            cx.note(&format!("error: {name}: the record ends early: {reason}"));
+            // The reason that ended the program takes precedence.
+            Err(Failure::silent(if status == 0 { 1 } else { status }))
+        }
+        _ if status == 0 => Ok(()),
+        _ => Err(Failure::silent(status)),
     }
 }
 
-struct ScreenRecord {
+struct Record {
     /// Its name, for messages.
     name: String,
     file: File,
-    recorder: Recorder,
-    /// Where the screen is told that the record has failed.
-    sender: Sender,
-    /// The error that ended the record: after it nothing more is written, so that there is no gap.
-    failed: Option<io::Error>,
+    is_sized: bool,
+    /// After an error nothing more is written, so that there is no gap.
+    written: io::Result<()>,
 }
 
-impl ScreenRecord {
+impl Record {
     /// Creates the file, which must not exist: it may be another record.
-    fn begin(path: &Path, options: &Options, sender: Sender) -> Result<Self, Failure> {
+    fn begin(path: &Path, options: &Options) -> Result<Self, Failure> {
         let name = path.to_string_lossy().into_owned();
-        let file = match File::create_new(path) {
+        let mut file = match File::create_new(path) {
             Ok(file) => file,
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {
                 return Err(Failure::new(format!(
@@ -166,44 +164,32 @@ impl ScreenRecord {
                 return Err(Failure::new(format!("{name}: cannot record: {reason}")));
             }
         };
-        let recorder = Recorder::new(&of_options(options));
+        let mut head = format!("Seed {}\n", options.seed);
+        for &parameter in SENSOR_PARAMETERS {
+            if let Some(value) = options.sensor.get(parameter) {
+                head += &format!("Set {} {value}\n", parameter.flag());
+            }
+        }
+        let written = file.write_all(head.as_bytes());
         Ok(Self {
             name,
             file,
-            recorder,
-            sender,
-            failed: None,
+            is_sized: false,
+            written,
         })
     }
 
-    fn input(&mut self, input: &Input) {
-        let lines = self.recorder.lines(input);
-        self.write(&lines);
-    }
-
-    fn write(&mut self, lines: &str) {
-        if self.failed.is_some() {
-            return;
+    fn add(&mut self, input: &Input) {
+        let line = match input {
+            Input::Key(key) => format!("Keys {key}\n"),
+            Input::Size(columns, rows) if !self.is_sized => {
+                self.is_sized = true;
+                format!("Size {columns}x{rows}\n")
+            }
+            _ => return,
+        };
+        if self.written.is_ok() {
+            self.written = self.file.write_all(line.as_bytes());
         }
-        if let Err(error) = self.file.write_all(lines.as_bytes()) {
-            let reason = system_reason(&error);
-            let reason = format!("{}: the record ends here: {reason}", self.name);
-            self.sender.send(Message::Refused(reason));
-            self.failed = Some(error);
-        }
-    }
-
-    /// Writes the last line, and returns true if the record is whole. If it is not, a note says why.
-    fn end(mut self, cx: &Context) -> bool {
-        let last = self.recorder.end();
-        self.write(&last);
-        if let Some(error) = &self.failed {
-            let reason = system_reason(error);
-            cx.note(&format!(
-                "error: {}: the record ends early: {reason}",
-                self.name
-            ));
-        }
-        self.failed.is_none()
     }
 }

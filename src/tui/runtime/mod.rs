@@ -5,7 +5,6 @@
 //! disk        files that are opened and written
 //! work        sweeps, models and exports, each on a thread of its own
 //! frames      a source of frames: watched, recorded
-//! mailbox     messages from other threads, which wake the event loop
 //! ```
 
 pub mod effect;
@@ -17,8 +16,6 @@ pub(crate) mod work;
 mod frames;
 
 pub(crate) mod reminders;
-
-pub mod mailbox;
 
 pub use crate::tui::jobs::Jobs as World;
 pub use crate::tui::runtime::frames::source::check as check_source;

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! command   the lines of a script              runner    carries them out
-//! session   the program on a screen in memory  record    writes a script while a user works
+//! session   the program on a screen in memory
 //! ```
 
 pub mod session;
@@ -11,7 +11,5 @@ pub mod session;
 pub mod command;
 
 pub mod runner;
-
-pub mod record;
 
 pub use session::Session;

@@ -1,17 +1,15 @@
-//! The real terminal: enters and leaves raw mode, reads and writes bytes.
+//! The real terminal, on crossterm and ratatui.
 //!
 //! ```text
-//! settings   environment and flags -> what this terminal is sent
-//! input      bytes -> key, paste, mouse
-//! screen     changed cells -> bytes, frame by frame
-//! device     the terminal's two files
-//! session    one way in, one way out
-//! event_loop waits for all of them, and for messages from workers (`runtime::mailbox`)
+//! input       a thread that reads keys            ─┐
+//! unix        a thread that waits for signals      ├─ one channel ─ event_loop: updates, then draws what has changed
+//! runtime     messages of workers                 ─┘
+//! session     enters and leaves the modes; a thread that writes frames
+//! screen      changed cells -> the bytes of a frame
+//! settings    environment and flags -> what this terminal is sent
 //! ```
-//! The loop sleeps until there is something to do, without a tick. It writes only what has changed on the screen, in
-//! one write per frame. It ends when the terminal is gone, whether or not a signal reports this. The terminal is
-//! queried only for its status, after pictures of a source: answers to other queries could be taken for keys, over a
-//! slow line or by the shell.
+//! Reading and writing may each block for ever: only their own thread waits. Nothing wakes up while nothing happens. The
+//! terminal is never asked anything: over a slow line, answers could be taken for keys.
 
 pub mod settings;
 
@@ -19,11 +17,11 @@ pub mod input;
 
 pub mod screen;
 
-mod device;
-
 mod session;
+
+mod unix;
 
 mod event_loop;
 
-pub use event_loop::{Outcome, run};
+pub use event_loop::run;
 pub use settings::TerminalSettings;

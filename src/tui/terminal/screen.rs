@@ -1,12 +1,9 @@
 //! The screen of a terminal behind ratatui: the bytes of a frame, for one write.
 //!
-//! Ratatui's own backend is not used because it sends bytes for every frame, also if nothing has changed, and because
-//! it makes reversed cells invisible where `NO_COLOR` is set. A key takes at most one network packet of 1,448 bytes, the
-//! first screen at most 4,500.
-//!
-//! A character that some terminals may show wider than others is followed by a move to an absolute position.
+//! Ratatui's own backend is not used because it sends bytes for every frame, also if nothing has changed, because it
+//! makes reversed cells invisible where `NO_COLOR` is set, and because it sends the sixteen colours in a form that old
+//! terminals misread. A key takes at most one network packet of 1,448 bytes, the first screen at most 4,500.
 
-use std::collections::BTreeMap;
 use std::convert::Infallible;
 
 use ratatui::backend::{Backend, ClearType, WindowSize};
@@ -16,13 +13,11 @@ use ratatui::style::{Color, Modifier};
 use ratatui::text::Span;
 
 use crate::tui::terminal::settings::Abilities;
-use crate::tui::widget::write::narrow;
 
-/// The size in bytes from which a frame is marked as synchronized. A smaller one fits into one network packet, so it
-/// arrives in one piece without marks.
+/// The size in bytes from which a frame is held back until its end (mode 2026), or drawn without a cursor. A smaller
+/// one fits into one network packet, so it arrives in one piece.
 const SMALL_FRAME: usize = 256;
 
-/// Makes the terminal hold back what it shows until the end of the frame (mode 2026).
 const BEGIN_SYNCHRONIZED: &[u8] = b"\x1b[?2026h";
 const END_SYNCHRONIZED: &[u8] = b"\x1b[?2026l";
 const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
@@ -37,10 +32,9 @@ pub struct Screen {
     /// The position of the terminal's cursor; None if it is not certain, as after the last column.
     at: Option<Position>,
     style: CellStyle,
-    visible: bool,
+    is_visible: bool,
     /// The position at which to show the cursor; None to hide it.
     wanted: Option<Position>,
-    asked: Position,
     /// The bytes of the frame so far.
     out: Vec<u8>,
 }
@@ -58,30 +52,28 @@ impl Screen {
             cells: empty(size),
             at: None,
             style: PLAIN,
-            visible: true,
+            is_visible: true,
             wanted: None,
-            asked: Position::ORIGIN,
             out: Vec::new(),
         }
     }
 
     /// Changes the size; the next frame is drawn on an empty screen.
-    pub fn resize(&mut self, size: Size) {
-        self.size = size;
-        self.cells = empty(size);
-        self.at = None;
-    }
-
-    fn index(&self, x: u16, y: u16) -> usize {
-        usize::from(y) * usize::from(self.size.width) + usize::from(x)
+    pub(super) fn resize(&mut self, size: Size) {
+        if size != self.size {
+            (self.size, self.cells, self.at) = (size, empty(size), None);
+        }
     }
 
     /// Forgets cursor and style, because another program has had the terminal.
-    pub fn forget(&mut self) {
-        self.at = None;
-        self.style = PLAIN;
-        self.visible = true;
-        self.out.clear();
+    pub(super) fn forget(&mut self) {
+        (self.at, self.style, self.is_visible) = (None, PLAIN, false);
+        self.out = HIDE_CURSOR.to_vec();
+    }
+
+    /// Adds a sequence that draws nothing.
+    pub(super) fn send(&mut self, sequence: &str) {
+        self.out.extend(sequence.as_bytes());
     }
 
     /// Returns the bytes of the frame, for one write; empty if nothing has changed.
@@ -89,76 +81,69 @@ impl Screen {
         if let Some(wanted) = self.wanted {
             self.go(wanted);
         }
-        let shown = self.wanted.is_some();
         let mut frame = std::mem::take(&mut self.out);
-        let large = frame.len() > SMALL_FRAME;
-        if large && shown && self.visible && !self.abilities.synchronized {
-            // The moving cursor would be visible.
-            frame.splice(0..0, HIDE_CURSOR.iter().copied());
-            self.visible = false;
-        }
-        if shown != self.visible {
-            frame.extend(if shown { SHOW_CURSOR } else { HIDE_CURSOR });
-            self.visible = shown;
-        }
-        if large && self.abilities.synchronized {
+        let is_large = frame.len() > SMALL_FRAME;
+        if is_large && self.abilities.synchronized {
             frame.splice(0..0, BEGIN_SYNCHRONIZED.iter().copied());
+        } else if is_large && self.is_visible {
+            frame.splice(0..0, HIDE_CURSOR.iter().copied());
+            self.is_visible = false;
+        }
+        if self.wanted.is_some() != self.is_visible {
+            self.is_visible = !self.is_visible;
+            frame.extend(if self.is_visible {
+                SHOW_CURSOR
+            } else {
+                HIDE_CURSOR
+            });
+        }
+        if is_large && self.abilities.synchronized {
             frame.extend(END_SYNCHRONIZED);
         }
         frame
     }
 
+    fn index(&self, Position { x, y }: Position) -> usize {
+        usize::from(y) * usize::from(self.size.width) + usize::from(x)
+    }
+
     fn go(&mut self, to: Position) {
         let moved = match self.at {
             Some(at) if at == to => return,
-            Some(at) if at.y == to.y && at.x < to.x => self.forward(at, to.x - at.x),
+            Some(at) if at.y == to.y && at.x < to.x => {
+                let between = &self.cells[self.index(at)..self.index(to)];
+                // A few blanks are shorter than a move over them.
+                if between.len() <= 4
+                    && between.iter().all(is_blank)
+                    && !shows_on_blanks(self.style)
+                {
+                    " ".repeat(between.len())
+                } else {
+                    format!("\x1b[{}C", between.len())
+                }
+            }
             _ => format!("\x1b[{};{}H", u32::from(to.y) + 1, u32::from(to.x) + 1),
         };
         self.out.extend(moved.as_bytes());
         self.at = Some(to);
     }
 
-    /// Returns the move over cells to the right; a few blanks are written again, which is shorter.
-    fn forward(&self, at: Position, count: u16) -> String {
-        let first = self.index(at.x, at.y);
-        let between = &self.cells[first..first + usize::from(count)];
-        if count <= 4 && between.iter().all(is_blank) && !shows_on_blanks(self.style) {
-            return " ".repeat(count.into());
-        }
-        format!("\x1b[{count}C")
-    }
-
     fn set_style(&mut self, style: CellStyle) {
         if self.abilities.styles && style != self.style {
-            self.out.extend(sgr(style, self.style == PLAIN).as_bytes());
+            self.out.extend(sgr(style).as_bytes());
             self.style = style;
         }
     }
 
-    fn write(&mut self, cell: &Cell) {
-        let style = (cell.fg, cell.bg, cell.modifier);
-        if !is_blank(cell) || shows_on_blanks(self.style) {
-            self.set_style(style);
-        }
-        // Ratatui leaves out control characters but not these two, which end a line or a paragraph.
-        let symbol = match cell.symbol() {
-            "\u{2028}" | "\u{2029}" => " ",
-            symbol => symbol,
-        };
-        self.out.extend(symbol.as_bytes());
-        // After the last column, terminals differ.
-        let right = self.size.width;
-        let at = (self.at).filter(|at| is_narrow(symbol) && at.x + 1 < right);
-        self.at = at.map(|at| Position { x: at.x + 1, ..at });
-    }
-
-    /// Erases to the end of the row; the cursor stays.
-    fn erase_from(&mut self, at: Position) {
+    fn write(&mut self, cell: &Cell, at: Position) {
         self.go(at);
-        if shows_on_blanks(self.style) {
-            self.set_style(PLAIN);
+        if !is_blank(cell) || shows_on_blanks(self.style) {
+            self.set_style((cell.fg, cell.bg, cell.modifier));
         }
-        self.out.extend(b"\x1b[K");
+        self.out.extend(cell.symbol().as_bytes());
+        // After the last column, and after a character that some terminals may show wider, the next move is absolute.
+        let is_certain = is_narrow(cell.symbol()) && at.x + 1 < self.size.width;
+        self.at = is_certain.then_some(Position { x: at.x + 1, ..at });
     }
 }
 
@@ -169,41 +154,31 @@ impl Backend for Screen {
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
     {
-        let mut rows = BTreeMap::<u16, (bool, Vec<u16>)>::new();
-        for (x, y, cell) in content {
-            if x >= self.size.width || y >= self.size.height {
-                continue;
-            }
-            let (first, end) = (self.index(0, y), self.index(0, y + 1));
-            let had_wide = || has_wide(&self.cells[first..end]);
-            let row = rows.entry(y).or_insert_with(|| (had_wide(), Vec::new()));
-            row.1.push(x);
-            let index = first + usize::from(x);
-            // Ratatui does not report the cell that a wide character covers.
-            self.cells[index..end.min(index + columns(cell))].fill(Cell::default());
-            self.cells[index] = cell.clone();
+        let mut changed = Vec::new();
+        for (x, y, cell) in
+            content.filter(|(x, y, _)| *x < self.size.width && *y < self.size.height)
+        {
+            let at = Position { x, y };
+            let (first, end) = (self.index(at), self.index(Position { x: 0, y: y + 1 }));
+            // A wide character covers cells that ratatui does not mention.
+            self.cells[first..end.min(first + columns(cell))].fill(Cell::default());
+            self.cells[first] = cell.clone();
+            changed.push(at);
         }
-        for (y, (had_wide, changed)) in rows {
-            let row = self.cells[self.index(0, y)..self.index(0, y + 1)].to_vec();
-            // Terminals differ in what they show of a wide character that is half overwritten.
-            let changed = if had_wide || has_wide(&row) {
-                (0..self.size.width).collect()
-            } else {
-                changed
-            };
-            let mut covered = 0;
-            for x in changed.into_iter().map(usize::from) {
-                if x < covered {
-                    continue;
-                }
-                let at = Position::new(narrow(x), y);
-                if row[x..].iter().all(is_blank) {
-                    self.erase_from(at);
+        for row in changed.chunk_by(|one, other| one.y == other.y) {
+            let begin = self.index(Position { x: 0, ..row[0] });
+            let cells = self.cells[begin..][..usize::from(self.size.width)].to_vec();
+            let text = cells.iter().rposition(|cell| !is_blank(cell));
+            for &at in row {
+                if text.is_none_or(|last| usize::from(at.x) > last) {
+                    self.go(at);
+                    if shows_on_blanks(self.style) {
+                        self.set_style(PLAIN);
+                    }
+                    self.out.extend(b"\x1b[K");
                     break;
                 }
-                self.go(at);
-                self.write(&row[x]);
-                covered = x + columns(&row[x]);
+                self.write(&cells[usize::from(at.x)], at);
             }
         }
         Ok(())
@@ -214,18 +189,17 @@ impl Backend for Screen {
         Ok(())
     }
 
+    /// Does nothing: ratatui sets the position next.
     fn show_cursor(&mut self) -> Result<(), Self::Error> {
-        self.wanted = Some(self.asked);
         Ok(())
     }
 
     fn get_cursor_position(&mut self) -> Result<Position, Self::Error> {
-        Ok(self.asked)
+        Ok(self.wanted.unwrap_or_default())
     }
 
     fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> Result<(), Self::Error> {
-        self.asked = position.into();
-        self.wanted = self.wanted.map(|_| self.asked);
+        self.wanted = Some(position.into());
         Ok(())
     }
 
@@ -236,9 +210,8 @@ impl Backend for Screen {
     /// Clears the whole screen whatever the type, because the program uses all of it.
     fn clear_region(&mut self, _: ClearType) -> Result<(), Self::Error> {
         let plain = if self.abilities.styles { "\x1b[m" } else { "" };
-        self.out = format!("{plain}\x1b[H\x1b[2J").into_bytes();
-        self.cells = empty(self.size);
-        (self.style, self.at) = (PLAIN, Some(Position::ORIGIN));
+        self.out.extend(format!("{plain}\x1b[H\x1b[2J").as_bytes());
+        (self.cells, self.style, self.at) = (empty(self.size), PLAIN, Some(Position::ORIGIN));
         Ok(())
     }
 
@@ -259,28 +232,6 @@ impl Backend for Screen {
     }
 }
 
-const ATTRIBUTES: [(Modifier, &str); 7] = [
-    (Modifier::BOLD, "1"),
-    (Modifier::DIM, "2"),
-    (Modifier::ITALIC, "3"),
-    (Modifier::UNDERLINED, "4"),
-    (Modifier::SLOW_BLINK, "5"),
-    (Modifier::REVERSED, "7"),
-    (Modifier::CROSSED_OUT, "9"),
-];
-
-/// Returns the number of columns that a cell takes.
-fn columns(cell: &Cell) -> usize {
-    match cell.symbol() {
-        symbol if is_narrow(symbol) => 1,
-        symbol => Span::raw(symbol).width().max(1),
-    }
-}
-
-fn has_wide(cells: &[Cell]) -> bool {
-    !cells.iter().all(|cell| is_narrow(cell.symbol()))
-}
-
 fn empty(size: Size) -> Vec<Cell> {
     vec![Cell::default(); usize::from(size.width) * usize::from(size.height)]
 }
@@ -292,71 +243,81 @@ fn is_blank(cell: &Cell) -> bool {
 
 /// Returns true if a blank in this style does not look like a plain one.
 fn shows_on_blanks((_, back, attributes): CellStyle) -> bool {
-    let seen = Modifier::REVERSED | Modifier::UNDERLINED | Modifier::CROSSED_OUT;
-    back != Color::Reset || attributes.intersects(seen)
+    back != Color::Reset || attributes.intersects(Modifier::REVERSED | Modifier::UNDERLINED)
 }
 
-fn sgr((fore, back, attributes): CellStyle, is_plain: bool) -> String {
-    let set = ATTRIBUTES
+const ATTRIBUTES: [(Modifier, u8); 4] = [
+    (Modifier::BOLD, 1),
+    (Modifier::DIM, 2),
+    (Modifier::UNDERLINED, 4),
+    (Modifier::REVERSED, 7),
+];
+
+/// Returns the sequence that sets a style, whatever was set before.
+fn sgr((fore, back, attributes): CellStyle) -> String {
+    let mut sequence = String::from("\x1b[");
+    for (_, number) in ATTRIBUTES
         .iter()
-        .filter(|(own, _)| attributes.contains(*own));
-    let mut steps: Vec<String> = set.map(|(_, number)| (*number).to_owned()).collect();
+        .filter(|(own, _)| attributes.contains(*own))
+    {
+        sequence += &format!(";{number}");
+    }
     for (color, base) in [(fore, 30), (back, 40)] {
-        if color != Color::Reset {
-            steps.push(color_parameters(color, base));
+        match color {
+            Color::Reset => {}
+            Color::Indexed(index) => sequence += &format!(";{};5;{index}", base + 8),
+            Color::Rgb(red, green, blue) => {
+                sequence += &format!(";{};2;{red};{green};{blue}", base + 8)
+            }
+            named => {
+                let number = (0_u8..).zip(SIXTEEN).find(|(_, own)| *own == named);
+                // The bright ones follow at 90 and 100.
+                let offset =
+                    number.map_or(9, |(number, _)| number + if number < 8 { 0 } else { 52 });
+                sequence += &format!(";{}", base + offset);
+            }
         }
     }
-    if !is_plain {
-        // Empty means 0, the reset.
-        steps.insert(0, String::new());
-    }
-    format!("\x1b[{}m", steps.join(";"))
+    sequence + "m"
 }
 
-/// Returns a colour's parameters; `base` is 30 for text and 40 for the background. The sixteen colours have short
-/// numbers that every terminal knows.
-fn color_parameters(color: Color, base: u8) -> String {
-    let sixteen = [
-        Color::Black,
-        Color::Red,
-        Color::Green,
-        Color::Yellow,
-        Color::Blue,
-        Color::Magenta,
-        Color::Cyan,
-        Color::Gray,
-        Color::DarkGray,
-        Color::LightRed,
-        Color::LightGreen,
-        Color::LightYellow,
-        Color::LightBlue,
-        Color::LightMagenta,
-        Color::LightCyan,
-        Color::White,
-    ];
-    match color {
-        Color::Indexed(index) => format!("{};5;{index}", base + 8),
-        Color::Rgb(red, green, blue) => format!("{};2;{red};{green};{blue}", base + 8),
-        color => {
-            let number = (0_u8..).zip(sixteen).find(|(_, own)| *own == color);
-            let offset = match number {
-                None => 9,
-                Some((number @ 0..8, _)) => number,
-                Some((number, _)) => 52 + number,
-            };
-            (base + offset).to_string()
-        }
+const SIXTEEN: [Color; 16] = [
+    Color::Black,
+    Color::Red,
+    Color::Green,
+    Color::Yellow,
+    Color::Blue,
+    Color::Magenta,
+    Color::Cyan,
+    Color::Gray,
+    Color::DarkGray,
+    Color::LightRed,
+    Color::LightGreen,
+    Color::LightYellow,
+    Color::LightBlue,
+    Color::LightMagenta,
+    Color::LightCyan,
+    Color::White,
+];
+
+/// Returns the number of columns that a cell takes.
+fn columns(cell: &Cell) -> usize {
+    match cell.symbol() {
+        symbol if is_narrow(symbol) => 1,
+        symbol => Span::raw(symbol).width().max(1),
     }
 }
 
+/// Returns true for a character that takes one column on every terminal.
 fn is_narrow(symbol: &str) -> bool {
     let mut characters = symbol.chars();
     let first = characters.next();
-    // Latin and Greek; dashes and dots; lines, blocks and shades.
+    // Latin and Greek; dashes and dots; arrows; lines, blocks and shades; Braille.
     characters.next().is_none()
         && first.is_some_and(|first| {
             matches!(first, ' '..='~' | '\u{a1}'..='\u{ac}' | '\u{ae}'..='\u{2ff}' | '\u{370}'..='\u{3ff}'
-                | '\u{2010}'..='\u{2027}' | '\u{2190}'..='\u{2193}' | '\u{2500}'..='\u{259f}')
+                | '\u{2010}'..='\u{2027}' | '\u{2190}'..='\u{2193}' | '\u{2500}'..='\u{259f}'
+                | '\u{2800}'..='\u{28ff}')
         })
 }
 
@@ -512,22 +473,5 @@ mod tests {
         ) {
             check(&frames, synchronized);
         }
-    }
-
-    #[test]
-    fn characters_that_end_a_line_are_drawn_as_blanks() {
-        let abilities = Abilities {
-            styles: true,
-            synchronized: false,
-        };
-        let Ok(mut terminal) = Terminal::new(Screen::new(SIZE, abilities));
-        let Ok(_) = terminal.draw(|frame| {
-            let buffer = frame.buffer_mut();
-            buffer.set_string(0, 0, "a.b.", Style::new());
-            buffer[(1, 0)].set_symbol("\u{2028}");
-            buffer[(3, 0)].set_symbol("\u{2029}");
-        });
-        let frame = String::from_utf8(terminal.backend_mut().take_frame()).expect("text");
-        assert!(frame.contains("a b "), "{frame:?}");
     }
 }

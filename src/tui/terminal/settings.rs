@@ -29,19 +29,8 @@ impl TerminalKind {
         }
     }
 
-    pub fn has_modes(self) -> bool {
+    pub(super) fn has_modes(self) -> bool {
         self >= Self::Console
-    }
-
-    /// Returns true if it may answer a request for its status (DSR), as terminals with the cursor addresses of
-    /// ECMA-48 do.
-    pub fn tells_status(self) -> bool {
-        self > Self::Dumb
-    }
-
-    /// Returns true if it may accept a text for its clipboard (OSC 52); other terminals would show the text.
-    pub fn has_clipboard(self) -> bool {
-        self == Self::Window
     }
 }
 
@@ -71,9 +60,7 @@ pub struct TerminalSettings {
     pub size: Option<(u16, u16)>,
     pub fallback: (u16, u16),
     pub mouse: bool,
-    pub color: ColorDepth,
-    pub palette: Palette,
-    pub ascii: bool,
+    pub theme: Theme,
     pub abilities: Abilities,
 }
 
@@ -82,47 +69,40 @@ impl TerminalSettings {
         variable: impl Fn(&'static str) -> Option<OsString>,
         flags: &Flags,
     ) -> Self {
+        // A variable that is not set, or is not text, counts as empty.
         let text = |name| {
-            // A variable that is not set, or is not text, counts as empty.
             let value = variable(name).and_then(|value| value.into_string().ok());
             value.unwrap_or_default()
         };
-        let term = text("TERM");
-        let kind = TerminalKind::of(&term);
-        let no_color = variable("NO_COLOR").is_some_and(|value| !value.is_empty());
-        let color = flags.color.unwrap_or_else(|| match kind {
-            _ if no_color => ColorDepth::Never,
-            TerminalKind::Dumb | TerminalKind::Serial => ColorDepth::Never,
-            TerminalKind::Console => ColorDepth::Sixteen,
-            TerminalKind::Window => depth(&term, &text("COLORTERM")),
-        });
         let number = |name, otherwise| {
             let number = text(name).trim().parse().ok();
             number.filter(|&number| number > 0).unwrap_or(otherwise)
         };
+        let term = text("TERM");
+        let kind = TerminalKind::of(&term);
+        let color = flags.color.unwrap_or_else(|| match kind {
+            _ if !text("NO_COLOR").is_empty() => ColorDepth::Never,
+            TerminalKind::Dumb | TerminalKind::Serial => ColorDepth::Never,
+            TerminalKind::Console => ColorDepth::Sixteen,
+            TerminalKind::Window => depth(&term, &text("COLORTERM")),
+        });
         Self {
             kind,
             size: flags.size,
             fallback: (number("COLUMNS", 80), number("LINES", 24)),
             mouse: kind == TerminalKind::Window && !flags.no_mouse,
-            color,
-            palette: flags
-                .palette
-                .unwrap_or_else(|| background(&text("COLORFGBG"))),
-            ascii: flags.ascii.unwrap_or(kind <= TerminalKind::Serial),
+            theme: Theme {
+                ascii: flags.ascii.unwrap_or(kind <= TerminalKind::Serial),
+                console: kind < TerminalKind::Window,
+                depth: color,
+                palette: flags
+                    .palette
+                    .unwrap_or_else(|| background(&text("COLORFGBG"))),
+            },
             abilities: Abilities {
                 styles: kind > TerminalKind::Dumb || color != ColorDepth::Never,
                 synchronized: kind == TerminalKind::Window,
             },
-        }
-    }
-
-    pub fn theme(&self) -> Theme {
-        Theme {
-            ascii: self.ascii,
-            console: self.kind < TerminalKind::Window,
-            depth: self.color,
-            palette: self.palette,
         }
     }
 }
@@ -167,16 +147,16 @@ mod tests {
 
     #[test]
     fn colours_follow_the_terminal_unless_a_variable_or_flag_overrides_it() {
-        assert_eq!(term("linux").color, ColorDepth::Sixteen);
-        assert_eq!(term("xterm").color, ColorDepth::Sixteen);
-        assert_eq!(term("putty-m1").color, ColorDepth::Sixteen);
-        assert_eq!(term("xterm-mono").color, ColorDepth::Never);
-        assert_eq!(term("ansi-m").color, ColorDepth::Never);
-        assert_eq!(term("screen-256color").color, ColorDepth::TwoFiftySix);
-        assert_eq!(term("vt100").color, ColorDepth::Never);
+        assert_eq!(term("linux").theme.depth, ColorDepth::Sixteen);
+        assert_eq!(term("xterm").theme.depth, ColorDepth::Sixteen);
+        assert_eq!(term("putty-m1").theme.depth, ColorDepth::Sixteen);
+        assert_eq!(term("xterm-mono").theme.depth, ColorDepth::Never);
+        assert_eq!(term("ansi-m").theme.depth, ColorDepth::Never);
+        assert_eq!(term("screen-256color").theme.depth, ColorDepth::TwoFiftySix);
+        assert_eq!(term("vt100").theme.depth, ColorDepth::Never);
         let with = |name, value| {
             let variables = [("TERM", "xterm-256color"), (name, value)];
-            settings(&variables, Flags::default()).color
+            settings(&variables, Flags::default()).theme.depth
         };
         assert_eq!(with("COLORTERM", "truecolor"), ColorDepth::True);
         assert_eq!(with("NO_COLOR", "1"), ColorDepth::Never);
@@ -188,7 +168,7 @@ mod tests {
         };
         let forced = settings(&[("TERM", "dumb"), ("NO_COLOR", "1")], asked);
         assert_eq!(
-            (forced.color, forced.abilities.styles),
+            (forced.theme.depth, forced.abilities.styles),
             (ColorDepth::Sixteen, true),
             "the command line wins"
         );
@@ -206,7 +186,10 @@ mod tests {
             ],
             Flags::default(),
         );
-        assert_eq!((some.fallback, some.palette), ((132, 43), Palette::Light));
+        assert_eq!(
+            (some.fallback, some.theme.palette),
+            ((132, 43), Palette::Light)
+        );
         for wrong in ["0", "-5", "many", "99999999"] {
             let settings = settings(&[("COLUMNS", wrong), ("LINES", wrong)], Flags::default());
             assert_eq!(settings.fallback, (80, 24), "{wrong}");

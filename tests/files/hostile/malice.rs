@@ -30,7 +30,6 @@ pub(crate) fn all(body: &str) -> Vec<Malice> {
         "job" => &JOBS,
         "exchange" => &EXCHANGES,
         "config" => &CONFIGS,
-        "terminal" => &TERMINALS,
         "script" | "play" => &SCRIPTS,
         "archive" => archives::ATLASES,
         "model" => archives::MODELS,
@@ -145,13 +144,6 @@ const EXCHANGES: [Malice; 4] = [
 const CONFIGS: [Malice; 2] = [
     ("deep lists", || filled("theme = ", "[", "")),
     ("deep keys", || filled("a", ".a", " = 1")),
-];
-
-const TERMINALS: [Malice; 2] = [
-    ("a long answer", || filled("\x1b]", "a", "\x07")),
-    ("a paste without an end", || {
-        filled("\x1b[200~", "\x1b[201", "")
-    }),
 ];
 
 const SCRIPTS: [Malice; 3] = [

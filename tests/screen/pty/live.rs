@@ -2,15 +2,12 @@
 
 use std::fs;
 use std::io::Write;
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use rustix::process::Signal;
-
 use super::program::{Program, Start, TAXEL};
 use crate::array;
-use crate::wait::{connection, fifo, writer_of};
+use crate::wait::{fifo, writer_of};
 
 /// Returns frames of 4 × 4 whose first value is their number.
 fn frames(numbers: std::ops::Range<u32>) -> String {
@@ -187,28 +184,6 @@ fn ctrl_z_and_fg_leave_a_source_and_its_recording_as_they_are() {
 }
 
 #[test]
-fn the_recording_of_a_source_that_has_ended_is_on_the_disk() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let folder = folder.path();
-    let rows = "time,r0c0,r0c1\n0.0,1,2\n0.1,3,4\n0.2,5,6\n";
-    fs::write(folder.join("touch.csv"), rows).expect("written");
-    let file = folder.join("a.npy");
-    let mut program = watching(folder, "touch.csv --write a.npy");
-    program.shows("ended");
-    program.until("the frames", |_| records(&file) == Some(3));
-    // A mark that is set later is written, too.
-    program.types(b"m");
-    program.shows("frame 2: marked");
-    program.until("the mark", |_| {
-        let beside = fs::read_to_string(file.with_extension("json")).expect("it is there");
-        beside.contains("\"number\":2") || beside.contains("\"number\": 2")
-    });
-    program.signal(Signal::KILL);
-    program.ends();
-    assert_eq!(records(&file), Some(3));
-}
-
-#[test]
 fn a_terminal_that_is_not_read_does_not_delay_a_recording() {
     let Some(mut watched) = Watched::start() else {
         return;
@@ -274,28 +249,6 @@ fn watching(folder: &Path, arguments: &str) -> Program {
     })
 }
 
-#[test]
-fn a_connection_is_waited_for_and_its_gap_is_told() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let address = listener.local_addr().expect("an address");
-    drop(listener);
-    let mut program = watching(folder.path(), &format!("tcp://{address} --at-least 9"));
-    program.shows(&format!("waiting for tcp://{address}, trying again each"));
-    let listener = TcpListener::bind(address).expect("the same port");
-    for frame in ["frame 2", "frame 5"] {
-        // The first frame may have been incomplete.
-        let mut connection = connection(&listener);
-        let sent = connection.write_all(frames(0..4).as_bytes());
-        sent.expect("it reads");
-        program.shows(frame);
-    }
-    program.shows("connection was lost for 1");
-    program.shows("gaps       1, 1");
-    program.types(b"qq");
-    program.ends_well(0);
-}
-
 /// Its reader would take half of the keys.
 #[test]
 fn the_terminal_of_the_keys_is_not_watched() {
@@ -313,27 +266,4 @@ fn the_terminal_of_the_keys_is_not_watched() {
         ));
         assert_eq!(program.count(b"\x1b[?1049h"), 0, "{arguments}");
     }
-}
-
-#[test]
-fn a_file_that_grows_is_not_read_again_by_key_and_its_recording_goes_on() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let folder = folder.path();
-    fs::write(folder.join("touch.txt"), frames(0..3)).expect("written");
-    let mut file = fs::File::options()
-        .append(true)
-        .open(folder.join("touch.txt"))
-        .expect("it is there");
-    let mut grows = |numbers| file.write_all(frames(numbers).as_bytes()).expect("written");
-    let mut program = watching(folder, "touch.txt --at-least 9 --write a.npy");
-    program.shows("frame 2");
-    grows(3..6);
-    program.shows("frame 5");
-    program.types(b"w");
-    program.shows("the source has not ended yet");
-    grows(6..9);
-    program.shows("frame 8");
-    program.types(b"qq");
-    program.ends_well(0);
-    assert_eq!(records(&folder.join("a.npy")), Some(9));
 }

@@ -4,17 +4,11 @@
 
 mod program;
 
-mod screens;
-
 mod ends;
 
-mod jobs;
+mod screens;
 
 mod live;
-
-mod lines;
-
-mod saves;
 
 /// Becomes the program; see [`program`].
 #[test]

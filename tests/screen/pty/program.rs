@@ -26,11 +26,6 @@ pub(crate) const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
 
 /// The longest wait, even on the busiest machine. Only failing tests wait that long.
 const DEADLINE: Duration = Duration::from_secs(120);
-/// The question for the status of the terminal (DSR).
-pub(crate) const QUESTION: &[u8] = b"\x1b[5n";
-/// The answer to the question.
-const ANSWER: &[u8] = b"\x1b[0n";
-
 /// After this time without output, the output is considered complete and its bytes are counted.
 const SILENCE: Duration = Duration::from_millis(60);
 
@@ -74,10 +69,6 @@ pub(crate) struct Program {
     shown: usize,
     /// The number of reads that this took.
     pub(crate) reads: usize,
-    /// Whether the program is told the status of the terminal when it asks, as terminals do.
-    pub(crate) answers: bool,
-    /// The number of bytes that were searched for the question.
-    searched: usize,
 }
 
 /// The part that runs in the child. As a test without its variables, it does nothing.
@@ -130,10 +121,7 @@ impl Program {
             command.env("PTY_CONTROLLING", "1");
         }
         let child = command.spawn().expect("started");
-        let (columns, rows) = match start.size {
-            (0, 0) => (80, 24),
-            size => size,
-        };
+        let (columns, rows) = known(start.size);
         Self {
             _library: library,
             child,
@@ -144,8 +132,6 @@ impl Program {
             bytes: Vec::new(),
             shown: 0,
             reads: 0,
-            answers: true,
-            searched: 0,
         }
     }
 
@@ -176,7 +162,8 @@ impl Program {
 
     pub(crate) fn resize(&mut self, size: (u16, u16)) {
         set_size(self.master.as_ref().expect("a terminal"), size);
-        self.emulator.set_size(side(size.1), side(size.0));
+        let (columns, rows) = known(size);
+        self.emulator.set_size(side(rows), side(columns));
     }
 
     /// Makes the emulator forget its screen, as if another program had drawn on it.
@@ -202,28 +189,7 @@ impl Program {
         self.emulator.process(&waiting[..whole]);
         self.shown += whole;
         self.reads += 1;
-        self.answer_questions();
         count > 0
-    }
-
-    /// Answers each new question for the status of the terminal.
-    fn answer_questions(&mut self) {
-        let questions = count(&self.bytes[self.searched..], QUESTION);
-        // The next question may have begun.
-        self.searched = (self.bytes.len() + 1).saturating_sub(QUESTION.len());
-        for _ in 0..if self.answers { questions } else { 0 } {
-            self.answer();
-        }
-    }
-
-    /// Answers with the status of the terminal.
-    pub(crate) fn answer(&self) {
-        self.types(ANSWER);
-    }
-
-    /// Returns how often the terminal was asked for its status.
-    pub(crate) fn questions(&self) -> usize {
-        self.count(QUESTION)
     }
 
     /// Reads until a condition holds.
@@ -250,18 +216,6 @@ impl Program {
         let rows = self.screen().rows(0, columns.get());
         let rows: String = rows.map(|row| row.trim_end().to_owned() + "\n").collect();
         rows.trim_end().to_owned()
-    }
-
-    /// Reads until the characters are those of a script, for a terminal without styles.
-    pub(crate) fn agrees_plainly(&mut self, session: &Session) {
-        let (rows, at) = (session.screen(), session.cursor());
-        self.until("the screen of the script", |program| {
-            let hidden = program.screen().hide_cursor();
-            let same = at.map_or(hidden, |at| {
-                program.screen().cursor_position() == (at.y, at.x)
-            });
-            same && program.rows() == rows.trim_end()
-        });
     }
 
     /// Reads until the screen is that of a script: characters, styles, and the cursor if it is visible.
@@ -295,11 +249,6 @@ impl Program {
         self.master = None;
     }
 
-    /// Keeps the line, but reads nothing from it any more.
-    pub(crate) fn take_master(&mut self) -> Option<OwnedFd> {
-        self.master.take()
-    }
-
     /// Returns the state of the process, for example running, sleeping or stopped.
     pub(crate) fn state(&self) -> char {
         let file = format!("/proc/{}/stat", self.child.id());
@@ -322,6 +271,14 @@ impl Program {
                 sleep(Duration::from_millis(1));
             }
         }
+    }
+
+    /// Waits for the end, reading nothing.
+    pub(crate) fn ends_unread(&mut self) -> ExitStatus {
+        let line = self.master.take();
+        let (status, _) = self.ends();
+        drop(line);
+        status
     }
 
     /// Waits for the end with an exit status, and checks that the terminal is as it was before.
@@ -374,13 +331,21 @@ impl Program {
 
     /// Returns a number from /proc/PID/status.
     pub(crate) fn status(&self, name: &str) -> u64 {
-        let file = format!("/proc/{}/status", self.child.id());
-        let text = std::fs::read_to_string(file).expect("it runs");
-        let line = text.lines().find_map(|line| line.strip_prefix(name));
-        let number = line.and_then(|rest| rest.trim_start_matches(':').split_whitespace().next());
-        number
-            .and_then(|number| number.parse().ok())
-            .expect("a number")
+        number(&format!("/proc/{}/status", self.child.id()), name)
+    }
+
+    /// Returns how often any of its threads has woken up.
+    pub(crate) fn wakeups(&self) -> u64 {
+        let folder = format!("/proc/{}/task", self.child.id());
+        let threads = std::fs::read_dir(folder).expect("it runs");
+        let ids = threads.map(|thread| thread.expect("a thread").file_name());
+        ids.map(|id| {
+            number(
+                &format!("/proc/{}/status", id.display()),
+                "voluntary_ctxt_switches",
+            )
+        })
+        .sum()
     }
 
     /// Returns the processor time in hundredths of a second.
@@ -404,8 +369,18 @@ impl Drop for Program {
     }
 }
 
+/// Returns a number from a status file in /proc.
+fn number(file: &str, name: &str) -> u64 {
+    let text = std::fs::read_to_string(file).expect("it runs");
+    let line = text.lines().find_map(|line| line.strip_prefix(name));
+    let number = line.and_then(|rest| rest.trim_start_matches(':').split_whitespace().next());
+    number
+        .and_then(|number| number.parse().ok())
+        .expect("a number")
+}
+
 /// Counts how often the bytes contain `mark`.
-pub(crate) fn count(bytes: &[u8], mark: &[u8]) -> usize {
+fn count(bytes: &[u8], mark: &[u8]) -> usize {
     let found = bytes.windows(mark.len()).filter(|found| *found == mark);
     found.count()
 }
@@ -420,7 +395,12 @@ fn set_size(master: &OwnedFd, (columns, rows): (u16, u16)) {
     tcsetwinsize(master, size).expect("a size");
 }
 
-pub(crate) fn emulator(columns: u16, rows: u16) -> vt100::Parser {
+/// Returns the size that the program takes for a terminal that does not know its own.
+fn known(size: (u16, u16)) -> (u16, u16) {
+    if size == (0, 0) { (80, 24) } else { size }
+}
+
+fn emulator(columns: u16, rows: u16) -> vt100::Parser {
     vt100::Parser::new(side(rows), side(columns), 0)
 }
 

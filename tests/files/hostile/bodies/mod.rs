@@ -22,7 +22,7 @@ pub(crate) use screen::session_of;
 pub(crate) type Body = (&'static str, &'static str, fn(&[u8]) -> bool);
 
 /// All bodies.
-pub(crate) const BODIES: [Body; 21] = [
+pub(crate) const BODIES: [Body; 20] = [
     ("shape", "shape", formats::shape),
     ("job", "job", formats::job),
     ("imprint", "imprint", formats::imprint),
@@ -36,7 +36,6 @@ pub(crate) const BODIES: [Body; 21] = [
     ("named_shape", "named_shape", model::named),
     ("config", "config", formats::config),
     ("keys", "keys", keys::keys),
-    ("terminal", "terminal", keys::terminal),
     ("command", "command", screen::command),
     ("script", "script", screen::script),
     ("play", "script", screen::play),

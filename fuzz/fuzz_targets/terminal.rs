@@ -1,4 +1,0 @@
-//! Input from a terminal, from any bytes.
-#![no_main]
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("terminal", bytes));
