@@ -4,17 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use taxel::frames::Pipeline;
-use taxel::tui::app::message::{Message, WorkerEvent};
-use taxel::tui::app::update::on_worker;
-use taxel::tui::live::message::{
-    FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, RecordedFrames, SourceState,
-    WatchRequest,
-};
+use taxel::tui::app::message::Message;
+use taxel::tui::live::message::{LiveMessage, WatchRequest};
 use taxel::tui::script::Session;
-use taxel_core::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule};
+use taxel_core::frame::{Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
-use taxel_core::recognition::Noise;
 use taxel_core::sensor::MatrixSize;
 
 use crate::array::{self, array};
@@ -78,7 +73,7 @@ fn a_source_is_shown_frame_by_frame() {
 
 #[test]
 fn a_recording_that_has_ended_stays_at_its_frame_and_plays_again_by_key() {
-    let mut page = watched(20, "+n<Left><Left>");
+    let mut page = watched(20, "+o<Left><Left>");
     let chosen = ["frame 5  0.5 s", "frozen, 2 frames behind", "ended"];
     shows(&page, &chosen);
     then(&mut page, "<Enter>w", &chosen);
@@ -110,15 +105,6 @@ fn an_unreadable_source_opens_no_page() {
 }
 
 #[test]
-fn the_name_comes_with_its_probability() {
-    let keys = ":watch<Space>examples/recording.csv<Space>--at-least<Space>10<Enter>";
-    let mut page = session(keys);
-    page.frames(4);
-    let named = ["shape      hexagon 100 %, certain", "nearest    hexagon, "];
-    then(&mut page, "n", &named);
-}
-
-#[test]
 fn keys_raise_and_lower_the_threshold_and_change_its_unit() {
     // The first one is half of the range.
     shows(&watched(6, "+"), &["threshold  50", "NA         37"]);
@@ -126,17 +112,6 @@ fn keys_raise_and_lower_the_threshold_and_change_its_unit() {
     shows(&watched(6, "+-"), &["threshold  49"]);
     shows(&watched(6, "+%"), &["threshold  63 % of max"]);
     shows(&watched(6, "+%+"), &["threshold  68 % of max"]);
-    // Back to exactly the same threshold, also from a peak below it.
-    let threshold = |keys: &str| {
-        let screen = watched(6, keys).screen();
-        let line = screen.lines().find(|line| line.contains("threshold"));
-        line.expect("it is shown").trim_end().to_owned()
-    };
-    assert_eq!(threshold("+%%"), threshold("+"));
-    let above = "+".repeat(150);
-    assert_eq!(threshold(&format!("{above}%%")), threshold(&above));
-    assert!(threshold(&format!("{above}%")).contains("100 %"));
-    assert_eq!(threshold("+%%%"), threshold("+%"));
 }
 
 #[test]
@@ -169,22 +144,6 @@ fn a_command_sets_the_threshold() {
 }
 
 #[test]
-fn changing_the_unit_uses_the_values_that_the_threshold_applies_to() {
-    let threshold = |keys: &str| {
-        let screen = watched(6, keys).screen();
-        let line = screen.lines().find(|line| line.contains("threshold"));
-        let line = line.and_then(|line| line.split_once("threshold"));
-        line.expect("it is shown").1.trim().to_owned()
-    };
-    // The values that are shown do not matter: tared values, raw ones, or the imprint.
-    let expected = threshold("t+%");
-    assert!(expected.ends_with("% of max"), "{expected}");
-    assert_eq!([threshold("t+v%"), threshold("t+vv%")], [&*expected; 2]);
-    let expected = threshold("t+%%");
-    assert_eq!([threshold("t+%v%"), threshold("t+%vv%")], [&*expected; 2]);
-}
-
-#[test]
 fn a_tare_is_set_and_given_up() {
     shows(
         &watched(6, "t"),
@@ -214,7 +173,7 @@ fn the_progress_of_a_tare_is_shown() {
     // If the source is watched again before the tare is made, the tare starts again.
     let mut page = set(|request| tared(request, 4));
     page.frames(3);
-    then(&mut page, "<Esc>w", &["tare: 0 of 4 frames"]);
+    then(&mut page, "<Esc>ww", &["tare: 0 of 4 frames"]);
     // A key makes the tare from the frames so far, or gives it up.
     page.frames(2);
     then(&mut page, "T", &["tare       none", "tare removed"]);
@@ -260,81 +219,6 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     then(&mut page, "<Enter>", &[refused]);
 }
 
-#[test]
-fn a_notice_does_not_hide_a_lost_source() {
-    let lost = "lost: Connection reset by peer; trying again each second";
-    let mut page = watched(2, "t");
-    let mut batch = FrameBatch::default();
-    batch.status.state = SourceState::Lost(lost.to_owned());
-    send(&mut page, LiveEvent::Arrived(Arc::new(batch)));
-    shows(&page, &["! lost: Connection reset by peer"]);
-    hides(&page, &["tare of the last"]);
-    then(&mut page, "T", &["tare removed; ! lost: Connection reset"]);
-}
-
-/// Sends an event of the source of the first page.
-fn send(page: &mut Session, event: LiveEvent) {
-    page.answer(|app| on_worker(app, WorkerEvent::Live(1, event)));
-}
-
-/// Sends frames of these sides.
-fn send_frames(page: &mut Session, sides: &[u16]) {
-    let frame = |&side| Arc::new(Frame::new(FrameSize::new(side, side).expect("in range")));
-    let batch = FrameBatch {
-        frames: sides.iter().map(frame).collect(),
-        ..FrameBatch::default()
-    };
-    send(page, LiveEvent::Arrived(Arc::new(batch)));
-}
-
-#[test]
-fn a_recording_that_leaves_out_frames_says_so() {
-    let mut page = watched(3, "");
-    let path = "/a/long/name/of/a/folder/left_gripper.npy";
-    send(&mut page, LiveEvent::Recording(path.to_owned()));
-    let recorded = RecordedFrames {
-        frames: 5,
-        left_out: 60,
-    };
-    let mut batch = FrameBatch::default();
-    batch.status.recorded = Some(recorded);
-    send(&mut page, LiveEvent::Arrived(Arc::new(batch)));
-    let said = "! frames of another size are not recorded";
-    let counts = "recording  5 frames; 60 left out";
-    shows(&page, &[said, counts]);
-    page.resize(60, 20);
-    shows(&page, &[said]);
-    send(
-        &mut page,
-        LiveEvent::Recorded("left.npy".to_owned(), recorded),
-    );
-    shows(
-        &page,
-        &["left.npy: 5 frames recorded, 60 of another size left out"],
-    );
-}
-
-#[test]
-fn a_tare_by_key_is_made_of_frames_of_the_present_size() {
-    let mut page = watched(0, "");
-    send_frames(&mut page, &[2, 2, 2, 3, 3, 3, 3]);
-    then(&mut page, "t", &["tare of the last 4 frames"]);
-    then(&mut page, "<Home><Right>t", &["tare of the 2 frames up to"]);
-    then(&mut page, "<Home>t", &["tare of frame 0"]);
-}
-
-#[test]
-fn a_silent_source_has_no_rate() {
-    let mut page = watched(3, "");
-    shows(&page, &["rate       10/s"]);
-    let mut batch = FrameBatch::default();
-    batch.status.state = SourceState::Silent("no frame for more than 2 s".to_owned());
-    send(&mut page, LiveEvent::Arrived(Arc::new(batch)));
-    shows(&page, &["! no frame for more than 2 s", "rate       –"]);
-    page.frames(1);
-    shows(&page, &["frame 3", "rate       10/s"]);
-}
-
 /// Returns a matrix with the same gain for every cell.
 fn gain_of(columns: u8, rows: u8, gain: f64) -> Matrix<f64> {
     Matrix::filled(MatrixSize::new(columns, rows).expect("1 to 64"), gain)
@@ -356,23 +240,6 @@ fn a_frame_that_cannot_be_processed_is_still_shown() {
 }
 
 #[test]
-fn a_frame_that_has_left_the_history_is_distinguished_from_no_frame() {
-    // Memory for the newest frame only.
-    let mut page = set(|request| request.history_bytes = 1);
-    page.frames(2);
-    then(&mut page, "<Space>", &["frame 1", "frozen"]);
-    page.frames(3);
-    shows(&page, &["frame 1", "frozen, 3 frames behind"]);
-    then(
-        &mut page,
-        "t",
-        &["! this frame is no longer in the history"],
-    );
-    then(&mut page, "m", &["frame 1: marked"]);
-    then(&mut page, "<End>t", &["tare of 1 frame"]);
-}
-
-#[test]
 fn the_history_can_be_viewed_while_frames_arrive() {
     shows(
         &watched(6, "<Left><Left>"),
@@ -388,47 +255,37 @@ fn the_history_can_be_viewed_while_frames_arrive() {
     then(&mut page, "<Space>", &["frame 5"]);
     hides(&page, &["frozen"]);
     then(&mut page, "<Left><End>", &["frame 5"]);
+    // Esc goes back to the source first. A page that was left shows what it showed, with its marks.
+    then(
+        &mut page,
+        "<Left>m<Esc>",
+        &["frame 5", "marked     frame 4"],
+    );
+    hides(&page, &["frozen"]);
+    then(&mut page, "<Esc>", &["Figure"]);
+    then(&mut page, "w<Left>", &["frame 4", "marked     frame 4"]);
 }
 
-/// A frame is shown before the marker after it has come.
 #[test]
-fn a_frozen_frame_is_the_shown_one_even_if_it_is_not_confirmed() {
-    let frame = |value| {
-        let mut frame = Frame::new(FrameSize::new(16, 16).expect("in range"));
-        frame.number = 2;
-        frame.values_mut().fill(value);
-        Arc::new(frame)
-    };
-    let report = |page: &mut Session, frames: &[f64], provisional| {
-        let batch = FrameBatch {
-            frames: frames.iter().copied().map(frame).collect(),
-            provisional,
-            ..FrameBatch::default()
-        };
-        let event = LiveEvent::Arrived(Arc::new(batch));
-        page.answer(|app| on_worker(app, WorkerEvent::Live(1, event)));
-    };
-    let frozen = || {
-        let mut page = watched(2, "");
-        report(&mut page, &[], ProvisionalChange::Shown(frame(1.0)));
-        then(
-            &mut page,
-            "<Space>",
-            &["frame 2", "frozen", "raw        sum 256"],
-        );
-        page
-    };
-    let mut confirmed = frozen();
-    report(&mut confirmed, &[1.0], ProvisionalChange::Gone);
-    shows(&confirmed, &["frame 2", "frozen", "raw        sum 256"]);
-    let mut replaced = frozen();
-    report(&mut replaced, &[2.0], ProvisionalChange::Gone);
-    shows(&replaced, &["frame 2", "frozen", "raw        sum 512"]);
-    let mut withdrawn = frozen();
-    report(&mut withdrawn, &[], ProvisionalChange::Gone);
-    shows(&withdrawn, &["frame 1", "frozen"]);
-    then(&mut frozen(), "<Left>", &["frame 1", "frozen"]);
-    then(&mut frozen(), "t", &["tare of the 2 frames up to frame 1"]);
+fn the_history_is_searched_by_seconds_and_by_touches() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.csv");
+    let value = |frame: u32| if frame % 10 < 5 { 0 } else { 9 };
+    let line = |frame| format!("{},{}\n", f64::from(frame) / 4.0, value(frame));
+    let frames: String = (0..40).map(line).collect();
+    std::fs::write(&path, format!("time,r0c0\n{frames}")).expect("written");
+    let mut page = session(&format!(":watch {}<Enter>", path.display()));
+    page.frames(40);
+    then(&mut page, ":at-least<Space>5<Enter>", &["frame 39"]);
+    then(
+        &mut page,
+        "<PageUp>",
+        &["frame 35  8.75 s", "4 frames behind"],
+    );
+    then(&mut page, "<PageUp><PageDown><PageDown>", &["frame 39"]);
+    then(&mut page, "[[[", &["frame 15  3.75 s"]);
+    then(&mut page, "]", &["frame 25"]);
+    then(&mut page, "[[[", &["! no earlier touch", "frame 5"]);
 }
 
 #[test]
@@ -666,47 +523,17 @@ fn watch_accepts_the_flags_of_the_command_line() {
 }
 
 #[test]
-fn a_name_that_noise_does_not_explain_is_doubted() {
-    // The ring is none of the figures; the number of differing taxels is what a noise of one in five explains.
-    for (flip, how_sure) in [(0.001, " %, perhaps none"), (0.2, " %, likely")] {
-        let mut page = set(|request| {
-            request.noise = Some(Noise::new(flip).expect("in range"));
-            ruled(request, Rule::at_least(60.0).expect("in range"));
-        });
-        page.frames(5);
-        then(&mut page, "n", &[]);
-        page.frames(1);
-        shows(&page, &[how_sure, &format!("noise {flip}")]);
-    }
-}
-
-#[test]
 fn a_reopened_page_uses_the_model_that_it_shows() {
-    let mut page = watched(6, "n+++++++");
+    let mut page = watched(6, "o+++++++");
     shows(&page, &["shape      unknown", "model      figures"]);
-    then(&mut page, "<Esc>w", &["model      figures"]);
+    then(&mut page, "<Esc>ww", &["model      figures"]);
     page.frames(5);
     shows(&page, &["frame 4", "shape      ", "nearest    "]);
     hides(&page, &["…", "training or"]);
     // The page does not name shapes with a model that was given up, either.
-    then(&mut page, "nnn<Esc>w", &[]);
+    then(&mut page, "ooo<Esc>ww", &[]);
     page.frames(6);
     hides(&page, &["nearest"]);
-}
-
-#[test]
-fn marks_and_the_age_of_the_tare_end_with_their_source() {
-    let mut page = watched(3, "mt");
-    page.frames(3);
-    shows(
-        &page,
-        &["marked     frame 2", "tare       3 frames, 0.3 s ago"],
-    );
-    // Frames are counted from 0 again.
-    then(&mut page, "<Esc>w", &["tare       3 frames"]);
-    page.frames(6);
-    shows(&page, &["frame 5", "tare       3 frames"]);
-    hides(&page, &["marked", "ago"]);
 }
 
 #[test]
@@ -747,46 +574,18 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
         title.split("rows ").nth(1).map(str::to_owned)
     };
     let all = ["20-59", "0-39"].map(|rows| Some(rows.to_owned()));
-    then(
-        &mut page,
-        "<S-Down><S-Down>",
-        &["no more taxels in this direction"],
-    );
+    let no_more = "no more taxels in this direction";
+    then(&mut page, "<S-Down><S-Down>", &[no_more]);
     assert_eq!(rows(&page), all[0]);
     shows(&page, &["Shift-arrows other taxels"]);
-    let held = "these taxels stay in sight; c shows the contact again";
-    then(&mut page, "c<S-Up>", &[held]);
+    then(&mut page, "c<S-Up>", &[]);
     assert_eq!(rows(&page), all[1]);
-    then(
-        &mut page,
-        "<S-Right>",
-        &["no more taxels in this direction"],
-    );
+    then(&mut page, "<S-Right>", &[no_more]);
     then(&mut page, "#", &["\n 5 ", "\n23 "]);
     then(&mut page, "<S-Down>", &["\n14 ", "\n32 "]);
     then(&mut page, "c", &["the view follows the contact", "\n30 "]);
-    then(
-        &mut page,
-        "i<S-Up>",
-        &["the taxels are hidden; i shows them"],
-    );
-    then(&mut page, "i#", &[]);
-    page.resize(40, 12);
-    shows(&page, &["tall.npy  frame 0  at 0-19, 20-35"]);
     // If all taxels are visible, there are no others to scroll to.
     hides(&watched(1, ""), &["other taxels"]);
-    shows(&watched(1, "<S-Down>"), &["all taxels are visible"]);
-}
-
-#[test]
-fn the_marks_on_taxels_are_explained() {
-    shows(&watched(6, "+"), &["legend     • imprint edge"]);
-    shows(&watched(6, "+#"), &["legend     • active taxel"]);
-    hides(&watched(6, "+v"), &["legend"]);
-    hides(&watched(6, ""), &["legend"]);
-    let mut low = watched(6, "+");
-    low.resize(80, 16);
-    shows(&low, &["legend     • near imprint"]);
 }
 
 #[test]

@@ -279,7 +279,7 @@ fn worked(app: &mut App, event: WorkerEvent) -> Option<Effect> {
             }
         }
         WorkerEvent::Recognition(event) => return recognise::update::on_worker(app, event),
-        WorkerEvent::Live(number, event) => return live::update::on_worker(app, number, &event),
+        WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
     }
     None

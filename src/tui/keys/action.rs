@@ -269,6 +269,10 @@ actions! {
         THRESHOLD_DOWN "threshold-down" [] Message::Live(LiveMessage::Threshold(-1));
         PERCENT "percent" [] Message::Live(LiveMessage::Percent);
         FREEZE "freeze" [] Message::Live(LiveMessage::Freeze);
+        SECOND_BACK "second-back" [] Message::Live(LiveMessage::Second(-1));
+        SECOND_ON "second-on" [] Message::Live(LiveMessage::Second(1));
+        PREVIOUS_TOUCH "previous-touch" [] Message::Live(LiveMessage::Touch(-1));
+        NEXT_TOUCH "next-touch" [] Message::Live(LiveMessage::Touch(1));
         PEAK_HOLD "peak-hold" [] Message::Live(LiveMessage::PeakHold);
         NEXT_LAYER "next-layer" [] Message::Live(LiveMessage::NextLayer);
         PLOT "plot" [] Message::Live(LiveMessage::Plot);

@@ -317,12 +317,13 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char(' ') => FREEZE] "freeze" "freeze this frame, or follow the source again";
         [LEFT => SCROLL_UP, RIGHT => SCROLL_DOWN, UP => SCROLL_UP, DOWN => SCROLL_DOWN]
             "scrub" "to an earlier, a later frame";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten frames back, forward";
+        [PageUp => SECOND_BACK, PageDown => SECOND_ON] "" "a second back, forward";
+        [Char('[') => PREVIOUS_TOUCH, Char(']') => NEXT_TOUCH] "" "to where the previous, the next touch begins";
         [Home => FIRST, End => LAST] "" "the oldest frame; follow the source";
         [ShiftArrow(Left) => WINDOW_LEFT, ShiftArrow(Right) => WINDOW_RIGHT,
             ShiftArrow(Up) => WINDOW_UP, ShiftArrow(Down) => WINDOW_DOWN]
             "other taxels" "see other taxels, if not all fit on the screen";
-        [Char('c') => FOLLOW_CONTACT] "" "scroll back to the contact";
+        [Char('c') => FOLLOW_CONTACT] "" "keep the contact in sight again";
         [Char('p') => PEAK_HOLD] "hold" "hold the largest value of each cell, or release it";
         [Char('v') => NEXT_LAYER] "view" "raw values, tared values, the imprint";
         [Char('f') => PLOT] "" "plot contact over time, or force";
@@ -332,12 +333,12 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
         [Char('w') => WATCH_AGAIN] "again" "play again; reopen a stream that has ended";
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
-        [Char('n') => NAME_SHAPE] "name" "name the shape by the next model, or by none";
+        [Char('o') => NAME_SHAPE] "name" "name the shape by the next model, or by none";
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
         [Char(':') => COMMAND] "" "type a command, such as at-least 10 for the threshold";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
-            "close" "stop watching; w on the matrix comes back";
+            "close" "back to the source from a frozen frame, then stop watching; w on the matrix comes back";
     }
 
     /// Esc only leaves the search first, so that it does not close too much; the other keys close help at once.

@@ -40,8 +40,8 @@ impl<'a> HeatMap<'a> {
             theme,
             reading,
             layer: live.layer,
-            range: live.range(),
-            grid: HeatGrid::of(area, size, live.display.numbers, looked_at(live, reading)),
+            range: live.ends(),
+            grid: HeatGrid::of(area, size, live.numbers, looked_at(live, reading)),
         }
     }
 
@@ -63,20 +63,16 @@ impl<'a> HeatMap<'a> {
         any.then(|| format!("{} {marked}", shades::edge(self.theme)))
     }
 
-    /// Returns the visible columns and rows, counted from 0, as a long and a short text; None if all are visible.
-    pub(super) fn window(&self) -> Option<[String; 2]> {
+    /// Returns the visible columns and rows, counted from 0; None if all are visible.
+    pub(super) fn window(&self) -> Option<String> {
         let span = |axis: Window| {
             let last = axis.first + axis.count.saturating_sub(1);
             format!("{}-{last}", axis.first)
         };
         let (columns, rows) = (self.grid.columns, self.grid.rows);
-        let text = || {
-            let (columns, rows) = (span(columns), span(rows));
-            let long = format!("columns {columns}, rows {rows}");
-            [long, format!("at {columns}, {rows}")]
-        };
         let is_whole = columns.is_whole() && rows.is_whole();
-        (!is_whole && columns.count > 0 && rows.count > 0).then(text)
+        (!is_whole && columns.count > 0 && rows.count > 0)
+            .then(|| format!("columns {}, rows {}", span(columns), span(rows)))
     }
 
     pub(super) fn draw(&self, buffer: &mut Buffer, area: Rect) {
@@ -284,7 +280,7 @@ impl<'a> HeatMap<'a> {
 
 /// Returns the taxel that must be visible.
 fn looked_at(live: &Live, reading: &LiveReading) -> (u8, u8) {
-    live.display.looked_at.unwrap_or_else(|| near(reading))
+    live.looked_at.unwrap_or_else(|| near(reading))
 }
 
 /// Returns a taxel near the contact: the middle of the main region, or the largest value.

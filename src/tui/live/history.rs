@@ -1,46 +1,39 @@
-//! The most recent frames, as many as fit into a given amount of memory.
+//! The most recent frames, as many as fit into a given amount of memory, and the one of them that is shown.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use taxel_core::frame::{Frame, Label};
+use taxel_core::frame::Frame;
 use taxel_files::acquire::FrameRate;
-use taxel_files::formats::recording::FrameMark;
-
-use crate::tui::live::message::ProvisionalChange;
-use crate::tui::live::reading::hold;
-use crate::tui::live::update::LiveRefusal;
 
 /// The maximum number of bursts that the rate is computed from: two seconds of a fast source.
 const RATED: usize = 20;
 
 /// Returns the memory that a frame takes, in bytes.
-pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
+pub fn bytes_of(frame: &Frame) -> usize {
     size_of::<Frame>() + size_of_val(frame.values())
 }
 
-/// Returns true if two frames are the same one: a confirmed frame has the values that it had before it was confirmed.
-pub(super) fn is_same(one: &Frame, other: &Frame) -> bool {
-    let values = one.values().iter().zip(other.values());
-    (one.number, one.size()) == (other.number, other.size())
-        && values
-            .into_iter()
-            .all(|(one, other)| one.to_bits() == other.to_bits())
-}
-
+/// Frames are numbered from 0 as they come; a source that is watched again counts its own frames from 0 again.
 #[derive(Clone, Debug)]
 pub struct FrameHistory {
     frames: VecDeque<Arc<Frame>>,
+    /// The number of the oldest frame that is still here.
     first: u64,
-    /// The memory that the frames take, in bytes.
     bytes: usize,
-    /// The memory that they may take, in bytes; the newest frame is kept even if it takes more.
+    /// The memory that the frames may take, in bytes; the newest one is kept even if it takes more.
     most: usize,
     rate: FrameRate,
+    /// The next frame, which the source may still withdraw.
+    next: Option<Arc<Frame>>,
+    /// The frame that the page stays at, as it was when it was frozen; None if the page follows the source.
+    frozen: Option<(u64, Arc<Frame>)>,
+    /// The largest value of each cell since peak hold was switched on; None if it is off.
+    peak: Option<Arc<Frame>>,
 }
 
 impl FrameHistory {
-    /// Creates an empty history that takes at most `most` bytes.
+    /// Creates an empty history that takes at most `most` bytes, and follows the source.
     pub fn new(most: usize) -> Self {
         Self {
             frames: VecDeque::new(),
@@ -48,16 +41,23 @@ impl FrameHistory {
             bytes: 0,
             most,
             rate: FrameRate::over(RATED),
+            next: None,
+            frozen: None,
+            peak: None,
         }
     }
 
-    pub fn push(&mut self, frame: Arc<Frame>) {
+    pub fn push(&mut self, frame: &Arc<Frame>) {
         match frame.time {
             Some(time) => self.rate.add(time),
             None => self.rate = FrameRate::over(RATED),
         }
-        self.bytes += bytes_of(&frame);
-        self.frames.push_back(frame);
+        if let Some(peak) = &mut self.peak {
+            raise(Arc::make_mut(peak), frame);
+        }
+        self.next = None;
+        self.bytes += bytes_of(frame);
+        self.frames.push_back(Arc::clone(frame));
         while self.bytes > self.most && self.frames.len() > 1 {
             if let Some(oldest) = self.frames.pop_front() {
                 self.bytes -= bytes_of(&oldest);
@@ -66,19 +66,14 @@ impl FrameHistory {
         }
     }
 
-    /// Returns the number of the newest frame; None before the first one.
-    pub fn newest(&self) -> Option<u64> {
-        let length = self.frames.len() as u64;
-        (length > 0).then(|| self.first + length - 1)
+    /// Shows a frame before it is sure to be one; None withdraws it.
+    pub fn set_next(&mut self, frame: Option<Arc<Frame>>) {
+        self.next = frame;
     }
 
-    pub fn next_number(&self) -> u64 {
-        self.first + self.frames.len() as u64
-    }
-
-    /// Returns the number of the oldest frame that is still here; None before the first one.
-    pub fn oldest(&self) -> Option<u64> {
-        (!self.frames.is_empty()).then_some(self.first)
+    /// Returns the numbers of the frames that are here.
+    pub fn numbers(&self) -> std::ops::Range<u64> {
+        self.first..self.first + self.frames.len() as u64
     }
 
     /// Returns the frame of a number; None if it is not here any more, or not yet.
@@ -87,9 +82,9 @@ impl FrameHistory {
         self.frames.get(usize::try_from(index).ok()?)
     }
 
-    pub fn back_from(&self, number: u64, count: usize) -> impl Iterator<Item = &Arc<Frame>> {
-        let numbers = (self.first..=number).rev().take(count);
-        numbers.filter_map(|number| self.get(number))
+    /// Returns the newest frames, the newest one first.
+    pub fn newest_first(&self) -> impl Iterator<Item = &Arc<Frame>> {
+        self.frames.iter().rev()
     }
 
     /// Returns the frames per second, by the times of the last frames; None if they have no times, or came all at
@@ -97,292 +92,94 @@ impl FrameHistory {
     pub fn rate(&self) -> Option<f64> {
         self.rate.seconds_per_frame().map(f64::recip)
     }
-}
 
-#[derive(Clone, Debug)]
-pub(super) struct FrameCursor {
-    history: FrameHistory,
-    /// The number in the history of the first frame since the source was watched again; 0 if it was not watched
-    /// again.
-    watched_from: u64,
-    provisional: Option<Arc<Frame>>,
-    /// The frame that the page stays at; None if the page follows the source.
-    frozen: Option<NumberedFrame>,
-    /// The largest value of each cell since peak hold was switched on; None if it is off.
-    held: Option<Arc<Frame>>,
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct NumberedFrame {
-    pub(super) number: u64,
-    pub(super) frame: Arc<Frame>,
-}
-
-/// The outcome of a change of the frame that is not confirmed yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ProvisionalOutcome {
-    Same,
-    /// The shown frame may have changed.
-    Changed,
-    /// The frame before was withdrawn: another frame has its number, or will have it.
-    Withdrawn,
-}
-
-impl FrameCursor {
-    /// Creates an empty history that takes at most `most` bytes, and follows the source.
-    pub(super) fn new(most: usize) -> Self {
-        Self {
-            history: FrameHistory::new(most),
-            watched_from: 0,
-            provisional: None,
-            frozen: None,
-            held: None,
-        }
-    }
-
-    pub(super) fn next_number(&self) -> u64 {
-        self.history.next_number()
-    }
-
-    /// Returns the number of frames in the history.
-    pub(super) fn frames(&self) -> u64 {
-        let next = self.history.next_number();
-        self.history.oldest().map_or(0, |oldest| next - oldest)
-    }
-
-    /// Returns the frames per second; see [`FrameHistory::rate`].
-    pub(super) fn rate(&self) -> Option<f64> {
-        self.history.rate()
-    }
-
-    pub(super) fn follows(&self) -> bool {
+    pub fn follows(&self) -> bool {
         self.frozen.is_none()
     }
 
     /// Returns the number of frames from the shown one to the newest; None if the page follows the source.
-    pub(super) fn frozen(&self) -> Option<u64> {
-        let shown = self.frozen.as_ref()?.number;
-        Some(self.next_number().saturating_sub(shown + 1))
+    pub fn behind(&self) -> Option<u64> {
+        let (shown, _) = self.frozen.as_ref()?;
+        Some(self.numbers().end.saturating_sub(shown + 1))
     }
 
-    pub(super) fn holds_peak(&self) -> bool {
-        self.held.is_some()
+    pub fn holds_peak(&self) -> bool {
+        self.peak.is_some()
     }
 
-    /// Returns the shown frame; None before the first one.
-    pub(super) fn shown(&self) -> Option<NumberedFrame> {
-        if let Some(frozen) = &self.frozen {
-            return Some(frozen.clone());
-        }
-        // A held peak is made of confirmed frames.
-        let next = self.provisional.as_ref().filter(|_| !self.holds_peak());
-        self.at(match next {
-            Some(_) => self.next_number(),
-            None => self.history.newest()?,
-        })
+    /// Returns the shown frame with its number; None before the first one.
+    pub fn shown(&self) -> Option<(u64, Arc<Frame>)> {
+        let numbers = self.numbers();
+        let following = || match &self.next {
+            Some(next) if self.peak.is_none() => Some((numbers.end, Arc::clone(next))),
+            _ => (self.frames.back()).map(|newest| (numbers.end - 1, Arc::clone(newest))),
+        };
+        self.frozen.clone().or_else(following)
     }
 
     /// Returns the frame to draw: the shown one, or the held peak if the page follows the source.
-    pub(super) fn drawn(&self) -> Option<Arc<Frame>> {
-        let held = self.held.as_ref().filter(|_| self.follows());
-        held.cloned().or_else(|| Some(self.shown()?.frame))
+    pub fn drawn(&self) -> Option<Arc<Frame>> {
+        let peak = self.peak.clone().filter(|_| self.follows());
+        peak.or_else(|| self.shown().map(|(_, frame)| frame))
     }
 
-    /// Returns the frame of a number in the history; None if it is not here any more, or not yet.
-    fn at(&self, number: u64) -> Option<NumberedFrame> {
-        let next = self.provisional.as_ref();
-        let next = next.filter(|_| number == self.next_number());
-        let frame = Arc::clone(self.history.get(number).or(next)?);
-        Some(NumberedFrame { number, frame })
-    }
-
-    /// Returns the shown frame if it came since the source was last watched anew.
-    pub(super) fn of_this_watch(&self) -> Result<NumberedFrame, LiveRefusal> {
-        let shown = self.shown().ok_or(LiveRefusal::NoFrame)?;
-        if shown.number < self.watched_from {
-            return Err(LiveRefusal::EarlierWatch(shown.frame.number));
-        }
-        Ok(shown)
-    }
-
-    /// Returns the number in the history of the shown frame, or of the newest one if the shown one is not confirmed
-    /// yet; None before the first one.
-    fn confirmed(&self) -> Option<u64> {
-        let newest = self.history.newest()?;
-        let frozen = self.frozen.as_ref().map(|frozen| frozen.number);
-        Some(frozen.unwrap_or(newest).min(newest))
-    }
-
-    pub(super) fn up_to_shown(&self, count: usize) -> Result<Vec<Arc<Frame>>, LiveRefusal> {
-        let shown = self.confirmed().ok_or(LiveRefusal::NoFrame)?;
-        // Those before a change of the sensor have no part in it.
-        let size = self.history.get(shown).map(|frame| frame.size());
-        let frames = self.history.back_from(shown, count).cloned();
-        let frames: Vec<_> = frames
-            .take_while(|frame| Some(frame.size()) == size)
-            .collect();
-        if frames.is_empty() {
-            return Err(LiveRefusal::LeftHistory);
-        }
-        Ok(frames)
-    }
-
-    pub(super) fn newest(&self, count: usize) -> impl Iterator<Item = &Arc<Frame>> {
-        let newest = self.history.newest();
-        let frames = newest.map(|newest| self.history.back_from(newest, count));
-        frames.into_iter().flatten()
-    }
-
-    pub(super) fn push(&mut self, frame: &Arc<Frame>) {
-        if let Some(held) = &mut self.held {
-            hold(Arc::make_mut(held), frame);
-        }
-        self.history.push(Arc::clone(frame));
-    }
-
-    /// Takes a change of the frame that is not confirmed yet. Its number in the history is `number`, now or once it
-    /// is confirmed.
-    pub(super) fn take_provisional(
-        &mut self,
-        change: &ProvisionalChange,
-        number: u64,
-    ) -> ProvisionalOutcome {
-        let next = match change {
-            ProvisionalChange::Unchanged => return ProvisionalOutcome::Same,
-            ProvisionalChange::Shown(frame) => Some(Arc::clone(frame)),
-            ProvisionalChange::Gone => None,
+    /// Returns up to this number of frames that end with the shown one and have its size, the last one first. None of
+    /// them may still be withdrawn.
+    pub fn up_to_shown(&self, count: usize) -> Vec<Arc<Frame>> {
+        let Some((shown, _)) = self.shown() else {
+            return Vec::new();
         };
-        let before = std::mem::replace(&mut self.provisional, next);
-        let Some(before) = before else {
-            return match self.provisional {
-                Some(_) => ProvisionalOutcome::Changed,
-                None => ProvisionalOutcome::Same,
-            };
-        };
-        // A frame that has left the history cannot be compared any more; its mark stays.
-        if self.history.oldest() > Some(number) {
-            return ProvisionalOutcome::Changed;
-        }
-        let present = self.at(number);
-        let present = present.filter(|present| is_same(&present.frame, &before));
-        let outcome = match present {
-            Some(_) => ProvisionalOutcome::Changed,
-            None => ProvisionalOutcome::Withdrawn,
-        };
-        if self.frozen.as_ref().is_some_and(|own| own.number == number) {
-            // The confirmed frame also has a time.
-            self.frozen = present.or_else(|| self.at(self.confirmed()?));
-        }
-        outcome
+        let from_newest = self.numbers().end.saturating_sub(shown + 1);
+        let skipped = usize::try_from(from_newest).unwrap_or(usize::MAX);
+        let frames: Vec<_> = self.newest_first().skip(skipped).take(count).collect();
+        let same_size = |frame: &&&Arc<Frame>| frame.size() == frames[0].size();
+        frames
+            .iter()
+            .take_while(same_size)
+            .copied()
+            .cloned()
+            .collect()
     }
 
-    pub(super) fn freeze(&mut self) {
-        self.frozen = match self.frozen {
-            Some(_) => None,
-            None => self.shown(),
-        };
+    pub fn freeze(&mut self) {
+        self.frozen = self.shown();
     }
 
-    pub(super) fn scrub(&mut self, by: i64) -> bool {
-        let (Some(oldest), Some(newest)) = (self.history.oldest(), self.history.newest()) else {
-            return false;
-        };
-        let shown = self.shown().map_or(newest, |shown| shown.number);
-        let next = shown.saturating_add_signed(by);
-        self.frozen = self.at(next.clamp(oldest, newest.max(shown)));
-        true
-    }
-
-    pub(super) fn stay_at_oldest(&mut self) {
-        self.frozen = self.history.oldest().and_then(|oldest| self.at(oldest));
-    }
-
-    pub(super) fn follow(&mut self) {
+    pub fn follow(&mut self) {
         self.frozen = None;
     }
 
-    pub(super) fn switch_peak(&mut self) {
-        self.held = match self.held {
+    /// Stays at the frame of this number, or at the nearest one that is here.
+    pub fn stay_at(&mut self, number: u64) {
+        let numbers = self.numbers();
+        let number = number.clamp(numbers.start, numbers.end.saturating_sub(1));
+        self.frozen = self.get(number).map(|frame| (number, Arc::clone(frame)));
+    }
+
+    pub fn switch_peak(&mut self) {
+        self.peak = match self.peak {
             Some(_) => None,
-            // Not of a frame that may be withdrawn.
-            None => self
-                .confirmed()
-                .and_then(|number| self.history.get(number).cloned()),
+            None => self.frames.back().cloned(),
         };
     }
 
-    /// Follows the source from the next frame on. The source counts its frames from 0 again.
-    pub(super) fn restart(&mut self) {
-        self.watched_from = self.next_number();
-        (self.frozen, self.provisional, self.held) = (None, None, None);
+    /// Follows the source from the next frame on.
+    pub fn restart(&mut self) {
+        (self.frozen, self.next, self.peak) = (None, None, None);
     }
 }
 
-#[derive(Clone, Debug, Default)]
-pub(super) struct FrameMarks {
-    own: Vec<(u64, FrameMark)>,
-    pub(in crate::tui) recorded: Vec<FrameMark>,
-    /// Whether the marks set by keys have changed since [`FrameMarks::take_change`] was called last.
-    is_changed: bool,
-}
-
-impl FrameMarks {
-    pub(super) fn own(&self) -> Vec<FrameMark> {
-        self.own_from(0)
+fn raise(peak: &mut Frame, frame: &Frame) {
+    if peak.size() != frame.size() {
+        peak.copy_from(frame);
+        return;
     }
-
-    pub(super) fn own_from(&self, first: u64) -> Vec<FrameMark> {
-        let own = self.own.iter().filter(|(number, _)| *number >= first);
-        own.map(|(_, mark)| *mark).collect()
+    for (own, &other) in peak.values_mut().iter_mut().zip(frame.values()) {
+        *own = own.max(other);
     }
-
-    /// Returns true if the marks set by keys have changed since the last call.
-    pub(super) fn take_change(&mut self) -> bool {
-        std::mem::take(&mut self.is_changed)
-    }
-
-    pub(super) fn recorded(&self) -> &[FrameMark] {
-        &self.recorded
-    }
-
-    pub(super) fn has(&self, number: u64, frame: &Frame) -> bool {
-        let label = frame.label.as_ref().and_then(Label::number);
-        let is_recorded = |label: i64| {
-            self.recorded
-                .iter()
-                .any(|mark| i64::try_from(mark.number) == Ok(label))
-        };
-        self.index(number).is_ok() || label.is_some_and(is_recorded)
-    }
-
-    pub(super) fn switch(&mut self, number: u64, frame: &Frame) -> bool {
-        let mark = FrameMark {
-            number: frame.number,
-            time: frame.time,
-        };
-        self.is_changed = true;
-        let index = self.index(number);
-        match index {
-            Ok(index) => drop(self.own.remove(index)),
-            Err(index) => self.own.insert(index, (number, mark)),
-        }
-        index.is_err()
-    }
-
-    pub(super) fn take_off(&mut self, number: u64) {
-        if let Ok(index) = self.index(number) {
-            self.own.remove(index);
-            self.is_changed = true;
-        }
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.own.clear();
-    }
-
-    fn index(&self, number: u64) -> Result<usize, usize> {
-        self.own.binary_search_by_key(&number, |own| own.0)
-    }
+    peak.number = frame.number;
+    peak.label.clone_from(&frame.label);
+    peak.time = frame.time;
 }
 
 #[cfg(test)]
@@ -395,24 +192,16 @@ mod tests {
     #[test]
     fn the_oldest_frames_are_dropped_when_memory_is_full() {
         let mut history = FrameHistory::new(HISTORY_BYTES);
-        assert_eq!((history.oldest(), history.newest()), (None, None));
-        let each = bytes_of(&Frame::new(
-            FrameSize::new(512, 512).expect("an allowed size"),
-        ));
-        let most = HISTORY_BYTES / each;
-        for number in 0..2 * most as u64 {
-            let mut frame = Frame::new(FrameSize::new(512, 512).expect("an allowed size"));
-            frame.number = number;
-            history.push(Arc::new(frame));
+        assert_eq!(history.numbers(), 0..0);
+        let size = FrameSize::new(512, 512).expect("an allowed size");
+        let most = (HISTORY_BYTES / bytes_of(&Frame::new(size))) as u64;
+        for _ in 0..2 * most {
+            history.push(&Arc::new(Frame::new(size)));
             assert!(history.bytes <= HISTORY_BYTES);
         }
-        let newest = history.newest().expect("some are here");
-        assert_eq!(newest, 2 * most as u64 - 1);
-        assert_eq!(history.oldest(), Some(newest + 1 - most as u64));
-        assert_eq!(history.get(newest).map(|frame| frame.number), Some(newest));
-        assert!(history.get(0).is_none() && history.get(newest + 1).is_none());
-        assert_eq!(history.back_from(newest, 3).count(), 3);
-        assert_eq!(history.back_from(newest, 2 * most).count(), most);
+        assert_eq!(history.numbers(), most..2 * most);
+        assert!(history.get(most - 1).is_none() && history.get(2 * most).is_none());
+        assert_eq!(history.up_to_shown(3).len(), 3);
     }
 
     #[test]
@@ -421,16 +210,13 @@ mod tests {
         let mut push = |time| {
             let mut frame = Frame::new(FrameSize::new(2, 2).expect("an allowed size"));
             frame.time = time;
-            history.push(Arc::new(frame));
+            history.push(&Arc::new(frame));
             history.rate()
         };
         assert_eq!([push(Some(0.0)), push(Some(0.5))], [None, Some(2.0)]);
-        let mut time = 0.5;
-        let faster = std::iter::repeat_with(|| {
-            time += 0.25;
-            push(Some(time))
-        });
-        assert_eq!(faster.take(RATED + 1).last(), Some(Some(4.0)));
+        let times = (1..).map(|step| 0.5 + 0.25 * f64::from(step));
+        let rates = times.map(|time| push(Some(time))).take(RATED + 1);
+        assert_eq!(rates.last(), Some(Some(4.0)));
         assert_eq!(push(None), None, "the newest frame has no time");
     }
 }

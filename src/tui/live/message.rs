@@ -36,6 +36,10 @@ pub enum LiveMessage {
     Size(FrameSize),
     Percent,
     Freeze,
+    /// Go on by this many seconds; negative goes back.
+    Second(i8),
+    /// Go to the begin of the touch this many further on; negative goes back.
+    Touch(i8),
     PeakHold,
     /// Shows the next layer: raw values, tared values or imprint.
     NextLayer,

@@ -8,17 +8,10 @@ use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
-use taxel_files::formats::Name;
 use taxel_files::formats::recording::ChannelInfo;
 
-use crate::tui::app::change::{begin, inform, refuse};
 use crate::tui::app::document::Document;
-use crate::tui::app::history::DocumentOrigin;
-use crate::tui::app::state::App;
-use crate::tui::keys::action;
-use crate::tui::keys::keymap::Context;
 use crate::tui::live::state::Live;
-use crate::tui::live::update::LiveRefusal;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeatLayer {
@@ -28,16 +21,14 @@ pub enum HeatLayer {
 }
 
 impl HeatLayer {
-    pub(super) fn next(self) -> Self {
+    pub fn next(self) -> Self {
         match self {
             Self::Raw => Self::Tared,
             Self::Tared => Self::Imprint,
             Self::Imprint => Self::Raw,
         }
     }
-}
 
-impl HeatLayer {
     pub fn name(self) -> &'static str {
         match self {
             Self::Raw => "raw",
@@ -73,7 +64,7 @@ pub struct LiveReading {
 }
 
 impl LiveReading {
-    pub(super) fn of(
+    pub fn of(
         frame: Arc<Frame>,
         processing: &mut Processing,
         layer: HeatLayer,
@@ -119,7 +110,7 @@ fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
     largest
 }
 
-pub(super) fn hold(held: &mut Frame, frame: &Frame) {
+pub fn hold(held: &mut Frame, frame: &Frame) {
     if held.size() == frame.size() {
         for (own, &other) in held.values_mut().iter_mut().zip(frame.values()) {
             *own = own.max(other);
@@ -132,7 +123,7 @@ pub(super) fn hold(held: &mut Frame, frame: &Frame) {
     }
 }
 
-pub(super) fn round_up(value: f64) -> f64 {
+pub fn round_up(value: f64) -> f64 {
     if value < f64::MIN_POSITIVE || !value.is_finite() {
         return 1.0;
     }
@@ -145,17 +136,17 @@ pub(super) fn round_up(value: f64) -> f64 {
 }
 
 /// Rounds to nine digits, so that steps do not drift.
-pub(super) fn nine_digits(value: f64) -> f64 {
+pub fn nine_digits(value: f64) -> f64 {
     let text = format!("{value:.8e}");
     text.parse::<f64>().map_or(value, |value| value + 0.0)
 }
 
 /// The span of the values so far, which the fixed range covers.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ShadeRange {
+pub struct ShadeRange {
     raw: Span,
     tared: Span,
-    pub(super) is_own: bool,
+    pub is_own: bool,
 }
 
 /// The span of some values; it only grows.
@@ -187,38 +178,44 @@ impl Span {
 }
 
 impl ShadeRange {
-    pub(super) fn add(&mut self, [raw, tared]: [&Matrix<f64>; 2]) {
+    pub fn add(&mut self, [raw, tared]: [&Matrix<f64>; 2]) {
         self.raw.add(raw);
         self.tared.add(tared);
     }
 
     /// Forgets the values so far, since another tare is subtracted now.
-    pub(super) fn begin_anew(&mut self) {
+    pub fn begin_anew(&mut self) {
         (self.raw, self.tared) = (Span::default(), Span::default());
     }
 
     /// Returns the largest value so far after tare and gain, rounded up to a round number. Thresholds depend on these
     /// values.
-    pub(super) fn tared_top(&self) -> f64 {
+    pub fn tared_top(&self) -> f64 {
         self.tared.top()
     }
 
-    pub(super) fn ends(&self, layer: HeatLayer, reading: Option<&LiveReading>) -> (f64, f64) {
-        let largest = reading
-            .and_then(|reading| reading.shown_max)
-            .map(|(largest, _)| largest);
+    /// Returns the values at both ends of the shades. After a tare, 0 is the lower end, so that a pad at rest is drawn
+    /// empty, whatever noise the tare has left.
+    pub fn ends(&self, layer: HeatLayer, reading: Option<&LiveReading>, tared: bool) -> (f64, f64) {
+        let largest = reading.and_then(|reading| reading.shown_max);
+        let largest = largest.map(|(largest, _)| largest);
         let least = reading.map_or(0.0, |reading| reading.least);
         let span = match layer {
             HeatLayer::Raw => self.raw,
             HeatLayer::Tared | HeatLayer::Imprint => self.tared,
         };
-        match largest {
+        let (low, high) = match largest {
             Some(largest) if self.is_own && (largest > 0.0 || least < 0.0) => {
                 (least.min(0.0), largest.max(0.0))
             }
-            // Values a little below 0 are noise that the tare has left.
+            // Values a little below 0 are noise.
             _ if span.bottom < -span.top() / 20.0 => (-round_up(-span.bottom), span.top()),
             _ => (0.0, span.top()),
+        };
+        if tared && layer != HeatLayer::Raw && high > 0.0 {
+            (0.0, high)
+        } else {
+            (low, high)
         }
     }
 }
@@ -226,56 +223,13 @@ impl ShadeRange {
 /// Returns the shown imprint as a drawn one; None without one. The sensor has the size of the frame, and its pitch in
 /// mm if that is known and cells are square; otherwise the default pitch is kept, with which lengths are shown in
 /// taxels only.
-pub(super) fn document(page: &Live) -> Option<Document> {
-    let imprint = page.reading()?.imprint?;
+pub fn document(page: &Live) -> Option<Document> {
+    let imprint = page.reading.as_ref()?.imprint?;
     let sensor = Sensor::of_size(imprint.size());
-    let channel = page.status().channel.as_deref();
+    let channel = page.status.channel.as_deref();
     let pitch = channel.and_then(ChannelInfo::square_pitch_mm);
     let scaled = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
     Some(Document::drawn(scaled.unwrap_or(sensor), imprint))
-}
-
-/// Puts the imprint onto the matrix; the source keeps running. The imprint counts as unsaved, because no source sends
-/// the same frame again. If the recording gives the size of its cells but lengths are not in mm, the notice says why.
-pub(super) fn take(app: &mut App, page: Box<Live>, document: Document) {
-    let number = page.reading().map(|reading| reading.frame.number);
-    let channel = page.status().channel.as_deref();
-    let without_mm = channel.and_then(ChannelInfo::why_not_in_mm);
-    let source = page.request().name();
-    app.live = Some(page);
-    let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
-    let brought_by = format!("imprint of {frame}, {source}");
-    // Not every source has a name that a shape may have.
-    let stem = source.rsplit_once('.').map_or(&*source, |(stem, _)| stem);
-    let named = Name::new(&format!("{frame} of {stem}"));
-    let proposed = named.map_or_else(|_| frame.clone(), |name| name.to_string());
-    let origin = DocumentOrigin::unsaved(&document)
-        .called(brought_by)
-        .proposing(proposed);
-    begin(app, origin, document);
-    let back = app.key_of(&action::WATCH);
-    let mut text = format!("the imprint of {frame}; {back} goes back to the source");
-    if let Some(reason) = without_mm {
-        text += &format!("; {reason}");
-    }
-    inform(app, text);
-}
-
-pub(super) fn refuse_imprint(app: &mut App, page: &Live) {
-    let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
-    let text = match page.no_imprint() {
-        refusal @ LiveRefusal::NoThreshold => format!("{refusal}; {key} sets one"),
-        refusal => refusal.to_string(),
-    };
-    refuse(app, text);
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-pub struct LiveDisplay {
-    pub numbers: bool,
-    /// The taxel that stays in sight if not all taxels are visible; None keeps the contact in sight.
-    pub looked_at: Option<(u8, u8)>,
-    pub only_panel: bool,
 }
 
 #[cfg(test)]
@@ -304,9 +258,9 @@ mod tests {
         assert_eq!([top(0.0), top(-3.0), top(f64::NAN)], [1.0, 1.0, 1.0]);
         assert_eq!([top(0.004), top(0.001)], [0.005, 0.005]);
         assert_eq!([top(30.0), top(2.0)], [50.0, 50.0]);
-        let ends = [HeatLayer::Raw, HeatLayer::Tared].map(|layer| range.ends(layer, None));
+        let ends = [HeatLayer::Raw, HeatLayer::Tared].map(|layer| range.ends(layer, None, false));
         assert_eq!(ends, [(-50.0, 500.0), (-5.0, 50.0)]);
         range.begin_anew();
-        assert_eq!(range.ends(HeatLayer::Raw, None), (0.0, 1.0));
+        assert_eq!(range.ends(HeatLayer::Raw, None, false), (0.0, 1.0));
     }
 }

@@ -6,115 +6,98 @@ use taxel_core::frame::{Frame, FrameError, Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
 use taxel_core::recognition::Noise;
 use taxel_files::acquire::FrameSource;
-use taxel_files::formats::recording::{ChannelInfo, FrameMark, RecordedView};
+use taxel_files::formats::recording::{FrameMark, RecordedView};
 use taxel_files::storage::ModelChoice;
 
 use crate::frames::{Pipeline, Taring};
-use crate::tui::live::history::{FrameCursor, FrameMarks, ProvisionalOutcome};
+use crate::tui::live::history::FrameHistory;
 use crate::tui::live::message::{
-    FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, SourceGaps, SourceState,
-    WatchRequest,
+    FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, ProvisionalChange, SourceGaps,
+    SourceState, WatchRequest,
 };
-use crate::tui::live::reading::{HeatLayer, LiveDisplay, LiveReading, ShadeRange};
+use crate::tui::live::reading::{HeatLayer, LiveReading, ShadeRange};
 use crate::tui::live::threshold;
 use crate::tui::live::trend::{Plotted, Trend};
-use crate::tui::live::update::LiveRefusal;
-use crate::tui::widget::write::other;
 
+/// The most frames that a tare by key is made of.
 const TARED: usize = 30;
 
-/// The maximum number of frames that range and plot are computed from after a change of the tare or, for the plot, of the
-/// threshold. It is limited because a key waits for
-/// it.
+/// The most frames that range and plot are computed from again after a change of the tare or the threshold, because a
+/// key waits for it.
 const RANGED: usize = 1000;
 
 #[derive(Clone, Debug)]
 pub struct Live {
-    request: Arc<WatchRequest>,
-    number: u64,
+    pub request: Arc<WatchRequest>,
+    /// The number of the work that watches the source; late reports of earlier work are dropped by it.
+    pub number: u64,
     /// How a frame is processed before it is shown.
-    pub(in crate::tui) pipeline: Pipeline,
-    tare_error: Option<FrameError>,
-    converted: Option<(Rule, Rule)>,
-    /// Whether the threshold or the tare has changed since they were last written into a recording.
-    is_viewed_anew: bool,
-    pub(super) cursor: FrameCursor,
-    status: FeedStatus,
+    pub pipeline: Pipeline,
+    pub history: FrameHistory,
+    pub status: FeedStatus,
     seen_gaps: SourceGaps,
     seen_notes: u64,
-    stopped: bool,
-    pub(super) layer: HeatLayer,
-    pub display: LiveDisplay,
-    range: ShadeRange,
+    /// Whether the page was left, and its source with it.
+    pub stopped: bool,
+    pub layer: HeatLayer,
+    pub numbers: bool,
+    pub only_panel: bool,
+    /// The taxel that stays in sight if not all taxels are visible; None keeps the contact in sight.
+    pub looked_at: Option<(u8, u8)>,
+    pub range: ShadeRange,
     /// The number of frames that were never drawn, because others came before the screen was drawn again.
     not_drawn: u64,
-    pub(in crate::tui) recording: RecordingState,
-    pub(super) marks: FrameMarks,
-    pub(super) trend: Trend,
-    pub(super) plotted: Plotted,
+    pub recording: RecordingState,
+    /// The frames marked by key, in order: the number in the history, and what identifies the frame in its source.
+    marks: Vec<(u64, FrameMark)>,
+    pub trend: Trend,
+    pub plotted: Plotted,
     pub names: ShapeNames,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
-    reading: Option<LiveReading>,
+    pub reading: Option<LiveReading>,
     /// Why the shown frame cannot be processed, or why it has no imprint.
     error: Option<FrameError>,
+    /// Why a requested tare is missing.
+    tare_error: Option<FrameError>,
+    /// Whether threshold, tare or marks have changed since they were last written into a recording.
+    is_view_changed: bool,
 }
 
 impl Live {
     pub fn new(request: Arc<WatchRequest>, number: u64) -> Self {
         Self {
             pipeline: request.pipeline.clone(),
-            tare_error: None,
-            converted: None,
-            is_viewed_anew: false,
-            cursor: FrameCursor::new(request.history_bytes),
+            history: FrameHistory::new(request.history_bytes),
             status: FeedStatus::default(),
             seen_gaps: SourceGaps::default(),
             seen_notes: 0,
             stopped: false,
             layer: HeatLayer::Tared,
-            display: LiveDisplay::default(),
+            numbers: false,
+            only_panel: false,
+            looked_at: None,
             range: ShadeRange::default(),
             not_drawn: 0,
             recording: RecordingState::default(),
-            marks: FrameMarks::default(),
+            marks: Vec::new(),
             trend: Trend::default(),
             plotted: Plotted::default(),
             names: ShapeNames::new(&request, number),
             reading: None,
             error: None,
+            tare_error: None,
+            is_view_changed: false,
             request,
             number,
         }
     }
 
-    pub fn request(&self) -> &Arc<WatchRequest> {
-        &self.request
-    }
-
-    pub fn number(&self) -> u64 {
-        self.number
-    }
-
-    pub fn status(&self) -> &FeedStatus {
-        &self.status
-    }
-
-    pub fn stopped(&self) -> bool {
-        self.stopped
-    }
-
-    /// Returns the shown frame; None before the first one.
+    /// Returns the frame that the numbers are of; None before the first one.
     pub fn frame(&self) -> Option<Arc<Frame>> {
-        let processed = self.reading.as_ref().map(|reading| &reading.frame);
-        processed
-            .cloned()
-            .or_else(|| Some(self.cursor.shown()?.frame))
-    }
-
-    /// Returns the processed frame that is shown; None before the first one, and for a frame that cannot be
-    /// processed.
-    pub fn reading(&self) -> Option<&LiveReading> {
-        self.reading.as_ref()
+        match &self.reading {
+            Some(reading) => Some(Arc::clone(&reading.frame)),
+            None => self.history.shown().map(|(_, frame)| frame),
+        }
     }
 
     /// Returns why a requested tare is missing; otherwise why the shown frame cannot be processed, or why it has no
@@ -123,16 +106,20 @@ impl Live {
         self.tare_error.as_ref().or(self.error.as_ref())
     }
 
-    pub fn no_imprint(&self) -> LiveRefusal {
+    /// Returns why there is no imprint.
+    pub fn no_imprint(&self) -> String {
         match (&self.error, self.pipeline.progress()) {
             _ if self.reading.is_some() && self.pipeline.processing.rule.is_none() => {
-                LiveRefusal::NoThreshold
+                "no threshold, so no imprint".to_owned()
             }
-            (Some(error), _) => LiveRefusal::NoImprint(error.clone()),
-            (None, Some((taken, wanted))) if self.reading.is_some() => {
-                LiveRefusal::TareIsMade { taken, wanted }
+            (Some(error), _) => format!("no imprint: {error}"),
+            (None, Some(progress)) if self.reading.is_some() => {
+                format!(
+                    "no imprint before the tare: {}",
+                    threshold::progress_text(progress)
+                )
             }
-            (None, _) => LiveRefusal::NoFrame,
+            (None, _) => NO_FRAME.to_owned(),
         }
     }
 
@@ -142,10 +129,6 @@ impl Live {
 
     pub fn not_drawn(&self) -> u64 {
         self.not_drawn + self.status.overflowed
-    }
-
-    pub fn recording(&self) -> &RecordingState {
-        &self.recording
     }
 
     /// Notes that the user has seen the gaps and the note so far.
@@ -162,48 +145,70 @@ impl Live {
     /// Returns why a requested recording is missing or leaves out frames, why no frames come, and which gaps the user
     /// has not seen yet; None if all is well.
     pub fn trouble(&self) -> Option<String> {
-        let source = match &self.status.state {
-            SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) => {
-                Some(why.as_str())
-            }
-            SourceState::Waiting | SourceState::Live | SourceState::Ended => None,
-        };
-        let gaps = self.status.gaps.since(self.seen_gaps).sentence();
-        let recorded = self.recording.name().and(self.status.recorded);
-        let left_out = recorded.filter(|recorded| recorded.left_out > 0);
-        let left_out = left_out.map(|_| "frames of another size are not recorded");
-        let recording = self.recording.refusal().or(left_out);
-        let troubles = recording.into_iter().chain(source);
-        let troubles: Vec<&str> = troubles.chain(gaps.as_deref()).collect();
+        let mut troubles: Vec<String> = self.recording.refusal.iter().cloned().collect();
+        if self.recording.name.is_some() && self.status.recorded.is_some_and(|own| own.left_out > 0)
+        {
+            troubles.push("frames of another size are not recorded".to_owned());
+        }
+        if let SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) =
+            &self.status.state
+        {
+            troubles.push(why.clone());
+        }
+        troubles.extend(self.status.gaps.since(self.seen_gaps).sentence());
         (!troubles.is_empty()).then(|| troubles.join("; "))
     }
 
-    /// Returns the frames that were marked since the source was last watched anew, in the order in which they came.
-    pub fn marks(&self) -> Vec<FrameMark> {
-        self.marks.own()
+    pub fn marks(&self) -> impl DoubleEndedIterator<Item = &FrameMark> {
+        self.marks.iter().map(|(_, mark)| mark)
+    }
+
+    /// Returns the labels of the frames that were marked while this recording was made.
+    pub fn recorded_marks(&self) -> &[FrameMark] {
+        (self.status.channel.as_deref()).map_or(&[], |channel| &channel.marks)
     }
 
     /// Returns threshold, tare and the marks of recorded frames, if frames are recorded and any of these has changed.
     /// They count as written afterwards.
     pub fn take_changed_view(&mut self) -> Option<RecordedView> {
-        self.recording.name()?;
-        let is_changed = std::mem::take(&mut self.is_viewed_anew) | self.marks.take_change();
-        is_changed.then(|| RecordedView {
+        self.recording.name.as_ref()?;
+        let own = |(number, _): &&(u64, FrameMark)| *number >= self.recording.from;
+        std::mem::take(&mut self.is_view_changed).then(|| RecordedView {
             rule: self.rule(),
             tare: self.pipeline.processing.tare.clone(),
-            marks: self.marks.own_from(self.recording.from()),
+            marks: self
+                .marks
+                .iter()
+                .filter(own)
+                .map(|(_, mark)| *mark)
+                .collect(),
         })
     }
 
     pub fn is_marked(&self) -> bool {
-        let shown = self.cursor.shown();
-        shown.is_some_and(|shown| self.marks.has(shown.number, &shown.frame))
+        self.history.shown().is_some_and(|(number, frame)| {
+            let label = frame.label.as_ref().and_then(|label| label.number());
+            let mut recorded = self.recorded_marks().iter();
+            self.marks.iter().any(|(own, _)| *own == number)
+                || recorded.any(|mark| label.is_some() && i64::try_from(mark.number).ok() == label)
+        })
     }
 
-    pub fn mark(&mut self) -> Result<(u64, bool), LiveRefusal> {
-        let shown = self.cursor.of_this_watch()?;
-        let marked = self.marks.switch(shown.number, &shown.frame);
-        Ok((shown.frame.number, marked))
+    /// Marks the shown frame, or takes its mark off. Returns the number of the frame, and whether it is marked now;
+    /// None before the first frame.
+    pub fn mark(&mut self) -> Option<(u64, bool)> {
+        let (number, frame) = self.history.shown()?;
+        self.is_view_changed = true;
+        let index = self.marks.binary_search_by_key(&number, |own| own.0);
+        match index {
+            Ok(index) => drop(self.marks.remove(index)),
+            Err(index) => {
+                let (own, time) = (frame.number, frame.time);
+                self.marks
+                    .insert(index, (number, FrameMark { number: own, time }));
+            }
+        }
+        Some((frame.number, index.is_err()))
     }
 
     /// Returns the imprint to name now, and notes that it was asked for. Returns None if an answer is still expected
@@ -220,8 +225,10 @@ impl Live {
         unit.map_or(String::new(), |unit| format!(" {unit}"))
     }
 
-    pub fn range(&self) -> (f64, f64) {
-        self.range.ends(self.layer, self.reading.as_ref())
+    /// Returns the values at both ends of the shades.
+    pub fn ends(&self) -> (f64, f64) {
+        let is_tared = self.pipeline.origin().is_some();
+        self.range.ends(self.layer, self.reading.as_ref(), is_tared)
     }
 
     /// Returns the frames per second, computed from the times of the last frames or, if they have no times, as stated
@@ -233,19 +240,9 @@ impl Live {
         ) {
             return None;
         }
-        let stated = || {
-            let step = self.status.channel.as_deref()?.seconds_per_frame?;
-            (step > 0.0).then(|| 1.0 / step)
-        };
-        self.cursor.rate().or_else(stated)
-    }
-
-    pub(super) fn follow_recording(&mut self, status: &FeedStatus) -> Option<String> {
-        let before = self.recording.name()?.to_owned();
-        let name = status.recorded_in.clone().filter(|name| *name != before)?;
-        let sentence = format!("recording in {name}, because {before} exists by now");
-        self.recording.set(Some(name));
-        Some(sentence)
+        let step = (self.status.channel.as_deref()).and_then(|channel| channel.seconds_per_frame);
+        let stated = step.filter(|step| *step > 0.0).map(f64::recip);
+        self.history.rate().or(stated)
     }
 
     pub fn take(&mut self, batch: &FrameBatch) {
@@ -255,53 +252,36 @@ impl Live {
             self.fail_recording(error);
         }
         if !had_channel && let Some(channel) = self.status.channel.clone() {
-            self.take_channel(&channel);
+            self.repipe(|pipeline| pipeline.begin(&channel));
         }
-        let next_number = self.cursor.next_number();
         for frame in &batch.frames {
-            self.add(frame);
+            self.measure(frame);
+            self.history.push(frame);
+            let numbers = self.history.numbers();
+            self.trend.keep(numbers.end - numbers.start);
+            self.tare_error = match self.repipe(|pipeline| pipeline.add_to_tare(frame)) {
+                Ok(Taring::LeftOut(error)) | Err(error) => Some(error),
+                Ok(Taring::Done) => self.tare_error.take(),
+                Ok(_) => None,
+            };
         }
-        let tare_fails = self.status.state.is_final() && self.end_tare();
-        if self.cursor.follows() {
-            let unseen = batch.frames.len().saturating_sub(1);
-            self.not_drawn += unseen as u64;
+        if self.history.follows() {
+            self.not_drawn += batch.frames.len().saturating_sub(1) as u64;
         }
-        let outcome = self
-            .cursor
-            .take_provisional(&batch.provisional, next_number);
-        if outcome == ProvisionalOutcome::Withdrawn {
-            self.marks.take_off(next_number);
+        match &batch.provisional {
+            ProvisionalChange::Unchanged => {}
+            ProvisionalChange::Shown(frame) => self.history.set_next(Some(Arc::clone(frame))),
+            ProvisionalChange::Gone => self.history.set_next(None),
         }
-        if !batch.frames.is_empty() || outcome != ProvisionalOutcome::Same || tare_fails {
-            self.read();
+        if self.status.state.is_final() {
+            self.tare_error = self.pipeline.end().or(self.tare_error.take());
         }
-    }
-
-    fn take_channel(&mut self, channel: &ChannelInfo) {
-        self.marks.recorded.clone_from(&channel.marks);
-        self.repipe(|pipeline| pipeline.begin(channel));
-    }
-
-    fn end_tare(&mut self) -> bool {
-        let was = self.pipeline.progress().is_some();
-        self.tare_error = self.pipeline.end().or(self.tare_error.take());
-        was
-    }
-
-    fn add(&mut self, frame: &Arc<Frame>) {
-        self.measure(frame);
-        self.cursor.push(frame);
-        self.trend.keep(self.cursor.frames());
-        self.tare_error = match self.repipe(|pipeline| pipeline.add_to_tare(frame)) {
-            Ok(Taring::LeftOut(error)) | Err(error) => Some(error),
-            Ok(Taring::Done) => self.tare_error.take(),
-            Ok(_) => None,
-        };
+        self.read();
     }
 
     /// Adds the values of a frame to the range, and its force and contact to the plot.
     fn measure(&mut self, frame: &Frame) {
-        if let Ok(processed) = self.pipeline.processing.run(frame) {
+        if let Ok(processed) = self.pipeline.run(frame) {
             self.range.add([processed.raw, processed.tared]);
             self.trend.push(Some(&processed));
             return;
@@ -315,8 +295,9 @@ impl Live {
 
     /// Measures the last frames again, because the tare or the threshold has changed.
     fn measure_again(&mut self) {
+        self.is_view_changed = true;
         self.trend.clear();
-        let frames: Vec<_> = self.cursor.newest(RANGED).cloned().collect();
+        let frames: Vec<_> = self.history.newest_first().take(RANGED).cloned().collect();
         for frame in frames.iter().rev() {
             self.measure(frame);
         }
@@ -327,19 +308,24 @@ impl Live {
         let before = (self.pipeline.origin(), self.pipeline.rule());
         let done = act(&mut self.pipeline);
         let after = (self.pipeline.origin(), self.pipeline.rule());
+        if after.0 != before.0 {
+            self.range.begin_anew();
+        }
         if after != before {
-            self.is_viewed_anew = true;
-            if after.0 != before.0 {
-                self.range.begin_anew();
-            }
             self.measure_again();
         }
         done
     }
 
-    pub fn tare_now(&mut self) -> Result<u64, LiveRefusal> {
-        let frames = self.cursor.up_to_shown(TARED)?;
-        self.repipe(|pipeline| pipeline.tare_of(frames.iter().map(Arc::as_ref)))?;
+    /// Makes the tare of the frames up to the shown one. Returns their number, or why it cannot be made.
+    pub fn tare_now(&mut self) -> Result<u64, String> {
+        let frames = self.history.up_to_shown(TARED);
+        if frames.is_empty() {
+            let gone = "this frame is no longer in the history";
+            return Err(self.history.shown().map_or(NO_FRAME, |_| gone).to_owned());
+        }
+        let tared = self.repipe(|pipeline| pipeline.tare_of(frames.iter().map(Arc::as_ref)));
+        tared.map_err(|error| error.to_string())?;
         self.tare_error = None;
         self.read();
         Ok(frames.len() as u64)
@@ -352,11 +338,6 @@ impl Live {
         any
     }
 
-    /// Returns true if neither a tare nor a gain changes the values.
-    pub fn shows_raw(&self) -> bool {
-        self.pipeline.origin().is_none() && self.pipeline.processing.gain.is_none()
-    }
-
     pub fn choose(&mut self, rule: Rule) {
         let (least, from) = (self.pipeline.processing.least, RuleOrigin::Key);
         let set = Some(SetRule { rule, least, from });
@@ -367,8 +348,8 @@ impl Live {
     /// Moves the threshold up or down by a step that depends on the largest value so far. Without a threshold, one is
     /// set. A threshold out of range changes nothing.
     pub fn step_threshold(&mut self, direction: i8) {
-        let rule = self.pipeline.processing.rule;
-        if let Ok(rule) = threshold::step(rule, direction, self.range.tared_top()) {
+        let (rule, top) = (self.pipeline.processing.rule, self.range.tared_top());
+        if let Ok(rule) = threshold::step(rule, direction, top) {
             self.choose(rule);
         }
     }
@@ -378,60 +359,90 @@ impl Live {
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
         let largest = largest.filter(|&largest| largest > 0.0);
         let largest = largest.unwrap_or(self.range.tared_top());
-        let rule = self.pipeline.processing.rule;
-        let former = self.converted.filter(|(made, _)| rule == Some(*made));
-        let other = match former {
-            Some((_, former)) => Ok(former),
-            None => threshold::other_unit(rule, largest),
-        };
-        if let Ok(other) = other {
+        if let Ok(other) = threshold::other_unit(self.pipeline.processing.rule, largest) {
             self.choose(other);
         }
-        self.converted = other.ok().zip(rule);
     }
 
     pub fn freeze(&mut self) {
-        self.cursor.freeze();
+        if self.history.follows() {
+            self.history.freeze();
+        } else {
+            self.history.follow();
+        }
         self.read();
+    }
+
+    /// Stays at the frame of this number or, if that is not here, at the nearest one. Returns false if that is the
+    /// shown one.
+    pub fn stay_at(&mut self, number: u64) -> bool {
+        let before = self.history.shown().map(|(number, _)| number);
+        self.history.stay_at(number);
+        self.read();
+        self.history.shown().map(|(number, _)| number) != before
     }
 
     pub fn scrub(&mut self, by: i64) -> bool {
-        let before = self.cursor.shown().map(|shown| shown.number);
-        if self.cursor.scrub(by) {
-            self.read();
+        let shown = self.history.shown();
+        shown.is_some_and(|(number, _)| self.stay_at(number.saturating_add_signed(by)))
+    }
+
+    /// Goes on or back by at least a second, or by ten frames if they have no times.
+    pub fn scrub_second(&mut self, by: i64) -> bool {
+        let Some((shown, frame)) = self.history.shown() else {
+            return false;
+        };
+        let is_there = |number: &u64| {
+            let other = self.history.get(*number).and_then(|other| other.time);
+            let times = other.zip(frame.time);
+            times.is_some_and(|(other, now)| (other - now).abs() >= 1.0)
+        };
+        let numbers = self.history.numbers();
+        let (before, after) = (
+            numbers.start..shown.min(numbers.end),
+            shown + 1..numbers.end,
+        );
+        let found = if by < 0 {
+            before.rev().find(is_there).unwrap_or(numbers.start)
+        } else {
+            after.clone().find(is_there).unwrap_or(numbers.end)
+        };
+        match frame.time {
+            Some(_) => self.stay_at(found),
+            None => self.scrub(10 * by),
         }
-        self.cursor.shown().map(|shown| shown.number) != before
     }
 
-    pub fn to_oldest(&mut self) {
-        self.cursor.stay_at_oldest();
-        self.read();
+    /// Goes on or back to the next frame in which a touch begins; false if there is none.
+    pub fn scrub_touch(&mut self, by: i64) -> bool {
+        let shown = self.history.shown().map_or(0, |(number, _)| number);
+        let begins = self.trend.touches(self.history.numbers().end);
+        let mut begins = begins.iter();
+        let next = match by {
+            ..0 => begins.rfind(|number| **number < shown),
+            _ => begins.find(|number| **number > shown),
+        };
+        next.is_some_and(|number| self.stay_at(*number))
     }
 
-    pub fn to_newest(&mut self) {
-        self.cursor.follow();
+    pub fn follow(&mut self) {
+        self.history.follow();
         self.read();
     }
 
     pub fn switch_peak(&mut self) {
-        self.cursor.switch_peak();
+        self.history.switch_peak();
         self.read();
     }
 
     /// Shows the next layer: raw values, tared values or imprint.
-    pub fn next_layer(&mut self) -> HeatLayer {
+    pub fn next_layer(&mut self) {
         self.layer = self.layer.next();
         self.read();
-        self.layer
     }
 
-    pub fn switch_range(&mut self) -> bool {
-        self.range.is_own = !self.range.is_own;
-        self.range.is_own
-    }
-
-    pub fn set_recording(&mut self, name: Option<String>) {
-        self.recording.set(name);
+    pub fn begin_recording(&mut self, name: Option<String>) {
+        (self.recording.name, self.recording.refusal) = (name, None);
         // These belong to the recording before.
         self.status.recorded = None;
         self.status.record_error = None;
@@ -441,75 +452,64 @@ impl Live {
     pub fn fail_recording(&mut self, reason: String) {
         let asked = self.request.write.as_ref();
         let asked = asked.map(|(path, _)| path.to_string_lossy());
-        self.recording.fail(reason, asked.as_deref());
+        if asked.is_some() && self.recording.name.as_deref() == asked.as_deref() {
+            self.recording.write_failure = Some(reason.clone());
+        }
+        self.recording.name = None;
+        self.recording.refusal = Some(reason);
     }
 
+    /// Notes that the page is left. A finished recording counts as ended: it is played again only when asked for.
     pub fn stop(&mut self) {
         self.stopped = true;
-        self.recording.stop();
+        self.recording.name = None;
+        if self.is_finished_recording() {
+            self.status.state = SourceState::Ended;
+        }
     }
 
-    pub fn has_ended(&self) -> bool {
-        self.status.state == SourceState::Ended
-    }
-
-    /// Opens the page again after it was closed at the end of its source: it shows what it showed. Shapes are named by
-    /// the work of this number.
-    pub fn reopen(&mut self, number: u64) {
-        self.stopped = false;
-        self.names.restart(number);
-    }
-
-    fn is_recording(&self) -> bool {
-        self.status.channels > 0
+    /// Returns true if the source is a recording that does not grow any more.
+    fn is_finished_recording(&self) -> bool {
+        self.status.channels > 0 && !self.status.follows
     }
 
     /// Checks that the source can be watched again: a recording at any time unless it is still being written, any
     /// other source after its end.
-    pub fn check_again(&self) -> Result<(), LiveRefusal> {
+    pub fn check_again(&self) -> Result<(), &'static str> {
         if self.request.source == FrameSource::Standard {
-            return Err(LiveRefusal::ReadOnce);
+            return Err(READ_ONCE);
         }
-        let is_possible =
-            self.is_recording() && !self.status.follows || self.status.state.is_final();
-        is_possible.then_some(()).ok_or(LiveRefusal::NotEnded)
+        let is_possible = self.is_finished_recording() || self.status.state.is_final();
+        is_possible
+            .then_some(())
+            .ok_or("the source has not ended yet")
     }
 
-    /// Takes frames again, from the work of this number. The history begins anew with a recording, because the same
-    /// frames come again.
-    pub fn watch_again(&mut self, number: u64) {
-        // The frames that come now do not belong to what was recorded of those before.
-        self.recording.stop();
-        if self.is_recording() {
-            self.cursor = FrameCursor::new(self.request.history_bytes);
+    /// Takes frames again, as the work of this number; threshold, tare and marks stay. The history begins anew with a
+    /// recording, because the same frames come again.
+    pub fn restart(&mut self, number: u64) {
+        if self.status.channels > 0 {
+            self.history = FrameHistory::new(self.request.history_bytes);
+            self.marks.clear();
             self.not_drawn = 0;
             self.trend.clear();
         }
-        self.restart(number);
-    }
-
-    /// Takes frames again, from the work of this number; history, threshold and tare stay. The source counts its
-    /// frames from 0 again, so everything that refers to its numbers is given up: marks, the held peak, the age of
-    /// the tare.
-    pub fn restart(&mut self, number: u64) {
         self.number = number;
         self.stopped = false;
+        self.recording.name = None;
         self.recording.refusal = None;
-        self.cursor.restart();
-        self.marks.clear();
+        self.history.restart();
         self.pipeline.restart();
         self.tare_error = None;
-        self.read();
         self.status.state = SourceState::Waiting;
-        self.status.gaps = SourceGaps::default();
-        self.status.note = None;
-        self.seen_gaps = SourceGaps::default();
-        self.seen_notes = 0;
+        (self.status.gaps, self.seen_gaps) = (SourceGaps::default(), SourceGaps::default());
+        (self.status.note, self.seen_notes) = (None, 0);
         self.names.restart(number);
+        self.read();
     }
 
     fn read(&mut self) {
-        (self.reading, self.error) = match self.cursor.drawn() {
+        (self.reading, self.error) = match self.history.drawn() {
             Some(frame) => self.read_frame(frame),
             None => (None, None),
         };
@@ -539,18 +539,32 @@ impl Live {
     }
 }
 
+pub const NO_FRAME: &str = "no frame yet";
+
+pub const READ_ONCE: &str = "standard input cannot be read twice";
+
+#[derive(Clone, Debug, Default)]
+pub struct RecordingState {
+    /// The file that is written; None if nothing is recorded.
+    pub name: Option<String>,
+    /// The number in the history that the next frame had when the recording was requested: frames before it are not
+    /// recorded.
+    pub from: u64,
+    /// Why nothing is recorded although it was requested.
+    pub refusal: Option<String>,
+    /// Why the recording that was requested together with the source has failed. Later recordings do not change that.
+    pub write_failure: Option<String>,
+}
+
+/// The model that names imprints, and its last answer.
 #[derive(Clone, Debug)]
 pub struct ShapeNames {
     /// The set that was requested with the source; None if none was.
     asked: Option<ModelChoice>,
     /// The noise: how often a taxel flips.
     noise: Option<Noise>,
-    /// The model that names imprints, and its last answer; None if imprints are not named.
-    naming: Option<Naming>,
-    /// The set that returns if the next one cannot be read; None if imprints were not named.
-    before: Option<ModelChoice>,
-    /// The set that could not be read last: the next step through the sets goes on from there.
-    unreadable: Option<ModelChoice>,
+    /// None if imprints are not named.
+    pub naming: Option<Naming>,
     pub awaits_models: bool,
 }
 
@@ -560,27 +574,15 @@ impl ShapeNames {
             asked: request.model.clone(),
             noise: request.noise(),
             naming: None,
-            before: request.model.clone(),
-            unreadable: None,
             awaits_models: false,
         };
         names.begin(request.model.clone(), number);
         names
     }
 
-    /// Returns the model that names imprints, and its last answer; None if imprints are not named.
-    pub fn naming(&self) -> Option<&Naming> {
-        self.naming.as_ref()
-    }
-
     /// Returns the request to name imprints; None if imprints are not named.
     pub fn request(&self) -> Option<&NamingRequest> {
         self.naming.as_ref().map(|naming| &naming.request)
-    }
-
-    pub fn is_by(&self, number: u64) -> bool {
-        self.request()
-            .is_some_and(|request| request.number == number)
     }
 
     /// Names imprints by a set, as the work of this number; None stops naming. Earlier answers are dropped.
@@ -605,114 +607,31 @@ impl ShapeNames {
     pub fn next(&mut self, own: impl Iterator<Item = ModelChoice>, number: u64) {
         let asked = self.asked.clone();
         let sets = ModelChoice::BUILT_IN.iter().cloned().chain(own);
-        let sets = sets.filter(|set| Some(set) != asked.as_ref()).map(Some);
-        let mut all: Vec<Option<ModelChoice>> = std::iter::once(None).chain(sets).collect();
-        if asked.is_some() {
-            all.insert(1, asked);
-        }
-        let chosen = self.request().map(|naming| naming.choice.clone());
-        let failed = self.unreadable.take().map(Some);
-        let next = other(all, &chosen, failed.as_ref(), 1);
-        // A model in a file is sure to be readable only once it has named something.
-        if chosen.as_ref().is_none_or(|chosen| !chosen.is_read()) {
-            self.before = chosen;
-        }
-        self.begin(next, number);
+        let sets = sets.filter(|set| Some(set) != asked.as_ref());
+        let sets: Vec<ModelChoice> = asked.iter().cloned().chain(sets).collect();
+        let chosen = self.request().map(|naming| &naming.choice);
+        let next = match chosen {
+            None => sets.first(),
+            Some(chosen) => (sets.iter().skip_while(|set| *set != chosen)).nth(1),
+        };
+        self.begin(next.cloned(), number);
     }
 
     pub fn ask(&mut self, imprint: &Imprint) -> bool {
-        self.naming
-            .as_mut()
-            .is_some_and(|naming| naming.ask(imprint))
+        let naming = self.naming.as_mut();
+        naming.is_some_and(|naming| naming.ask(imprint))
     }
 
-    pub fn take(&mut self, number: u64, named: NamedImprint) {
-        if self.is_by(number)
-            && let Some(naming) = &mut self.naming
+    /// Takes the answer, or the reason why the model cannot be used, of the work of this number.
+    pub fn take(&mut self, number: u64, named: Result<NamedImprint, String>) {
+        if let Some(naming) = &mut self.naming
+            && naming.request.number == number
         {
-            self.before = Some(naming.request.choice.clone());
-            naming.take(named);
+            match named {
+                Ok(named) => naming.take(named),
+                Err(reason) => naming.fail(reason),
+            }
         }
-    }
-
-    /// Takes the reason why the model cannot be used. The set before it returns, as the work of this number; if there
-    /// was no other, the reason stays visible.
-    pub fn fail(&mut self, reason: &str, number: u64) {
-        let Some(naming) = &mut self.naming else {
-            return;
-        };
-        if self.before.as_ref() == Some(&naming.request.choice) {
-            naming.fail(reason.to_owned());
-        } else {
-            self.unreadable = Some(naming.request.choice.clone());
-            self.begin(self.before.clone(), number);
-        }
-    }
-}
-
-#[derive(Clone, Debug, Default)]
-pub struct RecordingState {
-    /// The file that is written; None if nothing is recorded.
-    name: Option<String>,
-    /// The number in the history that the next frame had when the recording was requested: frames before it are not
-    /// recorded.
-    from: u64,
-    /// Why nothing is recorded although it was requested.
-    pub(in crate::tui) refusal: Option<String>,
-    write_failure: Option<String>,
-    /// Whether a recording ended because its source was left, which the user has not been told yet.
-    was_stopped: bool,
-}
-
-impl RecordingState {
-    /// Returns the file that is written; None if nothing is recorded.
-    pub fn name(&self) -> Option<&str> {
-        self.name.as_deref()
-    }
-
-    pub(super) fn from(&self) -> u64 {
-        self.from
-    }
-
-    /// Returns why nothing is recorded although it was requested; None if it is recorded, or was not requested.
-    pub fn refusal(&self) -> Option<&str> {
-        self.refusal.as_deref()
-    }
-
-    /// Returns why the recording that was requested together with the source has failed; None if it has not. Later
-    /// recordings do not change that.
-    pub fn write_failure(&self) -> Option<&str> {
-        self.write_failure.as_deref()
-    }
-
-    pub(super) fn request(&mut self, next_number: u64) {
-        self.from = next_number;
-    }
-
-    pub(super) fn set(&mut self, name: Option<String>) {
-        self.name = name;
-        self.refusal = None;
-        self.was_stopped = false;
-    }
-
-    /// Notes why a recording has failed, or why it cannot be begun. `asked` is the file that was requested together
-    /// with the source.
-    pub(super) fn fail(&mut self, reason: String, asked: Option<&str>) {
-        if asked.is_some() && self.name() == asked {
-            self.write_failure = Some(reason.clone());
-        }
-        self.name = None;
-        self.refusal = Some(reason);
-    }
-
-    /// Notes that no more frames are recorded, because the source is left.
-    pub(super) fn stop(&mut self) {
-        self.was_stopped |= self.name.take().is_some();
-    }
-
-    /// Returns true once if a recording ended because its source was left.
-    pub(super) fn take_stopped(&mut self) -> bool {
-        std::mem::take(&mut self.was_stopped)
     }
 }
 
@@ -725,19 +644,16 @@ mod tests {
         let own = ["asked", "other"].map(ModelChoice::from_text);
         let mut request = WatchRequest::new("none");
         request.model = Some(own[0].clone());
-        let mut page = Live::new(Arc::new(request), 1);
+        let mut names = ShapeNames::new(&request, 1);
         let mut sets = Vec::new();
-        while let Some(naming) = page.names.request().cloned() {
+        while let Some(naming) = names.request().cloned() {
             sets.push(naming.choice);
-            page.names.next(own.clone().into_iter(), naming.number + 1);
+            names.next(own.clone().into_iter(), naming.number + 1);
         }
         let [asked, other] = own;
         let built_in = ModelChoice::BUILT_IN.to_vec();
         assert_eq!(sets, [vec![asked.clone()], built_in, vec![other]].concat());
-        page.names.next(std::iter::once(asked.clone()), 9);
-        assert_eq!(
-            page.names.request().map(|naming| &naming.choice),
-            Some(&asked)
-        );
+        names.next(std::iter::once(asked.clone()), 9);
+        assert_eq!(names.request().map(|naming| &naming.choice), Some(&asked));
     }
 }

@@ -30,7 +30,7 @@ pub enum Plotted {
 }
 
 impl Plotted {
-    pub(super) fn other(self) -> Self {
+    pub fn other(self) -> Self {
         match self {
             Self::Force => Self::Contact,
             Self::Contact => Self::Force,
@@ -40,23 +40,32 @@ impl Plotted {
 
 /// Force and contact of the newest frames; NaN for a frame that cannot be processed.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Trend(VecDeque<[f64; 2]>);
+pub struct Trend(VecDeque<[f64; 2]>);
 
 impl Trend {
-    pub(super) fn push(&mut self, processed: Option<&Processed<'_>>) {
+    pub fn push(&mut self, processed: Option<&Processed<'_>>) {
         let numbers = processed.map(|own| [own.force, own.contact.into()]);
         self.0.push_back(numbers.unwrap_or([f64::NAN; 2]));
     }
 
     /// Forgets the oldest frames beyond this number of the newest ones.
-    pub(super) fn keep(&mut self, frames: u64) {
+    pub fn keep(&mut self, frames: u64) {
         while self.0.len() as u64 > frames {
             self.0.pop_front();
         }
     }
 
-    pub(super) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.0.clear();
+    }
+
+    /// Returns the numbers of the frames in which a touch begins; the next frame has the number `next`.
+    pub fn touches(&self, next: u64) -> Vec<u64> {
+        let first = next - (self.0.len() as u64).min(next);
+        let is_touched = |index: usize| self.0[index][1] > 0.0;
+        let begins = |&index: &usize| is_touched(index) && !is_touched(index - 1);
+        let begun = (1..self.0.len()).filter(begins);
+        begun.map(|index| first + index as u64).collect()
     }
 
     /// Returns the most of each column, the number of the first frame in the history, and the frames of a column. Columns
@@ -83,8 +92,8 @@ impl Trend {
 }
 
 /// Draws the bars, with the column of a frozen frame reversed.
-pub(super) fn draw(live: &Live, theme: &Theme, buffer: &mut Buffer, area: Rect) {
-    let next = live.cursor.next_number();
+pub fn draw(live: &Live, theme: &Theme, buffer: &mut Buffer, area: Rect) {
+    let next = live.history.numbers().end;
     let (columns, first, each) = live.trend.columns(live.plotted, next, area.width);
     let top = round_up(columns.iter().copied().fold(0.0, f64::max));
     let (name, unit) = match live.plotted {
@@ -95,10 +104,8 @@ pub(super) fn draw(live: &Live, theme: &Theme, buffer: &mut Buffer, area: Rect) 
     let pieces = [(name, Role::Key), (&*scale, Role::Quiet)];
     write::line(buffer, write::row(area, 0), theme, pieces);
     let bars = write::below(area, 1);
-    let frozen = live
-        .cursor
-        .frozen()
-        .map(|back| next.saturating_sub(back + 1));
+    let frozen = live.history.behind();
+    let frozen = frozen.map(|back| next.saturating_sub(back + 1));
     let frozen = frozen.and_then(|shown| (shown / each).checked_sub(first / each));
     for (x, value) in (0..).zip(columns) {
         let style = theme.style(if frozen == Some(x) {

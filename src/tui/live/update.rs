@@ -4,14 +4,17 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use taxel_core::frame::{FrameError, FrameSize, Rule};
+use taxel_core::frame::{FrameSize, Rule};
 use taxel_files::acquire::FrameSource;
-use taxel_files::formats::recording::RecordingMetadata;
+use taxel_files::formats::Name;
+use taxel_files::formats::recording::{ChannelInfo, RecordingMetadata};
 use taxel_files::formats::value::{counted, grouped};
 use taxel_files::storage::{Existing, ModelChoice, ModelFolder};
 
-use crate::tui::app::change::{inform, refuse};
+use crate::tui::app::change::{begin, inform, refuse};
 use crate::tui::app::dialog::{Dialog, topmost};
+use crate::tui::app::document::Document;
+use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::status;
@@ -23,7 +26,7 @@ use crate::tui::live::message::{
     LiveEvent, LiveMessage, NamedSource, RecordedFrames, WatchRequest,
 };
 use crate::tui::live::reading::{self, HeatLayer};
-use crate::tui::live::state::Live;
+use crate::tui::live::state::{Live, NO_FRAME, READ_ONCE};
 use crate::tui::live::{threshold, view};
 use crate::tui::prompt::state::CommandDialog;
 use crate::tui::runtime::disk::files;
@@ -32,7 +35,7 @@ use crate::tui::runtime::perform;
 
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
 /// is open.
-pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
+pub fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Watch(request) => Some(watch(app, request)),
         LiveMessage::Source(source) => check_source(app, source),
@@ -48,41 +51,39 @@ pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> 
 
 fn set_threshold(app: &mut App, rule: Rule) {
     let Some(page) = page(app) else {
-        refuse(app, NO_SOURCE);
-        return;
+        return refuse(app, NO_SOURCE);
     };
     page.choose(rule);
     let value = threshold::text(rule, &page.unit());
-    let text = format!("{}: threshold {value}", page.request().name());
+    let text = format!("{}: threshold {value}", page.request.name());
     inform(app, text);
 }
 
 /// Watches the source of the page from its start, with this size of a frame, and with the threshold of the page.
 fn watch_with(app: &mut App, size: FrameSize) -> Option<Effect> {
-    let Some(page) = page(app) else {
-        refuse(app, NO_SOURCE);
-        return None;
+    let reason = match page(app) {
+        None => NO_SOURCE,
+        Some(page) if page.request.source == FrameSource::Standard => READ_ONCE,
+        Some(page) => {
+            let mut request = WatchRequest::clone(&page.request);
+            request.options.size = Some(size);
+            request.pipeline.processing.apply_rule(page.rule());
+            return Some(watch(app, &Arc::new(request)));
+        }
     };
-    if page.request().source == FrameSource::Standard {
-        refuse(app, LiveRefusal::ReadOnce.to_string());
-        return None;
-    }
-    let mut request = WatchRequest::clone(page.request());
-    request.options.size = Some(size);
-    request.pipeline.processing.apply_rule(page.rule());
-    Some(watch(app, &Arc::new(request)))
+    refuse(app, reason);
+    None
 }
 
-/// Handles a message over the page. Closing ends the source and keeps the page; Enter keeps both, because users often
-/// come back for the next imprint.
-pub(in crate::tui) fn in_live(
-    app: &mut App,
-    mut page: Box<Live>,
-    message: Message,
-) -> Option<Effect> {
+/// Handles a message over the page. Esc goes back to the source from a frozen frame; otherwise it leaves the page, and
+/// ends the source. Enter keeps the source, because users often come back for the next imprint.
+pub fn in_live(app: &mut App, mut page: Box<Live>, message: Message) -> Option<Effect> {
     let mut effect = None;
     page.see_notices();
     match message {
+        Message::Cancel if !page.history.follows() && !page.status.state.is_final() => {
+            page.follow();
+        }
         Message::Cancel | Message::Quit => {
             page.stop();
             app.live = Some(page);
@@ -90,15 +91,18 @@ pub(in crate::tui) fn in_live(
         }
         Message::Accept => match reading::document(&page) {
             Some(document) => {
-                reading::take(app, page, document);
+                put_on_matrix(app, page, document);
                 return None;
             }
-            None => reading::refuse_imprint(app, &page),
+            None => refuse_imprint(app, &page),
         },
-        Message::Scroll(by) => scrub(app, &mut page, by),
-        Message::ScrollTo(Endpoint::First) => page.to_oldest(),
-        Message::ScrollTo(Endpoint::Last) => page.to_newest(),
-        Message::SwitchPane => page.display.only_panel ^= true,
+        Message::Scroll(by) => {
+            let found = page.scrub(by.into());
+            say_if_not(app, found, &page, by.into(), "frame");
+        }
+        Message::ScrollTo(Endpoint::First) => drop(page.stay_at(0)),
+        Message::ScrollTo(Endpoint::Last) => page.follow(),
+        Message::SwitchPane => page.only_panel ^= true,
         Message::Live(asked) => effect = adjust(app, &mut page, &asked),
         Message::Command => {
             let prompt = CommandDialog::new(&app.commands);
@@ -112,13 +116,13 @@ pub(in crate::tui) fn in_live(
     effect
 }
 
-/// Shows a later frame or, with a negative number, an earlier one; says so if there is none.
-fn scrub(app: &mut App, page: &mut Live, by: i16) {
-    if !page.scrub(by.into()) {
+/// Says that there is no earlier or later one of what was looked for in the history, unless it was found.
+fn say_if_not(app: &mut App, found: bool, page: &Live, by: i64, what: &str) {
+    if !found {
         let text = match by {
-            ..0 => "no earlier frame in the history",
-            _ if page.has_ended() => "no later frame",
-            _ => "no later frame yet",
+            ..0 => format!("no earlier {what} in the history"),
+            _ if page.status.state.is_final() => format!("no later {what}"),
+            _ => format!("no later {what} yet"),
         };
         refuse(app, text);
     }
@@ -129,20 +133,28 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
     match asked {
         LiveMessage::Tare => match page.tare_now() {
             Ok(frames) => inform(app, tare_of(page, frames)),
-            Err(refused) => refuse(app, refused.to_string()),
+            Err(refused) => refuse(app, refused),
         },
         LiveMessage::NoTare if page.drop_tare() => inform(app, "tare removed"),
         LiveMessage::NoTare => refuse(app, "there is no tare"),
         LiveMessage::Threshold(direction) => page.step_threshold(*direction),
         LiveMessage::Percent => page.switch_unit(),
         LiveMessage::Freeze => page.freeze(),
+        LiveMessage::Second(by) => {
+            let found = page.scrub_second((*by).into());
+            say_if_not(app, found, page, (*by).into(), "frame");
+        }
+        LiveMessage::Touch(by) => {
+            let found = page.scrub_touch((*by).into());
+            say_if_not(app, found, page, (*by).into(), "touch");
+        }
         LiveMessage::PeakHold => page.switch_peak(),
         LiveMessage::NextLayer => next_layer(app, page),
         LiveMessage::Plot => page.plotted = page.plotted.other(),
-        LiveMessage::Numbers => page.display.numbers ^= true,
+        LiveMessage::Numbers => page.numbers ^= true,
         LiveMessage::OwnRange => {
-            let own = page.switch_range();
-            let text = if own {
+            page.range.is_own ^= true;
+            let text = if page.range.is_own {
                 "the shades cover this frame's values"
             } else {
                 "the shades cover all values so far"
@@ -151,14 +163,15 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         }
         LiveMessage::Window(towards) => look_further(app, page, *towards),
         LiveMessage::FollowContact => {
-            page.display.looked_at = None;
+            page.looked_at = None;
             inform(app, "the view follows the contact");
         }
-        LiveMessage::Record => match record(page) {
-            Ok(effect) => return Some(effect),
-            Err(refused) => refuse_recording(app, page, &refused),
+        LiveMessage::Record => return record(app, page),
+        LiveMessage::Mark => match page.mark() {
+            Some((number, true)) => inform(app, format!("frame {number}: marked")),
+            Some((number, false)) => inform(app, format!("frame {number}: mark removed")),
+            None => refuse(app, NO_FRAME),
         },
-        LiveMessage::Mark => mark(app, page),
         // The next one may be a model of the user.
         LiveMessage::NameShape => {
             page.names.awaits_models = true;
@@ -182,38 +195,32 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
     None
 }
 
-fn refuse_recording(app: &mut App, page: &Live, refused: &LiveRefusal) {
-    let key = |action| app.keymap().label(Context::Live, action);
-    let (again, record) = (key(&action::WATCH_AGAIN), key(&action::RECORD));
-    let how = match page.check_again() {
-        Ok(()) => format!("; {again}, then {record}, records it"),
-        Err(_) => String::new(),
-    };
-    refuse(app, format!("{refused}{how}"));
-}
-
 /// Returns the notice about a tare that was made just now of this number of frames. If the page stays at a frame, these
 /// end with it, and the notice says so.
 fn tare_of(page: &Live, frames: u64) -> String {
-    let origin = page.pipeline.origin().filter(|_| !page.cursor.follows());
-    match (origin.and_then(|origin| origin.last), frames) {
-        (Some((number, _)), 1) => format!("tare of frame {number}"),
-        (Some((number, _)), _) => format!("tare of the {frames} frames up to frame {number}"),
+    let origin = page.pipeline.origin().filter(|_| !page.history.follows());
+    let last = origin.and_then(|origin| origin.last);
+    match (last.map(|(number, _)| number), frames) {
+        (Some(number), 1) => format!("tare of frame {number}"),
+        (Some(number), _) => format!("tare of the {frames} frames up to frame {number}"),
         (None, 1) => "tare of 1 frame".to_owned(),
         (None, _) => format!("tare of the last {}", counted(frames, "frame")),
     }
 }
 
 fn next_layer(app: &mut App, page: &mut Live) {
-    let reason = match page.next_layer() {
-        HeatLayer::Tared if page.shows_raw() => "no tare: the values are the raw ones",
-        HeatLayer::Imprint if page.rule().is_none() => "no threshold, so there is no imprint",
-        _ => return,
-    };
-    inform(app, reason);
+    page.next_layer();
+    let shows_raw = page.pipeline.origin().is_none() && page.pipeline.processing.gain.is_none();
+    match page.layer {
+        HeatLayer::Tared if shows_raw => inform(app, "no tare: the values are the raw ones"),
+        HeatLayer::Imprint if page.rule().is_none() => {
+            inform(app, "no threshold, so there is no imprint");
+        }
+        _ => {}
+    }
 }
 
-pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effect> {
+pub fn name_by_next(app: &mut App, own: &[String]) -> Option<Effect> {
     let number = app.works + 1;
     let page = topmost!(&mut app.dialogs, Live)?;
     if !std::mem::take(&mut page.names.awaits_models) {
@@ -232,48 +239,52 @@ pub(in crate::tui) fn name_by_next(app: &mut App, own: &[String]) -> Option<Effe
 }
 
 fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
-    if page.display.only_panel {
-        let key = app.keymap().label(Context::Live, &action::PANEL);
-        return refuse(app, format!("the taxels are hidden; {key} shows them"));
-    }
     let area = app.panes();
     let area = area.map(|panes| status::page_area(app, &panes, page));
-    let next = area.and_then(|area| view::beyond(page, app.theme(), area, towards));
-    if next.is_none() {
-        let hides = area.is_some_and(|area| view::hides_taxels(page, area));
-        return refuse(
-            app,
-            if hides || page.reading().is_none() {
-                "no more taxels in this direction"
-            } else {
-                "all taxels are visible"
-            },
-        );
+    match area.and_then(|area| view::beyond(page, app.theme(), area, towards)) {
+        Some(next) => page.looked_at = Some(next),
+        None => refuse(app, "no more taxels in this direction"),
     }
-    if page.display.looked_at.is_none() {
-        let key = app.keymap().label(Context::Live, &action::FOLLOW_CONTACT);
-        inform(
-            app,
-            format!("these taxels stay in sight; {key} shows the contact again"),
-        );
-    }
-    page.display.looked_at = next;
 }
 
-fn mark(app: &mut App, page: &mut Live) {
-    match page.mark() {
-        Ok((number, true)) => inform(app, format!("frame {number}: marked")),
-        Ok((number, false)) => inform(app, format!("frame {number}: mark removed")),
-        Err(refused) => refuse(app, refused.to_string()),
+/// Puts the imprint onto the matrix; the source keeps running. The imprint counts as unsaved, because no source sends
+/// the same frame again. If the recording gives the size of its cells but lengths are not in mm, the notice says why.
+fn put_on_matrix(app: &mut App, page: Box<Live>, document: Document) {
+    let number = page.reading.as_ref().map(|reading| reading.frame.number);
+    let channel = page.status.channel.as_deref();
+    let without_mm = channel.and_then(ChannelInfo::why_not_in_mm);
+    let source = page.request.name();
+    app.live = Some(page);
+    let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
+    // Not every source has a name that a shape may have.
+    let stem = source.rsplit_once('.').map_or(&*source, |(stem, _)| stem);
+    let named = Name::new(&format!("{frame} of {stem}"));
+    let proposed = named.map_or_else(|_| frame.clone(), |name| name.to_string());
+    let origin = DocumentOrigin::unsaved(&document)
+        .called(format!("imprint of {frame}, {source}"))
+        .proposing(proposed);
+    begin(app, origin, document);
+    let back = app.key_of(&action::WATCH);
+    let mut text = format!("the imprint of {frame}; {back} goes back to the source");
+    if let Some(reason) = without_mm {
+        text += &format!("; {reason}");
     }
+    inform(app, text);
+}
+
+fn refuse_imprint(app: &mut App, page: &Live) {
+    let mut text = page.no_imprint();
+    if page.reading.is_some() && page.rule().is_none() {
+        let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
+        text += &format!("; {key} sets one");
+    }
+    refuse(app, text);
 }
 
 /// Returns the next work of the page: new metadata of the recording if threshold, tare or marks have changed
 /// since it was written last; otherwise the search for the name of the shown imprint.
-///
-/// They change by keys, by frames that are withdrawn with their marks, and while the recording is being begun.
-pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
-    let page = page(app).filter(|page| !page.stopped())?;
+pub fn next_work(app: &mut App) -> Option<Effect> {
+    let page = page(app).filter(|page| !page.stopped)?;
     if let Some(view) = page.take_changed_view() {
         return Some(Effect::Frames(FrameWork::WriteMetadata(Box::new(view))));
     }
@@ -283,85 +294,36 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
 
 /// Begins a recording, or ends it. The frames are written as they come, without view, tare or threshold; the
 /// metadata of the recording says how they were looked at last.
-fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
-    if page.recording().name().is_some() {
-        page.set_recording(None);
-        return Ok(Effect::Frames(FrameWork::StopRecording));
+fn record(app: &mut App, page: &mut Live) -> Option<Effect> {
+    if page.recording.name.is_some() {
+        page.begin_recording(None);
+        return Some(Effect::Frames(FrameWork::StopRecording));
     }
-    if page.status().state.is_final() {
-        return Err(LiveRefusal::SourceEnded);
+    if page.status.state.is_final() {
+        refuse(app, "the source has ended, so there is nothing to record");
+        return None;
     }
-    page.recording.request(page.cursor.next_number());
-    let channel = page.status().channel.as_deref();
+    page.recording.from = page.history.numbers().end;
+    let channel = page.status.channel.as_deref();
     let metadata = RecordingMetadata {
-        source: page.request().source.name(),
+        source: page.request.source.name(),
         unit: channel.and_then(|channel| channel.unit.clone()),
         pitch_mm: channel.and_then(|channel| channel.pitch_mm),
         rule: page.rule(),
         tare: page.pipeline.processing.tare.clone(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
-        // Frames that were marked before are not in the recording.
-        marks: Vec::new(),
-        ended: None,
-        ended_by: None,
+        ..RecordingMetadata::default()
     };
-    Ok(Effect::Frames(FrameWork::Record(Box::new(metadata))))
+    Some(Effect::Frames(FrameWork::Record(Box::new(metadata))))
 }
 
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LiveRefusal {
-    #[error("no frame yet")]
-    NoFrame,
-    #[error("this frame is no longer in the history")]
-    LeftHistory,
-    #[error("frame {0} came before the source was watched again; frames since then can be marked")]
-    EarlierWatch(u64),
-    /// The frames cannot be processed together.
-    #[error(transparent)]
-    Frame(#[from] FrameError),
-    #[error("the source has ended, so there is nothing to record")]
-    SourceEnded,
-    /// The source is standard input, whose bytes are gone once they are read.
-    #[error("standard input cannot be read twice")]
-    ReadOnce,
-    #[error("the source has not ended yet")]
-    NotEnded,
-    /// There is no threshold, so it is unknown which values are active.
-    #[error("no threshold, so no imprint")]
-    NoThreshold,
-    #[error("no imprint before the tare: {taken} of {wanted} frames")]
-    TareIsMade { taken: u64, wanted: u64 },
-    /// The frame cannot be made into an imprint.
-    #[error("no imprint: {0}")]
-    NoImprint(FrameError),
+fn watched(app: &mut App, number: u64) -> Option<&mut Live> {
+    page(app).filter(|page| page.number == number && !page.stopped)
 }
 
 /// Handles a report of the source. Reports of a source that is no longer watched are dropped, by their number; except
 /// reports of a finished recording, because a recording is finished after its source is left.
-pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) -> Option<Effect> {
-    if let LiveEvent::NotNamed(by, reason) = event {
-        return on_no_name(app, number, *by, reason);
-    }
-    on_frames(app, number, event);
-    None
-}
-
-fn watched(app: &mut App, number: u64) -> Option<&mut Live> {
-    page(app).filter(|page| page.number() == number && !page.stopped())
-}
-
-/// Handles a model that cannot be used: shows the reason, and names imprints by the model before it, if there was one.
-fn on_no_name(app: &mut App, source: u64, by: u64, reason: &str) -> Option<Effect> {
-    let next = app.works + 1;
-    let page = watched(app, source).filter(|page| page.names.is_by(by))?;
-    page.names.fail(reason, next);
-    let returned = (!page.names.is_by(by)).then(|| name_by(page));
-    app.works = next;
-    refuse(app, reason);
-    returned
-}
-
-fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
+pub fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
     match event {
         LiveEvent::Recorded(name, RecordedFrames { frames: 0, .. }) => {
             return inform(
@@ -384,67 +346,53 @@ fn on_frames(app: &mut App, number: u64, event: &LiveEvent) {
     let Some(page) = watched(app, number) else {
         return;
     };
-    let troubles = |page: &Live| {
-        let refusal = page.recording().refusal().map(str::to_owned);
-        (page.trouble(), refusal)
-    };
-    let before = troubles(page);
-    let error = page.error().cloned();
+    let wrong = |page: &Live| (page.trouble(), page.error().cloned());
+    let (before, refused) = (wrong(page), page.recording.refusal.clone());
     match event {
-        LiveEvent::Waiting
-        | LiveEvent::NotNamed(..)
-        | LiveEvent::Recorded(..)
-        | LiveEvent::NotFinished(_) => {}
-        LiveEvent::Arrived(batch) => {
-            let moved = page.follow_recording(&batch.status);
-            page.take(batch);
-            if let Some(text) = moved {
-                return inform(app, text);
-            }
-        }
+        LiveEvent::Waiting | LiveEvent::Recorded(..) | LiveEvent::NotFinished(_) => {}
+        LiveEvent::Arrived(batch) => page.take(batch),
         LiveEvent::Recording(name) => {
-            page.set_recording(Some(name.clone()));
+            page.begin_recording(Some(name.clone()));
             return inform(app, format!("recording in {name}"));
         }
-        LiveEvent::Named(by, named) => page.names.take(*by, (**named).clone()),
+        LiveEvent::Named(by, named) => page.names.take(*by, Ok((**named).clone())),
+        LiveEvent::NotNamed(by, reason) => page.names.take(*by, Err(reason.clone())),
         LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
     }
-    let (trouble, refusal) = troubles(page);
-    let is_wrong = page.error().is_some() && page.error() != error.as_ref();
-    if is_open && (is_wrong || trouble.is_some() && trouble != before.0) {
+    let (now, refusal) = (wrong(page), page.recording.refusal.clone());
+    if is_open && now != before && now != (None, None) {
         // The page shows the trouble; an old notice, such as that of the beginning of a recording, is no longer true.
         app.notice = None;
     } else if !is_open
+        && refusal != refused
         && let Some(reason) = refusal
-        && before.1.as_ref() != Some(&reason)
     {
         refuse(app, reason);
     }
 }
 
-pub(super) const NO_SOURCE: &str =
-    "no source yet: ':watch SOURCE' watches a sensor or plays a recording";
+const NO_SOURCE: &str = "no source yet: ':watch SOURCE' watches a sensor or plays a recording";
 
 const OPEN_ALREADY: &str = "this is the watched source; ':watch SOURCE' watches another one";
 
-pub(in crate::tui) fn last_page(app: &App) -> Option<&Live> {
+pub fn last_page(app: &App) -> Option<&Live> {
     let page = topmost!(&app.dialogs, Live).or(app.live.as_ref())?;
     Some(page)
 }
 
 /// Returns the file in which frames are recorded now, whether the page is open or not; None if nothing is recorded.
-pub(in crate::tui) fn recording(app: &App) -> Option<&str> {
-    let page = last_page(app).filter(|page| !page.stopped())?;
-    page.recording().name()
+pub fn recording(app: &App) -> Option<&str> {
+    let page = last_page(app).filter(|page| !page.stopped)?;
+    page.recording.name.as_deref()
 }
 
 /// Returns the page of the source that was watched last, open or not, to change it.
-pub(super) fn page(app: &mut App) -> Option<&mut Live> {
+pub fn page(app: &mut App) -> Option<&mut Live> {
     let page = topmost!(&mut app.dialogs, Live).or(app.live.as_mut())?;
     Some(page)
 }
 
-pub(in crate::tui) fn set_aside(app: &mut App) {
+pub fn set_aside(app: &mut App) {
     if let Some(Dialog::Live(page)) = app
         .dialogs
         .pop_if(|dialog| matches!(dialog, Dialog::Live(_)))
@@ -454,12 +402,12 @@ pub(in crate::tui) fn set_aside(app: &mut App) {
 }
 
 /// Requests a check of a source; it is watched if it can be read.
-pub(super) fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
+pub fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
     let request = source.request(&app.watch_settings);
     // A second page would have no bytes to read, and the first one and its history would be gone.
     let reads_standard = |request: &WatchRequest| request.source == FrameSource::Standard;
-    if reads_standard(&request) && page(app).is_some_and(|page| reads_standard(page.request())) {
-        refuse(app, LiveRefusal::ReadOnce.to_string());
+    if reads_standard(&request) && page(app).is_some_and(|page| reads_standard(&page.request)) {
+        refuse(app, READ_ONCE);
         return None;
     }
     let (models, access) = (app.jobs.models().clone(), Arc::clone(&app.jobs.access));
@@ -479,10 +427,10 @@ pub(super) fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect
 
 /// Opens a page for a source, in place of the one before. Late reports of the source before have its own number, and
 /// are dropped.
-pub(super) fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
+pub fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
     app.works += 1;
     let mut page = Live::new(Arc::clone(request), app.works);
-    page.set_recording(
+    page.begin_recording(
         request
             .write
             .as_ref()
@@ -501,17 +449,16 @@ pub(super) fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
 
 fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
     Effect::Frames(FrameWork::Watch {
-        number: page.number(),
-        request: Arc::clone(page.request()),
+        number: page.number,
+        request: Arc::clone(&page.request),
         write,
         naming: page.names.request().cloned().map(Box::new),
     })
 }
 
-/// Opens the page of the last source. A source that was left is watched again: its history and settings are still
-/// there; frames that came meanwhile are not. One that has ended is not: the page shows the frame that it showed. The
-/// recording that was requested at the start is finished, and stays as it is.
-pub(super) fn open(app: &mut App) -> Option<Effect> {
+/// Opens the page of the last source as it was left. If the source can go on, its frames are watched again; those that
+/// came meanwhile are lost. A finished recording is played again only when asked for.
+pub fn open(app: &mut App) -> Option<Effect> {
     if topmost!(&app.dialogs, Live).is_some() {
         refuse(app, OPEN_ALREADY);
         return None;
@@ -521,14 +468,14 @@ pub(super) fn open(app: &mut App) -> Option<Effect> {
         return None;
     };
     let mut effect = None;
-    if page.stopped() {
+    if page.stopped {
         app.works += 1;
-        effect = Some(if page.has_ended() {
-            page.reopen(app.works);
+        effect = Some(if page.status.state.is_final() {
+            page.stopped = false;
+            page.names.restart(app.works);
             name_by(&page)
         } else {
             page.restart(app.works);
-            say_not_recording(app, &mut page);
             watch_source(&page, None)
         });
     }
@@ -536,30 +483,19 @@ pub(super) fn open(app: &mut App) -> Option<Effect> {
     effect
 }
 
-pub(super) fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
+pub fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
     if let Err(refused) = page.check_again() {
-        refuse(app, refused.to_string());
+        refuse(app, refused);
         return None;
     }
     app.works += 1;
-    page.watch_again(app.works);
-    say_not_recording(app, page);
+    page.restart(app.works);
     Some(watch_source(page, None))
 }
 
-fn say_not_recording(app: &mut App, page: &mut Live) {
-    if page.recording.take_stopped() {
-        let record = app.keymap().label(Context::Live, &action::RECORD);
-        inform(
-            app,
-            format!("not recording any more; {record} records in a new file"),
-        );
-    }
-}
-
-pub(super) fn name_by(page: &Live) -> Effect {
+pub fn name_by(page: &Live) -> Effect {
     let naming = page.names.request().cloned().map(Box::new);
-    Effect::Frames(FrameWork::NameBy(page.number(), naming))
+    Effect::Frames(FrameWork::NameBy(page.number, naming))
 }
 
 #[cfg(test)]
@@ -568,37 +504,6 @@ mod tests {
 
     use super::*;
     use crate::tui::live::message::FrameBatch;
-
-    /// A recording that is played in a loop: its numbers begin again.
-    #[test]
-    fn marks_from_before_a_recording_do_not_get_into_it() {
-        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let take = |page: &mut Live, number| {
-            let mut frame = Frame::new(FrameSize::new(2, 2).expect("an allowed size"));
-            frame.number = number;
-            page.take(&FrameBatch {
-                frames: vec![Arc::new(frame)],
-                ..FrameBatch::default()
-            });
-            assert_eq!(page.mark(), Ok((number, true)));
-        };
-        for number in [5, 6, 0] {
-            take(&mut page, number);
-        }
-        let requested = record(&mut page);
-        assert!(matches!(
-            requested,
-            Ok(Effect::Frames(FrameWork::Record(_)))
-        ));
-        // The recording has begun before the page hears of it.
-        take(&mut page, 1);
-        page.set_recording(Some("touch-1.npy".to_owned()));
-        take(&mut page, 6);
-        let view = page.take_changed_view().expect("frames were marked");
-        let numbers: Vec<u64> = view.marks.iter().map(|mark| mark.number).collect();
-        assert_eq!(numbers, [1, 6]);
-        assert_eq!(page.marks().len(), 5);
-    }
 
     #[test]
     fn a_threshold_set_by_key_still_drops_small_pieces() {
@@ -613,7 +518,7 @@ mod tests {
         });
         page.step_threshold(1);
         assert_eq!(page.rule().map(|set| set.least), Some(4));
-        let imprint = page.reading().and_then(|reading| reading.imprint);
+        let imprint = page.reading.and_then(|reading| reading.imprint);
         assert_eq!(imprint.map(|imprint| imprint.count()), Some(0));
     }
 }

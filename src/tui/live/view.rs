@@ -12,7 +12,7 @@ use std::path::Path;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use taxel_core::description::{Descriptor, Value};
+use taxel_core::description::Descriptor;
 use taxel_core::frame::RuleOrigin;
 use taxel_core::imprint::Imprint;
 use taxel_core::recognition::AnswerState;
@@ -25,9 +25,9 @@ use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::live::heat::{HeatGrid, HeatMap, LivePanes, cells, scale};
-use crate::tui::live::message::{LiveMessage, NamedImprint, Naming, RecordedFrames, SourceState};
+use crate::tui::live::message::{LiveMessage, NamedImprint, Naming, SourceState};
 use crate::tui::live::reading::{HeatLayer, LiveReading};
-use crate::tui::live::state::Live;
+use crate::tui::live::state::{Live, NO_FRAME};
 use crate::tui::live::threshold::{self, progress_text};
 use crate::tui::live::trend;
 use crate::tui::widget::theme::{Role, Theme};
@@ -36,6 +36,9 @@ use crate::tui::widget::write;
 const LABEL: usize = 11;
 
 const SHOWN: [&str; 5] = ["na", "nae", "p", "f", "cg"];
+
+/// The most marks that are listed, the newest ones.
+const LISTED: usize = 20;
 
 impl Page for Live {
     fn context(&self) -> Context {
@@ -58,7 +61,7 @@ impl Page for Live {
         match message {
             Message::Live(LiveMessage::Window(_)) => hides_taxels(self, area),
             Message::Live(LiveMessage::Record) => {
-                self.recording().name().is_some() || !self.status().state.is_final()
+                self.recording.name.is_some() || !self.status.state.is_final()
             }
             Message::Live(LiveMessage::Again) => self.check_again().is_ok(),
             _ => true,
@@ -72,22 +75,23 @@ impl Page for Live {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        let reading = self.reading();
         let panes = panes(self, area);
-        let shown = reading.filter(|_| !self.display.only_panel);
-        let map = shown.map(|reading| HeatMap::of(self, reading, theme, panes.map));
-        let title = title(self, map.as_ref().and_then(HeatMap::window));
-        let title = fitting_title(title, panes.title.width.into(), theme);
-        let pieces = title.iter().map(|piece| (piece.text.as_str(), piece.role));
-        write::line(buffer, panes.title, theme, pieces);
-        let mut marks = None;
-        if let Some(map) = map {
+        let map = self
+            .shown_reading()
+            .map(|own| HeatMap::of(self, own, theme, panes.map));
+        draw_title(
+            self,
+            map.as_ref().and_then(HeatMap::window),
+            theme,
+            buffer,
+            panes.title,
+        );
+        if let Some(map) = &map {
             map.draw(buffer, panes.map);
-            marks = map.legend();
         }
-        let lines = lines(self, theme, keymap, marks);
+        let lines = lines(self, theme, keymap, map.as_ref().and_then(HeatMap::legend));
         let mut panel = panes.panel;
-        if let Some((plot, rest)) = panes.plot(lines.len()).filter(|_| shown.is_some()) {
+        if let Some((plot, rest)) = panes.plot(lines.len()).filter(|_| map.is_some()) {
             trend::draw(self, theme, buffer, plot);
             panel = rest;
         }
@@ -95,12 +99,12 @@ impl Page for Live {
         None
     }
 
-    fn remark(&self, keymap: &Keymap, area: Rect) -> Option<(String, Role)> {
+    fn remark(&self, keymap: &Keymap, _area: Rect) -> Option<(String, Role)> {
         let error = self.error().map(ToString::to_string);
         let troubles: Vec<String> = error.into_iter().chain(self.trouble()).collect();
         let text = match (&troubles[..], self.unseen_note()) {
             ([], Some(note)) => note.to_owned(),
-            ([], None) => return Some((at_end(self, keymap, area)?, Role::Quiet)),
+            ([], None) => return Some((at_end(self, keymap)?, Role::Quiet)),
             (troubles, _) => troubles.join("; "),
         };
         Some((format!("! {text}"), Role::Error))
@@ -115,160 +119,112 @@ impl Page for Live {
     }
 }
 
-/// Returns what can be done after the end of the source, as far as there is room for it on a page of this area; None
-/// before the end.
-fn at_end(live: &Live, keymap: &Keymap, area: Rect) -> Option<String> {
-    if !live.has_ended() {
+impl Live {
+    /// Returns the reading of the taxels that are drawn; None if only the panel is.
+    fn shown_reading(&self) -> Option<&LiveReading> {
+        self.reading.as_ref().filter(|_| !self.only_panel)
+    }
+}
+
+/// Returns what can be done after the end of the source; None before it.
+fn at_end(live: &Live, keymap: &Keymap) -> Option<String> {
+    if live.status.state != SourceState::Ended {
         return None;
     }
     let key = |action| keymap.label(Context::Live, action);
     let (earlier, first) = (key(&action::SCROLL_UP), key(&action::FIRST));
     let (again, close) = (key(&action::WATCH_AGAIN), key(&action::CANCEL));
-    let again = match live.check_again() {
-        Ok(()) => format!("{again}: again, "),
-        Err(_) => String::new(),
-    };
-    let forms = [
-        format!("ended; {earlier}: earlier frames, {first}: the first one, {again}{close}: close"),
-        format!("ended; {again}{close}: close"),
-    ];
-    let most = usize::from(area.height / 8).max(1);
-    let fits = |text: &String| write::broken(text, area.width.into()).len() <= most;
-    Some(forms.into_iter().find(fits).unwrap_or("ended".to_owned()))
+    let again = live.check_again().map(|()| format!("{again}: again, "));
+    let again = again.unwrap_or_default();
+    Some(format!(
+        "ended; {earlier}: earlier frames, {first}: the first one, {again}{close}: close"
+    ))
 }
 
 fn panes(live: &Live, area: Rect) -> LivePanes {
-    let reading = live.reading().filter(|_| !live.display.only_panel);
+    let reading = live.shown_reading();
     let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
-    LivePanes::of(area, size, live.display.numbers)
+    LivePanes::of(area, size, live.numbers)
 }
 
 /// Returns true if some taxels do not fit on a page of this area, although the heat map is shown.
 pub(super) fn hides_taxels(live: &Live, area: Rect) -> bool {
-    let Some(reading) = live.reading().filter(|_| !live.display.only_panel) else {
-        return false;
-    };
-    let size = (reading.values.columns(), reading.values.rows());
-    let grid = HeatGrid::of(panes(live, area).map, size, live.display.numbers, (0, 0));
-    !(grid.columns.is_whole() && grid.rows.is_whole())
+    live.shown_reading().is_some_and(|reading| {
+        let size = (reading.values.columns(), reading.values.rows());
+        let grid = HeatGrid::of(panes(live, area).map, size, live.numbers, (0, 0));
+        !(grid.columns.is_whole() && grid.rows.is_whole())
+    })
 }
 
 /// Returns the taxel to look at to see hidden ones in a direction, on a page of this area; None if none are hidden
 /// there.
 pub(super) fn beyond(live: &Live, theme: &Theme, area: Rect, towards: Arrow) -> Option<(u8, u8)> {
-    let reading = live.reading().filter(|_| !live.display.only_panel)?;
-    let map = HeatMap::of(live, reading, theme, panes(live, area).map);
+    let map = HeatMap::of(live, live.shown_reading()?, theme, panes(live, area).map);
     map.beyond(towards, live)
 }
 
-/// A line of the panel: a number with its label.
-struct PanelLine {
-    label: &'static str,
-    text: String,
-    shorter: Vec<String>,
-}
-
-impl PanelLine {
-    fn new(label: &'static str, text: String) -> Self {
-        Self {
-            label,
-            text,
-            shorter: Vec::new(),
-        }
-    }
-
-    /// Creates a line in several forms, longer ones first; its text is `none` if there are no forms.
-    fn of_forms(label: &'static str, forms: Vec<String>, none: &str) -> Self {
-        let mut forms = forms.into_iter();
-        let text = forms.next().unwrap_or_else(|| none.to_owned());
-        Self {
-            label,
-            text,
-            shorter: forms.collect(),
-        }
-    }
-
-    fn up_to(label: &'static str, text: String, mark: &str) -> Self {
-        let shorter = text.split_once(mark).map(|(head, _)| head.to_owned());
-        let shorter = shorter.into_iter().collect();
-        Self {
-            label,
-            text,
-            shorter,
-        }
-    }
-}
-
-/// Returns all lines of the panel, the most important ones first. A low screen cuts them off at the bottom, so lines
-/// about the touch come before lines about the source. `marks` is the legend of the mark on taxels.
-fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> Vec<PanelLine> {
+/// Returns all lines of the panel, each with its label, the most important ones first. A low screen cuts them off at
+/// the bottom, so lines about the touch come before lines about the source. `marks` is the legend of the mark on taxels.
+fn lines(
+    live: &Live,
+    theme: &Theme,
+    keymap: &Keymap,
+    marks: Option<String>,
+) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
-    if let Some(reading) = live.reading() {
+    if let Some(reading) = &live.reading {
         let shown = SHOWN.iter().filter_map(|key| Descriptor::from_key(key));
-        lines.extend(shown.map(|descriptor| described(reading, descriptor, theme)));
-        lines.push(regions(reading));
+        lines.extend(shown.map(|own| (own.symbol, described(reading, own, theme))));
+        lines.push(("regions", regions(reading)));
     }
-    if let Some(naming) = live.names.naming() {
-        let shown = live.reading().and_then(|reading| reading.imprint);
+    if let Some(naming) = &live.names.naming {
+        let shown = live.reading.as_ref().and_then(|reading| reading.imprint);
         lines.extend(named(naming, shown.as_ref(), theme));
     }
-    lines.push(threshold(live, keymap));
-    lines.push(PanelLine::up_to("tare", tare(live), ", "));
-    if let Some(reading) = live.reading() {
+    lines.push(("threshold", threshold(live, keymap)));
+    lines.push(("tare", tare(live)));
+    if let Some(reading) = &live.reading {
         lines.extend(of_values(live, reading, theme, marks));
     }
     let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 5)));
-    let rate = rate.unwrap_or_else(|| theme.none().to_owned());
-    lines.push(PanelLine::new("rate", rate));
-    lines.push(PanelLine::of_forms("dropped", dropped(live), "0"));
-    let mut say = |label, text: String| lines.push(PanelLine::new(label, text));
-    say("not drawn", grouped(live.not_drawn()));
-    if let Some(text) = gaps(live) {
-        say("gaps", text);
+    lines.push(("rate", rate.unwrap_or_else(|| theme.none().to_owned())));
+    lines.push(("dropped", dropped(live)));
+    lines.push(("not drawn", grouped(live.not_drawn())));
+    let gaps = live.status.gaps;
+    if gaps.count > 0 {
+        let missing = value::decimal(gaps.missing, 1);
+        lines.push((
+            "gaps",
+            format!("{}, {missing} s missing", grouped(gaps.count)),
+        ));
     }
-    if let Some(text) = marked(live) {
-        say("marked", text);
-    }
-    let recording = recording(live);
-    if !recording.is_empty() {
-        lines.push(PanelLine::of_forms("recording", recording, ""));
-    }
+    lines.extend(marked(live).map(|text| ("marked", text)));
+    lines.extend(recording(live).map(|text| ("recording", text)));
     lines
 }
 
 /// Returns the last marked frames: those marked by keys, and those that were marked while the recording was made, which
 /// it knows by their labels. None if no frame is marked.
 fn marked(live: &Live) -> Option<String> {
-    let (own, recorded) = (live.marks(), live.marks.recorded());
-    let text = |what, marks: &[FrameMark]| {
+    let text = |what, marks: Vec<&FrameMark>| {
         let numbers = marks.iter().rev().map(|mark| mark.number.to_string());
-        let numbers: Vec<String> = numbers.take(20).collect();
+        let numbers: Vec<String> = numbers.take(LISTED).collect();
         (!marks.is_empty()).then(|| format!("{what} {}", numbers.join(", ")))
     };
-    let texts = [text("frame", &own), text("label", recorded)];
-    let texts: Vec<String> = texts.into_iter().flatten().collect();
+    let own = text("frame", live.marks().collect());
+    let recorded = text("label", live.recorded_marks().iter().collect());
+    let texts: Vec<String> = own.into_iter().chain(recorded).collect();
     (!texts.is_empty()).then(|| texts.join("; "))
 }
 
-/// Returns the line of a descriptor of the imprint; a point gets fewer decimals in its shorter forms. An imprint
-/// without active taxels has counts of 0; without an imprint there is no number.
-fn described(reading: &LiveReading, descriptor: &'static Descriptor, theme: &Theme) -> PanelLine {
+/// Returns a descriptor of the imprint. An imprint without active taxels has counts of 0; without an imprint there is
+/// no number.
+fn described(reading: &LiveReading, descriptor: &Descriptor, theme: &Theme) -> String {
     let of_nothing = reading.imprint.map(|_| descriptor.of_nothing);
     let described = reading.description.as_ref().map(descriptor.measure);
     let measured = described.or(of_nothing);
     let text = measured.and_then(|measured| value::text(measured, descriptor.dimension));
-    let mut line = PanelLine::new(
-        descriptor.symbol,
-        text.unwrap_or_else(|| theme.none().to_owned()),
-    );
-    if let Some(Value::Point(point)) = measured {
-        let shorter = [2, 1, 0].map(|decimals| {
-            let [x, y] = [point.x, point.y].map(|number| value::decimal(number, decimals));
-            format!("{x}, {y}")
-        });
-        line.shorter = shorter.to_vec();
-    }
-    line
+    text.unwrap_or_else(|| theme.none().to_owned())
 }
 
 fn of_values(
@@ -276,86 +232,54 @@ fn of_values(
     reading: &LiveReading,
     theme: &Theme,
     marks: Option<String>,
-) -> Vec<PanelLine> {
+) -> Vec<(&'static str, String)> {
     let unit = live.unit();
+    let ends = live.ends();
     // Small sums of large values are rounding errors, not measured values.
-    let is_small = live.range().1 < 0.1;
-    let value = if is_small { measured } else { fitting };
+    let value = if ends.1 < 0.1 { measured } else { fitting };
     let contact = counted(reading.contact, "taxel");
     let force = format!("{}{unit} on {contact}", value(reading.force, 9));
-    let mut lines = vec![
-        PanelLine::up_to("force", force, " on "),
-        PanelLine::new("range", scale(theme, live.range(), &unit)),
-    ];
-    lines.extend(marks.map(|marks| PanelLine::new("legend", marks)));
+    let mut lines = vec![("force", force), ("range", scale(theme, ends, &unit))];
+    lines.extend(marks.map(|marks| ("legend", marks)));
     let mut raw = format!("sum {}{unit}", value(reading.sum, 9));
     if let Some((largest, (column, row))) = reading.max {
         let largest = value(largest, 9);
         raw += &format!(", max {largest}{unit} at {column}, {row}");
     }
-    lines.push(PanelLine::up_to("raw", raw, " at "));
+    lines.push(("raw", raw));
     let cells = counted(cells(&reading.values) as u64, "cell");
     let (columns, rows) = (reading.values.columns(), reading.values.rows());
-    let size = format!("{columns} × {rows}, {cells}");
-    lines.push(PanelLine::up_to("size", size, ", "));
+    lines.push(("size", format!("{columns} × {rows}, {cells}")));
     lines
 }
 
-/// Returns how often the source was lost, and how many seconds of frames are missing; None if it was not lost.
-fn gaps(live: &Live) -> Option<String> {
-    let gaps = live.status().gaps;
-    let missing = value::decimal(gaps.missing, 1);
-    (gaps.count > 0).then(|| format!("{}, {missing} s missing", grouped(gaps.count)))
-}
-
-/// Returns the file that is written and the number of its frames, longer forms first; or why nothing is recorded
-/// although it was requested.
-fn recording(live: &Live) -> Vec<String> {
-    let Some(path) = live.recording().name() else {
-        let reason = live.recording().refusal();
-        return reason
-            .map(|reason| format!("none: {reason}"))
-            .into_iter()
-            .collect();
+/// Returns the file that is written and the number of its frames; or why nothing is recorded although it was requested.
+fn recording(live: &Live) -> Option<String> {
+    let Some(path) = &live.recording.name else {
+        let reason = live.recording.refusal.as_ref()?;
+        return Some(format!("none: {reason}"));
     };
-    let name = Path::new(path)
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy();
-    let RecordedFrames { frames, left_out } = live.status().recorded.unwrap_or_default();
-    let frames = counted(frames, "frame");
-    if left_out == 0 {
-        return vec![
-            format!("{path}, {frames}"),
-            format!("{name}, {frames}"),
-            frames,
-        ];
-    }
-    let left_out = grouped(left_out);
-    vec![
-        format!("{path}, {frames}; {left_out} of another size left out"),
-        format!("{name}, {frames}; {left_out} of another size left out"),
-        format!("{frames}; {left_out} of another size left out"),
-        format!("{frames}; {left_out} left out"),
-    ]
+    let name = Path::new(path).file_name().unwrap_or_default();
+    let recorded = live.status.recorded.unwrap_or_default();
+    let frames = counted(recorded.frames, "frame");
+    let left_out = match recorded.left_out {
+        0 => String::new(),
+        left_out => format!("; {} left out", grouped(left_out)),
+    };
+    Some(format!("{}, {frames}{left_out}", name.to_string_lossy()))
 }
 
-fn regions(reading: &LiveReading) -> PanelLine {
-    let count = reading.regions.to_string();
-    if reading.regions < 2 {
-        return PanelLine::new("regions", count);
-    }
+fn regions(reading: &LiveReading) -> String {
     let all = reading.imprint.as_ref().map_or(0, Imprint::count);
-    PanelLine {
-        label: "regions",
-        text: format!("{count}, largest above; NA {all} in all"),
-        shorter: vec![format!("{count}; NA {all} in all"), count],
+    match reading.regions {
+        count @ 0..2 => count.to_string(),
+        count => format!("{count}, largest above; NA {all} in all"),
     }
 }
 
 /// Returns the lines with the name of the shape, the nearest imprint, and the model with its noise; no name where
 /// nothing is active. Answers about an earlier imprint end in dots.
-fn named(naming: &Naming, shown: Option<&Imprint>, theme: &Theme) -> [PanelLine; 3] {
+fn named(naming: &Naming, shown: Option<&Imprint>, theme: &Theme) -> [(&'static str, String); 3] {
     let name = naming.request.choice.name();
     let model = match naming.request.noise {
         Some(noise) => format!("{name}, noise {}", noise.flip()),
@@ -367,82 +291,50 @@ fn named(naming: &Naming, shown: Option<&Imprint>, theme: &Theme) -> [PanelLine;
         Some(answer) if Some(&answer.imprint) != shown => text + " …",
         _ => text,
     };
+    let none = || theme.none().to_owned();
     let shape = match (&naming.failure, answer) {
-        (Some(reason), _) => vec![format!("! {reason}")],
-        (None, None) => {
-            let waiting = shown.map(|_| "training or reading the model".to_owned());
-            waiting.into_iter().collect()
-        }
-        (None, Some(answer)) => answered(answer).map(late).into(),
+        (Some(reason), _) => format!("! {reason}"),
+        (None, Some(answer)) => late(answered(answer)),
+        (None, None) if shown.is_some() => "training or reading the model".to_owned(),
+        (None, None) => none(),
     };
     let nearest = answer.and_then(|answer| answer.nearest.as_ref());
-    let nearest = nearest.map_or_else(Vec::new, |(name, distance)| {
-        let forms = match distance {
-            0 => [format!("{name}, the same"), format!("{name}, same")],
-            1 => [
-                format!("{name}, 1 taxel differs"),
-                format!("{name}, 1 differs"),
-            ],
-            taxels => [
-                format!("{name}, {taxels} taxels differ"),
-                format!("{name}, {taxels} differ"),
-            ],
-        };
-        forms.map(late).into()
+    let nearest = nearest.map(|(name, distance)| match distance {
+        0 => late(format!("{name}, the same")),
+        1 => late(format!("{name}, 1 taxel differs")),
+        taxels => late(format!("{name}, {taxels} taxels differ")),
     });
     [
-        PanelLine::of_forms("shape", shape, theme.none()),
-        PanelLine::of_forms("nearest", nearest, theme.none()),
-        PanelLine::new("model", model),
+        ("shape", shape),
+        ("nearest", nearest.unwrap_or_else(none)),
+        ("model", model),
     ]
 }
 
-fn answered(answer: &NamedImprint) -> [String; 3] {
+fn answered(answer: &NamedImprint) -> String {
     let name = answer.names.join(" or ");
-    match answer.state {
-        AnswerState::Tied => [
-            format!("{name}: tied"),
-            format!("tied: {name}"),
-            "tied".to_owned(),
-        ],
-        AnswerState::Unknown => ["unknown"; 3].map(str::to_owned),
-        state => {
-            let how_sure = match answer.unexplained {
-                Some(_) => "perhaps none",
-                None => state.name(),
-            };
-            let short = format!("{name}, {how_sure}");
-            match answer.probability.map(|own| fitting(100.0 * own, 4)) {
-                Some(percent) => [
-                    format!("{name} {percent} %, {how_sure}"),
-                    short,
-                    format!("{name} {percent} %"),
-                ],
-                None => [short.clone(), short, name],
-            }
-        }
+    let how_sure = match (answer.state, answer.unexplained) {
+        (AnswerState::Tied, _) => return format!("{name}: tied"),
+        (AnswerState::Unknown, _) => return "unknown".to_owned(),
+        (_, Some(_)) => "perhaps none",
+        (state, None) => state.name(),
+    };
+    match answer.probability.map(|own| fitting(100.0 * own, 4)) {
+        Some(percent) => format!("{name} {percent} %, {how_sure}"),
+        None => format!("{name}, {how_sure}"),
     }
 }
 
-/// Returns the line of the threshold. "of the file" marks a threshold that came with a recording; other origins have
-/// no remark.
-fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
-    let label = "threshold";
+/// Returns the threshold. "of the file" marks one that came with a recording; other origins have no remark.
+fn threshold(live: &Live, keymap: &Keymap) -> String {
     let Some(set) = live.rule() else {
         let key = keymap.label(Context::Live, &action::THRESHOLD_UP);
-        let shorter = vec![format!("none ({key})"), "none".to_owned()];
-        return PanelLine {
-            label,
-            text: format!("none; {key} sets one"),
-            shorter,
-        };
+        return format!("none; {key} sets one");
     };
     let text = threshold::text(set.rule, &live.unit());
     match set.from {
-        RuleOrigin::File => PanelLine::up_to(label, format!("{text}, of the file"), ", of"),
-        RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => {
-            PanelLine::up_to(label, text, " of max")
-        }
+        RuleOrigin::File => format!("{text}, of the file"),
+        RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => text,
     }
 }
 
@@ -457,38 +349,36 @@ fn tare(live: &Live) -> String {
         return "none".to_owned();
     };
     let frames = counted(origin.frames, "frame");
-    let shown = live.reading().map(|reading| &reading.frame);
-    let age = shown.and_then(
-        |frame| match (frame.time, origin.last.and_then(|(_, time)| time)) {
-            (Some(now), Some(then)) if now > then => {
-                Some(format!(", {} s ago", value::decimal(now - then, 1)))
+    let shown = live.reading.as_ref().map(|reading| &reading.frame);
+    let age = shown
+        .zip(origin.last)
+        .and_then(|(frame, (number, time))| match (frame.time, time) {
+            (Some(now), Some(then)) => {
+                (now > then).then(|| format!("{} s ago", value::decimal(now - then, 1)))
             }
-            (Some(_), Some(_)) => None,
             _ => {
-                let frames = frame.number.checked_sub(origin.last?.0)?;
-                Some(format!(", {} ago", counted(frames, "frame")))
+                let frames = frame.number.checked_sub(number)?;
+                Some(format!("{} ago", counted(frames, "frame")))
             }
-        },
-    );
-    age.map_or(frames.clone(), |age| frames + &age)
+        });
+    age.map_or(frames.clone(), |age| format!("{frames}, {age}"))
 }
 
-/// Returns how many frames were dropped, a sample of the last one, and why it is not a frame; then shorter forms.
-fn dropped(live: &Live) -> Vec<String> {
-    let status = live.status();
-    let mut forms = vec![grouped(status.lost)];
+/// Returns how many frames were dropped, a sample of the last one, and why it is not a frame.
+fn dropped(live: &Live) -> String {
+    let status = &live.status;
+    let mut text = grouped(status.lost);
     if let Some(sample) = status.sample.as_ref().filter(|_| status.lost > 0) {
-        forms.insert(0, format!("{}, the last: {sample}", forms[0]));
+        text += &format!(", the last: {sample}");
         if let Some(reason) = &status.reason {
-            forms.insert(0, format!("{} ({reason})", forms[0]));
+            text += &format!(" ({reason})");
         }
     }
-    forms
+    text
 }
 
 /// Draws the lines from the top; lines that do not fit into the area are left out.
-fn draw_lines(lines: &[PanelLine], theme: &Theme, buffer: &mut Buffer, area: Rect) {
-    let room = usize::from(area.width).saturating_sub(LABEL);
+fn draw_lines(lines: &[(&'static str, String)], theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let height = usize::from(area.height);
     let shown = if lines.len() > height {
         height.saturating_sub(1)
@@ -499,167 +389,81 @@ fn draw_lines(lines: &[PanelLine], theme: &Theme, buffer: &mut Buffer, area: Rec
         let last = write::row(area, shown);
         write::left_out(buffer, last, theme, lines.len() - shown);
     }
-    for (index, line) in lines.iter().take(shown).enumerate() {
-        let label = format!("{:LABEL$}", line.label);
-        let texts = std::iter::once(&line.text).chain(&line.shorter);
-        let texts: Vec<_> = texts.map(|text| theme.text(text)).collect();
-        let texts: Vec<&str> = texts.iter().map(|text| &**text).collect();
-        let text = write::first_fitting(&texts, room);
+    for (index, (label, text)) in lines.iter().take(shown).enumerate() {
+        let label = format!("{label:LABEL$}");
         let pieces = [(&*label, Role::Key), (text, Role::Text)];
         write::line(buffer, write::row(area, index), theme, pieces);
     }
 }
 
-/// The columns that the name of the source keeps in the title when pieces of rank 2 to 4 are left out, and when
-/// pieces of rank 1 are shortened. The name is shortened first, because the user typed it and knows it.
-const SHORT_NAME: usize = 16;
-const SHORTEST_NAME: usize = 4;
-
-/// Returns the pieces of the title. `window` is the visible part of the taxels, as a long and a short text. Usual
-/// states, such as following the source, are omitted; a channel is named only if there are several.
-pub(super) fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece> {
-    let mut pieces = vec![TitlePiece {
-        text: live.request().name(),
-        short: None,
-        role: Role::Title,
-        rank: 0,
-    }];
-    pieces.extend(of_frame(live));
-    pieces.extend(of_state(live));
-    let window = window.map(|[text, short]| TitlePiece::new(3, &text, Role::Text).or(&short));
-    pieces.extend(window);
-    pieces
+/// Draws the title. The name of the source is cut off first: the user typed it and knows it. Usual states, such as
+/// following the source, are omitted; a channel is named only if there are several.
+fn draw_title(live: &Live, window: Option<String>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
+    let mut pieces = of_state(live);
+    pieces.extend(window.map(|window| (window, Role::Text)));
+    let pieces = pieces
+        .into_iter()
+        .map(|(text, role)| (format!("  {text}"), role));
+    let pieces: Vec<(String, Role)> = pieces.collect();
+    let others: usize = pieces.iter().map(|(text, _)| write::width(text)).sum();
+    let room = usize::from(area.width).saturating_sub(others).max(LABEL);
+    let name = live.request.name();
+    let name = write::fitted(&name, room, theme);
+    let pieces = pieces.iter().map(|(text, role)| (&**text, *role));
+    let pieces = std::iter::once((&*name, Role::Title)).chain(pieces);
+    write::line(buffer, area, theme, pieces);
 }
 
-fn of_frame(live: &Live) -> Vec<TitlePiece> {
+/// Returns which frame is shown, and everything unusual about it and its source.
+fn of_state(live: &Live) -> Vec<(String, Role)> {
     let mut pieces = Vec::new();
-    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
-    let status = live.status();
+    let mut say = |text: String, role| pieces.push((text, role));
+    let status = &live.status;
     let channel = status.channel.as_deref();
     if let Some(name) = channel.and_then(|own| own.name.as_deref())
         && status.channels > 1
     {
-        let channel = format!("channel {name} of {}", status.channels);
-        say(5, channel, Role::Text);
+        say(format!("channel {name} of {}", status.channels), Role::Text);
     }
-    match live.frame() {
+    let frame = live.frame();
+    match &frame {
         Some(frame) => {
-            let label = frame
-                .label
-                .as_ref()
-                .map(|label| format!(" (label {label})"));
-            let label = label.as_deref().unwrap_or("");
-            say(2, format!("frame {}{label}", frame.number), Role::Text);
-            if let Some(time) = frame.time {
-                say(6, format!("{} s", value::decimal(time, 3)), Role::Text);
-            }
+            let label = frame.label.as_ref();
+            let label = label.map_or(String::new(), |label| format!(" (label {label})"));
+            say(format!("frame {}{label}", frame.number), Role::Text);
         }
-        None => say(2, "no frame yet".to_owned(), Role::Quiet),
+        None => say(NO_FRAME.to_owned(), Role::Quiet),
     }
-    pieces
-}
-
-/// Returns the pieces about the state: whether the frame is frozen, which layer is shown, and everything unusual.
-fn of_state(live: &Live) -> Vec<TitlePiece> {
-    let frozen = live.cursor.frozen().map(|back| {
-        if back == 0 {
-            return TitlePiece::new(1, "frozen", Role::Focus);
-        }
-        let behind = counted(back, "frame");
-        TitlePiece::new(1, &format!("frozen, {behind} behind"), Role::Focus).or("frozen")
-    });
-    let mut pieces: Vec<TitlePiece> = frozen.into_iter().collect();
-    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
-    if live.recording().name().is_some() {
-        say(1, "recording".to_owned(), Role::Focus);
+    if let Some(time) = frame.and_then(|frame| frame.time) {
+        say(format!("{} s", value::decimal(time, 3)), Role::Text);
     }
-    match (&live.status().state, live.stopped()) {
-        (_, true) => say(3, "stopped".to_owned(), Role::Quiet),
-        (SourceState::Ended, _) => say(3, "source ended".to_owned(), Role::Quiet),
-        _ => {}
+    match live.history.behind() {
+        Some(0) => say("frozen".to_owned(), Role::Focus),
+        Some(back) => say(
+            format!("frozen, {} behind", counted(back, "frame")),
+            Role::Focus,
+        ),
+        None => {}
+    }
+    if live.recording.name.is_some() {
+        say("recording".to_owned(), Role::Focus);
+    }
+    if status.state == SourceState::Ended {
+        say("source ended".to_owned(), Role::Quiet);
     }
     let layer = match live.layer {
         HeatLayer::Tared if live.pipeline.origin().is_none() => HeatLayer::Raw,
         layer => layer,
     };
-    say(8, layer.name().to_owned(), Role::Quiet);
+    say(layer.name().to_owned(), Role::Quiet);
     if let Some(progress) = live.pipeline.progress() {
-        say(4, format!("tare: {}", progress_text(progress)), Role::Focus);
+        say(format!("tare: {}", progress_text(progress)), Role::Focus);
     }
-    if live.cursor.holds_peak() {
-        // A frozen frame is shown as it came, without the held peak.
-        let rank = if live.cursor.frozen().is_none() { 1 } else { 4 };
-        say(rank, "max held".to_owned(), Role::Focus);
+    if live.history.holds_peak() {
+        say("max held".to_owned(), Role::Focus);
     }
     if live.is_marked() {
-        say(4, "marked".to_owned(), Role::Focus);
-    }
-    pieces
-}
-
-pub(super) struct TitlePiece {
-    /// The text; it begins with two blanks, except for the name of the source.
-    pub(super) text: String,
-    /// A shorter text; None if there is none.
-    short: Option<String>,
-    pub(super) role: Role,
-    /// The rank: pieces of the highest rank are left out first if there is no room for all; the name never is.
-    rank: u8,
-}
-
-impl TitlePiece {
-    fn new(rank: u8, text: &str, role: Role) -> Self {
-        Self {
-            text: format!("  {text}"),
-            short: None,
-            role,
-            rank,
-        }
-    }
-
-    fn or(self, short: &str) -> Self {
-        Self {
-            short: Some(format!("  {short}")),
-            ..self
-        }
-    }
-}
-
-/// Shortens the title to a number of columns. Pieces that are needed to read the numbers correctly (frozen, peak
-/// held), and the note that they are recorded, stay longest; then the name is shortened.
-pub(super) fn fitting_title(
-    mut pieces: Vec<TitlePiece>,
-    room: usize,
-    theme: &Theme,
-) -> Vec<TitlePiece> {
-    let width = |pieces: &[TitlePiece], name: usize| -> usize {
-        let mut widths = pieces.iter().map(|piece| write::width(&piece.text));
-        let name = widths.next().map_or(0, |own| own.min(name));
-        name + widths.sum::<usize>()
-    };
-    while let Some(last) = (1..pieces.len()).max_by_key(|&index| {
-        let piece = &pieces[index];
-        (piece.rank, piece.short.is_some())
-    }) {
-        let rank = pieces[last].rank;
-        let name = match rank {
-            ..=1 => SHORTEST_NAME,
-            2..=4 => SHORT_NAME,
-            _ => usize::MAX,
-        };
-        if width(&pieces, name) <= room {
-            break;
-        }
-        match pieces[last].short.take() {
-            Some(short) => pieces[last].text = short,
-            None if rank > 1 => drop(pieces.remove(last)),
-            None => break,
-        }
-    }
-    let others = width(&pieces, 0);
-    if let Some(name) = pieces.first_mut() {
-        let room = room.saturating_sub(others);
-        name.text = write::fitted(&name.text, room, theme).into_owned();
+        say("marked".to_owned(), Role::Focus);
     }
     pieces
 }

@@ -29,7 +29,6 @@ use crate::tui::app::update::{on_worker, update};
 use crate::tui::app::view::draw;
 use crate::tui::keys::key::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveEvent, LiveMessage, NamedSource, SourceState};
-use crate::tui::live::state::Live;
 use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
 use crate::tui::runtime::reminders::remind;
@@ -109,7 +108,7 @@ impl Session {
 
     /// Watches a source of frames; reads no frame yet.
     pub fn watch(&mut self, name: &str) -> Result<(), String> {
-        let number = |app: &App| last_page(app).map(Live::number);
+        let number = |app: &App| last_page(app).map(|page| page.number);
         let before = number(&self.app);
         self.send(Message::Live(LiveMessage::Source(NamedSource::new(name))));
         if number(&self.app) != before {
@@ -134,8 +133,8 @@ impl Session {
     }
 
     pub(super) fn end_of_frames(&self) -> String {
-        let page = last_page(&self.app).filter(|page| !page.stopped());
-        match page.map(|page| &page.status().state) {
+        let page = last_page(&self.app).filter(|page| !page.stopped);
+        match page.map(|page| &page.status.state) {
             None => "no source is watched".to_owned(),
             Some(SourceState::Failed(reason)) => reason.clone(),
             Some(_) => "the source has ended".to_owned(),

@@ -92,7 +92,7 @@ pub fn run(
         let _ = update(&mut app, Message::Terminate);
     }
     // As in a pipeline: a script must see that the recording is incomplete.
-    let failure = last_page(&app).and_then(|page| page.recording().write_failure());
+    let failure = last_page(&app).and_then(|page| page.recording.write_failure.as_deref());
     let lost = failure.map(|reason| session::tell(&format!("error: {reason}\n")));
     for line in end(&mut app) {
         session::tell(&line);

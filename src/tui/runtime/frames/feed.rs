@@ -382,7 +382,7 @@ mod tests {
         if let Some(batch) = feed.take() {
             page.take(&batch);
         }
-        page.reading().map(|reading| reading.frame.number)
+        page.reading.as_ref().map(|reading| reading.frame.number)
     }
 
     #[test]
@@ -396,7 +396,7 @@ mod tests {
         // The tick counts frames that were lost before it.
         counts.dropped = 3;
         let shown = after(&mut page, &feed, AcquireEvent::Tick(&counts));
-        assert_eq!((shown, page.status().lost), (Some(0), 3));
+        assert_eq!((shown, page.status.lost), (Some(0), 3));
         let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
         assert_eq!(shown, None, "there is no other frame");
         let time = None;
@@ -408,19 +408,8 @@ mod tests {
         frame.number = 1;
         let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
         assert_eq!(shown, Some(1));
-        assert_eq!(page.mark(), Ok((1, true)));
         let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
         assert_eq!(shown, Some(0));
-        assert!(page.marks().is_empty(), "the frame is gone, so its mark is");
-        // The mark of a confirmed frame remains.
-        after(&mut page, &feed, AcquireEvent::Provisional(&frame));
-        assert_eq!(page.mark(), Ok((1, true)));
-        let whole = AcquireEvent::Frame {
-            frame: &frame,
-            time,
-        };
-        assert_eq!(after(&mut page, &feed, whole), Some(1));
-        assert!(page.is_marked());
     }
 
     #[test]
@@ -473,7 +462,7 @@ mod tests {
         assert_eq!(page.trouble().as_deref(), Some(twice));
         page.see_notices();
         assert_eq!(page.trouble(), None);
-        assert_eq!(page.status().gaps.count, 2);
+        assert_eq!(page.status.gaps.count, 2);
     }
 
     #[test]
