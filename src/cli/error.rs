@@ -12,10 +12,8 @@ use taxel_core::parameter::number::short;
 use taxel_core::pose::GridError;
 use taxel_core::quote::shortened_message;
 use taxel_core::recognition::{NoiseError, TrainingError};
-use taxel_core::sensor::MatrixSize;
 use taxel_core::sweep::MergeError;
 use taxel_files::acquire::RecorderError;
-use taxel_files::formats::Name;
 use taxel_files::formats::file::{system_reason, write_reason};
 use taxel_files::formats::recording::RecordingNote;
 use taxel_files::formats::value::counted;
@@ -25,8 +23,6 @@ use taxel_files::{ReadError, ReadErrorKind};
 use crate::cli::failure::Failure;
 use crate::cli::input::content::InputError;
 use crate::tui::script::runner;
-
-pub(crate) const MOST_PAIRED: usize = 4096;
 
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CliError {
@@ -62,47 +58,8 @@ pub(crate) enum CliError {
     Set { place: String, error: String },
     #[error(transparent)]
     Training(#[from] TrainingError),
-    #[error("{error}; {remedy}, or allow it with --allow-cut")]
-    Cut {
-        error: TrainingError,
-        remedy: &'static str,
-    },
-    #[error("{name}: expected a name that ends in {expected}, for {what}")]
-    Ending {
-        name: String,
-        what: &'static str,
-        expected: &'static str,
-    },
-    /// A model would get the name of a built-in one, and never be used.
-    #[error("{name} is the name of a built-in model; choose another name")]
-    BuiltInSet { name: Name },
-    #[error("{name} is built in and cannot be deleted")]
-    BuiltInModel { name: Name },
-    #[error("{name}: none of its imprints fits on {size} taxels")]
-    NoTouch { name: String, size: MatrixSize },
-    #[error("no model named {name:?}; 'taxel model list' shows all{near}")]
-    NoModel { name: String, near: String },
     #[error(transparent)]
     Noise(#[from] NoiseError),
-    #[error("--mask has {mask} taxels, the imprint {imprint}")]
-    Mask {
-        mask: MatrixSize,
-        imprint: MatrixSize,
-    },
-    #[error("--expect: the model has no shape named {name:?}; its shapes are {shapes}{near}")]
-    NotInModel {
-        name: String,
-        shapes: String,
-        near: String,
-    },
-    #[error("--expect: expected {expected:?}, found {found}")]
-    Unexpected { expected: String, found: String },
-    #[error("{name}: {shapes} shapes, and a drawing shows at most 64; .csv takes all")]
-    TooManyShapes { name: String, shapes: usize },
-    #[error("{table}: the model has {shapes} shapes (allowed: up to {MOST_PAIRED})")]
-    TooManyPairs { table: &'static str, shapes: usize },
-    #[error("{place}: {error}")]
-    Separation { place: String, error: TrainingError },
     #[error("{name:?} already exists; --force replaces it")]
     Taken { name: String },
     #[error("{name}: cannot write: {}", write_reason(error))]
@@ -253,8 +210,7 @@ impl CliError {
             Self::Script {
                 failure: runner::ScriptFailure::Ended { .. },
                 ..
-            }
-            | Self::Unexpected { .. } => 3,
+            } => 3,
             Self::Stopped { status } => *status,
             _ => 1,
         }

@@ -89,12 +89,11 @@ impl<E: Error + 'static> From<E> for Failure {
             failure.clone()
         } else if let Some(error) = any.downcast_ref::<CliError>() {
             error.failure()
+        } else if let Some(error) = any.downcast_ref::<FileError>().filter(|own| own.exists()) {
+            let path = error.path.to_string_lossy();
+            Self::new(format!("{path:?} already exists; --force replaces it"))
         } else {
-            let failure = Self::new(shortened_message(&error.to_string()));
-            let exists = any
-                .downcast_ref::<FileError>()
-                .is_some_and(FileError::exists);
-            failure.with_hint(if exists { "; --force replaces it" } else { "" })
+            Self::new(shortened_message(&error.to_string()))
         }
     }
 }

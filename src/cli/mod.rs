@@ -49,7 +49,6 @@ use arguments::flags::Form;
 use arguments::frames::FramesArguments;
 use arguments::help::{ABOUT, EXAMPLES};
 use arguments::library::LibraryCommand;
-use arguments::model::ModelRequest;
 use arguments::parameters::Given;
 use arguments::request::{self, Request};
 use arguments::sweep::{SweepArguments, Swept};
@@ -59,15 +58,15 @@ use commands::config::Config;
 use commands::export::{self, Exported};
 use commands::frames::{self, FramesOutput};
 use commands::man::Man;
-use commands::recognise::{self, FrameNamer};
+use commands::model::ModelCommand;
+use commands::recognise::Recognise;
 use commands::screen::{self, Look, Screen};
-use commands::{Summary, confusion, library, model, noise, script, separate, sweep, touch, watch};
+use commands::{Summary, library, script, sweep, touch, watch};
 use error::CliError;
 use failure::Failure;
 use input::lines::LineInput;
 use input::shapes::Shelf;
 use output::charset::Charset;
-use output::progress::ProgressDisplay;
 use settings::resolved::{Chosen, Effective, Loaded};
 
 #[derive(Debug, clap::Parser)]
@@ -98,6 +97,9 @@ struct Global {
 /// The commands; those that are still read by hand are in `arguments/request.rs`.
 #[derive(Debug, clap::Subcommand)]
 enum Command {
+    Model(ModelCommand),
+    #[command(alias = "recognize")]
+    Recognise(Recognise),
     Config(Config),
     Completions(Completions),
     Man(Man),
@@ -106,6 +108,8 @@ enum Command {
 impl Command {
     fn run(self, cx: &Context) -> Result<(), Failure> {
         match self {
+            Self::Model(command) => command.run(cx),
+            Self::Recognise(command) => command.run(cx),
             Self::Config(command) => command.run(cx),
             Self::Completions(command) => command.run(cx),
             Self::Man(command) => command.run(cx),
@@ -234,9 +238,6 @@ impl Context {
                     status => return Err(Failure::silent(status).into()),
                 }
             }
-            Request::Recognise(asked) => {
-                recognise::recognise(&asked, shelf, charset, &mut io::stdout().lock())?;
-            }
             Request::Figure(figure, sensor, form, kept) => {
                 self.touch(&figure, sensor, form, &kept)?;
             }
@@ -265,7 +266,6 @@ impl Context {
             Request::Merge(files, wanted) => {
                 self.print_summary(sweep::merge(&files, &wanted, charset)?)?;
             }
-            Request::Model(request) => self.model(request)?,
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
             Request::Library(asked) => self.library(asked)?,
             Request::Script(asked) => script::run(&asked, &self.settings, shelf, charset)?,
@@ -307,22 +307,20 @@ impl Context {
     /// Runs `taxel frames`. If an error occurs, the answers made before it are still printed.
     fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
         let processing = input::recording::processing(&asked.processing)?;
-        let model = asked.naming.find(&self.shelf)?;
+        let found = asked
+            .naming
+            .find(processing.view.mask.as_ref(), &self.shelf)?;
         let recording = frames::open(asked)?;
-        let progress = |poses| ProgressDisplay::new(poses, false, self.charset);
-        let model = model
-            .map(|model| model::ready(model, &progress))
+        let namer = found
+            .map(|found| found.ready(false, self.charset))
             .transpose()?;
-        let noise = asked.naming.noise_with(processing.view.mask.as_ref());
         let mut answers = BufWriter::new(io::stdout().lock());
         let output = FramesOutput {
             form,
             kept,
             shelf: &self.shelf,
             charset: self.charset,
-            namer: model
-                .as_ref()
-                .map(|model| FrameNamer::new(model, noise.as_ref())),
+            namer,
             answers: &mut answers,
             notes: &mut |text| self.note(text),
         };
@@ -334,22 +332,6 @@ impl Context {
     fn print_summary(&self, summary: Summary) -> Result<(), CliError> {
         self.print(&summary.text)?;
         summary.written
-    }
-
-    fn model(&self, request: ModelRequest) -> Result<(), CliError> {
-        let (shelf, charset) = (&self.shelf, self.charset);
-        let text = match request {
-            ModelRequest::Train(asked) => {
-                return self.print_summary(model::train(&asked, shelf, charset)?);
-            }
-            ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
-            ModelRequest::List(json) => model::list(json, shelf, charset)?,
-            ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
-            ModelRequest::Confusion(asked) => confusion::confusion(&asked, shelf, charset)?,
-            ModelRequest::Touches(asked) => noise::touches(&asked, shelf, charset)?,
-            ModelRequest::Separate(asked) => separate::separate(&asked, shelf, charset)?,
-        };
-        Ok(self.print(&text)?)
     }
 
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {

@@ -9,7 +9,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 use taxel_core::progress::{Progress, stop_if};
-use taxel_core::recognition::TrainingError;
 
 use crate::cli::error::CliError;
 
@@ -73,13 +72,6 @@ impl Signals {
 
     pub(crate) fn goes_on(&self) -> bool {
         !self.stopped.load(Ordering::Relaxed)
-    }
-
-    pub(crate) fn training_failure(&self, error: TrainingError) -> CliError {
-        match error {
-            TrainingError::Stopped => self.failure(),
-            error => error.into(),
-        }
     }
 
     pub(crate) fn failure(&self) -> CliError {

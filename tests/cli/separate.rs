@@ -55,7 +55,7 @@ fn the_error_falls_with_the_size_as_in_separate_trainings() {
     place.done(&format!("{line} --export m.csv"));
     assert_eq!(place.read("m.csv"), table.as_bytes());
     let shown = place.done(line);
-    assert!(shown.starts_with("scale     threshold    error"), "{shown}");
+    assert!(shown.starts_with("scale  threshold   error"), "{shown}");
     let braille = |sign: char| ('\u{2801}'..'\u{2900}').contains(&sign);
     assert!(
         shown.chars().filter(|&sign| braille(sign)).count() > 50,

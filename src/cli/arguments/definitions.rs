@@ -4,7 +4,7 @@ use clap::{Command, CommandFactory};
 
 use crate::cli::Program;
 use crate::cli::arguments::program::script;
-use crate::cli::arguments::{frames, library, model, recognise, sweep, touch};
+use crate::cli::arguments::{frames, library, sweep, touch};
 
 /// Defines the program with all its commands. Completions and manual pages are made from this too, so a new command
 /// appears in them by itself.
@@ -18,8 +18,6 @@ pub(crate) fn all() -> Command {
         .subcommand(touch::batch())
         .subcommand(sweep::command())
         .subcommand(sweep::merge_command())
-        .subcommand(model::command())
-        .subcommand(recognise::command())
         .subcommand(frames::command())
         .subcommand(frames::watch())
         .subcommand(library::command())

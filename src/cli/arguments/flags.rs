@@ -13,7 +13,7 @@ use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, PossibleValuesParser, StyledStr, TypedValueParser};
 use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Args, Command};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command};
 use taxel_core::parameter::{Parameter, UnknownName, number};
 use taxel_core::pose::{Anchor, Axis, GivenRanges};
 use taxel_core::sensor::SENSOR_PARAMETERS;
@@ -39,12 +39,6 @@ pub(crate) fn option(name: &'static str, value: &'static str, help: impl Into<St
         .long(name)
         .value_name(value)
         .help(help.into())
-}
-
-/// Groups a single flag, so that other flags can require the group. clap lets a required flag be missing if a flag
-/// that excludes it is given, and would then ignore the flags that require it; a required group is always checked.
-pub(crate) fn alone(group: &'static str, flag: &'static str) -> ArgGroup {
-    ArgGroup::new(group).arg(flag)
 }
 
 /// Parses a name, file or other source, which must not be empty.
@@ -166,13 +160,6 @@ pub(crate) fn name(help: &'static str) -> Arg {
         .help(help)
 }
 
-/// Returns the name or file that an argument gives, with any bytes. It is empty if the argument is not given; one
-/// that clap requires is always given.
-pub(crate) fn word(matches: &ArgMatches, id: &str) -> OsString {
-    let word = matches.get_one::<OsString>(id);
-    word.map_or_else(OsString::new, Clone::clone)
-}
-
 /// Defines a positional argument that is a name or a file; [`Shelf::find`](crate::cli::input::shapes::Shelf::find)
 /// decides which.
 pub(crate) fn what(help: &'static str) -> Arg {
@@ -187,23 +174,6 @@ pub(crate) fn json() -> Arg {
     switch("json", "Print JSON, one line per answer")
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum EvaluationForm {
-    Text,
-    Csv,
-    Json,
-}
-
-impl EvaluationForm {
-    pub(crate) fn of(matches: &ArgMatches) -> Self {
-        match (matches.get_flag("json"), matches.get_flag("csv")) {
-            (true, _) => Self::Json,
-            (false, true) => Self::Csv,
-            (false, false) => Self::Text,
-        }
-    }
-}
-
 pub(crate) fn parse_probability(text: &str) -> Result<f64, String> {
     let number = parse_number(text)?;
     (0.0..=1.0)
@@ -212,7 +182,7 @@ pub(crate) fn parse_probability(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a number from 0 to 1".to_owned())
 }
 
-fn parse_shard(text: &str) -> Result<Shard, &'static str> {
+pub(crate) fn parse_shard(text: &str) -> Result<Shard, &'static str> {
     text.parse().map_err(|error: ShardError| error.expected())
 }
 
@@ -257,29 +227,6 @@ pub(crate) fn unhandled_subcommand(name: &str) -> CliError {
     clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
 }
 
-pub(crate) fn which_model() -> Arg {
-    Arg::new("model")
-        .value_name("MODEL")
-        .required(true)
-        .value_parser(name_or_path())
-        .help("Name of a model, or its file")
-}
-
-pub(crate) fn seed() -> Arg {
-    option("seed", "N", "Seed of the random numbers; default 0")
-        .value_parser(whole::<u64>(0..))
-        .default_value("0")
-        .hide_default_value(true)
-}
-
-pub(crate) fn number_of<T: Copy + Send + Sync + 'static>(
-    matches: &ArgMatches,
-    id: &str,
-    default: T,
-) -> T {
-    matches.get_one(id).copied().unwrap_or(default)
-}
-
 pub(crate) fn misused(command: &mut Command, name: &str, message: &str) -> CliError {
     let error = command.find_subcommand_mut(name).map_or_else(
         || clap::Error::raw(ErrorKind::ArgumentConflict, format!("{message}\n")),
@@ -291,7 +238,7 @@ pub(crate) fn misused(command: &mut Command, name: &str, message: &str) -> CliEr
 // What commands need that are still read by hand.
 
 pub(crate) use crate::cli::arguments::parameters::{
-    Given, Group, OfFittingSensor, OfMatrix, OfPicture, OfSensor, figure_parameters, parse_range,
+    Given, Group, OfMatrix, OfPicture, OfSensor, figure_parameters,
 };
 
 pub(crate) fn sensor() -> Vec<Arg> {
@@ -313,10 +260,6 @@ pub(crate) fn arg(parameter: Parameter) -> Arg {
 
 pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
     parameters::arg(parameter, &OfPicture::default(parameter))
-}
-
-pub(crate) fn arg_fitting(side: Parameter) -> Arg {
-    parameters::arg(side, &OfFittingSensor::default(side))
 }
 
 pub(crate) fn range(axis: Axis, _default: &str) -> Arg {

@@ -12,11 +12,9 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgGroup, ArgMatches, Args, Command, FromArgMatches, value_parser};
 use taxel_core::frame::{Crop, FrameError, FrameSize, Label, Rule, RuleOrigin, SetRule, View};
-use taxel_core::imprint::Imprint;
 use taxel_core::parameter::{Parameter, number};
-use taxel_core::recognition::Noise;
 use taxel_files::acquire::{AcquireOptions, Playback};
 use taxel_files::formats::recording::{Column, Format, ReadOptions, TimeColumn};
 use taxel_files::storage::Existing;
@@ -25,8 +23,8 @@ use crate::cli::arguments::flags::{
     self, json, name_or_path, of_sensor, option, parse_number, required, switch, whole,
 };
 use crate::cli::arguments::help::{FRAMES_EXAMPLES, WATCH_EXAMPLES};
-use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::arguments::{program, touch};
+use crate::cli::commands::recognise::NamingFlags;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::{LEAST, SensorSettings};
 
@@ -69,7 +67,7 @@ pub(crate) struct FramesArguments {
     pub(crate) heat: bool,
     /// Whether frames are a table; all frames of all channels without a choice.
     pub(crate) csv: bool,
-    pub(crate) naming: NamingArguments,
+    pub(crate) naming: NamingFlags,
 }
 
 pub(crate) fn command() -> Command {
@@ -111,7 +109,11 @@ pub(crate) fn command() -> Command {
             _ => arg,
         }))
         .args(rules().map(|arg| arg.requires("answered")))
-        .args(naming().map(|arg| arg.requires("choice").conflicts_with("noise-report")))
+        .args(
+            naming()
+                .into_iter()
+                .map(|arg| arg.requires("choice").conflicts_with("noise-report")),
+        )
         .args(
             of_sensor(&[Parameter::Pitch])
                 .into_iter()
@@ -223,21 +225,9 @@ pub(crate) fn processing() -> [Arg; 11] {
     .map(|arg| arg.help_heading("Processing"))
 }
 
-pub(crate) fn naming() -> [Arg; 2] {
-    let model = option(
-        "model",
-        "MODEL",
-        "Name the shape that left the imprint: name or file of a\nmodel; built in are figures, figures-30 and shapes",
-    )
-    .value_parser(name_or_path());
-    let noise = option(
-        "noise",
-        "E",
-        "Each taxel flips with this probability (below 0.5)",
-    )
-    .value_parser(parse_noise)
-    .requires("model");
-    [model, noise].map(|arg| arg.help_heading("Recognition"))
+pub(crate) fn naming() -> Vec<Arg> {
+    let naming = NamingFlags::augment_args(Command::new(""));
+    naming.get_arguments().cloned().collect()
 }
 
 /// Defines the flags that decide which values are active. `--high` is not a rule by itself: it goes with `--low`.
@@ -327,29 +317,8 @@ impl FramesArguments {
             processing: ProcessingArguments::of(matches, settings)?,
             heat: matches.get_flag("heat"),
             csv: matches.get_flag("csv"),
-            naming: NamingArguments::of(matches),
+            naming: NamingFlags::from_arg_matches(matches)?,
         })
-    }
-}
-
-#[derive(Clone, Debug, Default)]
-pub(crate) struct NamingArguments {
-    /// The model's name or file; None to name nothing.
-    pub(crate) model: Option<OsString>,
-    pub(crate) noise: Option<Noise>,
-}
-
-impl NamingArguments {
-    pub(crate) fn of(matches: &ArgMatches) -> Self {
-        Self {
-            model: matches.get_one::<OsString>("model").cloned(),
-            noise: matches.get_one::<Noise>("noise").copied(),
-        }
-    }
-
-    pub(crate) fn noise_with(&self, mask: Option<&Imprint>) -> Option<Noise> {
-        let noise = self.noise?;
-        Some(mask.map_or(noise, |mask| noise.with_dead(*mask)))
     }
 }
 
@@ -474,7 +443,7 @@ pub(crate) struct WatchArguments {
     pub(crate) options: AcquireOptions,
     pub(crate) baud_named: bool,
     pub(crate) processing: ProcessingArguments,
-    pub(crate) naming: NamingArguments,
+    pub(crate) naming: NamingFlags,
     pub(crate) write: Option<PathBuf>,
     pub(crate) existing: Existing,
     /// The memory for the history of the page, in bytes.
@@ -565,7 +534,7 @@ impl WatchArguments {
             options,
             baud_named: matches.contains_id("baud"),
             processing,
-            naming: NamingArguments::of(matches),
+            naming: NamingFlags::from_arg_matches(matches)?,
             write: matches.get_one::<PathBuf>("write").cloned(),
             existing: flags::existing(matches),
             history_bytes: settings.history_bytes(),

@@ -22,7 +22,3 @@ pub(super) mod frames;
 pub(super) mod definitions;
 
 pub(super) mod request;
-
-pub(super) mod model;
-
-pub(super) mod recognise;

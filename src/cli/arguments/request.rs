@@ -20,9 +20,7 @@ use crate::cli::arguments::definitions;
 use crate::cli::arguments::flags::{self, Form, Given, required, unhandled_subcommand};
 use crate::cli::arguments::frames::{FramesArguments, WatchArguments};
 use crate::cli::arguments::library::LibraryCommand;
-use crate::cli::arguments::model::ModelRequest;
 use crate::cli::arguments::program::Script;
-use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::arguments::sweep::{SweepArguments, Wanted};
 use crate::cli::arguments::touch::{self, Export, Kept};
 use crate::cli::error::CliError;
@@ -41,8 +39,6 @@ pub(crate) enum Request {
     Batch(Option<PathBuf>, Sensor, usize),
     Sweep(Box<SweepArguments>),
     Merge(Vec<PathBuf>, Wanted),
-    Model(ModelRequest),
-    Recognise(Box<RecogniseArguments>),
     Frames(Box<FramesArguments>, Form, Kept),
     Watch(Box<WatchArguments>),
     Library(LibraryCommand),
@@ -164,11 +160,6 @@ pub(crate) fn request(
             let files = own.get_many::<PathBuf>("files").into_iter().flatten();
             Request::Merge(files.cloned().collect(), Wanted::of(own))
         }
-        "model" => Request::Model(ModelRequest::of(own)?),
-        "recognise" => Request::Recognise(Box::new(RecogniseArguments::of(
-            own,
-            flags::pitch_of(own, settings)?.of(None),
-        ))),
         "batch" => {
             let file = own.get_one::<PathBuf>("file").cloned();
             let file = file.filter(|file| file.as_os_str() != "-");

@@ -39,7 +39,7 @@ use crate::cli::arguments::flags::Form;
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
 use crate::cli::arguments::touch::{Export, Kept};
 use crate::cli::commands::export::{Begun, Exported};
-use crate::cli::commands::recognise::FrameNamer;
+use crate::cli::commands::recognise::Namer;
 use crate::cli::commands::recording_scan::{self, Scan};
 use crate::cli::error::{CliError, frame_advice};
 use crate::cli::input::recording::{self, RecordingFile};
@@ -55,7 +55,7 @@ pub(crate) struct FramesOutput<'a> {
     pub(crate) kept: Kept,
     pub(crate) shelf: &'a Shelf,
     pub(crate) charset: Charset,
-    pub(crate) namer: Option<FrameNamer<'a>>,
+    pub(crate) namer: Option<Namer>,
     pub(crate) answers: &'a mut dyn Write,
     pub(crate) notes: &'a mut dyn FnMut(&str),
 }

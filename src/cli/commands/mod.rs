@@ -12,12 +12,6 @@ pub(super) mod sweep;
 
 pub(super) mod model;
 
-pub(super) mod noise;
-
-pub(super) mod confusion;
-
-pub(super) mod separate;
-
 pub(super) mod recognise;
 
 pub(super) mod frames;

@@ -30,10 +30,9 @@ use taxel_files::storage::{
 };
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
-use crate::cli::arguments::model::model_file;
 use crate::cli::arguments::sweep::Wanted;
-use crate::cli::commands::confusion::fits_in_table;
 use crate::cli::commands::export::written;
+use crate::cli::commands::model::{fits_in_table, model_file};
 use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::{Charset, note};
@@ -312,7 +311,7 @@ pub(crate) fn merge(
 
 fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     match &wanted.atlas {
-        Some(file) => model_file(file),
+        Some(file) => Ok(model_file(file)?),
         None => Ok(()),
     }
 }

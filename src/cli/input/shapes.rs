@@ -22,7 +22,7 @@ use taxel_files::formats::name::folded;
 use taxel_files::formats::{Content, ShapeLookup, StoredShape, named_shape};
 use taxel_files::storage::{Existing, Expected, Library, LibraryError};
 
-use crate::cli::arguments::model::SetArguments;
+use crate::cli::commands::model::SetFlags;
 use crate::cli::error::CliError;
 use crate::cli::input::content::{self, InputError, InputSource};
 
@@ -226,7 +226,7 @@ impl Shelf {
 /// The largest file of shapes, in bytes.
 const MAX_SET: u64 = 64 << 20;
 
-pub(crate) fn read_set(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
+pub(crate) fn read_set(asked: &SetFlags, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let lookup = |name: &str| {
         shelf
             .imprint(name)

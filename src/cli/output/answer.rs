@@ -14,8 +14,8 @@ use taxel_core::sensor::Sensor;
 use taxel_files::formats::value::{self, decimal, deviation, percent};
 
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::bar;
 use crate::cli::output::plot::draw_over;
+use crate::cli::output::table::bar;
 use crate::tui::widget::plot::DotCanvas;
 
 const SHOWN: usize = 8;

@@ -16,6 +16,6 @@ pub(super) mod evaluation;
 
 pub(super) mod plot;
 
-pub(super) mod separation;
+pub(super) mod table;
 
 pub(super) mod answer;

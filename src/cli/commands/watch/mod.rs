@@ -43,7 +43,6 @@ use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::arguments::frames::WatchArguments;
 use crate::cli::commands::model;
-use crate::cli::commands::recognise::FrameNamer;
 use crate::cli::commands::watch::answers::Answers;
 use crate::cli::commands::watch::recording::SourceReports;
 use crate::cli::error::CliError;
@@ -51,7 +50,6 @@ use crate::cli::input::recording::{self as input_recording, RecordingFile};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::line_writer::LineWriter;
-use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::signals::Signals;
 use crate::frames::{Pipeline, WatchRequest};
 use crate::tui::runtime::check_source;
@@ -124,16 +122,12 @@ fn line_writer(
     shelf: &Shelf,
     stopped: &Arc<AtomicBool>,
 ) -> Result<LineWriter, CliError> {
-    let noise = asked.naming.noise_with(processing.view.mask.as_ref());
-    let found = asked.naming.find(shelf)?;
+    let found = asked.naming.find(processing.view.mask.as_ref(), shelf)?;
     LineWriter::start(stopped, move |lines| {
         let Some(found) = found else {
             return lines.write(&mut |_, _| ());
         };
-        let model = model::ready(found, &|poses| {
-            ProgressDisplay::new(poses, true, Charset::Ascii)
-        })?;
-        let namer = FrameNamer::new(&model, noise.as_ref());
+        let namer = found.ready(true, Charset::Ascii)?;
         lines.write(&mut |line, imprint| namer.extend(line, imprint))
     })
 }

@@ -1,0 +1,247 @@
+//! `taxel model show`, `list` and `delete`: the models that are kept.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+
+use serde_json::{Value, json};
+use taxel_core::pose::Axis;
+use taxel_core::quote::did_you_mean;
+use taxel_core::recognition::{Evaluation, Model, NamedShape};
+use taxel_core::source::Source;
+use taxel_core::sweep::Shard;
+use taxel_files::formats::value::{counted, grouped, percent};
+use taxel_files::formats::{Name, json};
+use taxel_files::storage::{ModelChoice, load_model, model_hash};
+
+use crate::cli::Context;
+use crate::cli::arguments::flags::name_or_path;
+use crate::cli::commands::model::train::grid_text;
+use crate::cli::commands::model::{find, folder, models, ready};
+use crate::cli::failure::Failure;
+use crate::cli::output::evaluation::{self, Count, NamedBy};
+
+const SHOW_EXAMPLES: &str = "\
+Prints the shapes, the sensor and the poses of a model, and how often the best
+answer to one touch is wrong.
+
+Examples:
+  taxel model show parts
+  taxel model show ./parts.npz --json";
+
+/// Show what a model was trained on, and its error
+#[derive(Debug, clap::Args)]
+#[command(after_help = SHOW_EXAMPLES)]
+pub(super) struct Show {
+    /// Name of a model, or its file
+    #[arg(value_name = "MODEL", value_parser = name_or_path())]
+    model: OsString,
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
+}
+
+impl Show {
+    pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
+        let models = models(&cx.shelf);
+        let choice = models.locate(ModelChoice::from_text(&self.model))?;
+        let model = match models.file(&choice) {
+            // A shard, too, which answers no touches.
+            Some(path) => load_model(&path)?,
+            None => ready(find(&self.model, &cx.shelf)?, false, cx.charset)?,
+        };
+        let limit = Evaluation::of(&model);
+        cx.print(&match self.json {
+            true => json::ascii(&card(&model, &limit)) + "\n",
+            false => cx.charset.lines(&text(&model, &limit)),
+        })
+    }
+}
+
+fn text(model: &Model, limit: &Evaluation) -> String {
+    let grid = grid_text(model.sensor(), model.anchor(), model.ranges());
+    let mut text = grid + "\n";
+    for (index, shape) in model.shapes().iter().enumerate() {
+        text += &format!("  {}: {}", shape.name, described(shape));
+        if shape.weight > 1 {
+            text += &format!(", weight {}", shape.weight);
+        }
+        if let Some(recall) = limit.recall(index) {
+            text += &format!(", named right in {} of its touches", percent(recall));
+        }
+        text.push('\n');
+    }
+    let is_even = |pair: &[NamedShape]| pair[0].weight == pair[1].weight;
+    text += match model.shapes().windows(2).all(is_even) {
+        true => "prior: all shapes are equally likely\n",
+        false => "prior: shapes are as likely as their weights say\n",
+    };
+    text += &format!("{} each", counted(model.poses(), "pose"));
+    if model.shard() != Shard::WHOLE {
+        text += &format!(", shard {}", model.shard());
+    }
+    let cut: u64 = model.cut().iter().sum();
+    if cut > 0 {
+        text += &format!(", {} of all cut off by the sensor", grouped(cut));
+    }
+    text.push('\n');
+    // In an empty shard there is nothing to say about touches.
+    if model.poses() > 0 {
+        text += &evaluation::summary(limit, NamedBy::Imprint);
+        text += &match never_certain(model).join(", ") {
+            none if none.is_empty() => "every shape leaves imprints that no other leaves\n".into(),
+            names => format!("never certain, since other shapes leave the same: {names}\n"),
+        };
+    }
+    text + &format!("hash {}\n", model_hash(model))
+}
+
+/// Describes a shape in a few words: `rectangle length 4.50, width 4.30` for a figure, without its pose, which the
+/// grid sets; `picture of 36 taxels`.
+fn described(shape: &NamedShape) -> String {
+    let Some(kind) = shape.source.kind() else {
+        return match &shape.source {
+            Source::Picture(picture) => {
+                format!("picture of {}", counted(picture.imprint().count(), "taxel"))
+            }
+            other => other.noun().to_owned(),
+        };
+    };
+    let is_axis = |own| Axis::ALL.iter().any(|axis| axis.parameter() == own);
+    let sizes = kind.parameters().iter().filter(|&&own| !is_axis(own));
+    let sizes = sizes.filter_map(|&own| {
+        let value = shape.source.get(own)?;
+        Some(format!("{} {}", own.row().key, own.format(value)))
+    });
+    format!("{} {}", kind.name(), sizes.collect::<Vec<_>>().join(", "))
+}
+
+fn never_certain(model: &Model) -> Vec<&str> {
+    let never = model.never_certain().into_iter();
+    never.map(|shape| &*model.shapes()[shape].name).collect()
+}
+
+/// What was trained, and its evaluation, as a JSON object. Ranges are `START:END:STEP` texts, as in flags.
+pub(super) fn card(model: &Model, limit: &Evaluation) -> Value {
+    let shapes = model.shapes().iter().enumerate().map(|(index, shape)| {
+        json!({
+            "name": shape.name,
+            "source": shape.source,
+            "weight": shape.weight,
+            "cut": model.cut()[index],
+            "recall": limit.recall(index),
+            "precision": limit.precision(index),
+        })
+    });
+    let ranges = Axis::ALL.map(|axis| (axis.name(), model.ranges()[axis].to_string()));
+    json!({
+        "shapes": shapes.collect::<Vec<_>>(),
+        "sensor": model.sensor(),
+        "anchor": model.anchor().name(),
+        "ranges": BTreeMap::from(ranges),
+        "shard": model.shard().to_string(),
+        "poses": model.poses(),
+        "keys": limit.keys,
+        "touches": Count(limit.touches),
+        "right": Count(limit.right),
+        "error": limit.error(),
+        "certain": limit.certainty.map(|own| Count(own.touches)),
+        "information_bits": limit.information_bits,
+        "never_certain": never_certain(model),
+        "hash": model_hash(model),
+    })
+}
+
+const LIST_EXAMPLES: &str = "\
+Your models are files in the folder 'models' of the library. The built-in ones
+are trained when first used; --json leaves them out.
+
+Examples:
+  taxel model list --json";
+
+/// List the models
+#[derive(Debug, clap::Args)]
+#[command(after_help = LIST_EXAMPLES)]
+pub(super) struct List {
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
+}
+
+impl List {
+    /// If a model cannot be read, the reason takes the place of the numbers. The JSON lists only models in files.
+    pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
+        if !self.json {
+            for own in ModelChoice::BUILT_IN {
+                cx.print(&format!("{}: built in\n", own.name()))?;
+            }
+        }
+        let Ok(folder) = folder(&cx.shelf) else {
+            return Ok(());
+        };
+        for (name, path) in folder.list()? {
+            let line = match (load_model(&path), self.json) {
+                (Ok(model), true) => json::ascii(&json!({
+                    "name": name.as_str(),
+                    "file": path.to_string_lossy(),
+                    "shapes": model.shapes().iter().map(|shape| &shape.name).collect::<Vec<_>>(),
+                    "keys": model.keys().len(),
+                    "shard": model.shard().to_string(),
+                })),
+                (Err(error), true) => {
+                    json::ascii(&json!({"name": name.as_str(), "error": error.to_string()}))
+                }
+                (Ok(model), false) => format!("{name}: {}", in_short(&model)),
+                (Err(error), false) => format!("{name}: {error}"),
+            };
+            cx.print(&(cx.charset.line(&line) + "\n"))?;
+        }
+        Ok(())
+    }
+}
+
+fn in_short(model: &Model) -> String {
+    let shapes = counted(model.shapes().len() as u64, "shape");
+    let keys = counted(model.keys().len() as u64, "distinct imprint");
+    match model.shard() {
+        Shard::WHOLE => {
+            let error = percent(Evaluation::of(model).error());
+            format!("{shapes}, {keys}, error {error}")
+        }
+        // Its error would be that of a part of the touches.
+        shard => format!("{shapes}, {keys}, shard {shard} of a model"),
+    }
+}
+
+const DELETE_EXAMPLES: &str = "\
+The file is removed for good, but the model can be trained again.
+
+Examples:
+  taxel model delete parts";
+
+/// Delete a model
+#[derive(Debug, clap::Args)]
+#[command(after_help = DELETE_EXAMPLES)]
+pub(super) struct Delete {
+    /// Name of the model
+    #[arg(value_parser = Name::new)]
+    name: Name,
+}
+
+impl Delete {
+    /// Unlike a shape of the library, a model does not go to the trash: it can be trained again.
+    pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
+        let (models, name) = (folder(&cx.shelf)?, &self.name);
+        if let Some(deleted) = models.delete(name)? {
+            return cx.print(&cx.charset.lines(&format!("deleted {deleted}\n")));
+        }
+        if !ModelChoice::from_name(name.clone()).is_read() {
+            let text = format!("{name} is built in and cannot be deleted");
+            return Err(Failure::new(text));
+        }
+        let near = did_you_mean(name.as_str(), models.names().iter().map(Name::as_str));
+        let name = name.to_string();
+        Err(Failure::new(format!(
+            "no model named {name:?}; 'taxel model list' shows all{near}"
+        )))
+    }
+}

@@ -1,0 +1,267 @@
+//! `taxel model`: trains models of shapes, keeps them, and measures how well one touch tells the shapes apart.
+//!
+//! A model is the file of a training: every imprint that some shapes leave on a grid of poses, and how often each shape
+//! leaves it. A model is named as in `taxel recognise --model`: a built-in set such as `figures` takes precedence over a
+//! model of the library, and that over a file.
+
+mod confusion;
+mod keeping;
+mod noise;
+mod separate;
+mod touches;
+mod train;
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+use taxel_core::progress::Progress;
+use taxel_core::recognition::{CellPositions, Model, TrainingError};
+use taxel_files::formats::file::has_ending;
+use taxel_files::memory::MemoryGuard;
+use taxel_files::storage::{
+    self, Existing, FoundModel, ModelCache, ModelChoice, ModelFolder, Models, check_writable,
+};
+
+use crate::cli::Context;
+use crate::cli::arguments::flags::{name_or_path, report};
+use crate::cli::commands::export::written;
+use crate::cli::failure::Failure;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::progress::ProgressDisplay;
+use crate::cli::signals::{self, Signals};
+
+/// The model that is used if none is named: the seven figures at their default sizes.
+pub(crate) const DEFAULT: &str = "figures";
+
+/// The most shapes of a table of all pairs; more would take gigabytes.
+const MOST_PAIRED: usize = 4096;
+
+const EXAMPLES: &str = "\
+A model holds every imprint that its shapes can leave, and in how many poses
+each shape leaves it. The best answer to a touch is the shape that leaves its
+imprint in the most poses: no method names a smaller share of touches wrong.
+MODEL is a file, the name of one of your models, or the name of a
+built-in model: figures, figures-30 or shapes.
+
+Examples:
+  taxel model train parts.jsonl --name parts
+  taxel model confusion parts
+  taxel recognise imprint.txt --model parts";
+
+/// Train models, and measure how well one touch tells shapes apart
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct ModelCommand {
+    #[command(subcommand)]
+    command: Subcommand,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Subcommand {
+    Train(train::Train),
+    Show(keeping::Show),
+    List(keeping::List),
+    Delete(keeping::Delete),
+    Confusion(confusion::Confusion),
+    Touches(touches::Touches),
+    Separate(separate::Separate),
+}
+
+impl ModelCommand {
+    pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        match self.command {
+            Subcommand::Train(command) => command.run(cx),
+            Subcommand::Show(command) => command.run(cx),
+            Subcommand::List(command) => command.run(cx),
+            Subcommand::Delete(command) => command.run(cx),
+            Subcommand::Confusion(command) => command.run(cx),
+            Subcommand::Touches(command) => command.run(cx),
+            Subcommand::Separate(command) => command.run(cx),
+        }
+    }
+}
+
+/// A set of shapes.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct SetFlags {
+    /// Shapes: files of JSON lines, '-' for standard input, or names of the library
+    #[arg(
+        id = "set",
+        value_name = "FILE.jsonl|NAME",
+        value_parser = name_or_path(),
+        required_unless_present = "library_all"
+    )]
+    pub(crate) what: Vec<OsString>,
+    /// All shapes of the library
+    #[arg(long)]
+    pub(crate) library_all: bool,
+}
+
+/// The forms of a table, and the file that it is written to.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct TableFlags {
+    /// Write the table (.csv) or a drawing of it (.svg)
+    #[arg(long, value_name = "FILE", value_parser = report(), group = "with_export")]
+    export: Option<PathBuf>,
+    /// Replace an existing file
+    #[arg(long, requires = "with_export")]
+    force: bool,
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
+    /// Print comma-separated values
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+    /// Show no progress and no notes
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// An answer in its forms.
+pub(crate) trait Table {
+    fn text(&self, charset: Charset) -> String;
+
+    fn csv(&self) -> String;
+
+    fn json(&self) -> String;
+
+    /// None if there is no drawing of it.
+    fn svg(&self) -> Option<String>;
+}
+
+impl TableFlags {
+    fn existing(&self) -> Existing {
+        existing(self.force)
+    }
+
+    /// Refuses a file that cannot be written: before the work, not after it.
+    fn check(&self) -> Result<(), Failure> {
+        let export = self.export.as_ref();
+        export.map_or(Ok(()), |path| Ok(check_writable(path, self.existing())?))
+    }
+
+    fn draws(&self) -> Option<&Path> {
+        self.export
+            .as_deref()
+            .filter(|path| has_ending(path, "svg"))
+    }
+
+    fn give(&self, table: &impl Table, cx: &Context) -> Result<(), Failure> {
+        if let Some(path) = &self.export {
+            let drawing = self.draws().and_then(|_| table.svg());
+            let content = drawing.unwrap_or_else(|| table.csv());
+            storage::write(path, content.as_bytes(), self.existing())?;
+            if !self.quiet {
+                cx.note(&written(path));
+            }
+        }
+        cx.print(&match (self.json, self.csv) {
+            (true, _) => table.json(),
+            (_, true) => table.csv(),
+            _ => table.text(cx.charset),
+        })
+    }
+}
+
+fn existing(force: bool) -> Existing {
+    if force {
+        Existing::Replaced
+    } else {
+        Existing::Kept
+    }
+}
+
+/// Parses a number of positions per cell. Their distance must be a whole number of hundredths of a cell, since ranges
+/// are exact in hundredths.
+fn parse_positions(text: &str) -> Result<CellPositions, &'static str> {
+    let number = text.trim().parse::<u8>().ok();
+    let positions = number.and_then(CellPositions::new);
+    positions.ok_or("expected 1, 2, 4, 5, 10, 20, 25, 50 or 100")
+}
+
+/// Refuses a file name without the extension of a model: such a file would be taken for something else when it is
+/// read.
+pub(crate) fn model_file(path: &Path) -> Result<(), Failure> {
+    if has_ending(path, "npz") {
+        return Ok(());
+    }
+    let name = path.display();
+    Err(Failure::new(format!(
+        "{name}: expected a name that ends in .npz, for a model"
+    )))
+}
+
+pub(crate) fn fits_in_table(table: &str, shapes: usize) -> Result<(), Failure> {
+    if shapes <= MOST_PAIRED {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "{table}: the model has {shapes} shapes (allowed: up to {MOST_PAIRED})"
+    )))
+}
+
+fn folder(shelf: &Shelf) -> Result<ModelFolder, Failure> {
+    Ok(ModelFolder::of(shelf.library()?.folder()))
+}
+
+/// The models that a command may name.
+pub(crate) fn models(shelf: &Shelf) -> Models {
+    Models {
+        folder: folder(shelf).ok(),
+        cache: ModelCache::of_user(),
+    }
+}
+
+/// Finds a model without training it, so that other errors come first.
+pub(crate) fn find(which: impl AsRef<OsStr>, shelf: &Shelf) -> Result<FoundModel, Failure> {
+    Ok(models(shelf).find(ModelChoice::from_text(which))?)
+}
+
+/// Returns a model that was found. A built-in set that is not in the cache is trained, which takes some seconds.
+/// Signals are not caught meanwhile: nothing would have to be removed.
+pub(crate) fn ready(found: FoundModel, quiet: bool, charset: Charset) -> Result<Model, Failure> {
+    found.ready(|training| {
+        let advice = "train a model of fewer shapes or coarser steps (taxel model train)";
+        let display = ProgressDisplay::new(training.poses(), quiet, charset);
+        let model = MemoryGuard::new(None, advice)
+            .limit(&display, |progress| training.with_progress(progress).run());
+        Ok(model.map_err(Failure::new)??)
+    })
+}
+
+/// Long work whose progress is counted in `all` of a noun. None from it means that a signal stopped it.
+fn watched<T>(
+    (all, noun): (u64, &'static str),
+    quiet: bool,
+    cx: &Context,
+    work: impl FnOnce(&dyn Progress) -> Option<T>,
+) -> Result<T, Failure> {
+    let signals = Signals::catch()?;
+    let display = ProgressDisplay::counting(noun, all, quiet, cx.charset);
+    let done = work(&signals.progress(&display));
+    done.ok_or_else(|| signals.failure().into())
+}
+
+/// Trains on several threads, until it is done, a signal comes or the memory is used up.
+fn trained<T: Send>(
+    poses: u64,
+    (jobs, memory, quiet): (Option<u16>, MemoryGuard, bool),
+    cx: &Context,
+    work: impl FnOnce(&dyn Progress) -> Result<T, TrainingError> + Send,
+) -> Result<T, Failure> {
+    let signals = Signals::catch()?;
+    let pool = signals::pool(jobs.map_or(0, usize::from))?;
+    let display = ProgressDisplay::new(poses, quiet, cx.charset);
+    let done = memory.limit(&signals.progress(&display), |progress| {
+        pool.install(|| work(progress))
+    });
+    drop(display);
+    done.map_err(Failure::new)?.map_err(|error| match error {
+        TrainingError::Stopped => signals.failure().into(),
+        error @ TrainingError::Cut { .. } => Failure::from(error).with_hint(
+            "; use a larger sensor, other positions or smaller shapes, or allow it with --allow-cut",
+        ),
+        error => error.into(),
+    })
+}
