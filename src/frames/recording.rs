@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use taxel_core::lock::locked;
-use taxel_files::acquire::{FrameRecorder, FrameSource, RecorderError};
+use taxel_files::acquire::{FrameRecorder, RecorderError};
 use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::storage::Existing;
 
@@ -27,12 +27,10 @@ pub struct RecordedFrames {
 impl Recording {
     /// Begins a recording. No file appears before the first frame.
     pub fn create(
-        source: &FrameSource,
         path: &Path,
         existing: Existing,
         metadata: &RecordingMetadata,
     ) -> Result<Self, RecorderError> {
-        source.refuse_as_target(path)?;
         let recorder = FrameRecorder::create(path, existing, metadata)?;
         Ok(Self {
             path: path.to_owned(),

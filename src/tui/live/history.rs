@@ -24,8 +24,6 @@ pub struct FrameHistory {
     /// The memory that the frames may take, in bytes; the newest one is kept even if it takes more.
     most: usize,
     rate: FrameRate,
-    /// The next frame, which the source may still withdraw.
-    next: Option<Arc<Frame>>,
     /// The frame that the page stays at, as it was when it was frozen; None if the page follows the source.
     frozen: Option<(u64, Arc<Frame>)>,
     /// The largest value of each cell since peak hold was switched on; None if it is off.
@@ -41,7 +39,6 @@ impl FrameHistory {
             bytes: 0,
             most,
             rate: FrameRate::over(RATED),
-            next: None,
             frozen: None,
             peak: None,
         }
@@ -55,7 +52,6 @@ impl FrameHistory {
         if let Some(peak) = &mut self.peak {
             raise(Arc::make_mut(peak), frame);
         }
-        self.next = None;
         self.bytes += bytes_of(frame);
         self.frames.push_back(Arc::clone(frame));
         while self.bytes > self.most && self.frames.len() > 1 {
@@ -64,11 +60,6 @@ impl FrameHistory {
                 self.first += 1;
             }
         }
-    }
-
-    /// Shows a frame before it is sure to be one; None withdraws it.
-    pub fn set_next(&mut self, frame: Option<Arc<Frame>>) {
-        self.next = frame;
     }
 
     /// Returns the numbers of the frames that are here.
@@ -110,10 +101,7 @@ impl FrameHistory {
     /// Returns the shown frame with its number; None before the first one.
     pub fn shown(&self) -> Option<(u64, Arc<Frame>)> {
         let numbers = self.numbers();
-        let following = || match &self.next {
-            Some(next) if self.peak.is_none() => Some((numbers.end, Arc::clone(next))),
-            _ => (self.frames.back()).map(|newest| (numbers.end - 1, Arc::clone(newest))),
-        };
+        let following = || Some((numbers.end - 1, Arc::clone(self.frames.back()?)));
         self.frozen.clone().or_else(following)
     }
 
@@ -123,8 +111,7 @@ impl FrameHistory {
         peak.or_else(|| self.shown().map(|(_, frame)| frame))
     }
 
-    /// Returns up to this number of frames that end with the shown one and have its size, the last one first. None of
-    /// them may still be withdrawn.
+    /// Returns up to this number of frames that end with the shown one and have its size, the last one first.
     pub fn up_to_shown(&self, count: usize) -> Vec<Arc<Frame>> {
         let Some((shown, _)) = self.shown() else {
             return Vec::new();
@@ -165,7 +152,7 @@ impl FrameHistory {
 
     /// Follows the source from the next frame on.
     pub fn restart(&mut self) {
-        (self.frozen, self.next, self.peak) = (None, None, None);
+        (self.frozen, self.peak) = (None, None);
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! message          requests by keys and commands, and reports from the source
+//! feed             the frames of the source that the page has not taken yet
 //! history          the most recent frames, as many as fit into a given amount of memory
 //! reading          values, imprint and descriptors of one frame
 //! threshold        the threshold, as keys change it
@@ -13,6 +14,8 @@
 //! ```
 
 pub mod message;
+
+pub mod feed;
 
 pub mod history;
 

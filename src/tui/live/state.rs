@@ -12,7 +12,7 @@ use taxel_files::storage::ModelChoice;
 use crate::frames::{Pipeline, Taring};
 use crate::tui::live::history::FrameHistory;
 use crate::tui::live::message::{
-    FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, ProvisionalChange, SourceGaps,
+    FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, SourceGaps,
     SourceState, WatchRequest,
 };
 use crate::tui::live::reading::{HeatLayer, LiveReading, ShadeRange};
@@ -155,7 +155,7 @@ impl Live {
         {
             troubles.push(why.clone());
         }
-        troubles.extend(self.status.gaps.since(self.seen_gaps).sentence());
+        troubles.extend(self.status.gaps.sentence_since(self.seen_gaps));
         (!troubles.is_empty()).then(|| troubles.join("; "))
     }
 
@@ -267,11 +267,6 @@ impl Live {
         }
         if self.history.follows() {
             self.not_drawn += batch.frames.len().saturating_sub(1) as u64;
-        }
-        match &batch.provisional {
-            ProvisionalChange::Unchanged => {}
-            ProvisionalChange::Shown(frame) => self.history.set_next(Some(Arc::clone(frame))),
-            ProvisionalChange::Gone => self.history.set_next(None),
         }
         if self.status.state.is_final() {
             self.tare_error = self.pipeline.end().or(self.tare_error.take());

@@ -366,11 +366,11 @@ fn tare(live: &Live) -> String {
 
 /// Returns how many frames were dropped, a sample of the last one, and why it is not a frame.
 fn dropped(live: &Live) -> String {
-    let status = &live.status;
-    let mut text = grouped(status.lost);
-    if let Some(sample) = status.sample.as_ref().filter(|_| status.lost > 0) {
+    let counts = &live.status.counts;
+    let mut text = grouped(counts.dropped);
+    if let Some(sample) = counts.sample.as_ref().filter(|_| counts.dropped > 0) {
         text += &format!(", the last: {sample}");
-        if let Some(reason) = &status.reason {
+        if let Some(reason) = &counts.reason {
             text += &format!(" ({reason})");
         }
     }

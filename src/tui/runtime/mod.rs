@@ -18,10 +18,14 @@ mod frames;
 pub(crate) mod reminders;
 
 pub use crate::tui::jobs::Jobs as World;
-pub use crate::tui::runtime::frames::source::check as check_source;
+pub use crate::tui::runtime::frames::check as check_source;
 
 use std::sync::Arc;
 
+use taxel_files::acquire::{FrameRecorder, RecorderError};
+use taxel_files::formats::recording::RecordedView;
+
+use crate::frames::recording::Recording;
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::app::state::App;
@@ -29,7 +33,6 @@ use crate::tui::app::update::on_worker;
 use crate::tui::jobs::{Jobs, answer};
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::{Effect, FrameWork};
-use crate::tui::runtime::frames::recording::Recording;
 
 /// Begins what an update asks for. Answers that are there at once come after the present message, like all others.
 pub(crate) fn perform(app: &mut App, effect: Option<Effect>) {
@@ -60,8 +63,7 @@ fn frames(app: &mut App, work: FrameWork) {
             naming,
         } => {
             stop_watching(app);
-            let event = (app.jobs.workers).watch(number, request, write, naming);
-            later(app, event);
+            (app.jobs.workers).watch(number, request, write, naming);
         }
         FrameWork::StopWatching => {
             stop_watching(app);
@@ -71,7 +73,7 @@ fn frames(app: &mut App, work: FrameWork) {
             Ok(number) => {
                 let access = Arc::clone(&app.jobs.access);
                 app.jobs.disk("Starting a recording", move |_| {
-                    let begun = Recording::in_free_file(&access, &metadata);
+                    let begun = frames::record_in_free_file(&access, &metadata);
                     answer(move |app| recording_begun(app, number, begun))
                 });
             }
@@ -86,7 +88,12 @@ fn frames(app: &mut App, work: FrameWork) {
             if let Some((number, recording)) = workers.frames.recording() {
                 let what = format!("Saving the metadata of {}", recording.path().display());
                 app.jobs.disk(what, move |_| {
-                    let written = recording.write_metadata(*view);
+                    let RecordedView { rule, tare, marks } = *view;
+                    let written = recording.write(|recorder| {
+                        recorder.describe(|own| {
+                            (own.rule, own.tare, own.marks) = (rule, tare, marks);
+                        })
+                    });
                     answer(move |app| after_writing(app, number, written))
                 });
             }
@@ -108,7 +115,7 @@ fn stop_watching(app: &mut App) {
 fn end_recording(app: &mut App, number: u64, recording: Arc<Recording>) {
     let what = format!("Saving {}", recording.path().display());
     app.jobs.disk(what, move |_| {
-        let ended = recording.finish();
+        let ended = frames::finish(&recording);
         answer(move |app| {
             if let Some(event) = ended {
                 on_worker(app, WorkerEvent::Live(number, event));
@@ -118,12 +125,10 @@ fn end_recording(app: &mut App, number: u64, recording: Arc<Recording>) {
 }
 
 /// A failure ends the recording.
-fn after_writing(app: &mut App, number: u64, written: Result<(), String>) {
-    if let Err(reason) = written {
-        on_worker(
-            app,
-            WorkerEvent::Live(number, LiveEvent::NotRecorded(reason)),
-        );
+fn after_writing<T>(app: &mut App, number: u64, written: Result<T, RecorderError>) {
+    if let Err(error) = written {
+        let failed = LiveEvent::NotRecorded(error.to_string());
+        on_worker(app, WorkerEvent::Live(number, failed));
     }
 }
 
@@ -157,7 +162,7 @@ pub fn flush(app: &mut App) -> Vec<String> {
     if let Some((number, recording)) = app.jobs.workers.frames.recording() {
         let what = format!("Saving {}", recording.path().display());
         app.jobs.disk(what, move |_| {
-            let written = recording.flush().map(drop);
+            let written = recording.write(FrameRecorder::flush);
             answer(move |app| after_writing(app, number, written))
         });
     }

@@ -29,7 +29,7 @@ use crate::tui::live::message::{NamingRequest, WatchRequest};
 use crate::tui::recognise::state::{PoseSearch, PoseSearchResult, RecognitionEvent};
 use crate::tui::runtime::disk::files::{WriteAccess, absolute};
 use crate::tui::runtime::effect::Work;
-use crate::tui::runtime::frames::watcher::FrameWatcher;
+use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::work::execution::{
     Execution, PoseLimit, ProgressReporter, StopFlag, WorkProgress, WorkerEventSink, caught,
     guarded, on_a_thread, start, wait_until_finished,
@@ -107,9 +107,9 @@ impl Workers {
         request: Arc<WatchRequest>,
         write: Option<(PathBuf, Existing)>,
         naming: Option<Box<NamingRequest>>,
-    ) -> Option<WorkerEvent> {
+    ) {
         self.name_by(number, naming);
-        self.frames.watch(number, request, write, &self.execution)
+        self.frames.watch(number, request, write, &self.execution);
     }
 
     /// Prepares the model that names the imprints of the source of that number; without a request, stops naming.
