@@ -12,8 +12,8 @@ use taxel_files::storage::ModelChoice;
 use crate::frames::{Pipeline, Taring};
 use crate::tui::live::history::FrameHistory;
 use crate::tui::live::message::{
-    FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, SourceGaps,
-    SourceState, WatchRequest,
+    FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, SourceGaps, SourceState,
+    WatchRequest,
 };
 use crate::tui::live::reading::{HeatLayer, LiveReading, ShadeRange};
 use crate::tui::live::threshold;

@@ -163,11 +163,7 @@ impl FrameWatcher {
     }
 
     /// Reads the next frames of the source for a script, up to `count`.
-    pub(crate) fn next(
-        &mut self,
-        count: usize,
-        access: &WriteAccess,
-    ) -> Vec<WorkerEvent> {
+    pub(crate) fn next(&mut self, count: usize, access: &WriteAccess) -> Vec<WorkerEvent> {
         let Some(watched) = &mut self.watched else {
             return Vec::new();
         };
@@ -241,10 +237,7 @@ fn found(named: &FrameSource) -> FrameSource {
 
 /// The source of a name. A script from a stranger reads files only: a serial line would be set up and its device reset,
 /// a connection made, a pipe waited for.
-pub(crate) fn readable(
-    named: &FrameSource,
-    access: &WriteAccess,
-) -> Result<FrameSource, String> {
+pub(crate) fn readable(named: &FrameSource, access: &WriteAccess) -> Result<FrameSource, String> {
     let source = found(named);
     let refused = |reason: &str| format!("{}: {reason}", source.name());
     if access.folder.is_some() && !is_file(&source) {
