@@ -22,7 +22,6 @@ use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::failure::Failure;
 use crate::cli::input::content::InputError;
-use crate::tui::script::runner;
 
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CliError {
@@ -72,14 +71,6 @@ pub(crate) enum CliError {
     Shapes { broken: usize, shapes: usize },
     #[error("{place}: {message}")]
     Settings { place: String, message: String },
-    #[error("{name}: {error}")]
-    NoScript { name: String, error: InputError },
-    #[error("{}{failure}", name.as_ref().map_or_else(String::new, |name| format!("{name}: ")))]
-    Script {
-        /// The script's name; None for the keys of `--keys`.
-        name: Option<String>,
-        failure: runner::ScriptFailure,
-    },
     #[error("{0}")]
     Memory(String),
     #[error("{}", with_flag(.0))]
@@ -106,8 +97,6 @@ pub(crate) enum CliError {
     Stopped { status: u8 },
     #[error("{}", system_reason(.0))]
     System(io::Error),
-    #[error("{}", system_reason(.0))]
-    Screen(io::Error),
 }
 
 impl CliError {
@@ -192,25 +181,14 @@ impl CliError {
 
     /// Returns true if the reader of our output has closed it, as in `taxel batch | head -1`. This is not an error.
     pub(crate) fn is_closed_pipe(&self) -> bool {
-        matches!(self, Self::Write(error) | Self::Screen(error) if error.kind() == io::ErrorKind::BrokenPipe)
+        matches!(self, Self::Write(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 
     pub(crate) fn status(&self) -> u8 {
         match self {
             _ if self.is_closed_pipe() => 0,
             Self::Failure(failure) => failure.status,
-            Self::Usage(_)
-            | Self::Unused { .. }
-            | Self::Settings { .. }
-            | Self::NoScript { .. }
-            | Self::Script {
-                failure: runner::ScriptFailure::Script(_),
-                ..
-            } => 2,
-            Self::Script {
-                failure: runner::ScriptFailure::Ended { .. },
-                ..
-            } => 3,
+            Self::Usage(_) | Self::Unused { .. } | Self::Settings { .. } => 2,
             Self::Stopped { status } => *status,
             _ => 1,
         }
@@ -220,7 +198,6 @@ impl CliError {
     pub(crate) fn failure(&self) -> Failure {
         let failure = match self {
             Self::Usage(error) => Failure::of_arguments(error),
-            Self::Script { .. } => Failure::new(self.to_string()).with_lines(),
             _ => Failure::new(self.to_string()),
         };
         failure.with_status(self.status())

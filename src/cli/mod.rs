@@ -61,7 +61,8 @@ use commands::man::Man;
 use commands::model::ModelCommand;
 use commands::recognise::Recognise;
 use commands::screen::{self, Look, Screen};
-use commands::{Summary, library, script, sweep, touch, watch};
+use commands::script::Script;
+use commands::{Summary, library, sweep, touch, watch};
 use error::CliError;
 use failure::Failure;
 use input::lines::LineInput;
@@ -103,6 +104,7 @@ enum Command {
     Config(Config),
     Completions(Completions),
     Man(Man),
+    Script(Script),
 }
 
 impl Command {
@@ -113,6 +115,7 @@ impl Command {
             Self::Config(command) => command.run(cx),
             Self::Completions(command) => command.run(cx),
             Self::Man(command) => command.run(cx),
+            Self::Script(command) => command.run(cx),
         }
     }
 }
@@ -268,7 +271,6 @@ impl Context {
             }
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
             Request::Library(asked) => self.library(asked)?,
-            Request::Script(asked) => script::run(&asked, &self.settings, shelf, charset)?,
         }
         Ok(())
     }

@@ -75,13 +75,44 @@ fn screens_are_printed_before_the_message() {
     assert_eq!(stdout.lines().count(), 21, "{stdout}");
 }
 
-/// A record of many shapes is longer than any single shape.
+/// Neither output nor messages depend on the locale.
 #[test]
-fn a_script_may_be_long() {
-    let script = "# nothing but a remark that is repeated\n".repeat(40_000) + "State /na\n";
-    assert!(script.len() > 1 << 20);
-    let run = taxel("script -", &script);
-    assert_eq!((run.status, run.stdout.as_str()), (Some(0), "0\n"));
+fn a_script_is_the_same_in_every_locale() {
+    let script = b"Screen\nExpect /\xc2\xb7 x \xc3\xa9/\n";
+    let [unicode, plain] = ["C.UTF-8", "C"].map(|locale| run_in(locale, &["script", "-"], script));
+    assert_eq!(
+        (&plain.stdout, &plain.stderr),
+        (&unicode.stdout, &unicode.stderr)
+    );
+    assert!(
+        plain.stderr.contains("no /\u{b7} x \u{e9}/ on the screen"),
+        "{plain:?}"
+    );
+    let ascii = run_in("C.UTF-8", &["script", "-"], b"Set ascii on\nScreen\n");
+    assert!(ascii.stdout.is_ascii(), "{ascii:?}");
+}
+
+/// All are run, and the worst status is that of all.
+#[test]
+fn several_scripts_are_run_in_one_call() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let names = ["a", "b", "c"].map(|name| folder.path().join(name));
+    let names = names.each_ref().map(|name| name.to_str().expect("a name"));
+    for (name, script) in
+        names
+            .iter()
+            .zip(["State /na\n", "Fly\n", "Keys <Space>\nState /na\nQuit\n"])
+    {
+        std::fs::write(name, script).expect("written");
+    }
+    let run = run_in("C.UTF-8", &[&["script"], &names[..]].concat(), b"");
+    assert_eq!((run.status, run.stdout.as_str()), (Some(2), "0\n1\n"));
+    for message in [
+        format!("error: {}: line 1: \"Fly\" is unknown", names[1]),
+        format!("error: {}: line 3: the program has not ended", names[2]),
+    ] {
+        assert!(run.stderr.contains(&message), "{run:?}");
+    }
 }
 
 /// A script answers its own questions, so it must not reach the user's own files.

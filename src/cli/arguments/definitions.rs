@@ -3,7 +3,6 @@
 use clap::{Command, CommandFactory};
 
 use crate::cli::Program;
-use crate::cli::arguments::program::script;
 use crate::cli::arguments::{frames, library, sweep, touch};
 
 /// Defines the program with all its commands. Completions and manual pages are made from this too, so a new command
@@ -20,8 +19,7 @@ pub(crate) fn all() -> Command {
         .subcommand(sweep::merge_command())
         .subcommand(frames::command())
         .subcommand(frames::watch())
-        .subcommand(library::command())
-        .subcommand(script());
+        .subcommand(library::command());
     in_order(with_negative_numbers(program))
 }
 

@@ -23,8 +23,9 @@ use crate::cli::arguments::flags::{
     self, json, name_or_path, of_sensor, option, parse_number, required, switch, whole,
 };
 use crate::cli::arguments::help::{FRAMES_EXAMPLES, WATCH_EXAMPLES};
-use crate::cli::arguments::{program, touch};
+use crate::cli::arguments::touch;
 use crate::cli::commands::recognise::NamingFlags;
+use crate::cli::commands::screen::Look;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::{LEAST, SensorSettings};
 
@@ -491,11 +492,7 @@ pub(crate) fn watch() -> Command {
         .args(rules())
         .args(naming())
         .args([write, flags::replace().requires("write"), json()])
-        .args(
-            program::look()
-                .into_iter()
-                .map(|arg| arg.conflicts_with("json")),
-        )
+        .args(look().into_iter().map(|arg| arg.conflicts_with("json")))
 }
 
 fn parse_speed(text: &str) -> Result<f64, String> {
@@ -541,4 +538,9 @@ impl WatchArguments {
             json: matches.get_flag("json"),
         })
     }
+}
+
+fn look() -> Vec<Arg> {
+    let look = Look::augment_args(Command::new(""));
+    look.get_arguments().cloned().collect()
 }

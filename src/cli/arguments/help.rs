@@ -113,33 +113,6 @@ Examples:
   taxel batch poses.jsonl > answers.jsonl
   echo '{"imprint":["##","#."]}' | taxel batch"###;
 
-/// `taxel script`: all commands of a script.
-pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command per line; positions are column,row of the screen, from 0:
-  Size 80x24          Set ascii on        Set theme light   Set columns 8
-  Set library "DIR"   Set shape {...}     Set leftover {}
-  Resize 100x30       Seed 7 (of random touches)
-  Keys f<Right><Tab>4.00<Enter>           <lt> for '<'; <3x:Down> three times
-  Type "text"         Paste "1.5"         Click 12,5   Click "Figure"
-  Drag 3,4 9,9        Scroll 12,5 -3      Signal HUP   Wait   Quit
-  Screen [name]       State [json-pointer]
-  Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
-  ExpectStyle 3,10 reverse
-  Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
-Quit checks that the program has ended. Source fails if the file cannot be
-read; Frames fails if there are too few frames. Without --library, the script
-starts with an empty library. It writes files only below its own folder, and
-replaces only files that it wrote itself. If you trust a script, --allow-outside
-lets it write anywhere and set a library.
-
-Exit status: 0 all expectations held, 1 an expectation failed, 2 the script is
-wrong, 3 taxel exited before the script finished.
-
-Examples:
-  taxel script test.taxel
-  taxel script -k 'f<Enter>' --size 60x20 --styles
-  taxel script test.taxel --svg . --force
-  echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
-
 /// `taxel sweep`: ranges and their defaults.
 pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are

@@ -4,8 +4,6 @@
 
 pub(super) mod help;
 
-pub(super) mod program;
-
 pub(super) mod flags;
 
 #[allow(dead_code, reason = "for commands that are still read by hand")]

@@ -20,7 +20,6 @@ use crate::cli::arguments::definitions;
 use crate::cli::arguments::flags::{self, Form, Given, required, unhandled_subcommand};
 use crate::cli::arguments::frames::{FramesArguments, WatchArguments};
 use crate::cli::arguments::library::LibraryCommand;
-use crate::cli::arguments::program::Script;
 use crate::cli::arguments::sweep::{SweepArguments, Wanted};
 use crate::cli::arguments::touch::{self, Export, Kept};
 use crate::cli::error::CliError;
@@ -29,7 +28,6 @@ use crate::cli::settings::resolved::{Effective, Pitch};
 /// A command that is read by hand.
 #[derive(Clone, Debug)]
 pub(crate) enum Request {
-    Script(Script),
     Figure(Box<Source>, Sensor, Form, Kept),
     Picture(OsString, Given, Form, Kept),
     Describe(OsString, Form),
@@ -154,7 +152,6 @@ pub(crate) fn request(
             Request::Frames(Box::new(asked), form()?, kept)
         }
         "library" => Request::Library(LibraryCommand::of(own, settings)?),
-        "script" => Request::Script(Script::of(own)),
         "sweep" => Request::Sweep(Box::new(SweepArguments::of(own, command, settings)?)),
         "merge" => {
             let files = own.get_many::<PathBuf>("files").into_iter().flatten();

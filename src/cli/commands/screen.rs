@@ -25,7 +25,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
 use crate::tui::live::message::{LiveMessage, WatchRequest};
 use crate::tui::runtime::World;
-use crate::tui::script::command::size;
+use crate::tui::script::runner::size;
 use crate::tui::terminal;
 use crate::tui::terminal::input::Input;
 use crate::tui::terminal::settings::{Flags, TerminalSettings};

@@ -1,15 +1,11 @@
-//! `taxel script`: runs the screen without a terminal, driven by a script.
+//! `taxel script`: runs the screen without a terminal, driven by scripts.
 //!
 //! The program is the same as on a terminal, except that keys come from the script, only the screens that it asks for
 //! are drawn, and the library is an empty one of its own unless `--library` is given. So scripts are tests (those in
-//! `tests/scripts`), demonstrations, and records of `taxel --record`.
+//! `tests/scripts`), demonstrations, and records of `taxel --record`. They print the same in every locale.
 //!
-//! ```text
-//! $ taxel script -k 'f<Enter>' rest.taxel            keys first, then the script
-//! $ taxel script demo.taxel --svg pictures           pictures/NAME.svg for each 'Screen NAME'
-//! ```
 //! A script ends at its first error; the output before remains. Its commands are those of
-//! [`command`](crate::tui::script::command).
+//! [`runner`](crate::tui::script::runner).
 //!
 //! A script answers the program's questions itself, and may come from a stranger. So it cannot choose a library of
 //! the user's, and writes only below its own folder, unless `--allow-outside` is given.
@@ -17,131 +13,204 @@
 use std::collections::{HashMap, HashSet};
 use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use taxel_files::formats::Name;
 use taxel_files::formats::file::without_mark;
 use taxel_files::formats::name::folded;
-use taxel_files::storage;
+use taxel_files::storage::{self, Existing};
 
-use crate::cli::arguments::program::Script;
+use crate::cli::Context;
 use crate::cli::commands::export;
-use crate::cli::error::CliError;
-use crate::cli::input::content::InputSource;
-use crate::cli::input::shapes::Shelf;
+use crate::cli::failure::{Failure, Named};
+use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::output::charset::Charset;
-use crate::cli::settings::resolved::Effective;
 use crate::tui::app::state::Options;
-use crate::tui::keys::key::parse;
+use crate::tui::keys::key::{Key, parse};
 use crate::tui::runtime::World;
-use crate::tui::script::command::ScriptError;
-use crate::tui::script::runner::{self, ScriptOptions, ScriptOutput};
+use crate::tui::script::runner::{self, ScriptFailure, ScriptOptions, Shown, size};
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
+
+const EXAMPLES: &str = r#"One command per line; positions are column,row of the screen, from 0:
+  Size 80x24          Set ascii on        Set theme light   Set columns 8
+  Set library "DIR"   Set shape {...}     Set leftover {}
+  Resize 100x30       Seed 7 (of random touches)
+  Keys f<Right><Tab>4.00<Enter>           <lt> for '<'; <3x:Down> three times
+  Type "text"         Paste "1.5"         Click 12,5   Click "Figure"
+  Drag 3,4 9,9        Scroll 12,5 -3      Signal HUP   Wait   Quit
+  Screen [name]       State [json-pointer]
+  Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
+  ExpectScreen FILE   ExpectStyle 3,10 reverse
+  Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
+Quit checks that the program has ended. Source fails if the file cannot be
+read; Frames fails if there are too few frames. ExpectScreen compares the screen
+with a file in the script's folder, which --update writes. Without --library,
+the script starts with an empty library. It writes files only below its own
+folder, and replaces only files that it wrote itself. If you trust a script,
+--allow-outside lets it write anywhere and set a library.
+
+Exit status: 0 all expectations held, 1 an expectation failed, 2 the script is
+wrong, 3 taxel exited before the script finished.
+
+Examples:
+  taxel script test.taxel
+  taxel script tests/*.taxel --update
+  taxel script -k 'f<Enter>' --size 60x20 --styles
+  taxel script test.taxel --svg . --force
+  echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
 
 /// The longest script, in bytes.
 const MOST_BYTES: u64 = 16 << 20;
 
-pub(crate) fn run(
-    asked: &Script,
-    settings: &Effective,
-    shelf: &Shelf,
-    charset: Charset,
-) -> Result<(), CliError> {
-    let name = asked.source.as_ref().map(InputSource::name);
-    let script = match &asked.source {
-        Some(source) => bytes(source).map_err(|error| CliError::NoScript {
-            name: source.name(),
-            error: error.into(),
-        })?,
-        None => Vec::new(),
-    };
-    let script = text(&script).map_err(|error| CliError::Script {
-        name: name.clone(),
-        failure: error.into(),
-    })?;
-    let keys = parse(asked.keys.as_deref().unwrap_or("")).map_err(|error| CliError::Script {
-        name: None,
-        failure: runner::ScriptFailure::Script(ScriptError {
-            line: 0,
-            message: error.to_string(),
-        }),
-    })?;
-    let world = match shelf.named()? {
-        Some(library) => World::for_script(library),
-        None => World::scratch().map_err(CliError::Screen)?,
-    };
-    let running = options(asked, settings, charset);
-    if let Some(folder) = &asked.drawings {
-        export::make_folder(folder)?;
-    }
-    let (mut output, mut names, mut lost) = (io::stdout().lock(), Names::default(), None);
-    let mut show = |shown: ScriptOutput<'_>| match write(shown, asked, &mut output, &mut names) {
-        Ok(()) => ControlFlow::Continue(()),
-        Err(failure) => {
-            lost = Some(failure);
-            ControlFlow::Break(())
+/// Drive the screen without a terminal
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Script {
+    /// Scripts to run, one after the other; '-' for standard input
+    #[arg(value_name = "FILE")]
+    file: Vec<PathBuf>,
+    /// Keys to press first; without a script, print the screen
+    #[arg(short, long, value_name = "KEYS")]
+    keys: Option<String>,
+    /// Columns and rows of the screen
+    #[arg(long, value_name = "CxR", value_parser = size, default_value = "80x24", hide_default_value = true, help_heading = "Terminal")]
+    size: (u16, u16),
+    /// Add a grid of style letters to screens
+    #[arg(long)]
+    styles: bool,
+    /// Print screens as lines of JSON
+    #[arg(long)]
+    json: bool,
+    /// Draw each screen into this folder too, as NAME.svg
+    #[arg(long, value_name = "DIR")]
+    svg: Option<PathBuf>,
+    /// Replace existing drawings
+    #[arg(long, requires = "svg")]
+    force: bool,
+    /// Write the files of ExpectScreen instead of comparing
+    #[arg(long)]
+    update: bool,
+    /// Let the script write anywhere and set a library
+    #[arg(long)]
+    allow_outside: bool,
+}
+
+impl Script {
+    pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        // Whatever the locale: a script, its screens and its messages are the same everywhere.
+        cx.settings.charset(Charset::Unicode).set();
+        let keys = parse(self.keys.as_deref().unwrap_or(""));
+        let keys = keys.map_err(|error| Failure::usage(format!("-k: {error}")))?;
+        if let Some(folder) = &self.svg {
+            export::make_folder(folder)?;
         }
-    };
-    let result = runner::run_shown(script, &keys, &running, world, &mut show);
-    match lost {
-        Some(failure) => Err(failure),
-        None => result.map_err(|failure| CliError::Script { name, failure }),
-    }
-}
-
-fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOptions {
-    let plain = Theme::plain(charset == Charset::Ascii);
-    let theme = match asked.drawings {
-        // Drawings have colours unless the script says otherwise; printed screens stay the same.
-        Some(_) => Theme {
-            depth: ColorDepth::True,
-            palette: Palette::Dark,
-            ..plain
-        },
-        None => plain,
-    };
-    ScriptOptions {
-        options: Options {
-            sensor: settings.sensor,
-            theme,
-            seed: 0,
-        },
-        size: asked.size,
-        styles: asked.styles,
-        json: asked.json,
-        keymap: settings.keymap().clone(),
-        folder: folder_of(asked),
-    }
-}
-
-/// Returns the folder that a script may write below: that of its file, or the current one for a script from standard
-/// input. None with `--allow-outside`, and for keys alone, which are the user's own.
-fn folder_of(asked: &Script) -> Option<PathBuf> {
-    let source = asked.source.as_ref().filter(|_| !asked.allow_outside)?;
-    Some(match source {
-        InputSource::File(path) => storage::folder_of(path).to_owned(),
-        InputSource::Standard => PathBuf::from("."),
-    })
-}
-
-fn write(
-    shown: ScriptOutput<'_>,
-    asked: &Script,
-    output: &mut impl Write,
-    names: &mut Names,
-) -> Result<(), CliError> {
-    match (shown, &asked.drawings) {
-        (ScriptOutput::Text(text), _) => {
-            let written = output.write_all(text.as_bytes());
-            let flushed = written.and_then(|()| output.flush());
-            flushed.map_err(CliError::Write)
+        let mut sources: Vec<_> = self.file.iter().map(|file| InputSource::of(file)).collect();
+        if sources.is_empty() && self.keys.is_none() {
+            sources.push(InputSource::Standard);
         }
-        (ScriptOutput::Screen(name, session), Some(folder)) => {
+        let mut names = Names::default();
+        let mut run = |source| self.play(cx, source, &keys, &mut names);
+        match &sources[..] {
+            [] => run(None),
+            [source] => run(Some(source)),
+            // Each is run, whatever became of the others.
+            _ => {
+                let mut status = 0;
+                for failure in sources.iter().filter_map(|source| run(Some(source)).err()) {
+                    if let Some(message) = failure.message(Charset::current()) {
+                        let _ = io::stderr().write_all(message.as_bytes());
+                    }
+                    status = failure.status.max(status);
+                }
+                match status {
+                    0 => Ok(()),
+                    status => Err(Failure::silent(status)),
+                }
+            }
+        }
+    }
+
+    fn play(
+        &self,
+        cx: &Context,
+        source: Option<&InputSource>,
+        keys: &[Key],
+        names: &mut Names,
+    ) -> Result<(), Failure> {
+        let folder = match source {
+            Some(InputSource::File(path)) => storage::folder_of(path),
+            _ => Path::new("."),
+        };
+        let ascii = Charset::current() == Charset::Ascii;
+        let plain = Theme::plain(ascii);
+        let theme = match self.svg {
+            // Drawings have colours unless the script says otherwise; printed screens stay the same.
+            Some(_) => Theme {
+                depth: ColorDepth::True,
+                palette: Palette::Dark,
+                ..plain
+            },
+            None => plain,
+        };
+        let options = ScriptOptions {
+            options: Options {
+                sensor: cx.settings.sensor,
+                theme,
+                seed: 0,
+            },
+            size: self.size,
+            styles: self.styles,
+            json: self.json,
+            keymap: cx.settings.keymap().clone(),
+            folder: folder.to_owned(),
+            // Keys alone are the user's own.
+            is_confined: source.is_some() && !self.allow_outside,
+            update: self.update,
+        };
+        let world = match cx.shelf.named()? {
+            Some(library) => World::for_script(library),
+            None => World::scratch()?,
+        };
+        let name = source.map(InputSource::name).unwrap_or_default();
+        let script = match source {
+            Some(source) => bytes(source)
+                .map_err(|error| Failure::usage(InputError::from(error).to_string()))
+                .named(&name)?,
+            None => Vec::new(),
+        };
+        let mut lost = None;
+        let mut show = |shown: Shown<'_>| match self.write(&shown, names) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(failure) => {
+                lost = Some(failure);
+                ControlFlow::Break(())
+            }
+        };
+        let result =
+            text(&script).and_then(|script| runner::run(script, keys, &options, world, &mut show));
+        match (lost, result) {
+            (Some(failure), _) => Err(failure),
+            (None, Err(error)) => {
+                let failure = Failure::new(format!("{name}: {error}")).with_status(error.status);
+                Err(failure.with_lines())
+            }
+            (None, Ok(())) => Ok(()),
+        }
+    }
+
+    fn write(&self, shown: &Shown<'_>, names: &mut Names) -> Result<(), Failure> {
+        if let (Some((name, session)), Some(folder)) = (shown.screen, &self.svg) {
             let name = names.next(name);
             let path = folder.join(format!("{name}.svg"));
-            export::put(&path, session.svg(&name).as_bytes(), asked.existing)
+            let existing = match self.force {
+                true => Existing::Replaced,
+                false => Existing::Kept,
+            };
+            export::put(&path, session.svg(&name).as_bytes(), existing)?;
         }
-        _ => Ok(()),
+        let mut output = io::stdout().lock();
+        output.write_all(shown.text.as_bytes())?;
+        Ok(output.flush()?)
     }
 }
 
@@ -176,25 +245,21 @@ impl Names {
     }
 }
 
-fn text(script: &[u8]) -> Result<&str, ScriptError> {
+fn text(script: &[u8]) -> Result<&str, ScriptFailure> {
     let script = without_mark(script);
-    str::from_utf8(script).map_err(|error| ScriptError {
-        line: script[..error.valid_up_to()]
-            .split(|&byte| byte == b'\n')
-            .count(),
-        message: "not UTF-8".to_owned(),
+    str::from_utf8(script).map_err(|error| {
+        let before = script[..error.valid_up_to()].split(|&byte| byte == b'\n');
+        ScriptFailure::malformed(before.count(), "not UTF-8")
     })
 }
 
-/// Reads a script. It may be long, since a record contains a whole library.
 fn bytes(source: &InputSource) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut input = source.open()?.take(MOST_BYTES + 1);
     input.read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MOST_BYTES {
-        return Err(io::Error::other(
-            "larger than 16 MiB, the limit for a script",
-        ));
+        let text = "larger than 16 MiB, the limit for a script";
+        return Err(io::Error::other(text));
     }
     Ok(bytes)
 }

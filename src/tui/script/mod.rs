@@ -2,13 +2,10 @@
 //! machine.
 //!
 //! ```text
-//! command   the lines of a script              runner    carries them out
-//! session   the program on a screen in memory
+//! runner    the commands of a script        session   the program on a screen in memory
 //! ```
 
 pub mod session;
-
-pub mod command;
 
 pub mod runner;
 

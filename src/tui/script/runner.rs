@@ -1,5 +1,4 @@
-//! Runs a script: carries out its commands one by one, prints what they ask for, and stops at the first expectation
-//! that does not hold.
+//! A script: reads its lines and carries them out, and stops at the first expectation that does not hold.
 //!
 //! ```text
 //! Size 80x24            before the first command that needs a screen: settings
@@ -9,180 +8,618 @@
 //! --- screen start 80x24 cursor 8,9 ---
 //! n New   l Load   …
 //! ```
-//! A script is read as a whole first: if a line is malformed, none is carried out. Long work is finished before the
-//! next command, so that a script always prints the same.
+//! Positions are column,row of the screen, from 0. `#` begins a comment line. A script is read as a whole first: if a
+//! line is malformed, none is carried out. Long work is finished before the next command, so that a script always prints
+//! the same.
 
+use std::fs;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Component, Path, PathBuf};
+use std::str::FromStr;
 
+use regex_lite::{Regex, RegexBuilder};
 use serde_json::{Value, json};
-use taxel_core::quote::shortened;
+use taxel_core::parameter::Parameter;
+use taxel_core::quote::{did_you_mean, shortened, unknown_name};
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_files::formats::file::system_reason;
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{DescribedImprint, StoredShape};
 use taxel_files::storage::{Library, below_home};
 
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::{App, Options};
-use crate::tui::keys::key::Key;
+use crate::tui::keys::key::{Key, parse};
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::recognise::state::RecogniseMessage;
 use crate::tui::runtime::World;
-use crate::tui::script::command::{
-    ScreenPosition, ScriptCommand, ScriptError, ScriptSetting, read, style_name,
-};
 use crate::tui::script::session::Session;
+use crate::tui::widget::theme::{ColorDepth, Palette};
 use crate::tui::widget::write;
 
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ScriptFailure {
-    #[error("line {line}: {message}\n{screen}")]
-    Expectation {
-        /// The line number, from 1.
-        line: usize,
-        message: String,
-        screen: String,
-    },
-    #[error(transparent)]
-    Script(#[from] ScriptError),
-    /// There is no folder for the script's own library, or its shapes cannot be put there.
-    #[error("the script's own library: {0}")]
-    World(String),
-    #[error("stopped: the output was closed")]
-    Stopped,
-    #[error("line {line}: the program had already ended")]
-    Ended { line: usize },
+#[derive(Clone, Debug)]
+pub struct ScriptOptions {
+    pub options: Options,
+    /// Columns and rows of the screen, unless the script sets them.
+    pub size: (u16, u16),
+    pub styles: bool,
+    pub json: bool,
+    pub keymap: Keymap,
+    /// The folder of the script, below which the screens are that it expects.
+    pub folder: PathBuf,
+    /// Whether the script may write only below its folder, and use no library of the user's.
+    pub is_confined: bool,
+    /// Whether the files of expected screens are written.
+    pub update: bool,
 }
 
-/// Runs a script in a world, after some keys. `print` gets the output piece by piece, and can stop the script.
-/// Without any command, the screen is printed. A script that sets a library or its shapes has a world of its own
-/// instead.
-pub fn run(
-    script: &str,
-    keys: &[Key],
-    settings: &ScriptOptions,
-    world: World,
-    mut print: impl FnMut(&str) -> ControlFlow<()>,
-) -> Result<(), ScriptFailure> {
-    run_shown(script, keys, settings, world, &mut |shown| match shown {
-        ScriptOutput::Text(text) => print(text),
-        ScriptOutput::Screen(..) => ControlFlow::Continue(()),
+/// What a script prints, and the screen that this is, if it is one, with its name, which may be empty.
+#[derive(Debug)]
+pub struct Shown<'a> {
+    pub text: &'a str,
+    pub screen: Option<(&'a str, &'a Session)>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}{screen}")]
+pub struct ScriptFailure {
+    pub message: String,
+    /// The screen at this time, in lines of its own.
+    pub screen: String,
+    /// 1 if something expected is not so, 2 if the script is wrong, 3 if the program had ended.
+    pub status: u8,
+}
+
+impl ScriptFailure {
+    fn new(status: u8, message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            screen: String::new(),
+            status,
+        }
+    }
+
+    /// A script that is wrong; the line number counts from 1.
+    pub fn malformed(line: usize, message: &str) -> Self {
+        Self::new(2, format!("line {line}: {message}"))
+    }
+}
+
+/// Why a command stops the script.
+enum Stop {
+    Fails(String),
+    /// The screen is not the one of the file with this name and content.
+    Differs(String, String),
+    Ended,
+    Closed,
+}
+
+impl From<String> for Stop {
+    fn from(message: String) -> Self {
+        Self::Fails(message)
+    }
+}
+
+type Set = Box<dyn FnOnce(&mut Start) -> Result<(), String>>;
+type Act = Box<dyn Fn(&mut Runner<'_>) -> Result<(), Stop>>;
+
+enum Command {
+    /// How the program starts, and with what.
+    Set(Set),
+    Act(Act),
+}
+
+fn set(set: impl FnOnce(&mut Start) -> Result<(), String> + 'static) -> Set {
+    Box::new(set)
+}
+
+/// A command that needs the program to run.
+fn act(act: impl Fn(&mut Runner<'_>) -> Result<(), Stop> + 'static) -> Result<Command, String> {
+    Ok(Command::Act(Box::new(move |runner| {
+        match runner.session.app().ended() {
+            true => Err(Stop::Ended),
+            false => act(runner),
+        }
+    })))
+}
+
+fn drive(drive: impl Fn(&mut Session) + 'static) -> Result<Command, String> {
+    act(move |runner| {
+        drive(&mut runner.session);
+        Ok(())
     })
 }
 
-#[derive(Debug)]
-pub enum ScriptOutput<'a> {
-    Text(&'a str),
-    /// The name of a screen, which may be empty, and the session that shows it; its text is printed next.
-    Screen(&'a str, &'a Session),
+/// A command that fails with the message that `look` returns.
+fn expect(look: impl Fn(&Session) -> Option<String> + 'static) -> Result<Command, String> {
+    act(move |runner| look(&runner.session).map_or(Ok(()), |message| Err(Stop::Fails(message))))
 }
 
-/// Runs a script like [`run`], but passes each screen itself, too: [`Session::svg`] draws it.
-pub fn run_shown(
+/// The commands; each reads its argument.
+const COMMANDS: [(&str, fn(&str) -> Result<Command, String>); 22] = [
+    ("Size", |text| {
+        let size = stated_size(text)?;
+        Ok(Command::Set(set(move |start| {
+            start.options.size = size;
+            Ok(())
+        })))
+    }),
+    ("Seed", |text| {
+        let seed = whole(text, 0, u64::MAX)?;
+        Ok(Command::Set(set(move |start| {
+            start.options.options.seed = seed;
+            Ok(())
+        })))
+    }),
+    ("Set", |text| setting(text).map(Command::Set)),
+    ("Resize", |text| {
+        let (columns, rows) = stated_size(text)?;
+        drive(move |session| session.resize(columns, rows))
+    }),
+    ("Keys", |text| {
+        let keys = parse(text).map_err(|error| error.to_string())?;
+        act(move |runner| runner.press(&keys))
+    }),
+    ("Type", |text| {
+        let keys: Vec<Key> = quoted(text)?.chars().map(Key::Char).collect();
+        act(move |runner| runner.press(&keys))
+    }),
+    ("Paste", |text| {
+        let text = quoted(text)?;
+        drive(move |session| session.send(Message::Paste(text.clone())))
+    }),
+    ("Click", |text| {
+        if !text.starts_with('"') {
+            let at = position(text)?;
+            return drive(move |session| drag(session, &[at]));
+        }
+        let text = filled(text)?;
+        act(move |runner| {
+            let at = find(&runner.session.screen(), &text)
+                .ok_or_else(|| format!("no {:?} to click on", shortened(&text)))?;
+            drag(&mut runner.session, &[at]);
+            Ok(())
+        })
+    }),
+    ("Drag", |text| {
+        let positions: Result<Vec<_>, _> = text.split_whitespace().map(position).collect();
+        let positions = positions?;
+        if positions.len() < 2 {
+            let found = shortened(text);
+            return Err(format!(
+                "expected two or more positions like 12,5, found {found:?}"
+            ));
+        }
+        drive(move |session| drag(session, &positions))
+    }),
+    ("Scroll", |text| {
+        let (at, turns) = two(text, "a number")?;
+        let (at, turns) = (position(at)?, whole(turns, -1000, 1000_i16)?);
+        let kind = match turns < 0 {
+            true => MouseKind::ScrollUp,
+            false => MouseKind::ScrollDown,
+        };
+        drive(move |session| (0..turns.unsigned_abs()).for_each(|_| mouse(session, kind, at)))
+    }),
+    ("Screen", |name| {
+        if name.contains(char::is_control) {
+            let found = shortened(name);
+            return Err(format!(
+                "a name for a screen has no control characters, found {found:?}"
+            ));
+        }
+        let name = name.to_owned();
+        act(move |runner| runner.print_screen(&name))
+    }),
+    ("State", |pointer| {
+        let pointer = pointer.to_owned();
+        act(move |runner| {
+            let state = state(runner.session.app());
+            let part = state.pointer(&pointer);
+            let part = part.ok_or_else(|| format!("the state has no {:?}", shortened(&pointer)))?;
+            runner.print(&format!("{part}\n"), None)
+        })
+    }),
+    ("Expect", |text| {
+        let (pattern, shown) = pattern(text)?;
+        expect(move |session| {
+            (!pattern.is_match(&session.screen())).then(|| format!("no {shown} on the screen"))
+        })
+    }),
+    ("ExpectNot", |text| {
+        let (pattern, shown) = pattern(text)?;
+        expect(move |session| {
+            (pattern.is_match(&session.screen())).then(|| format!("{shown} is on the screen"))
+        })
+    }),
+    ("ExpectAt", |text| {
+        let (at, text) = two(text, "a text")?;
+        let ((column, row), text) = (position(at)?, filled(text)?);
+        expect(move |session| {
+            let screen = session.screen();
+            let line = line_of(&screen, row);
+            let rest = line.chars().skip(character_at(line, column));
+            let found: String = rest.take(text.chars().count()).collect();
+            (found != text).then(|| {
+                let (found, text) = (shortened(&found), shortened(&text));
+                format!("at {column},{row} there is {found:?}, expected {text:?}")
+            })
+        })
+    }),
+    ("ExpectStyle", |text| {
+        let (at, name) = two(text, "a style")?;
+        let ((column, row), expected) = (position(at)?, style(name)?);
+        expect(move |session| {
+            let index = character_at(line_of(&session.screen(), row), column);
+            let found = line_of(&session.styles(), row).chars().nth(index);
+            let found = found.map(|letter| STYLES.iter().find(|(_, own)| *own == letter));
+            match found.map(|style| style.map_or("unknown", |(name, _)| name)) {
+                Some(found) if found == expected => None,
+                Some(found) => Some(format!(
+                    "at {column},{row} the style is {found}, expected {expected}"
+                )),
+                None => Some(format!(
+                    "{column},{row} is not on the screen, expected {expected}"
+                )),
+            }
+        })
+    }),
+    ("ExpectScreen", |name| {
+        let name = file_name(name, "a screen")?;
+        act(move |runner| runner.expect_screen(&name))
+    }),
+    ("Source", |name| {
+        let name = file_name(name, "frames")?;
+        act(move |runner| Ok(runner.session.watch(&name)?))
+    }),
+    ("Frames", |text| {
+        let count = whole(text, 1, 10_000)?;
+        act(move |runner| {
+            let found = runner.session.frames(count);
+            if found == count {
+                return Ok(());
+            }
+            let expected = counted(count as u64, "frame");
+            let why = runner.session.end_of_frames();
+            Err(Stop::Fails(format!(
+                "expected {expected}, found {found}: {why}"
+            )))
+        })
+    }),
+    ("Signal", |name| match name {
+        "TSTP" => drive(|session| session.send(Message::Redraw)),
+        // Unsaved work is in the journal already; the program ends without a question.
+        _ if SIGNALS.contains(&name) => drive(|session| session.send(Message::Terminate)),
+        _ => Err(format!("signal {}", unknown_name(name, &SIGNALS))),
+    }),
+    // All work is finished already.
+    ("Wait", |text| {
+        alone("Wait", text)?;
+        Ok(Command::Act(Box::new(|_| Ok(()))))
+    }),
+    ("Quit", |text| {
+        alone("Quit", text)?;
+        Ok(Command::Act(Box::new(|runner| {
+            match runner.session.app().ended() {
+                true => Ok(()),
+                false => Err(Stop::Fails("the program has not ended".to_owned())),
+            }
+        })))
+    }),
+];
+
+const STYLES: [(&str, char); 4] = [
+    ("plain", '.'),
+    ("reverse", 'R'),
+    ("bold", 'B'),
+    ("dim", 'D'),
+];
+
+const SIGNALS: [&str; 5] = ["HUP", "INT", "QUIT", "TERM", "TSTP"];
+
+const SETTINGS: [(&str, fn(&str) -> Result<Set, String>); 6] = [
+    ("ascii", |value| {
+        let ascii = chosen("ascii", value, &[("on", true), ("off", false)])?;
+        Ok(set(move |start| {
+            start.options.options.theme.ascii = ascii;
+            Ok(())
+        }))
+    }),
+    ("color", |value| {
+        let depth = chosen("color", value, &ColorDepth::NAMES)?;
+        Ok(set(move |start| {
+            start.options.options.theme.depth = depth;
+            Ok(())
+        }))
+    }),
+    ("theme", |value| {
+        let palette = chosen("theme", value, &Palette::NAMES)?;
+        Ok(set(move |start| {
+            start.options.options.theme.palette = palette;
+            Ok(())
+        }))
+    }),
+    ("library", |value| {
+        let folder = quoted(value).map_err(|_| {
+            let found = shortened(value);
+            format!("expected a folder in double quotes, found {found}")
+        })?;
+        Ok(set(move |start| {
+            if start.options.is_confined {
+                return Err("Set library needs --allow-outside; without that line, the script has its own library"
+                    .to_owned());
+            }
+            let folder = below_home(&folder).ok_or("no home folder, so ~ cannot be used")?;
+            start.library = Some(Library::open(folder));
+            Ok(())
+        }))
+    }),
+    ("shape", |value| {
+        let shape = shape("shape", value)?;
+        Ok(set(|start| {
+            start
+                .shapes
+                .retain(|own| !own.name.same(shape.name.as_str()));
+            start.shapes.push(shape);
+            Ok(())
+        }))
+    }),
+    // Unsaved work of a program that crashed.
+    ("leftover", |value| {
+        let shape = shape("leftover", value)?;
+        Ok(set(|start| {
+            start.leftovers.push(shape);
+            Ok(())
+        }))
+    }),
+];
+
+fn setting(text: &str) -> Result<Set, String> {
+    let (name, value) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    let value = value.trim();
+    if let Some((_, read)) = SETTINGS.iter().find(|(own, _)| *own == name) {
+        return read(value);
+    }
+    let parameter = Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own));
+    let Some(parameter) = parameter else {
+        let settings = SETTINGS.iter().map(|(name, _)| (*name).to_owned());
+        let sensor = SENSOR_PARAMETERS.iter().map(|parameter| parameter.flag());
+        let names: Vec<String> = settings.chain(sensor).collect();
+        return Err(format!(
+            "{:?} cannot be set, expected one of {}{}",
+            shortened(name),
+            names.join(", "),
+            did_you_mean(name, names.iter().map(String::as_str))
+        ));
+    };
+    let value = Sensor::LARGEST.read(parameter, value);
+    let value = value.map_err(|error| error.to_string())?;
+    Ok(set(move |start| {
+        let options = &mut start.options.options;
+        let sensor = options.sensor.with(parameter, value);
+        options.sensor = sensor.map_err(|error| error.to_string())?;
+        Ok(())
+    }))
+}
+
+struct Start {
+    /// Changed by the script's settings.
+    options: ScriptOptions,
+    library: Option<Library>,
+    shapes: Vec<StoredShape>,
+    leftovers: Vec<StoredShape>,
+}
+
+impl Start {
+    /// Returns the world for the script: `own`, unless the script sets a library or its shapes.
+    fn world(&self, own: World) -> Result<World, String> {
+        let has_shapes = !self.shapes.is_empty() || !self.leftovers.is_empty();
+        let world = match &self.library {
+            Some(_) if has_shapes => {
+                let text = "Set library cannot be used with Set shape or Set leftover";
+                return Err(text.to_owned());
+            }
+            Some(library) => World::for_script(library.clone()),
+            None if has_shapes => {
+                let shapes: Vec<&StoredShape> = self.shapes.iter().collect();
+                let leftovers: Vec<&StoredShape> = self.leftovers.iter().collect();
+                World::with_contents(&shapes, &leftovers)
+                    .map_err(|error| format!("the script's own library: {error}"))?
+            }
+            None => own,
+        };
+        Ok(match self.options.is_confined {
+            true => world.confined_to(self.options.folder.clone()),
+            false => world,
+        })
+    }
+}
+
+/// Runs a script in a world, after some keys. `show` gets the output piece by piece, and can stop the script. Without
+/// any command, the screen is printed. A script that sets a library or its shapes has a world of its own instead.
+pub fn run(
     script: &str,
     keys: &[Key],
-    settings: &ScriptOptions,
+    options: &ScriptOptions,
     world: World,
-    show: &mut impl FnMut(ScriptOutput<'_>) -> ControlFlow<()>,
+    show: &mut dyn FnMut(Shown<'_>) -> ControlFlow<()>,
 ) -> Result<(), ScriptFailure> {
-    let commands = read(script)?;
-    let start = ScriptStart::of(&commands, settings)?;
-    let rest = &commands[start.lines..];
-    let world = start.world(world).map_err(ScriptFailure::World)?;
-    let settings = &start.settings;
-    let app = App::new(&settings.options).with_keymap(settings.keymap.clone());
-    let mut session = Session::of(app, world, settings.size.0, settings.size.1);
-    for &key in keys {
-        session.press(key);
-    }
-    if commands.is_empty() {
-        show_screen(&session, "", settings, show)?;
-    }
-    for (line, command) in rest {
-        if !observe(&session, *line, command, settings, show)? {
-            act(&mut session, *line, command)?;
-        }
-    }
-    Ok(())
-}
-
-/// Carries out a command that changes the program.
-fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<(), ScriptFailure> {
-    if session.app().ended() {
-        return Err(ScriptFailure::Ended { line });
-    }
-    match command {
-        ScriptCommand::Resize(columns, rows) => session.resize(*columns, *rows),
-        ScriptCommand::Keys(keys) => {
-            for &key in keys {
-                if session.app().ended() {
-                    return Err(ScriptFailure::Ended { line });
-                }
-                session.press(key);
+    let mut start = Start {
+        options: options.clone(),
+        library: None,
+        shapes: Vec::new(),
+        leftovers: Vec::new(),
+    };
+    let (mut acts, mut last_set) = (Vec::new(), 1);
+    for (line, command) in read(script)? {
+        match command {
+            Command::Act(act) => acts.push((line, act)),
+            Command::Set(set) if acts.is_empty() => {
+                set(&mut start).map_err(|message| ScriptFailure::malformed(line, &message))?;
+                last_set = line;
+            }
+            Command::Set(_) => {
+                let message = "Size, Seed and Set must come before any command that needs a screen";
+                return Err(ScriptFailure::malformed(line, message));
             }
         }
-        ScriptCommand::Type(text) => text
-            .chars()
-            .for_each(|character| session.press(Key::Char(character))),
-        ScriptCommand::Paste(text) => session.send(Message::Paste(text.clone())),
-        ScriptCommand::Click(at) => click(session, *at),
-        ScriptCommand::ClickText(text) => {
-            let at = find(&session.screen(), text);
-            click(
-                session,
-                at.ok_or_else(|| {
-                    let text = shortened(text);
-                    fails(session, line, format!("no {text:?} to click on"))
-                })?,
-            );
-        }
-        ScriptCommand::Drag(way) => drag(session, way),
-        ScriptCommand::Scroll(at, turns) => {
-            let kind = if *turns < 0 {
-                MouseKind::ScrollUp
-            } else {
-                MouseKind::ScrollDown
-            };
-            (0..turns.unsigned_abs()).for_each(|_| mouse(session, kind, *at));
-        }
-        ScriptCommand::Set(ScriptSetting::Seed(seed)) => {
-            session.send(Message::Recognise(RecogniseMessage::Seed(*seed)));
-        }
-        ScriptCommand::Source(name) => {
-            let watched = session.watch(name);
-            watched.map_err(|message| fails(session, line, message))?;
-        }
-        ScriptCommand::Frames(count) => {
-            take_frames(session, *count).map_err(|message| fails(session, line, message))?;
-        }
-        ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
-        // Unsaved work is in the journal already; the program ends without a question.
-        ScriptCommand::Signal(_) => session.send(Message::Terminate),
-        // The shape is in the library from the start.
-        ScriptCommand::Set(ScriptSetting::Shape(_)) => {}
-        _ => {
-            let message = "Size and Set must come before any command that needs a screen";
-            return Err(wrong(line, message.to_owned()));
-        }
+    }
+    let world = start.world(world);
+    let world = world.map_err(|message| ScriptFailure::malformed(last_set, &message))?;
+    let options = &start.options;
+    let app = App::new(&options.options).with_keymap(options.keymap.clone());
+    let mut runner = Runner {
+        session: Session::of(app, world, options.size.0, options.size.1),
+        options,
+        show,
+    };
+    for &key in keys {
+        runner.session.press(key);
+    }
+    if acts.is_empty() {
+        acts.push((1, Box::new(|runner| runner.print_screen(""))));
+    }
+    for (line, act) in acts {
+        act(&mut runner).map_err(|stop| runner.failure(line, stop))?;
     }
     Ok(())
 }
 
-fn take_frames(session: &mut Session, count: usize) -> Result<(), String> {
-    let found = session.frames(count);
-    if found == count {
-        return Ok(());
+fn read(script: &str) -> Result<Vec<(usize, Command)>, ScriptFailure> {
+    let mut commands = Vec::new();
+    for (number, line) in (1..).zip(script.lines()) {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let command = match COMMANDS.iter().find(|(name, _)| *name == word) {
+            Some((_, read)) => read(rest.trim()),
+            None => Err(unknown_name(word, &COMMANDS.map(|(name, _)| name))),
+        };
+        let command = command.map_err(|message| ScriptFailure::malformed(number, &message))?;
+        commands.push((number, command));
     }
-    let expected = counted(count as u64, "frame");
-    let why = session.end_of_frames();
-    Err(format!("expected {expected}, found {found}: {why}"))
+    Ok(commands)
 }
 
-fn drag(session: &mut Session, way: &[ScreenPosition]) {
+struct Runner<'a> {
+    session: Session,
+    options: &'a ScriptOptions,
+    show: &'a mut dyn FnMut(Shown<'_>) -> ControlFlow<()>,
+}
+
+impl Runner<'_> {
+    fn press(&mut self, keys: &[Key]) -> Result<(), Stop> {
+        for &key in keys {
+            if self.session.app().ended() {
+                return Err(Stop::Ended);
+            }
+            self.session.press(key);
+        }
+        Ok(())
+    }
+
+    fn print(&mut self, text: &str, name: Option<&str>) -> Result<(), Stop> {
+        let screen = name.map(|name| (name, &self.session));
+        match (self.show)(Shown { text, screen }) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Stop::Closed),
+        }
+    }
+
+    fn print_screen(&mut self, name: &str) -> Result<(), Stop> {
+        let session = &self.session;
+        let ((columns, rows), cursor) = (session.size(), session.cursor());
+        if self.options.json {
+            let lines = |grid: String| grid.lines().map(str::to_owned).collect::<Vec<_>>();
+            let object = json!({
+                "screen": name, "size": [columns, rows],
+                "cursor": cursor.map(|cursor| [cursor.x, cursor.y]),
+                "rows": lines(session.screen()), "styles": lines(session.styles()),
+            });
+            return self.print(&format!("{object}\n"), Some(name));
+        }
+        let space = if name.is_empty() { "" } else { " " };
+        let cursor = cursor.map_or("no cursor".to_owned(), |cursor| {
+            format!("cursor {},{}", cursor.x, cursor.y)
+        });
+        let mut text = format!("--- screen{space}{name} {columns}x{rows} {cursor} ---\n");
+        text += &session.screen();
+        if self.options.styles {
+            text += &format!("--- styles ---\n{}", session.styles());
+        }
+        self.print(&text, Some(name))
+    }
+
+    /// Compares the screen with a file, or writes the file.
+    fn expect_screen(&self, name: &str) -> Result<(), Stop> {
+        let path = self.options.folder.join(name);
+        let screen = self.session.screen();
+        let failed = |what: &str, error: &std::io::Error| {
+            format!("{name}: cannot {what}: {}", system_reason(error))
+        };
+        if self.options.update {
+            let is_inside = |part: Component<'_>| matches!(part, Component::Normal(_));
+            if self.options.is_confined && !Path::new(name).components().all(is_inside) {
+                let text = format!("{name}: a script writes only below its folder");
+                return Err(Stop::Fails(text));
+            }
+            return Ok(fs::write(&path, screen).map_err(|error| failed("write", &error))?);
+        }
+        let expected = fs::read_to_string(&path)
+            .map_err(|error| failed("read", &error) + "; --update writes it")?;
+        let rows = |text: &str| {
+            text.lines()
+                .map(|row| row.trim_end().to_owned())
+                .collect::<Vec<_>>()
+        };
+        match rows(&expected) == rows(&screen) {
+            true => Ok(()),
+            false => Err(Stop::Differs(name.to_owned(), expected)),
+        }
+    }
+
+    fn failure(&self, line: usize, stop: Stop) -> ScriptFailure {
+        let screen = self.session.screen();
+        let lines = |mark: &str, text: &str| -> String {
+            text.lines()
+                .map(|row| format!("\n  {mark} {}", row.trim_end()))
+                .collect()
+        };
+        let (message, screen) = match stop {
+            Stop::Fails(message) => (message, lines("|", &screen)),
+            Stop::Differs(name, expected) => {
+                let message = format!("the screen is not that of {name}; --update writes it");
+                let screen = format!(
+                    "\nexpected{}\nfound{}",
+                    lines("-", &expected),
+                    lines("+", &screen)
+                );
+                (message, screen)
+            }
+            Stop::Ended => {
+                let message = format!("line {line}: the program had already ended");
+                return ScriptFailure::new(3, message);
+            }
+            Stop::Closed => return ScriptFailure::new(1, "stopped: the output was closed"),
+        };
+        ScriptFailure {
+            screen,
+            ..ScriptFailure::new(1, format!("line {line}: {message}"))
+        }
+    }
+}
+
+fn mouse(session: &mut Session, kind: MouseKind, (column, row): (u16, u16)) {
+    session.send(Message::Mouse(Mouse { kind, column, row }));
+}
+
+/// Presses the button at the first position, visits the others as a terminal reports them, and releases it.
+fn drag(session: &mut Session, way: &[(u16, u16)]) {
     for (index, &at) in way.iter().enumerate() {
-        let kind = if index == 0 {
-            MouseKind::Press
-        } else {
-            MouseKind::Drag
+        let kind = match index {
+            0 => MouseKind::Press,
+            _ => MouseKind::Drag,
         };
         mouse(session, kind, at);
     }
@@ -191,118 +628,7 @@ fn drag(session: &mut Session, way: &[ScreenPosition]) {
     }
 }
 
-fn observe(
-    session: &Session,
-    line: usize,
-    command: &ScriptCommand,
-    settings: &ScriptOptions,
-    show: &mut impl FnMut(ScriptOutput<'_>) -> ControlFlow<()>,
-) -> Result<bool, ScriptFailure> {
-    let fails = |message: String| Err(fails(session, line, message));
-    let observes = !matches!(command, ScriptCommand::Quit | ScriptCommand::Wait);
-    if observes && session.app().ended() {
-        return Err(ScriptFailure::Ended { line });
-    }
-    match command {
-        ScriptCommand::Screen(name) => show_screen(session, name, settings, show)?,
-        ScriptCommand::State(pointer) => match state(session).pointer(pointer) {
-            Some(part) => printed(show(ScriptOutput::Text(&format!("{part}\n"))))?,
-            None => return fails(format!("the state has no {:?}", shortened(pointer))),
-        },
-        ScriptCommand::Quit if !session.app().ended() => {
-            return fails("the program has not ended".to_owned());
-        }
-        ScriptCommand::Quit | ScriptCommand::Wait => {}
-        command => match expect(session, command) {
-            Some(Err(message)) => return fails(message),
-            Some(Ok(())) => {}
-            None => return Ok(false),
-        },
-    }
-    Ok(true)
-}
-
-/// Compares the screen with what a command expects; None if the command expects nothing.
-fn expect(session: &Session, command: &ScriptCommand) -> Option<Result<(), String>> {
-    let failure = match command {
-        ScriptCommand::Expect(pattern) => (!pattern.is_match(&session.screen()))
-            .then(|| format!("no /{}/ on the screen", shortened(pattern.as_str()))),
-        ScriptCommand::ExpectNot(pattern) => pattern
-            .is_match(&session.screen())
-            .then(|| format!("/{}/ is on the screen", shortened(pattern.as_str()))),
-        ScriptCommand::ExpectAt((column, row), text) => {
-            let shown = session.screen();
-            let line = line_of(&shown, *row);
-            let rest = line.chars().skip(character_at(line, *column));
-            let found: String = rest.take(text.chars().count()).collect();
-            (found != *text).then(|| {
-                let (found, text) = (shortened(&found), shortened(text));
-                format!("at {column},{row} there is {found:?}, expected {text:?}")
-            })
-        }
-        ScriptCommand::ExpectStyle((column, row), letter) => {
-            let index = character_at(line_of(&session.screen(), *row), *column);
-            let found = line_of(&session.styles(), *row).chars().nth(index);
-            (found != Some(*letter)).then(|| {
-                let expected = style_name(*letter);
-                match found.map(style_name) {
-                    Some(found) => {
-                        format!("at {column},{row} the style is {found}, expected {expected}")
-                    }
-                    None => format!("{column},{row} is not on the screen, expected {expected}"),
-                }
-            })
-        }
-        _ => return None,
-    };
-    Some(failure.map_or(Ok(()), Err))
-}
-
-fn show_screen(
-    session: &Session,
-    name: &str,
-    settings: &ScriptOptions,
-    show: &mut impl FnMut(ScriptOutput<'_>) -> ControlFlow<()>,
-) -> Result<(), ScriptFailure> {
-    printed(show(ScriptOutput::Screen(name, session)))?;
-    printed(show(ScriptOutput::Text(&screen(session, name, settings))))
-}
-
-fn printed(flow: ControlFlow<()>) -> Result<(), ScriptFailure> {
-    match flow {
-        ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(ScriptFailure::Stopped),
-    }
-}
-
-/// Returns the error for a line that cannot be carried out.
-fn wrong(line: usize, message: String) -> ScriptFailure {
-    ScriptError { line, message }.into()
-}
-
-fn fails(session: &Session, line: usize, message: String) -> ScriptFailure {
-    let screen = session
-        .screen()
-        .lines()
-        .map(|row| format!("  | {row}\n"))
-        .collect();
-    ScriptFailure::Expectation {
-        line,
-        message,
-        screen,
-    }
-}
-
-fn mouse(session: &mut Session, kind: MouseKind, (column, row): ScreenPosition) {
-    session.send(Message::Mouse(Mouse { kind, column, row }));
-}
-
-fn click(session: &mut Session, at: ScreenPosition) {
-    mouse(session, MouseKind::Press, at);
-    mouse(session, MouseKind::Release, at);
-}
-
-fn find(screen: &str, text: &str) -> Option<ScreenPosition> {
+fn find(screen: &str, text: &str) -> Option<(u16, u16)> {
     screen.lines().enumerate().find_map(|(row, line)| {
         let column = write::width(&line[..line.find(text)?]);
         Some((u16::try_from(column).ok()?, u16::try_from(row).ok()?))
@@ -324,37 +650,7 @@ fn line_of(grid: &str, row: u16) -> &str {
     grid.lines().nth(row.into()).unwrap_or("")
 }
 
-fn screen(session: &Session, name: &str, settings: &ScriptOptions) -> String {
-    let (columns, rows) = session.size();
-    let cursor = session.cursor();
-    if settings.json {
-        let lines = |grid: String| grid.lines().map(str::to_owned).collect::<Vec<_>>();
-        let object = json!({
-            "screen": name, "size": [columns, rows],
-            "cursor": cursor.map(|cursor| [cursor.x, cursor.y]),
-            "rows": lines(session.screen()), "styles": lines(session.styles()),
-        });
-        return format!("{object}\n");
-    }
-    let name = if name.is_empty() {
-        String::new()
-    } else {
-        format!(" {name}")
-    };
-    let cursor = cursor.map_or("no cursor".to_owned(), |cursor| {
-        format!("cursor {},{}", cursor.x, cursor.y)
-    });
-    let header = format!("--- screen{name} {columns}x{rows} {cursor} ---\n");
-    let styles = if settings.styles {
-        format!("--- styles ---\n{}", session.styles())
-    } else {
-        String::new()
-    };
-    header + &session.screen() + &styles
-}
-
-fn state(session: &Session) -> Value {
-    let app = session.app();
+fn state(app: &App) -> Value {
     let document = app.shown();
     let seen = app.reading();
     let answer = json!(DescribedImprint(&seen.imprint));
@@ -368,120 +664,130 @@ fn state(session: &Session) -> Value {
     })
 }
 
-#[derive(Clone, Debug)]
-pub struct ScriptOptions {
-    pub options: Options,
-    /// Columns and rows of the screen, unless the script sets them.
-    pub size: (u16, u16),
-    pub styles: bool,
-    pub json: bool,
-    pub keymap: Keymap,
-    /// The only folder below which the script may write; None if it may write anywhere and use any library.
-    pub folder: Option<PathBuf>,
+fn alone(name: &str, rest: &str) -> Result<(), String> {
+    if rest.is_empty() {
+        return Ok(());
+    }
+    let found = shortened(rest);
+    Err(format!("{name} takes no argument, found {found:?}"))
 }
 
-#[derive(Debug)]
-pub(super) struct ScriptStart<'a> {
-    /// The options, changed by the script's settings.
-    pub(super) settings: ScriptOptions,
-    pub(super) lines: usize,
-    library: Option<(usize, Library)>,
-    /// The shapes of the user's library; only the last of those with the same name.
-    shapes: Vec<&'a StoredShape>,
-    leftovers: Vec<&'a StoredShape>,
+fn file_name(name: &str, what: &str) -> Result<String, String> {
+    match name {
+        "" => Err(format!("expected the name of a file with {what}")),
+        name => Ok(name.to_owned()),
+    }
 }
 
-impl<'a> ScriptStart<'a> {
-    /// Reads the start from the commands of a script, each with its line. `settings` apply where the script sets
-    /// nothing.
-    ///
-    /// `Set shape` may also come later in a script, because a recorder learns only then which shapes are used. These
-    /// shapes, too, exist from the start.
-    pub(super) fn of(
-        commands: &'a [(usize, ScriptCommand)],
-        settings: &ScriptOptions,
-    ) -> Result<Self, ScriptError> {
-        let is_setting = |command: &ScriptCommand| matches!(command, ScriptCommand::Set(_));
-        let lines = commands
-            .iter()
-            .take_while(|(_, command)| is_setting(command));
-        let mut start = Self {
-            settings: settings.clone(),
-            lines: lines.count(),
-            library: None,
-            shapes: Vec::new(),
-            leftovers: Vec::new(),
-        };
-        for (index, (line, command)) in commands.iter().enumerate() {
-            match command {
-                ScriptCommand::Set(ScriptSetting::Shape(shape)) => start.put(shape),
-                ScriptCommand::Set(setting) if index < start.lines => {
-                    let set = start.set(*line, setting);
-                    set.map_err(|message| ScriptError {
-                        line: *line,
-                        message,
-                    })?;
-                }
-                _ => {}
-            }
-        }
-        match start.library {
-            Some((line, _)) if !start.shapes.is_empty() || !start.leftovers.is_empty() => {
-                let message = "Set library cannot be used with Set shape or Set leftover";
-                Err(ScriptError {
-                    line,
-                    message: message.to_owned(),
-                })
-            }
-            _ => Ok(start),
-        }
-    }
+fn whole<T: FromStr + PartialOrd + ToString>(text: &str, least: T, most: T) -> Result<T, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number| (&least..=&most).contains(&number));
+    number.ok_or_else(|| {
+        format!(
+            "expected a whole number from {} to {}, found {:?}",
+            least.to_string(),
+            most.to_string(),
+            shortened(text)
+        )
+    })
+}
 
-    fn put(&mut self, shape: &'a StoredShape) {
-        let same = |own: &&StoredShape| own.name.same(shape.name.as_str());
-        match self.shapes.iter().position(same) {
-            Some(index) => self.shapes[index] = shape,
-            None => self.shapes.push(shape),
-        }
-    }
+fn style(name: &str) -> Result<&'static str, String> {
+    let style = STYLES.iter().find(|(style, _)| *style == name);
+    style.map(|(name, _)| *name).ok_or_else(|| {
+        let names = STYLES.map(|(style, _)| style);
+        format!("style {}", unknown_name(name, &names))
+    })
+}
 
-    fn set(&mut self, line: usize, setting: &'a ScriptSetting) -> Result<(), String> {
-        let options = &mut self.settings.options;
-        match setting {
-            ScriptSetting::Size(columns, rows) => self.settings.size = (*columns, *rows),
-            ScriptSetting::Seed(seed) => options.seed = *seed,
-            ScriptSetting::Ascii(ascii) => options.theme.ascii = *ascii,
-            ScriptSetting::Color(depth) => options.theme.depth = *depth,
-            ScriptSetting::Theme(palette) => options.theme.palette = *palette,
-            ScriptSetting::Sensor(parameter, value) => {
-                let sensor = options.sensor.with(*parameter, *value);
-                options.sensor = sensor.map_err(|error| error.to_string())?;
-            }
-            ScriptSetting::Library(_) if self.settings.folder.is_some() => {
-                return Err("Set library needs --allow-outside; without that line, the script has its own library"
-                    .to_owned());
-            }
-            ScriptSetting::Library(folder) => {
-                let folder = below_home(&folder.to_string_lossy())
-                    .ok_or("no home folder, so ~ cannot be used")?;
-                self.library = Some((line, Library::open(folder)));
-            }
-            ScriptSetting::Shape(_) => {}
-            ScriptSetting::Leftover(shape) => self.leftovers.push(shape),
-        }
-        Ok(())
-    }
+fn two<'a>(text: &'a str, what: &str) -> Result<(&'a str, &'a str), String> {
+    let (first, second) = text.split_once(char::is_whitespace).ok_or_else(|| {
+        let found = shortened(text);
+        format!("expected a position like 12,5 and then {what}, found {found:?}")
+    })?;
+    Ok((first, second.trim()))
+}
 
-    /// Returns the world for the script: `own`, unless the script sets a library or its shapes.
-    pub(super) fn world(&self, own: World) -> Result<World, String> {
-        let world = match &self.library {
-            Some((_, library)) => World::for_script(library.clone()),
-            None if self.shapes.is_empty() && self.leftovers.is_empty() => own,
-            None => World::with_contents(&self.shapes, &self.leftovers)?,
-        };
-        Ok(match &self.settings.folder {
-            Some(folder) => world.confined_to(folder.clone()),
-            None => world,
-        })
+/// Reads a size like `80x24`; columns and rows are at most 1000. The error does not quote the text, because a message
+/// about a flag does so already.
+pub(crate) fn size(text: &str) -> Result<(u16, u16), &'static str> {
+    let side = |text| whole(text, 1, 1000).ok();
+    let sides = text.split_once('x');
+    sides
+        .and_then(|(columns, rows)| Some((side(columns)?, side(rows)?)))
+        .ok_or("expected a size like 80x24, from 1x1 to 1000x1000")
+}
+
+fn stated_size(text: &str) -> Result<(u16, u16), String> {
+    size(text).map_err(|error| format!("{error}, found {:?}", shortened(text)))
+}
+
+/// Reads a position like `12,5`: column and row of the screen.
+fn position(text: &str) -> Result<(u16, u16), String> {
+    let place = |text| whole(text, 0, 999).ok();
+    let places = text.split_once(',');
+    places
+        .and_then(|(column, row)| Some((place(column)?, place(row)?)))
+        .ok_or_else(|| format!("expected column,row like 12,5, found {:?}", shortened(text)))
+}
+
+fn quoted(text: &str) -> Result<String, String> {
+    serde_json::from_str(text).map_err(|_| {
+        let found = shortened(text);
+        format!("expected a string in double quotes, found {found}")
+    })
+}
+
+/// Reads a text in quotes that is not empty: an empty one stands everywhere on the screen.
+fn filled(text: &str) -> Result<String, String> {
+    match quoted(text)? {
+        empty if empty.is_empty() => Err("expected a text, found \"\"".to_owned()),
+        text => Ok(text),
     }
+}
+
+/// The greatest compiled size of a pattern in bytes; it allows `.{1000}` and little more, since the time to search a
+/// screen grows with this size.
+const LARGEST_PATTERN: usize = 1 << 16;
+
+/// The greatest length of a pattern in bytes; reading one takes a hundred times as much memory.
+const LONGEST_PATTERN: usize = 1 << 14;
+
+/// Reads a pattern between slashes, and returns it with its text for messages.
+fn pattern(text: &str) -> Result<(Regex, String), String> {
+    let inner = text
+        .strip_prefix('/')
+        .and_then(|text| text.strip_suffix('/'));
+    let inner = inner.ok_or_else(|| {
+        let found = shortened(text);
+        format!("expected a pattern between slashes, found {found:?}")
+    })?;
+    let shown = format!("/{}/", shortened(inner));
+    if inner.len() > LONGEST_PATTERN {
+        let length = inner.len();
+        return Err(format!(
+            "pattern {shown}: has {length} bytes, expected at most {LONGEST_PATTERN}"
+        ));
+    }
+    let regex = RegexBuilder::new(inner).size_limit(LARGEST_PATTERN).build();
+    match regex {
+        Ok(regex) => Ok((regex, shown)),
+        Err(error) => Err(format!("pattern {shown}: {error}")),
+    }
+}
+
+fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, String> {
+    let choice = choices.iter().find(|(choice, _)| *choice == value);
+    choice.map(|(_, meaning)| *meaning).ok_or_else(|| {
+        let names: Vec<&str> = choices.iter().map(|(choice, _)| *choice).collect();
+        format!(
+            "Set {name} takes one of {}, found {:?}",
+            names.join(", "),
+            shortened(value)
+        )
+    })
+}
+
+fn shape(name: &str, value: &str) -> Result<StoredShape, String> {
+    StoredShape::read(value.as_bytes()).map_err(|error| format!("Set {name}: {error}"))
 }

@@ -30,7 +30,7 @@ pub(crate) fn all(body: &str) -> Vec<Malice> {
         "job" => &JOBS,
         "exchange" => &EXCHANGES,
         "config" => &CONFIGS,
-        "script" | "play" => &SCRIPTS,
+        "play" => &SCRIPTS,
         "archive" => archives::ATLASES,
         "model" => archives::MODELS,
         "recording" => &frames::of_recordings(),

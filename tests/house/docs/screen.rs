@@ -2,12 +2,13 @@
 
 use std::fs;
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 
 use taxel::tui::app::state::Options;
 use taxel::tui::keys::key::{Key, parse};
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::runtime::World;
-use taxel::tui::script::runner::{ScriptOptions, ScriptOutput, run_shown};
+use taxel::tui::script::runner::{ScriptOptions, Shown, run};
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 use crate::docs::commands::shell_in;
@@ -33,12 +34,14 @@ fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String)
         styles: false,
         json: false,
         keymap: Keymap::default(),
-        folder: None,
+        folder: PathBuf::from("."),
+        is_confined: false,
+        update: false,
     };
     let world = World::scratch().expect("there is a folder for temporary files");
     let mut screens = Vec::new();
-    run_shown(script, &[], &settings, world, &mut |shown| {
-        if let ScriptOutput::Screen(name, session) = shown {
+    run(script, &[], &settings, world, &mut |shown: Shown<'_>| {
+        if let Some((name, session)) = shown.screen {
             let drawn = session.svg(&title(name));
             screens.push((name.to_owned(), drawn));
         }

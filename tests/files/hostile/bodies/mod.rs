@@ -22,7 +22,7 @@ pub(crate) use screen::session_of;
 pub(crate) type Body = (&'static str, &'static str, fn(&[u8]) -> bool);
 
 /// All bodies.
-pub(crate) const BODIES: [Body; 20] = [
+pub(crate) const BODIES: [Body; 19] = [
     ("shape", "shape", formats::shape),
     ("job", "job", formats::job),
     ("imprint", "imprint", formats::imprint),
@@ -37,7 +37,6 @@ pub(crate) const BODIES: [Body; 20] = [
     ("config", "config", formats::config),
     ("keys", "keys", keys::keys),
     ("command", "command", screen::command),
-    ("script", "script", screen::script),
     ("play", "script", screen::play),
     ("session", "session", screen::session),
     ("recording", "recording", frames::recording),

@@ -1,4 +1,0 @@
-//! A script that is only read, from any bytes.
-#![no_main]
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("script", bytes));
