@@ -1,5 +1,11 @@
-//! Help: the list of the keys that work in a place, as they are currently set. It can be searched:
-//! [`crate::tui::search`].
+//! Help: the list of the keys that work in a place, as they are currently set, and the search in it.
+//!
+//! ```text
+//! Search: undo   1 of 3          which match is in sight, of how many; the list follows what is typed
+//! Search: unod   no match        the list stays where it was
+//! ```
+
+use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -7,130 +13,121 @@ use ratatui::layout::{Position, Rect};
 use crate::tui::app::change::refuse;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::{LinePrompt, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, HelpLine, Keymap, help};
 use crate::tui::runtime::effect::Effect;
-use crate::tui::search::{SearchDialog, no_search};
 use crate::tui::widget::rows::{Search, contains, marked, number};
+use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
-use crate::tui::widget::write::broken;
+use crate::tui::widget::write::{self, broken};
+
+/// The columns of the keys.
+const KEYS: usize = 26;
 
 #[derive(Clone, Debug)]
 pub struct Help {
     context: Context,
-    /// An entry has other lines on a screen of another width.
-    top: (usize, usize),
-    pub search: Search,
+    top: usize,
+    search: Search,
 }
 
-type Lines = Vec<(usize, HelpLine)>;
+/// A line on the screen: a title, or keys with what they do, of which only the first line has the keys.
+struct Line {
+    entry: usize,
+    title: &'static str,
+    keys: String,
+    text: String,
+}
 
 impl Help {
     pub fn new(context: Context) -> Self {
+        let search = Search::default();
         Self {
             context,
-            top: (0, 0),
-            search: Search::default(),
+            top: 0,
+            search,
         }
     }
 
-    fn lines(&self, keymap: &Keymap, (columns, rows): (u16, u16)) -> (Lines, usize) {
-        let broken = |(entry, line)| {
-            let lines = broken_line(line, columns.into()).into_iter();
-            lines.map(move |line| (entry, line))
+    fn lines(&self, keymap: &Keymap, columns: u16) -> Vec<Line> {
+        let room = usize::from(columns).saturating_sub(KEYS);
+        let mut lines = Vec::new();
+        for (entry, line) in help(self.context, keymap).into_iter().enumerate() {
+            let (title, mut keys, text) = match line {
+                HelpLine::Place(place) => (place.title(), String::new(), ""),
+                HelpLine::Keys(keys, text) => ("", keys, text),
+            };
+            let mut texts = broken(text, room);
+            if texts.is_empty() || write::width(&keys) + 2 >= KEYS {
+                texts.insert(0, "");
+            }
+            lines.extend(texts.into_iter().map(|text| Line {
+                entry,
+                title,
+                keys: std::mem::take(&mut keys),
+                text: text.to_owned(),
+            }));
+        }
+        lines
+    }
+
+    /// The first visible line, so that the screen is full.
+    fn top(&self, lines: &[Line], rows: u16) -> usize {
+        self.top.min(lines.len().saturating_sub(rows.into()))
+    }
+
+    fn scroll(&mut self, by: i16, keymap: &Keymap, (columns, rows): (u16, u16)) {
+        let lines = self.lines(keymap, columns);
+        self.top = self.top(&lines, rows).saturating_add_signed(by.into());
+        self.top = self.top(&lines, rows);
+    }
+
+    /// The entries that have the wanted text.
+    fn matches(&self, keymap: &Keymap, wanted: &str) -> Vec<usize> {
+        let has = |line: &HelpLine| match line {
+            HelpLine::Place(place) => contains(place.title(), wanted),
+            HelpLine::Keys(keys, text) => contains(keys, wanted) || contains(text, wanted),
         };
-        let entries = (0..).zip(help(self.context, keymap));
-        let lines: Lines = entries.flat_map(broken).collect();
-        let (entry, line) = self.top;
-        let first = lines.partition_point(|(own, _)| *own < entry);
-        let next = lines.partition_point(|(own, _)| *own <= entry);
-        let top = (first + line).min(next.saturating_sub(1));
-        let last_top = lines.len().saturating_sub(rows.into());
-        (lines, top.min(last_top))
+        let lines = help(self.context, keymap).into_iter().enumerate();
+        lines
+            .filter(|(_, line)| has(line))
+            .map(|(entry, _)| entry)
+            .collect()
     }
 
-    /// Scrolls down by `by` lines, or up if negative, in an area of this many columns and rows.
-    pub fn scroll(&mut self, by: i16, keymap: &Keymap, room: (u16, u16)) {
-        let (lines, top) = self.lines(keymap, room);
-        self.set_top(&lines, top.saturating_add_signed(by.into()), room.1);
-    }
-
-    fn set_top(&mut self, lines: &Lines, line: usize, rows: u16) {
-        let line = line.min(lines.len().saturating_sub(rows.into()));
-        let entry = lines.get(line).map_or(0, |(entry, _)| *entry);
-        let first = lines.partition_point(|(own, _)| *own < entry);
-        self.top = (entry, line - first);
-    }
-
-    pub fn search_for(
+    /// Goes to the first match of a text, and returns its number and how many there are.
+    fn search(
         &mut self,
         wanted: &str,
         keymap: &Keymap,
         room: (u16, u16),
     ) -> Option<(usize, usize)> {
-        let entries = matches(self.context, keymap, wanted);
-        let (lines, top) = self.lines(keymap, room);
-        let from = lines.get(top).map_or(0, |(entry, _)| *entry);
-        let entry = self.search.begin(wanted, &entries, from)?;
+        let lines = self.lines(keymap, room.0);
+        let top = self.top(&lines, room.1);
+        let (from, matches) = (lines.get(top)?.entry, self.matches(keymap, wanted));
+        let entry = self.search.begin(wanted, &matches, from)?;
         self.show(entry, keymap, room);
-        number(entry, &entries)
+        number(entry, &matches)
     }
 
-    pub fn go_to_match(&mut self, by: i8, keymap: &Keymap, room: (u16, u16)) -> bool {
-        let entries = matches(self.context, keymap, self.search.wanted());
-        let from = self.search.entry();
-        let Some(entry) = from.and_then(|from| self.search.go(from, by, &entries)) else {
-            return false;
-        };
+    fn go_to_match(&mut self, by: i8, keymap: &Keymap, room: (u16, u16)) -> Option<()> {
+        let matches = self.matches(keymap, self.search.wanted());
+        let entry = self.search.go(self.search.entry()?, by, &matches)?;
         self.show(entry, keymap, room);
-        true
+        Some(())
     }
 
     /// Makes an entry visible: if it is out of sight, scrolls so that a third of the lines is above it.
-    fn show(&mut self, entry: usize, keymap: &Keymap, room: (u16, u16)) {
-        let (lines, top) = self.lines(keymap, room);
-        let rows = usize::from(room.1);
-        let own = |(index, _): &(usize, HelpLine)| *index == entry;
-        let (first, last) = (lines.iter().position(own), lines.iter().rposition(own));
-        if let (Some(first), Some(last)) = (first, last)
-            && (first < top || last >= top + rows)
-        {
-            self.set_top(&lines, first.saturating_sub(rows / 3), room.1);
+    fn show(&mut self, entry: usize, keymap: &Keymap, (columns, rows): (u16, u16)) {
+        let lines = self.lines(keymap, columns);
+        let (top, height) = (self.top(&lines, rows), usize::from(rows));
+        let first = lines.partition_point(|line| line.entry < entry);
+        let end = lines.partition_point(|line| line.entry <= entry);
+        if first < top || end > top + height {
+            self.top = first.saturating_sub(height / 3);
         }
-    }
-
-    /// Draws a line, with the matches of the search marked. `here`: the search is at this entry, which then has a
-    /// sign, for terminals that cannot reverse.
-    fn draw_line(
-        &self,
-        theme: &Theme,
-        line: &HelpLine,
-        here: bool,
-        buffer: &mut Buffer,
-        row: Rect,
-    ) {
-        let wanted = self.search.wanted();
-        let mut pieces = Vec::new();
-        let pad;
-        match line {
-            HelpLine::Place(context) => pieces.extend(marked(context.title(), wanted, Role::Title)),
-            HelpLine::Keys(keys, text) => {
-                pieces.push((if here { "> " } else { "  " }, Role::Key));
-                pieces.extend(marked(keys, wanted, Role::Key));
-                pad = " ".repeat(INDENT.saturating_sub(2 + write::width(keys)));
-                pieces.push((&pad, Role::Key));
-                pieces.extend(marked(text, wanted, Role::Text));
-            }
-            HelpLine::More(text) => {
-                pad = " ".repeat(INDENT);
-                pieces.push((&pad, Role::Text));
-                pieces.extend(marked(text, wanted, Role::Text));
-            }
-        }
-        write::line(buffer, row, theme, pieces);
     }
 }
 
@@ -150,16 +147,24 @@ impl Page for Help {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        let (lines, top) = self.lines(keymap, area.as_size().into());
-        let here = self.search.entry();
+        let lines = self.lines(keymap, area.width);
+        let (top, wanted) = (self.top(&lines, area.height), self.search.wanted());
         let mut cursor = None;
-        for (index, (entry, line)) in lines.iter().skip(top).enumerate() {
+        for (index, line) in lines.iter().skip(top).enumerate() {
             let row = write::row(area, index);
-            let here = here == Some(*entry);
-            self.draw_line(theme, line, here, buffer, row);
-            if here && row.height > 0 && cursor.is_none() {
-                cursor = Some(Position::new(row.x, row.y));
+            let here = self.search.entry() == Some(line.entry) && row.height > 0;
+            let is_first = here && cursor.is_none();
+            cursor = cursor.or(here.then_some(row.as_position()));
+            let mut pieces = marked(line.title, wanted, Role::Title);
+            let pad = " ".repeat(KEYS.saturating_sub(2 + write::width(&line.keys)));
+            if line.title.is_empty() {
+                // A sign, for terminals that cannot reverse.
+                pieces.push((if is_first { "> " } else { "  " }, Role::Key));
+                pieces.extend(marked(&line.keys, wanted, Role::Key));
+                pieces.push((&pad, Role::Key));
+                pieces.extend(marked(&line.text, wanted, Role::Text));
             }
+            write::line(buffer, row, theme, pieces);
         }
         cursor
     }
@@ -177,74 +182,51 @@ impl Page for Help {
     }
 
     fn remark(&self, keymap: &Keymap, body: Rect) -> Option<(String, Role)> {
-        let (lines, top) = self.lines(keymap, body.as_size().into());
-        let last = lines.len().min(top + usize::from(body.height));
+        let lines = self.lines(keymap, body.width);
+        let top = self.top(&lines, body.height);
+        let (last, all) = (lines.len().min(top + usize::from(body.height)), lines.len());
         let key = |action| keymap.label(Context::Help, action);
-        let more = match (top, last == lines.len()) {
+        let [down, page] = [&action::SCROLL_DOWN, &action::SCREEN_DOWN].map(key);
+        let visible = match (top, last == all) {
             (0, true) => None,
-            (_, true) => Some("the end".to_owned()),
-            (_, false) => Some(format!(
-                "more below: {}, {}",
-                key(&action::SCROLL_DOWN),
-                key(&action::SCREEN_DOWN)
+            (_, true) => Some(format!("lines {}-{last} of {all}; the end", top + 1)),
+            _ => Some(format!(
+                "lines {}-{last} of {all}; more below: {down}, {page}",
+                top + 1
             )),
         };
-        let visible =
-            more.map(|more| format!("lines {}-{last} of {}; {more}", top + 1, lines.len()));
-        let entries = matches(self.context, keymap, self.search.wanted());
-        let found = self.search.entry();
-        let found = found.and_then(|entry| number(entry, &entries));
+        let matches = self.matches(keymap, self.search.wanted());
+        let found = self
+            .search
+            .entry()
+            .and_then(|entry| number(entry, &matches));
         let found = found.map(|(number, all)| format!("match {number} of {all}"));
         let text: Vec<String> = found.into_iter().chain(visible).collect();
         (!text.is_empty()).then(|| (text.join("; "), Role::Key))
     }
 }
 
-fn matches(context: Context, keymap: &Keymap, wanted: &str) -> Vec<usize> {
-    let has = |line: &HelpLine| match line {
-        HelpLine::Place(context) => contains(context.title(), wanted),
-        HelpLine::Keys(keys, text) => contains(keys, wanted) || contains(text, wanted),
-        HelpLine::More(text) => contains(text, wanted),
-    };
-    let entries = (0..).zip(help(context, keymap));
-    entries
-        .filter(|(_, line)| has(line))
-        .map(|(entry, _)| entry)
-        .collect()
-}
-
-const INDENT: usize = 26;
-
-fn broken_line(line: HelpLine, columns: usize) -> Vec<HelpLine> {
-    let HelpLine::Keys(keys, text) = line else {
-        return vec![line];
-    };
-    let mut pieces = broken(text, columns.saturating_sub(INDENT)).into_iter();
-    let beside = (keys.len() + 2 < INDENT).then(|| pieces.next()).flatten();
-    let first = HelpLine::Keys(keys, beside.unwrap_or(""));
-    std::iter::once(first)
-        .chain(pieces.map(HelpLine::More))
-        .collect()
-}
-
 /// Cancel leaves the search; without a search, help closes before Cancel and Quit come here.
 pub(in crate::tui) fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     let (keymap, room) = (app.keymap(), app.body_size());
+    // One line of the screenful before stays visible, for the reader's orientation.
+    let page = room.1.saturating_sub(1).max(1).cast_signed();
     let mut refused = None;
     match *message {
         Message::Scroll(lines) => help.scroll(lines, keymap, room),
-        Message::ScrollScreen(by) => {
-            // One line of the screenful before stays visible, for the reader's orientation.
-            let page = room.1.saturating_sub(1).max(1).cast_signed();
-            help.scroll(page.saturating_mul(by.into()), keymap, room);
-        }
-        Message::ScrollTo(Endpoint::First) => help.scroll(i16::MIN, keymap, room),
+        Message::ScrollScreen(by) => help.scroll(page.saturating_mul(by.into()), keymap, room),
+        Message::ScrollTo(Endpoint::First) => help.top = 0,
         Message::ScrollTo(Endpoint::Last) => help.scroll(i16::MAX, keymap, room),
-        Message::Match(by) if !help.go_to_match(by, keymap, room) => {
-            refused = Some(no_search(keymap, Context::Help));
+        Message::Match(by) if help.go_to_match(by, keymap, room).is_none() => {
+            let search = keymap.label(Context::Help, &action::SEARCH);
+            refused = Some(format!("nothing to go to: {search} searches"));
         }
         Message::Search => {
-            let dialog = SearchDialog::new(help.clone());
+            let dialog = SearchDialog {
+                field: TextField::new("", 60),
+                before: help.clone(),
+                found: None,
+            };
             app.dialogs
                 .extend([Dialog::Help(help), Dialog::Search(dialog)]);
             return None;
@@ -256,6 +238,61 @@ pub(in crate::tui) fn in_help(app: &mut App, mut help: Help, message: &Message) 
     app.dialogs.push(Dialog::Help(help));
     if let Some(text) = refused {
         refuse(app, text);
+    }
+    None
+}
+
+#[derive(Clone, Debug)]
+pub struct SearchDialog {
+    field: TextField,
+    before: Help,
+    /// The number of the match in sight, and how many there are.
+    found: Option<(usize, usize)>,
+}
+
+impl LinePrompt for SearchDialog {
+    const CONTEXT: Context = Context::Search;
+    const RESTORES: bool = true;
+
+    fn label(&self) -> &'static str {
+        "Search: "
+    }
+
+    fn field(&self) -> &TextField {
+        &self.field
+    }
+
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+        match self.found {
+            _ if self.field.text().is_empty() => "   a key, or a word of what it does".into(),
+            None => "   no match".into(),
+            Some((number, all)) => format!("   {number} of {all}").into(),
+        }
+    }
+}
+
+pub(in crate::tui) fn in_search(
+    app: &mut App,
+    mut dialog: SearchDialog,
+    message: &Message,
+) -> Option<Effect> {
+    let mut help = dialog.before.clone();
+    let cancelled = matches!(message, Message::Cancel | Message::Quit);
+    if !cancelled {
+        dialog.field.take(message);
+        dialog.found = help.search(dialog.field.text(), app.keymap(), app.body_size());
+    }
+    if let Some(below) = app.dialogs.last_mut() {
+        *below = Dialog::Help(help);
+    }
+    let text = dialog.field.text();
+    match message {
+        Message::Accept if dialog.found.is_none() && !text.is_empty() => {
+            refuse(app, format!("no match for {text:?}"));
+        }
+        Message::Accept => {}
+        _ if cancelled => {}
+        _ => app.dialogs.push(Dialog::Search(dialog)),
     }
     None
 }

@@ -25,9 +25,9 @@ pub mod widget;
 
 pub mod app;
 
-pub mod help;
+pub mod explain;
 
-pub mod search;
+pub mod help;
 
 pub mod history;
 

@@ -3,8 +3,7 @@
 use taxel::cli::settings::file::Config;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::{App, Options};
-use taxel::tui::keys::default_keys::DEFAULT_KEYS;
-use taxel::tui::keys::keymap::{Context, actions};
+use taxel::tui::keys::keymap::{Context, DEFAULT_KEYS};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
@@ -209,9 +208,10 @@ fn an_option_without_a_key_can_still_be_clicked() {
 
 #[test]
 fn the_settings_file_can_name_every_context_and_action() {
-    for context in Context::ALL {
-        for name in actions(context) {
-            let text = format!("[keys.{}]\n'<C-k>' = '{name}'\n", context.name());
+    for context in Context::all() {
+        for action in context.actions() {
+            let (place, name) = (context.name(), action.name);
+            let text = format!("[keys.{place}]\n'<C-k>' = '{name}'\n");
             let config = Config::read(&text).expect(&text);
             assert_eq!(config.keymap().rows().len(), DEFAULT_KEYS.len());
         }

@@ -25,7 +25,7 @@ use crate::cli::settings::sensors::{
 };
 use crate::tui::keys::action;
 use crate::tui::keys::key::{Key, parse};
-use crate::tui::keys::keymap::{Change, Context, Keymap, KeymapError, actions};
+use crate::tui::keys::keymap::{Change, Context, Keymap, KeymapError};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 pub(crate) const AUTO: &str = "auto";
@@ -208,9 +208,14 @@ impl Config {
     fn bind_keys(&mut self, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
         let mut spans = Vec::new();
         for (name, byte, value) in entries(table(value)?) {
-            let known = Context::ALL.into_iter().find(|own| own.name() == name);
-            let context =
-                known.ok_or_else(|| unknown(name, byte, &Context::ALL.map(Context::name)))?;
+            let known = Context::all().find(|own| own.name() == name);
+            let context = known.ok_or_else(|| {
+                unknown(
+                    name,
+                    byte,
+                    &Context::all().map(Context::name).collect::<Vec<_>>(),
+                )
+            })?;
             for (key, byte, value) in entries(table(value)?) {
                 let action = match string(value)? {
                     "none" => None,
@@ -335,7 +340,8 @@ fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal
 }
 
 fn no_action(context: Context, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
-    let names = actions(context).into_iter().chain(["none"]);
+    let actions = context.actions().into_iter();
+    let names = actions.map(|action| action.name).chain(["none"]);
     let near = did_you_mean(found, names);
     let expected = "an action that 'taxel config' lists, or \"none\"".to_owned();
     let found = format!("{:?}{near}", shortened_message(found));

@@ -243,7 +243,7 @@ impl Effective {
 
     fn keys_text(&self, quoted: &impl Fn(&str) -> String) -> String {
         let mut text = String::new();
-        for context in Context::ALL {
+        for context in Context::all() {
             text += &format!("\n[keys.{}]\n", context.name());
             let bound = self.keymap().of(context).flat_map(|row| row.keys.iter());
             let bound = bound.map(|(key, action)| (*key, action.name));

@@ -77,6 +77,7 @@ pub(in crate::tui) fn go_to(app: &mut App, step: usize) {
 
 fn settle_elsewhere(app: &mut App) {
     let_go(app);
+    app.pen = None;
     app.paint = None;
     settle(app);
 }

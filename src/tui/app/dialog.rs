@@ -10,12 +10,13 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::App;
 use crate::tui::compare::Comparison;
+use crate::tui::explain::Explain;
 use crate::tui::explore::prompts::{ExportDialog, FilterDialog};
 use crate::tui::explore::ranges::RangesForm;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::work::Running;
 use crate::tui::form::state::FormDialog;
-use crate::tui::help::Help;
+use crate::tui::help::{Help, SearchDialog};
 use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
@@ -23,7 +24,6 @@ use crate::tui::live::state::Live;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::state::Recognition;
-use crate::tui::search::SearchDialog;
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::theme::Theme;
 
@@ -38,6 +38,7 @@ pub enum Dialog {
     Command(CommandDialog),
     Question(Question),
     Help(Help),
+    Explain(Explain),
     Search(SearchDialog),
     Compare(Comparison),
     History(HistoryDialog),
@@ -61,6 +62,7 @@ impl Dialog {
             Self::Command(page) => page,
             Self::Question(page) => page,
             Self::Help(page) => page,
+            Self::Explain(page) => page,
             Self::Search(page) => page,
             Self::History(page) => page,
             Self::Compare(page) => page,

@@ -17,7 +17,7 @@ use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::status;
 use crate::tui::app::view::Panes;
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
+use crate::tui::keys::default_keys::MENU;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::{Binding, Context, Keymap};
 use crate::tui::matrix::update::is_usable;
@@ -45,11 +45,11 @@ impl Item<'_> {
         for (part, action) in &parts {
             x += narrow(part.chars().count());
             if at.x < x {
-                return action.and_then(|action| action.message().cloned());
+                return action.map(|action| action.message.clone());
             }
         }
         match parts.first() {
-            Some((_, action)) => action.and_then(|action| action.message().cloned()),
+            Some((_, action)) => action.map(|action| action.message.clone()),
             // An option without a key can still be clicked on.
             None => by_default(self.binding),
         }
@@ -71,7 +71,7 @@ pub fn draw(theme: &Theme, buffer: &mut Buffer, items: &[Item<'_>]) {
 
 pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     let (context, keymap) = (app.context(), app.keymap());
-    let options = matches!(context, Context::Matrix | Context::Hold);
+    let options = matches!(context, Context::Matrix | Context::Hold | Context::Draw);
     let rows: Vec<(&Binding, &str)> = if options {
         let all = keymap.rows().iter().take(MENU).chain(help(keymap));
         all.map(|row| (row, option(row))).collect()
@@ -122,8 +122,8 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
 /// Returns true if one of the keys of a row does something now: on the matrix if the row belongs to it, otherwise on the
 /// top page.
 fn useful(app: &App, row: &Binding) -> bool {
-    let mut messages = row.keys.iter().filter_map(|(_, action)| action.message());
-    if matches!(row.context, Context::Matrix | Context::Hold) {
+    let mut messages = row.keys.iter().map(|(_, action)| &action.message);
+    if matches!(row.context, Context::Matrix | Context::Hold | Context::Draw) {
         return messages.any(|message| is_usable(app, message));
     }
     let page = app.top_page();
@@ -200,7 +200,5 @@ fn placed<'a>(area: Rect, gap: u16, role: Role, rows: &[(&'a Binding, &'a str)])
 
 /// Returns the message that the first key of a row has by default, though its keys may have been taken away.
 fn by_default(row: &Binding) -> Option<Message> {
-    let same = |own: &&Binding| own.context == row.context && own.help == row.help;
-    let (_, action) = DEFAULT_KEYS.iter().find(same)?.keys.first()?;
-    action.message().cloned()
+    row.actions.first().map(|action| action.message.clone())
 }

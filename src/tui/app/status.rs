@@ -139,6 +139,7 @@ fn taxel(app: &App, seen: &Reading) -> String {
     let all = format!("NA {} in all", seen.imprint.count());
     // The step of moving and zooming, if there is a shape to move.
     let held = if app.held.is_some() { "held, " } else { "" };
+    let pen = if app.pen.is_some() { "drawing" } else { "" };
     let step = app.shown().source.as_ref();
     let step = step.map_or(String::new(), |_| {
         format!("{held}step {}", app.step.length())
@@ -151,7 +152,7 @@ fn taxel(app: &App, seen: &Reading) -> String {
     let covered = seen.coverage(column, row);
     let covered = covered.map_or(String::new(), |coverage| format!("covered {coverage:.6}"));
     let place = format!("column {column:>across$}, row {row:>down$}");
-    let mut pieces = vec![place, covered, state, all, step];
+    let mut pieces = vec![place, covered, state, all, step, pen.to_owned()];
     pieces.retain(|piece| !piece.is_empty());
     pieces.join("  ")
 }

@@ -8,6 +8,7 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::{Message, WorkerEvent};
 use crate::tui::app::mouse;
 use crate::tui::app::state::{App, Notice, RunState};
+use crate::tui::explain::Explain;
 use crate::tui::help::Help;
 use crate::tui::jobs::Answer;
 use crate::tui::keys::action;
@@ -16,7 +17,7 @@ use crate::tui::keys::keymap::Context;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::runtime::{self, reminders};
 use crate::tui::{
-    compare, explore, form, help, history, live, matrix, prompt, recognise, search, shapes,
+    compare, explain, explore, form, help, history, live, matrix, prompt, recognise, shapes,
 };
 
 /// The length, in bytes, from which nothing is added to a failure that nobody has read.
@@ -188,6 +189,12 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
             app.dialogs.extend([dialog, Dialog::Help(help)]);
             return None;
         }
+        Message::Explain => {
+            app.dialogs.push(dialog);
+            let page = Explain::new(app);
+            app.dialogs.push(Dialog::Explain(page));
+            return None;
+        }
         _ => {}
     }
     match dialog {
@@ -196,8 +203,9 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Name(name) => prompt::update::in_name(app, name, message),
         Dialog::Command(command) => prompt::update::in_command(app, command, message),
         Dialog::Question(question) => at_question(app, question, &message),
+        Dialog::Explain(page) => explain::update(app, page, &message),
         Dialog::Help(help) => help::in_help(app, help, &message),
-        Dialog::Search(dialog) => search::in_search(app, dialog, &message),
+        Dialog::Search(dialog) => help::in_search(app, dialog, &message),
         Dialog::Compare(page) => compare::in_comparison(app, page, &message),
         Dialog::History(list) => history::in_history(app, list, &message),
         Dialog::Ranges(form) => explore::work::in_ranges(app, form, message),

@@ -8,7 +8,6 @@ use std::sync::Arc;
 use taxel_core::frame::{FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number;
-use taxel_core::quote::shortened;
 use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
 use taxel_files::acquire::{AcquireOptions, FrameSource, Playback};
 use taxel_files::formats::recording::Format;
@@ -18,7 +17,6 @@ pub use crate::frames::WatchRequest;
 pub use crate::frames::recording::RecordedFrames;
 use crate::tui::keys::key::Arrow;
 pub use crate::tui::live::feed::{FeedStatus, FrameBatch, SourceGaps, SourceState};
-use crate::tui::prompt::read;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum LiveMessage {
@@ -155,110 +153,72 @@ impl Naming {
     }
 }
 
-/// The text after `:watch`: a source, whose name may contain spaces, then flags as on the command line:
+/// What follows `:watch`: a source, whose name may contain spaces, then flags as on the command line:
 /// `grip 2.csv --rows 4 --columns 5 --at-least 10`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 pub struct NamedSource {
-    /// The name: a path, `tcp://HOST:PORT`, or `-` for standard input.
-    name: String,
+    /// The words of the name: a path, `tcp://HOST:PORT`, or `-` for standard input.
+    #[arg(value_name = "SOURCE")]
+    name: Vec<String>,
+    #[arg(long, requires = "columns", value_parser = side)]
     rows: Option<u16>,
+    #[arg(long, requires = "rows", value_parser = side)]
     columns: Option<u16>,
+    #[arg(long, value_parser = Format::of_stream)]
     format: Option<&'static Format>,
+    #[arg(long, value_parser = |text: &str| within(text, &AcquireOptions::BAUDS))]
     baud: Option<u32>,
+    #[arg(long)]
     channel: Option<String>,
+    #[arg(long, value_parser = speed)]
     speed: Option<f64>,
-    rule: Option<Rule>,
+    #[arg(long, value_parser = |text: &str| rule(text, Rule::at_least), allow_hyphen_values = true)]
+    at_least: Option<Rule>,
+    #[arg(long, value_parser = |text: &str| rule(text, Rule::percent), conflicts_with = "at_least")]
+    percent: Option<Rule>,
+    #[arg(long, value_parser = |text: &str| Ok::<_, String>(ModelChoice::from_text(text)))]
     model: Option<ModelChoice>,
 }
 
+fn within<N: FromStr + PartialOrd + fmt::Display>(
+    text: &str,
+    range: &RangeInclusive<N>,
+) -> Result<N, String> {
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    let (first, last) = (range.start(), range.end());
+    number.ok_or_else(|| format!("expected a whole number from {first} to {last}"))
+}
+
+fn side(text: &str) -> Result<u16, String> {
+    within(text, &FrameSize::SIDES)
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = number::read(text).filter(|&speed| Playback::allows(speed));
+    speed.ok_or_else(|| format!("expected {}", Playback::SPEEDS))
+}
+
+fn rule(text: &str, of: fn(f64) -> Result<Rule, FrameError>) -> Result<Rule, String> {
+    let value = number::read(text).ok_or_else(|| number::complaint(text))?;
+    of(value).map_err(|error| error.to_string())
+}
+
 impl NamedSource {
-    const FLAGS: [(&'static str, Take); 9] = [
-        ("--rows", |source, value| {
-            source.rows = Some(value.side()?);
-            Ok(())
-        }),
-        ("--columns", |source, value| {
-            source.columns = Some(value.side()?);
-            Ok(())
-        }),
-        ("--format", |source, value| {
-            let format = Format::of_stream(value.text);
-            source.format = Some(format.map_err(|error| error.to_string())?);
-            Ok(())
-        }),
-        ("--baud", |source, value| {
-            source.baud = Some(value.within(&AcquireOptions::BAUDS, "a number")?);
-            Ok(())
-        }),
-        ("--channel", |source, value| {
-            source.channel = Some(value.text.to_owned());
-            Ok(())
-        }),
-        ("--speed", |source, value| {
-            let speed = number::read(value.text).filter(|&speed| Playback::allows(speed));
-            source.speed = Some(speed.ok_or_else(|| value.refused(&Playback::SPEEDS))?);
-            Ok(())
-        }),
-        ("--at-least", |source, value| {
-            source.set_rule(value, Rule::at_least)
-        }),
-        ("--percent", |source, value| {
-            source.set_rule(value, Rule::percent)
-        }),
-        ("--model", |source, value| {
-            source.model = Some(ModelChoice::from_text(value.text));
-            Ok(())
-        }),
-    ];
-
-    pub fn flags() -> [&'static str; 9] {
-        Self::FLAGS.map(|(name, _)| name)
-    }
-
     pub fn new(name: impl Into<String>) -> Self {
         Self {
-            name: name.into(),
+            name: vec![name.into()],
             ..Self::default()
         }
     }
 
-    pub fn read(text: &str) -> Result<Self, String> {
-        let (name, rest) = text.split_at(flags_start(text).unwrap_or(text.len()));
-        let mut source = Self::new(name.trim());
-        let words: Vec<&str> = rest.split_whitespace().collect();
-        let known = |flag: &str| Self::FLAGS.iter().position(|(name, _)| *name == flag);
-        for (flag, index, text) in read::read_flags(&words, &Self::flags(), known)? {
-            if let Some((_, take)) = Self::FLAGS.get(index) {
-                take(&mut source, &FlagValue { flag, text })?;
-            }
-        }
-        if source.rows.is_some() != source.columns.is_some() {
-            return Err("--rows and --columns go together".to_owned());
-        }
-        Ok(source)
-    }
-
-    /// Takes the value of a threshold, unless there is one already.
-    fn set_rule(
-        &mut self,
-        value: &FlagValue,
-        rule: fn(f64) -> Result<Rule, FrameError>,
-    ) -> Result<(), String> {
-        if self.rule.is_some() {
-            return Err("--at-least and --percent do not go together".to_owned());
-        }
-        let threshold = number::read(value.text).ok_or_else(|| value.refused(&"a number"))?;
-        self.rule = Some(rule(threshold).map_err(|error| match error {
-            FrameError::Rule { allowed, .. } => value.refused(&format!("a number {allowed}")),
-            error => format!("{}: {error}", value.flag),
-        })?);
-        Ok(())
+    pub fn is_unnamed(&self) -> bool {
+        self.name.is_empty()
     }
 
     /// Returns the request for this source; `settings` provides what is not given.
     pub fn request(&self, settings: &WatchRequest) -> WatchRequest {
         let mut request = settings.clone();
-        request.source = FrameSource::named(&self.name);
+        request.source = FrameSource::named(&self.name.join(" "));
         request.baud_named = self.baud.is_some();
         let options = &mut request.options;
         options.size = FrameSize::of_sides(self.columns, self.rows).or(options.size);
@@ -269,7 +229,7 @@ impl NamedSource {
             options.playback = Playback::paced(speed, options.playback.repeats());
         }
         request.model = self.model.clone().or(request.model);
-        if let Some(rule) = self.rule {
+        if let Some(rule) = self.at_least.or(self.percent) {
             let processing = &mut request.pipeline.processing;
             let (least, from) = (processing.least, RuleOrigin::Flag);
             processing.apply_rule(Some(SetRule { rule, least, from }));
@@ -278,54 +238,25 @@ impl NamedSource {
     }
 }
 
-type Take = fn(&mut NamedSource, &FlagValue) -> Result<(), String>;
-
-struct FlagValue<'a> {
-    flag: &'a str,
-    text: &'a str,
-}
-
-impl FlagValue<'_> {
-    fn refused(&self, expected: &dyn fmt::Display) -> String {
-        let found = shortened(self.text);
-        format!("{} takes {expected}, found {found}", self.flag)
-    }
-
-    /// Returns the value as a number in this range; `what` names such numbers.
-    fn within<N: FromStr + PartialOrd + fmt::Display>(
-        &self,
-        range: &RangeInclusive<N>,
-        what: &str,
-    ) -> Result<N, String> {
-        let number = self.text.parse().ok();
-        let number = number.filter(|number| range.contains(number));
-        number.ok_or_else(|| self.refused(&format!("{what} {}", bounds(range))))
-    }
-
-    fn side(&self) -> Result<u16, String> {
-        self.within(&FrameSize::SIDES, "a whole number")
-    }
-}
-
-/// Returns the index of the first flag in the text after `:watch`; None without flags.
-pub(in crate::tui) fn flags_start(text: &str) -> Option<usize> {
-    text.find(" --").map(|blank| blank + 1)
-}
-
-/// Returns the bounds of a number: `from 1 to 512`.
-fn bounds(range: &RangeInclusive<impl fmt::Display>) -> String {
-    format!("from {} to {}", range.start(), range.end())
-}
-
 #[cfg(test)]
 mod tests {
+    use clap::{Args, FromArgMatches};
 
     use super::*;
 
     #[test]
     fn a_name_may_have_spaces_and_flags_follow_it() {
         let settings = WatchRequest::new("");
-        let request = |text: &str| NamedSource::read(text).map(|source| source.request(&settings));
+        let request = |text: &str| {
+            let command =
+                NamedSource::augment_args(clap::Command::new("watch").no_binary_name(true));
+            let matches = command.try_get_matches_from(text.split_whitespace());
+            matches.map(|found| {
+                NamedSource::from_arg_matches(&found)
+                    .expect("read")
+                    .request(&settings)
+            })
+        };
         let whole = request(
             "my run.csv --rows 4 --columns=5 --baud 9600 --at-least 10 --channel left --speed 0.5 --model figures-30",
         );
@@ -357,36 +288,17 @@ mod tests {
             (plain.source.name(), plain.pipeline.processing.rule),
             ("a--b.csv".to_owned(), None)
         );
-        for (text, error) in [
-            ("x --rows 4", "--rows and --columns go together"),
-            (
-                "x --rows 0 --columns 4",
-                "--rows takes a whole number from 1 to 512, found 0",
-            ),
-            (
-                "x --at-least 1 --percent 2",
-                "--at-least and --percent do not go together",
-            ),
-            (
-                "x --percent 200",
-                "--percent takes a number above 0, up to 100, found 200",
-            ),
-            (
-                "x --speed 0",
-                "--speed takes a number above 0, up to 1000000, found 0",
-            ),
-            ("x --baud", "--baud needs a value"),
-            (
-                "x --format line",
-                "format \"line\" is unknown, expected one of jsonl, ros2, flexitac, matsense, lines; did you mean \"lines\"?",
-            ),
+        for wrong in [
+            "x --rows 4",
+            "x --rows 0 --columns 4",
+            "x --at-least 1 --percent 2",
+            "x --percent 200",
+            "x --speed 0",
+            "x --baud",
+            "x --format line",
+            "x --at-last 3",
         ] {
-            assert_eq!(request(text).expect_err(text), error);
+            assert!(request(wrong).is_err(), "{wrong}");
         }
-        let unknown = request("x --at-last 3").expect_err("unknown");
-        assert!(
-            unknown.ends_with("did you mean \"--at-least\"?"),
-            "{unknown}"
-        );
     }
 }

@@ -105,7 +105,7 @@ pub fn in_live(app: &mut App, mut page: Box<Live>, message: Message) -> Option<E
         Message::SwitchPane => page.only_panel ^= true,
         Message::Live(asked) => effect = adjust(app, &mut page, &asked),
         Message::Command => {
-            let prompt = CommandDialog::new(&app.commands);
+            let prompt = CommandDialog::new(Context::Live, &app.commands);
             app.dialogs
                 .extend([Dialog::Live(page), Dialog::Command(prompt)]);
             return None;

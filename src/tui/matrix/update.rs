@@ -19,7 +19,7 @@ use taxel_files::storage::{Existing, ShapeOrigin, UNNAMED};
 
 use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
-    shift, travel, turn, write_file, zoom,
+    settle, shift, travel, turn, write_file, zoom,
 };
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
@@ -27,6 +27,7 @@ use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
 use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState};
 use crate::tui::app::unsaved::quit;
+use crate::tui::explain::Explain;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::work::explored;
 use crate::tui::form::state::FormDialog;
@@ -36,6 +37,7 @@ use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::layers::Layers;
+use crate::tui::prompt::commands::page_below;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::disk::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
@@ -76,6 +78,11 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Save => save(app),
         Message::Command => open_command(app),
         Message::History => open_history(app),
+        Message::Explain => {
+            let page = Explain::new(app);
+            app.dialogs.push(Dialog::Explain(page));
+        }
+        Message::Draw => draw_on(app),
         Message::Help => app.dialogs.push(Dialog::Help(Help::new(app.context()))),
         Message::Cursor(arrow) => move_cursor(app, arrow),
         Message::PointAt(column, row) => point_at(app, column, row),
@@ -144,7 +151,7 @@ fn compare_with_before(app: &mut App) {
 }
 
 fn open_command(app: &mut App) {
-    let prompt = CommandDialog::new(&app.commands);
+    let prompt = CommandDialog::new(page_below(app), &app.commands);
     app.dialogs.push(Dialog::Command(prompt));
 }
 
@@ -267,6 +274,20 @@ fn next_display(app: &mut App) {
     };
     app.display = next;
     inform(app, text);
+}
+
+/// Begins to draw with the cursor, in the state that its taxel gets, or stops.
+fn draw_on(app: &mut App) {
+    if app.pen.take().is_some() {
+        return inform(app, "no longer drawing");
+    }
+    let (column, row) = app.cursor();
+    let active = !app.reading().imprint.get(column, row);
+    toggle(app);
+    app.pen = Some(active);
+    let what = if active { "draw" } else { "erase" };
+    let stop = app.key_of(&action::DRAW);
+    inform(app, format!("the arrows {what}, {stop} stops"));
 }
 
 fn toggle(app: &mut App) {
@@ -409,6 +430,16 @@ fn move_cursor(app: &mut App, arrow: Arrow) {
         column.saturating_add_signed(dx).min(sensor.columns() - 1),
         row.saturating_add_signed(dy).min(sensor.rows() - 1),
     );
+    // The taxels of a run are one change, like those of a drag.
+    if let Some(active) = app.pen {
+        let (column, row) = app.cursor();
+        let mut document = app.history.present().clone();
+        if app.reading().imprint.get(column, row) != active {
+            document.edits.toggle(column, row);
+        }
+        app.history.amend(document);
+        settle(app);
+    }
 }
 
 /// Until a region is chosen, the main region is described, and `by` counts from it.

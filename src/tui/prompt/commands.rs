@@ -1,174 +1,385 @@
-//! The `:` commands, made from the table of actions: their names, the words and arguments that may follow, and their
-//! completion.
+//! The `:` commands: their arguments, what they mean, and their completion.
 //!
-//! A command is the first word of a spelling of an action ("cursor" of "cursor left"), or the name of an action that
-//! has no other spelling. The full name of an action works as well.
+//! ```text
+//! figure hexagon --side 3 --angle 17     a kind, then flags as on the command line
+//! sensor --columns 32 --rows 32          only what changes
+//! explore --x0 5:5.99:0.01 --anchor centre
+//! open ~/mask.csv      write drawing.svg
+//! watch run 2.csv --rows 4 --columns 5   a name, then flags
+//! load my shape                          names may contain spaces, and are never quoted
+//! cursor 3 4      move 0.5 -1      turn 15
+//! undo      coverage                     what a key of its own does
+//! ```
+//! Names, flags and ranges are those of the program's own command line, and so are the errors. Parameters of a figure
+//! that are not given have their defaults; those of the sensor keep their values.
 
-use std::sync::LazyLock;
-
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{CommandFactory, FromArgMatches, Parser};
 use taxel_core::figure::FigureKind;
-use taxel_core::parameter::Parameter;
-use taxel_core::pose::Axis;
-use taxel_core::sensor::SENSOR_PARAMETERS;
+use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE, Rule};
+use taxel_core::parameter::number;
+use taxel_core::pose::{Anchor, PoseGrid, default_ranges};
+use taxel_core::source::Source;
+use taxel_files::formats::Name;
+use taxel_files::storage::ModelChoice;
 
-use crate::tui::app::message::Message;
-use crate::tui::keys::action::{ACTIONS, Action, Arguments};
-use crate::tui::keys::default_keys::DEFAULT_KEYS;
+use crate::cli::arguments::parameters::{FigureFlags, RangeFlags, SensorFlags};
+use crate::tui::app::document::Document;
+use crate::tui::app::message::{LibraryRequest, Message, Purpose};
+use crate::tui::app::page::Page;
+use crate::tui::app::state::App;
+use crate::tui::explore::message::ExploreMessage;
+use crate::tui::explore::work::explored;
+use crate::tui::keys::action::Action;
+use crate::tui::keys::default_keys::PLACES;
 use crate::tui::keys::keymap::Context;
-use crate::tui::live::message::{NamedSource, flags_start};
-use crate::tui::prompt::read::{is_given, lacks_value};
+use crate::tui::live::message::{LiveMessage, NamedSource};
+use crate::tui::recognise::state::RecogniseMessage;
 
-pub(super) const ANCHOR: &str = "--anchor";
-
-#[derive(Clone, Debug)]
-pub struct PromptCommand {
-    pub name: &'static str,
-    pub words: Vec<(&'static str, &'static Action)>,
-    /// The arguments that may follow instead.
-    pub arguments: Option<Arguments>,
-    pub help: &'static str,
+#[derive(Debug, Parser)]
+#[command(
+    no_binary_name = true,
+    disable_help_flag = true,
+    disable_help_subcommand = true
+)]
+enum Colon {
+    /// the threshold, in the sensor's unit
+    AtLeast {
+        #[arg(value_parser = float, allow_hyphen_values = true)]
+        value: f64,
+    },
+    /// compare with a stored shape, or with the step before
+    Compare { name: Vec<String> },
+    /// put the cursor on a taxel
+    Cursor { column: u8, row: u8 },
+    /// move a stored shape to the trash
+    Delete { name: Vec<String> },
+    /// all imprints in these ranges
+    Explore {
+        #[command(flatten)]
+        ranges: RangeFlags,
+        #[arg(long, value_parser = one_of::<Anchor>(Anchor::NAMES))]
+        anchor: Option<Anchor>,
+    },
+    /// place one of the seven figures
+    Figure {
+        #[arg(value_parser = one_of::<FigureKind>(FigureKind::names()))]
+        kind: Option<FigureKind>,
+        #[command(flatten)]
+        flags: FigureFlags,
+    },
+    /// bring a stored shape onto the matrix
+    Load { name: Vec<String> },
+    /// move the shape right and down, in cells
+    Move {
+        #[arg(value_parser = float, allow_hyphen_values = true)]
+        dx: f64,
+        #[arg(value_parser = float, allow_hyphen_values = true)]
+        dy: f64,
+    },
+    /// open a shape or an imprint from a file
+    Open {
+        #[arg(required = true)]
+        file: Vec<String>,
+    },
+    /// place a stored shape
+    Picture { name: Vec<String> },
+    /// asks first if work would be lost
+    #[command(alias = "q")]
+    Quit,
+    /// quit without asking about unsaved work
+    #[command(name = "quit!", alias = "q!")]
+    QuitNow,
+    /// which shape of this model left the imprint
+    Recognise { model: Vec<String> },
+    /// bring back this deleted shape, or the one deleted last
+    Restore { name: Vec<String> },
+    /// store what is on the matrix
+    Save { name: Vec<String> },
+    /// set the seed of random touches
+    Seed { number: u64 },
+    /// change the sensor
+    Sensor {
+        #[command(flatten)]
+        flags: SensorFlags,
+    },
+    /// the sensor's columns and rows
+    Size {
+        #[arg(value_name = "COLUMNSxROWS", value_parser = sides)]
+        size: FrameSize,
+    },
+    /// turn the shape right; negative degrees: left
+    Turn {
+        #[arg(value_parser = float, allow_hyphen_values = true)]
+        degrees: f64,
+    },
+    /// watch frames, live or recorded
+    Watch {
+        #[command(flatten)]
+        source: NamedSource,
+    },
+    /// write an imprint, shape or drawing, by file extension
+    #[command(alias = "w")]
+    Write {
+        #[arg(required = true)]
+        file: Vec<String>,
+    },
 }
 
-const MOST_RECENT: usize = 5;
+/// The commands that mean something while a sensor is watched, and those that mean nothing elsewhere.
+const ON_LIVE: [&str; 5] = ["at-least", "size", "watch", "quit", "quit!"];
+const ONLY_ON_LIVE: [&str; 2] = ["at-least", "size"];
 
-const SHORT: [(&str, &str); 3] = [("q", "quit"), ("q!", "quit!"), ("w", "write")];
-
-pub fn actions() -> impl Iterator<Item = &'static Action> {
-    static LISTED: LazyLock<Vec<&Action>> = LazyLock::new(|| of_the_matrix().collect());
-    LISTED.iter().copied()
+fn float(text: &str) -> Result<f64, String> {
+    number::read(text).ok_or_else(|| number::complaint(text))
 }
 
-fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
-    let places = [Context::Matrix, Context::Hold, Context::Everywhere];
-    let bound = |action: &Action, places: &[Context]| {
-        let mut rows = DEFAULT_KEYS
-            .iter()
-            .filter(|row| places.contains(&row.context));
-        rows.any(|row| row.keys.iter().any(|(_, own)| *own == action))
+fn sides(text: &str) -> Result<FrameSize, String> {
+    let sides = text.split_once(['x', '×']);
+    let size = sides
+        .and_then(|(columns, rows)| FrameSize::of_sides(columns.parse().ok(), rows.parse().ok()));
+    size.ok_or_else(|| format!("expected columns and rows from 1 to {MAX_FRAME_SIDE}, as in 16x16"))
+}
+
+fn one_of<T>(names: impl IntoIterator<Item = &'static str>) -> impl TypedValueParser<Value = T>
+where
+    T: std::str::FromStr<Err: std::error::Error + Send + Sync> + Clone + Send + Sync + 'static,
+{
+    let names: Vec<&str> = names.into_iter().collect();
+    PossibleValuesParser::new(names).try_map(|name| name.parse())
+}
+
+/// The actions that are commands, too: those with a key row of their own. Others take arguments or only step.
+fn actions(page: Context) -> impl Iterator<Item = (&'static Action, &'static str)> {
+    let of = move |place: Context| match page {
+        Context::Live => place == Context::Live,
+        // The page of recognition uses the prompt of the matrix.
+        _ => matches!(place, Context::Matrix | Context::Recognise),
     };
-    // The page of recognition uses the prompt of the matrix.
-    let recognises = |action: &Action| matches!(action.message(), Some(Message::Recognise(_)));
-    ACTIONS.iter().copied().filter(move |action| {
-        let works = recognises(action) || bound(action, &places) || !bound(action, &Context::ALL);
-        // To type a command is no command.
-        works && action.message() != Some(&Message::Command)
+    let rows = PLACES.iter().filter(move |(place, ..)| of(*place));
+    let rows = rows.flat_map(|(.., rows)| rows.iter());
+    rows.filter_map(|&(_, actions, _, help)| match actions {
+        [action] => Some((*action, help)),
+        _ => None,
+    })
+    .filter(|(action, _)| {
+        let Action { message, .. } = action;
+        !matches!(
+            message,
+            Message::Command | Message::Accept | Message::Cancel
+        )
     })
 }
 
-pub fn commands() -> &'static [PromptCommand] {
-    // The list is kept, because each key in the prompt needs it.
-    static LISTED: LazyLock<Vec<PromptCommand>> = LazyLock::new(listed);
-    &LISTED
-}
-
-fn listed() -> Vec<PromptCommand> {
-    let mut names: Vec<&str> = actions()
-        .flat_map(spellings)
-        .map(|line| split(line).0)
-        .collect();
-    names.sort_unstable();
-    names.dedup();
-    names.into_iter().map(command).collect()
-}
-
-fn spellings(action: &'static Action) -> impl Iterator<Item = &'static str> {
-    let name = action.spellings.is_empty().then_some(action.name);
-    name.into_iter().chain(action.spellings.iter().copied())
-}
-
-fn split(line: &str) -> (&str, &str) {
-    line.split_once(' ')
-        .map_or((line, ""), |(name, rest)| (name, rest.trim_start()))
-}
-
-fn command(name: &'static str) -> PromptCommand {
-    let own = |action: &'static Action| {
-        spellings(action)
-            .chain([action.name])
-            .map(split)
-            .filter(move |(first, _)| *first == name)
-            .map(move |(_, word)| (word, action))
-    };
-    let mut words: Vec<(&str, &Action)> = Vec::new();
-    for (word, action) in actions()
-        .filter(|own| own.arguments().is_none())
-        .flat_map(own)
-    {
-        if !words.contains(&(word, action)) {
-            words.push((word, action));
+/// The commands of a page. Those of other pages are hidden.
+fn command(page: Context) -> clap::Command {
+    let mut all = Colon::command();
+    let is_live = page == Context::Live;
+    all = all.mut_subcommands(|own| {
+        let name = own.get_name();
+        let hidden = if is_live {
+            !ON_LIVE.contains(&name)
+        } else {
+            ONLY_ON_LIVE.contains(&name)
+        };
+        own.hide(hidden)
+    });
+    for (action, help) in actions(page) {
+        if all.find_subcommand(action.name).is_none() {
+            let own = clap::Command::new(action.name).about(help);
+            all = all.subcommand(own.disable_help_flag(true));
         }
     }
-    let with = actions().find(|action| action.name == name && action.arguments().is_some());
-    let all = with.into_iter().chain(words.iter().map(|(_, word)| *word));
-    let mut helps = all.map(help).filter(|help| !help.is_empty());
-    PromptCommand {
-        name,
-        arguments: with.and_then(Action::arguments),
-        help: helps.next().unwrap_or(""),
-        words,
+    all.build();
+    all
+}
+
+/// The page that the prompt lies over.
+pub fn page_below(app: &App) -> Context {
+    app.pane().map_or(Context::Matrix, Page::context)
+}
+
+/// Returns what a line means. An error is the first paragraph of clap's, and its tip.
+pub fn read(line: &str, app: &App) -> Result<Message, String> {
+    let page = page_below(app);
+    let matches = command(page).try_get_matches_from(line.split_whitespace());
+    let matches = matches.map_err(|error| {
+        let text = error.render().to_string();
+        let lines = text.trim_start_matches("error: ").lines().map(str::trim);
+        let said = lines.clone().take_while(|line| !line.is_empty());
+        let tip = lines.filter_map(|line| line.strip_prefix("tip: "));
+        let said = said.collect::<Vec<_>>().join(" ");
+        tip.take(1).fold(said, |said, tip| format!("{said}; {tip}"))
+    })?;
+    let mut actions = actions(page);
+    let action = actions.find(|(own, _)| Some(own.name) == matches.subcommand_name());
+    match (Colon::from_arg_matches(&matches), action) {
+        (Ok(colon), _) => colon.meaning(app),
+        (Err(_), Some((action, _))) => Ok(action.message.clone()),
+        (Err(error), None) => Err(error.to_string()),
     }
 }
 
-/// Returns the help of an action, otherwise the help of its key's row.
-fn help(action: &Action) -> &'static str {
-    if !action.help.is_empty() {
-        return action.help;
+impl Colon {
+    fn meaning(self, app: &App) -> Result<Message, String> {
+        let document = app.shown();
+        Ok(match self {
+            Self::AtLeast { value } => {
+                let rule = Rule::at_least(value).map_err(|error| error.to_string())?;
+                Message::Live(LiveMessage::AtLeast(rule))
+            }
+            Self::Compare { name } => shape(Purpose::Compare, &name, Message::Compare)?,
+            Self::Cursor { column, row } => {
+                let sensor = &document.sensor;
+                for (what, at, count) in [
+                    ("column", column, sensor.columns()),
+                    ("row", row, sensor.rows()),
+                ] {
+                    if at >= count {
+                        let last = count - 1;
+                        return Err(format!(
+                            "{what} {at} is not on the sensor (allowed: 0 to {last})"
+                        ));
+                    }
+                }
+                Message::PointAt(column, row)
+            }
+            Self::Delete { name } => shape(Purpose::Delete, &name, Message::Delete)?,
+            Self::Explore { ranges, anchor } => {
+                let RangeFlags(ranges) = ranges;
+                if anchor.is_none() && ranges == Default::default() {
+                    return Ok(Message::Explore(ExploreMessage::Open));
+                }
+                let source = explored(app).ok_or_else(|| app.nothing_to_explore())?;
+                let (sensor, anchor) = (document.sensor, anchor.unwrap_or_default());
+                let ranges = default_ranges(&source, &sensor, anchor, &ranges);
+                let ranges = ranges.map_err(|error| error.to_string())?;
+                let grid = PoseGrid::new(source, sensor, anchor, ranges);
+                let grid = grid.map_err(|error| error.to_string())?;
+                Message::Explore(ExploreMessage::Start(Box::new(grid)))
+            }
+            Self::Figure { kind: None, flags } => match flags.first() {
+                Some(flag) => {
+                    return Err(format!(
+                        "--{flag}: which kind of figure? ({})",
+                        FigureKind::names().join(", ")
+                    ));
+                }
+                None => Message::Figure,
+            },
+            Self::Figure {
+                kind: Some(kind),
+                flags,
+            } => {
+                let sensor = document.sensor;
+                let figure = flags
+                    .figure(kind, &sensor)
+                    .map_err(|failure| failure.text)?;
+                let figure = Document::touched(sensor, Source::Figure(figure));
+                Message::Become(Box::new(figure))
+            }
+            Self::Load { name } => shape(Purpose::Load, &name, Message::Load)?,
+            Self::Move { dx, dy } => Message::Move(dx, dy),
+            Self::Open { file } => Message::OpenFile(file.join(" ")),
+            Self::Picture { name } => shape(Purpose::Picture, &name, Message::Picture)?,
+            Self::Quit => Message::Quit,
+            Self::QuitNow => Message::QuitNow,
+            Self::Recognise { model } => Message::Recognise(if model.is_empty() {
+                RecogniseMessage::Open
+            } else {
+                RecogniseMessage::Choose(ModelChoice::from_text(&model.join(" ")))
+            }),
+            Self::Restore { name } => {
+                let name = (!name.is_empty()).then(|| name_of(&name)).transpose()?;
+                let name = name.map(|name| name.to_string());
+                Message::Request(LibraryRequest::Restore(name))
+            }
+            Self::Save { name } if name.is_empty() => Message::Save,
+            Self::Save { .. } if app.reading().imprint.is_empty() => {
+                return Err("nothing to save: the matrix is empty".to_owned());
+            }
+            Self::Save { name } => Message::Request(LibraryRequest::Save(name_of(&name)?)),
+            Self::Seed { number } => Message::Recognise(RecogniseMessage::Seed(number)),
+            Self::Sensor { flags } if flags.first().is_none() => Message::Sensor,
+            Self::Sensor { flags } => {
+                let sensor = flags
+                    .sensor(document.sensor)
+                    .map_err(|failure| failure.text)?;
+                Message::Become(Box::new(document.on(sensor)))
+            }
+            Self::Size { size } => Message::Live(LiveMessage::Size(size)),
+            Self::Turn { degrees } => Message::Turn(degrees),
+            Self::Watch { source } if source.is_unnamed() => Message::Live(LiveMessage::Open),
+            Self::Watch { source } => Message::Live(LiveMessage::Source(source)),
+            Self::Write { file } => Message::WriteFile(file.join(" ")),
+        })
     }
-    let mut rows = DEFAULT_KEYS.iter();
-    let row = rows.find(|row| row.keys.iter().any(|(_, own)| *own == action));
-    row.map_or("", |row| row.help)
 }
 
-pub fn find(name: &str) -> Option<PromptCommand> {
-    let short = SHORT.iter().find(|(short, _)| *short == name);
-    let name = short.map_or(name, |(_, name)| *name);
-    let listed = commands().iter().find(|command| command.name == name);
-    listed.cloned().or_else(|| {
-        actions()
-            .find(|action| action.name == name)
-            .map(|action| command(action.name))
-    })
+fn shape(purpose: Purpose, words: &[String], otherwise: Message) -> Result<Message, String> {
+    if words.is_empty() {
+        return Ok(otherwise);
+    }
+    let name = name_of(words)?.to_string();
+    Ok(Message::Request(LibraryRequest::Named(purpose, name)))
+}
+
+fn name_of(words: &[String]) -> Result<Name, String> {
+    Name::new(&words.join(" ")).map_err(|error| error.to_string())
+}
+
+/// What the names are of that complete a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Names {
+    /// All shapes, or only those of the user's own.
+    Shapes {
+        own: bool,
+    },
+    Deleted,
+    Models,
+    Paths,
 }
 
 /// Returns the command that a line begins with, and the rest; None until a space follows its name.
-fn begun(line: &str) -> Option<(PromptCommand, &str)> {
+fn begun(line: &str) -> Option<(&str, &str)> {
     let (name, rest) = line.trim_start().split_once(' ')?;
-    Some((find(name)?, rest.trim_start()))
+    Some((name, rest.trim_start()))
 }
 
-pub fn wants_names(line: &str) -> Option<Arguments> {
-    let (command, rest) = begun(line)?;
-    let arguments = command.arguments.filter(|arguments| arguments.is_name())?;
-    // The name of a source ends where its flags begin.
-    let has_flags = arguments == Arguments::FrameSource && flags_start(rest).is_some();
-    (!has_flags).then_some(arguments)
+pub fn wants_names(line: &str) -> Option<Names> {
+    let (name, rest) = begun(line)?;
+    match name {
+        "load" | "picture" | "compare" => Some(Names::Shapes { own: false }),
+        "delete" | "save" => Some(Names::Shapes { own: true }),
+        "restore" => Some(Names::Deleted),
+        "recognise" => Some(Names::Models),
+        "open" | "write" | "w" => Some(Names::Paths),
+        // The name of a source ends where its flags begin.
+        "watch" if !rest.contains("--") => Some(Names::Paths),
+        _ => None,
+    }
 }
 
 /// Completes the last word of a line, or the name at its end, as far as all candidates agree. Returns the line and
 /// the candidates. `names` are the names that [`wants_names`] asks for.
-pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
+pub fn complete(line: &str, names: &[String], page: Context) -> (String, Vec<String>) {
     let is_name = wants_names(line).is_some();
     let (typed, candidates) = match begun(line) {
-        None if line.trim_start().contains(' ') => return (line.to_owned(), Vec::new()),
         None => (
             line.trim_start(),
-            commands()
-                .iter()
-                .map(|command| command.name.to_owned())
-                .collect(),
+            listed(page).map(|own| own.get_name().to_owned()).collect(),
         ),
         Some((_, rest)) if is_name => (rest, names.to_vec()),
-        Some((command, rest)) => {
+        Some((name, rest)) => {
             let (before, last) = rest.rsplit_once(' ').unwrap_or(("", rest));
-            (last, next_words(&command, before))
+            (last, next_words(name, before, page))
         }
     };
     let fits = |candidate: &String| {
-        if is_name {
-            candidate.to_lowercase().starts_with(&typed.to_lowercase())
-        } else {
-            candidate.starts_with(typed)
-        }
+        let start = candidate.get(..typed.len());
+        start.is_some_and(|start| {
+            start == typed || is_name && start.to_lowercase() == typed.to_lowercase()
+        })
     };
     let fitting: Vec<String> = candidates.into_iter().filter(fits).collect();
     let completed = match &fitting[..] {
@@ -176,67 +387,79 @@ pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
         // A name is the last thing in its line.
         [only] if is_name => only.clone(),
         [only] => format!("{only} "),
-        _ => common_start(&fitting)
-            .filter(|common| common.chars().count() > typed.chars().count())
-            .unwrap_or_else(|| typed.to_owned()),
+        [first, others @ ..] => {
+            let same = |other: &String| {
+                let both = first.chars().zip(other.chars());
+                both.take_while(|(own, other)| own == other).count()
+            };
+            let common = others.iter().map(same).min().unwrap_or(0);
+            first
+                .chars()
+                .take(common.max(typed.chars().count()))
+                .collect()
+        }
     };
     let before = &line[..line.len() - typed.len()];
     (format!("{before}{completed}"), fitting)
 }
 
-fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
-    let said: Vec<&str> = before.split_whitespace().collect();
-    let words = |flags: Vec<String>, said: &[&str]| {
-        if lacks_value(said) {
-            return Vec::new();
-        }
-        let unsaid = flags.into_iter();
-        unsaid.filter(|flag| !is_given(flag, said)).collect()
-    };
-    let flags = |parameters: Vec<Parameter>, said: &[&str]| {
-        let flags = parameters.iter();
-        let flags = flags.map(|parameter| format!("--{}", parameter.flag()));
-        words(flags.collect(), said)
-    };
-    match (command.arguments, &said[..]) {
-        (Some(Arguments::Figure), []) => {
-            FigureKind::names().into_iter().map(str::to_owned).collect()
-        }
-        (Some(Arguments::Figure), [kind, said @ ..]) => {
-            let kind = kind.parse::<FigureKind>().into_iter();
-            flags(
-                kind.flat_map(FigureKind::parameters).copied().collect(),
-                said,
-            )
-        }
-        (Some(Arguments::Sensor), said) => flags(SENSOR_PARAMETERS.to_vec(), said),
-        (Some(Arguments::Ranges), said) => {
-            let ranges = Axis::ALL.map(|axis| format!("--{}", axis.parameter().flag()));
-            words([&ranges[..], &[ANCHOR.to_owned()]].concat(), said)
-        }
-        (Some(Arguments::FrameSource), said) => {
-            let is_flag = |word: &&str| word.starts_with("--");
-            let flags = said.iter().position(is_flag).unwrap_or(said.len());
-            words(
-                NamedSource::flags().map(str::to_owned).to_vec(),
-                &said[flags..],
-            )
-        }
-        (_, []) => {
-            let words = command.words.iter().filter(|(word, _)| !word.is_empty());
-            words.map(|(word, _)| (*word).to_owned()).collect()
-        }
-        _ => Vec::new(),
-    }
+fn listed(page: Context) -> impl Iterator<Item = clap::Command> {
+    let mut own: Vec<clap::Command> = command(page).get_subcommands().cloned().collect();
+    own.retain(|own| !own.is_hide_set());
+    own.sort_by(|a, b| a.get_name().cmp(b.get_name()));
+    own.into_iter()
 }
 
+/// The values of the first argument, or the flags that are not given yet.
+fn next_words(name: &str, before: &str, page: Context) -> Vec<String> {
+    let all = command(page);
+    let Some(command) = all.find_subcommand(name) else {
+        return Vec::new();
+    };
+    let said: Vec<&str> = before.split_whitespace().collect();
+    let kinds = command
+        .get_positionals()
+        .next()
+        .map(|first| first.get_possible_values());
+    if let (Some(kinds), []) = (kinds.filter(|kinds| !kinds.is_empty()), &said[..]) {
+        return kinds
+            .iter()
+            .map(|kind| kind.get_name().to_owned())
+            .collect();
+    }
+    // A flag without its value.
+    let lacks_value = said
+        .last()
+        .is_some_and(|last| last.starts_with("--") && !last.contains('='));
+    let kind = said
+        .first()
+        .and_then(|kind| kind.parse::<FigureKind>().ok());
+    let of_kind = |flag: &str| {
+        let mut own = kind.into_iter().flat_map(FigureKind::parameters);
+        kind.is_none() || own.any(|parameter| parameter.flag() == flag)
+    };
+    let is_given = |flag: &str| {
+        said.iter()
+            .any(|word| word.trim_start_matches('-').split('=').next() == Some(flag))
+    };
+    let flags = command
+        .get_opts()
+        .filter(|_| !lacks_value)
+        .filter_map(|own| own.get_long());
+    let flags = flags.filter(|flag| of_kind(flag) && !is_given(flag));
+    flags.map(|flag| format!("--{flag}")).collect()
+}
+
+/// A line that the prompt offers, with what may follow and what it does; without, it is an earlier line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Offer {
     pub line: String,
     pub help: Option<String>,
 }
 
-pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
+const MOST_RECENT: usize = 5;
+
+pub fn offers(typed: &str, given: &[String], page: Context) -> Vec<Offer> {
     let typed = typed.trim_start();
     let mut recent: Vec<&String> = Vec::new();
     for line in given.iter().rev() {
@@ -244,122 +467,49 @@ pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
             recent.push(line);
         }
     }
-    let recent = recent.into_iter().take(MOST_RECENT).map(|line| Offer {
+    let recent = recent.into_iter().take(MOST_RECENT);
+    let recent = recent.map(|line| Offer {
         line: line.clone(),
         help: None,
     });
-    let name = typed.split(' ').next().unwrap_or(typed);
-    let more = name.len() < typed.len();
-    let named = commands().iter();
+    let (name, more) = begun(typed).map_or((typed, false), |(name, _)| (name, true));
     let fits =
-        |command: &&PromptCommand| command.name == name || !more && command.name.contains(name);
-    let mut named: Vec<&PromptCommand> = named.filter(fits).collect();
-    named.sort_by_key(|command| !command.name.starts_with(name));
-    let named = named.into_iter().map(|command| Offer {
-        line: command.name.to_owned(),
-        help: Some(match command.arguments {
-            Some(arguments) => format!("{}  {}", arguments.form(), command.help),
-            None => command.help.to_owned(),
-        }),
+        |own: &clap::Command| own.get_name() == name || !more && own.get_name().contains(name);
+    let mut named: Vec<clap::Command> = listed(page).filter(fits).collect();
+    named.sort_by_key(|own| !own.get_name().starts_with(name));
+    let named = named.into_iter().map(|own| Offer {
+        line: own.get_name().to_owned(),
+        help: Some(help(&own)),
     });
     recent.chain(named).collect()
 }
 
-fn common_start(words: &[String]) -> Option<String> {
-    let (first, others) = words.split_first()?;
-    let common = others.iter().fold(first.chars().count(), |common, other| {
-        let same = first.chars().zip(other.chars()).take_while(|(a, b)| a == b);
-        common.min(same.count())
+/// What may follow a command, and what it does.
+fn help(command: &clap::Command) -> String {
+    let mut words: Vec<String> = command
+        .get_positionals()
+        .flat_map(|own| own.get_value_names().unwrap_or_default())
+        .map(|name| name.to_string())
+        .collect();
+    if let Some(flag) = command.get_opts().find_map(|own| own.get_long()) {
+        words.push(format!("--{flag} ..."));
+    }
+    let about = command
+        .get_about()
+        .map(ToString::to_string)
+        .unwrap_or_default();
+    words.push(if words.is_empty() {
+        about
+    } else {
+        format!(" {about}")
     });
-    Some(first.chars().take(common).collect())
+    words.join(" ")
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tui::app::message::Purpose;
-
-    fn completed(line: &str) -> (String, Vec<String>) {
-        let names = ["washer", "Wasp", "my shape"].map(str::to_owned);
-        complete(line, &names)
-    }
-
-    #[test]
-    fn each_command_has_a_help_of_its_own() {
-        let mut helps: Vec<&str> = commands().iter().map(|command| command.help).collect();
-        assert!(helps.iter().all(|help| !help.is_empty()));
-        helps.sort_unstable();
-        let twice = helps.windows(2).find(|pair| pair[0] == pair[1]);
-        assert_eq!(twice, None);
-        // A line of the list fits on a screen of 80 columns: two blanks, the command, two blanks, the rest.
-        let offers = offers("", &[]);
-        let widest = offers.iter().map(|offer| offer.line.len()).max();
-        let room = 80 - 4 - widest.expect("there are commands");
-        for Offer { line, help } in &offers {
-            let length = help.as_deref().map_or(0, str::len);
-            assert!(length <= room, "{line}: {length} of {room} columns");
-        }
-    }
-
-    #[test]
-    fn lines_are_completed_as_far_as_all_candidates_agree() {
-        for (line, expected, candidates) in [
-            ("fi", "figure ", 1),
-            ("re", "re", 6),
-            ("res", "restore ", 1),
-            ("co", "co", 4),
-            ("cop", "copy ", 1),
-            ("copy ", "copy ", 2),
-            ("copy i", "copy imprint ", 1),
-            ("copy imprint ", "copy imprint ", 0),
-            ("figure h", "figure he", 2),
-            ("figure hex", "figure hexagon ", 1),
-            ("figure hexagon --s", "figure hexagon --side ", 1),
-            ("figure hexagon --side ", "figure hexagon --side ", 0),
-            (
-                "figure hexagon --side 3 --s",
-                "figure hexagon --side 3 --s",
-                0,
-            ),
-            (
-                "figure hexagon --side=3 --s",
-                "figure hexagon --side=3 --s",
-                0,
-            ),
-            (
-                "figure hexagon --side=3 --an",
-                "figure hexagon --side=3 --angle ",
-                1,
-            ),
-            (
-                "figure hexagon --side 3 --an",
-                "figure hexagon --side 3 --angle ",
-                1,
-            ),
-            ("figure nothing --s", "figure nothing --s", 0),
-            ("sensor --p", "sensor --pitch ", 1),
-            ("cursor 3 ", "cursor 3 ", 0),
-            ("load w", "load w", 2),
-            ("load was", "load was", 2),
-            ("load wash", "load washer", 1),
-            ("load WASP", "load Wasp", 1),
-            ("load my s", "load my shape", 1),
-            ("load x", "load x", 0),
-            ("watch a b.csv --ba", "watch a b.csv --baud ", 1),
-            ("watch a --baud 9600 --ba", "watch a --baud 9600 --ba", 0),
-            ("nothing x", "nothing x", 0),
-        ] {
-            let (line_now, found) = completed(line);
-            assert_eq!(
-                (line_now.as_str(), found.len()),
-                (expected, candidates),
-                "{line}"
-            );
-        }
-        assert_eq!(completed("").1.len(), commands().len());
-        let load = Arguments::Shape(Purpose::Load);
-        assert_eq!(wants_names("load "), Some(load));
-        assert_eq!(wants_names("load"), None);
-        assert_eq!(wants_names("zoom "), None);
-    }
+/// The lines of the list in `docs/keys.md`: name, what may follow and what it does.
+pub fn described() -> Vec<Offer> {
+    let live = offers("", &[], Context::Live).into_iter();
+    let mut all = offers("", &[], Context::Matrix);
+    all.extend(live.filter(|offer| ONLY_ON_LIVE.contains(&offer.line.as_str())));
+    all
 }

@@ -1,14 +1,12 @@
 //! The prompts, which take one line at the foot of the screen: a name to save under, and `:` commands.
 //!
 //! ```text
-//! commands   the table of commands, and completion     view     impl Page for both prompts
-//! read       a line becomes a message                  state    the fields, and earlier commands
+//! commands   what may be typed, and its completion
+//! state      the fields, and earlier commands          update   their messages
 //! ```
 
 pub mod commands;
 
 pub mod state;
-
-pub mod read;
 
 pub mod update;

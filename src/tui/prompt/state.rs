@@ -50,6 +50,8 @@ impl NameDialog {
 
 #[derive(Clone, Debug)]
 pub struct CommandDialog {
+    /// The page that the prompt lies over.
+    page: Context,
     pub field: TextField,
     pub candidates: Vec<String>,
     asked: Option<String>,
@@ -66,8 +68,9 @@ enum ShownLine {
 }
 
 impl CommandDialog {
-    pub fn new(given: &[String]) -> Self {
+    pub fn new(page: Context, given: &[String]) -> Self {
         Self {
+            page,
             given: given.to_vec(),
             shown: ShownLine::Typed,
             field: TextField::new("", LONGEST_COMMAND),
@@ -81,7 +84,7 @@ impl CommandDialog {
             ShownLine::Offered { index, typed } => (Some(*index), typed.as_str()),
             ShownLine::Typed | ShownLine::Earlier { .. } => (None, self.field.text()),
         };
-        (offers(typed, &self.given), picked)
+        (offers(typed, &self.given, self.page), picked)
     }
 
     pub fn pick(&mut self, down: bool) -> bool {
@@ -131,7 +134,7 @@ impl CommandDialog {
 
     pub fn complete(&mut self, names: &[String]) {
         self.shown = ShownLine::Typed;
-        let (line, candidates) = complete(self.field.text(), names);
+        let (line, candidates) = complete(self.field.text(), names, self.page);
         self.field.set(line);
         self.candidates = candidates;
         if self.candidates.len() == 1 {
@@ -291,7 +294,7 @@ mod tests {
     fn an_offer_never_replaces_typed_arguments() {
         let given = ["figure ellipse", "figure octagon --side 3"].map(str::to_owned);
         let after = |typed: &str, keys: usize| {
-            let mut dialog = CommandDialog::new(&given);
+            let mut dialog = CommandDialog::new(Context::Matrix, &given);
             dialog.field.set(typed.to_owned());
             for _ in 0..keys {
                 dialog.pick(true);
@@ -308,7 +311,7 @@ mod tests {
 
     #[test]
     fn an_earlier_line_that_is_completed_counts_as_typed() {
-        let mut dialog = CommandDialog::new(&["load wash".to_owned()]);
+        let mut dialog = CommandDialog::new(Context::Matrix, &["load wash".to_owned()]);
         dialog.earlier();
         dialog.complete(&["washer".to_owned()]);
         assert_eq!(dialog.field.text(), "load washer");

@@ -9,16 +9,14 @@ use taxel_files::storage::{Library, ModelChoice, ModelFolder, ShapeOrigin};
 
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::message::{LibraryRequest, Message, Purpose};
+use crate::tui::app::message::{LibraryRequest, Message};
 use crate::tui::app::state::App;
 use crate::tui::jobs::answer;
-use crate::tui::keys::action::Arguments;
 use crate::tui::keys::key::Arrow;
-use crate::tui::prompt::commands::wants_names;
-use crate::tui::prompt::read::read;
+use crate::tui::prompt::commands::{Names, read, wants_names};
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::disk::files;
-use crate::tui::runtime::effect::{Effect, TerminalEffect};
+use crate::tui::runtime::effect::Effect;
 use crate::tui::shapes::update::sentence;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::{live, matrix};
@@ -44,17 +42,15 @@ pub(in crate::tui) fn in_command(
                     }
                     if !matches!(
                         message,
-                        Message::Live(_) | Message::Help | Message::Redraw | Message::Suspend
+                        Message::Live(_) | Message::Help | Message::SwitchPane
                     ) {
                         live::update::set_aside(app);
                     }
-                    return match message {
-                        Message::Redraw => Some(Effect::Terminal(TerminalEffect::Redraw)),
-                        Message::Suspend => Some(Effect::Terminal(TerminalEffect::Suspend)),
-                        // Without arguments there is nothing to correct.
-                        other if !has_arguments => matrix::update::act(app, other),
-                        other => ask(app, other, Dialog::Command(dialog)),
-                    };
+                    // Without arguments there is nothing to correct.
+                    if !has_arguments {
+                        return matrix::update::act(app, message);
+                    }
+                    return ask(app, message, Dialog::Command(dialog));
                 }
                 Err(error) => refuse(app, error),
             }
@@ -106,7 +102,7 @@ fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
 }
 
 /// Completes the last word by the names that may stand there. A model may also be a path.
-fn complete_from_disk(app: &mut App, wanted: Arguments, last_word: String) {
+fn complete_from_disk(app: &mut App, wanted: Names, last_word: String) {
     app.jobs.read("Listing the names", move |library| {
         let names = names(library, wanted, &last_word);
         answer(|app| match names {
@@ -120,29 +116,25 @@ fn complete_from_disk(app: &mut App, wanted: Arguments, last_word: String) {
     });
 }
 
-fn names(library: &Library, wanted: Arguments, last_word: &str) -> Result<Vec<String>, String> {
+fn names(library: &Library, wanted: Names, last_word: &str) -> Result<Vec<String>, String> {
     let sentence = |error| sentence(library, &error);
     match wanted {
-        Arguments::File(_) | Arguments::FrameSource => Ok(files::paths(last_word)),
-        Arguments::Model if last_word.contains('/') => Ok(files::paths(last_word)),
-        Arguments::Model => {
+        Names::Paths => Ok(files::paths(last_word)),
+        Names::Models if last_word.contains('/') => Ok(files::paths(last_word)),
+        Names::Models => {
             let sets = ModelChoice::BUILT_IN.iter();
             let sets = sets.map(|set| set.name().to_owned());
             let own = ModelFolder::of(library.folder()).names().into_iter();
             Ok(sets.chain(own.map(|name| name.to_string())).collect())
         }
-        Arguments::Deleted => match library.deleted().map_err(sentence)? {
+        Names::Deleted => match library.deleted().map_err(sentence)? {
             names if names.is_empty() => Err("nothing has been deleted".to_owned()),
             names => Ok(names),
         },
-        wanted => {
-            // Shipped shapes cannot be deleted or replaced.
-            let all = matches!(
-                wanted,
-                Arguments::Shape(Purpose::Load | Purpose::Picture | Purpose::Compare)
-            );
+        // Shipped shapes cannot be deleted or replaced.
+        Names::Shapes { own } => {
             let entries = library.list().map_err(sentence)?.into_iter();
-            let offered = entries.filter(|entry| all || entry.origin == ShapeOrigin::Own);
+            let offered = entries.filter(|entry| !own || entry.origin == ShapeOrigin::Own);
             Ok(offered.map(|entry| entry.name).collect())
         }
     }

@@ -8,8 +8,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use taxel::tui::prompt::commands::commands;
-
 mod commands;
 mod glossary;
 mod links;
@@ -212,21 +210,4 @@ fn the_settings_file_in_the_documents_is_valid() {
         (config.sensor_entries().len(), config.changes().len()),
         (4, 2)
     );
-}
-
-/// Users look up commands in the list after `:`, so each command has a description of its own.
-#[test]
-fn every_command_has_its_own_description() {
-    let mut said: Vec<(&str, &str)> = Vec::new();
-    for command in commands() {
-        let help = command.help;
-        assert!(
-            !help.is_empty(),
-            ":{} does not say what it does",
-            command.name
-        );
-        let other = said.iter().find(|(_, other)| *other == help);
-        assert_eq!(other, None, ":{} says the same", command.name);
-        said.push((command.name, help));
-    }
 }

@@ -1,9 +1,7 @@
 //! Tables in the documents, made from the program's own tables.
 
-use taxel::tui::keys::action::Arguments;
-use taxel::tui::keys::default_keys::DEFAULT_KEYS;
-use taxel::tui::keys::keymap::Context;
-use taxel::tui::prompt::commands::commands;
+use taxel::tui::keys::keymap::{Context, DEFAULT_KEYS};
+use taxel::tui::prompt::commands::described;
 use taxel_core::description::{DESCRIPTORS, Dimension};
 use taxel_core::parameter::{PARAMETERS, Parameter};
 use taxel_core::sensor::Sensor;
@@ -26,7 +24,7 @@ pub(crate) fn descriptors() -> String {
 /// One table for each place of the screen.
 pub(crate) fn keys() -> String {
     let mut text = String::new();
-    for context in Context::ALL {
+    for context in Context::all() {
         text += &format!(
             "\n## {}\n\n| key | what it does |\n|---|---|\n",
             context.title()
@@ -43,23 +41,18 @@ pub(crate) fn keys() -> String {
 
 /// The commands after `:`, each with what may follow it and its help.
 pub(crate) fn prompt() -> String {
-    let mut text = String::from("\n| command | what may follow | what it does |\n|---|---|---|\n");
-    for command in commands() {
-        let words = command.words.iter().map(|(word, _)| *word);
-        let mut follows: Vec<_> = words.filter(|word| !word.is_empty()).collect();
-        follows.extend(command.arguments.map(Arguments::form));
-        let follows: Vec<_> = follows
-            .into_iter()
-            .map(|word| format!("`{word}`"))
-            .collect();
-        text += &format!(
-            "| `:{}` | {} | {} |\n",
-            command.name,
-            follows.join(", "),
-            command.help
-        );
-    }
-    text + "\n"
+    let rows = described().into_iter().map(|offer| {
+        let help = offer.help.unwrap_or_default();
+        let (follows, help) = help.split_once("  ").unwrap_or(("", &help));
+        let follows = if follows.is_empty() {
+            String::new()
+        } else {
+            format!("`{follows}`")
+        };
+        format!("| `:{}` | {follows} | {help} |\n", offer.line)
+    });
+    let rows: String = rows.collect();
+    format!("\n| command | what may follow | what it does |\n|---|---|---|\n{rows}\n")
 }
 
 /// The parameters that can be set, with their ranges on the paper's sensor.

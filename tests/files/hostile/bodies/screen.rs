@@ -12,10 +12,9 @@ use std::path::{Path, PathBuf};
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::keys::key::{Arrow, Key, parse};
-use taxel::tui::keys::keymap::Keymap;
+use taxel::tui::keys::keymap::{Context, Keymap};
 use taxel::tui::live::message::{LiveMessage, NamedSource};
-use taxel::tui::prompt::commands::complete;
-use taxel::tui::prompt::read::read as read_command;
+use taxel::tui::prompt::commands::{complete, read as read_command};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 use taxel::tui::script::runner::{ScriptOptions, Shown, run};
@@ -123,7 +122,7 @@ pub(crate) fn command(bytes: &[u8]) -> bool {
     else {
         return false;
     };
-    let (completed, _) = complete(line, &[]);
+    let (completed, _) = complete(line, &[], Context::Matrix);
     assert!(completed.trim_start().starts_with(line.trim_start()));
     let mut session = session_of(STARTS[usize::from(first) % STARTS.len()]);
     match read_command(line, session.app()) {

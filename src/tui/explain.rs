@@ -1,0 +1,153 @@
+//! What a descriptor says: its formula, unit, sense and zero, with a drawing. The texts are those of
+//! `docs/glossary.md`.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use taxel_core::description::{DESCRIPTORS, Descriptor};
+use taxel_files::formats::value;
+
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::state::App;
+use crate::tui::keys::key::Arrow;
+use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::runtime::effect::Effect;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write::{self, around, broken, narrow};
+
+const GLOSSARY: &str = include_str!("../../docs/glossary.md");
+
+#[derive(Clone, Debug)]
+pub struct Explain {
+    descriptor: usize,
+    top: usize,
+    /// The value of each descriptor for the chosen region.
+    values: Vec<String>,
+}
+
+impl Explain {
+    pub fn new(app: &App) -> Self {
+        let (region, pitch_mm) = (
+            app.reading().description(app.chosen()),
+            app.shown().sensor.pitch_mm(),
+        );
+        let value = |descriptor: &Descriptor| {
+            let measured = (descriptor.measure)(region.as_ref()?);
+            let text = value::text(measured, descriptor.dimension)?;
+            let scaled = value::in_millimetres(measured, descriptor.dimension, pitch_mm);
+            let scaled = scaled.filter(|_| pitch_mm != 1.0);
+            Some(scaled.map_or(format!("  {text}"), |scaled| {
+                format!("  {text}  ({scaled})")
+            }))
+        };
+        let key = app
+            .results_below()
+            .map(|results| results.feature().descriptor.key);
+        let mut keys = DESCRIPTORS.iter().map(|own| Some(own.key));
+        Self {
+            descriptor: keys.position(|own| own == key).unwrap_or(0),
+            top: 0,
+            values: DESCRIPTORS
+                .iter()
+                .map(|own| value(own).unwrap_or_default())
+                .collect(),
+        }
+    }
+
+    fn lines(&self, width: u16) -> Vec<String> {
+        let key = DESCRIPTORS[self.descriptor].key;
+        let text = GLOSSARY
+            .split(&format!("<a id=\"{key}\"></a>\n"))
+            .nth(1)
+            .unwrap_or("");
+        let end = ["\n<a id=", "\n## Other"].map(|next| text.find(next).unwrap_or(text.len()));
+        let text = &text[..end[0].min(end[1])];
+        let (mut lines, mut paragraph, mut is_drawing) = (Vec::new(), String::new(), false);
+        // After the heading.
+        for line in text.lines().skip(1).chain([""]) {
+            if line.starts_with("```") {
+                is_drawing = !is_drawing;
+            } else if is_drawing {
+                lines.push(line.to_owned());
+            } else if line.is_empty() {
+                lines.extend(
+                    broken(&paragraph, width.into())
+                        .into_iter()
+                        .map(str::to_owned),
+                );
+                paragraph.clear();
+                if lines.last().is_some_and(|last| !last.is_empty()) {
+                    lines.push(String::new());
+                }
+            } else if !line.starts_with("<!--") {
+                paragraph += &line.replace(['`', '*'], "");
+                paragraph.push(' ');
+            }
+        }
+        lines.pop();
+        lines
+    }
+}
+
+impl Page for Explain {
+    fn context(&self) -> Context {
+        Context::Explain
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Body
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        let own = &DESCRIPTORS[self.descriptor];
+        let title = format!("{} ({}): {}", own.symbol, own.key, own.name);
+        let pieces = [
+            (title.as_str(), Role::Title),
+            (&self.values[self.descriptor], Role::Text),
+        ];
+        write::line(buffer, area, theme, pieces);
+        let below = write::below(area, 2);
+        for (index, line) in self.lines(below.width).iter().skip(self.top).enumerate() {
+            write::text(buffer, write::row(below, index), theme, line, Role::Text);
+        }
+        None
+    }
+
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
+    }
+}
+
+pub(in crate::tui) fn update(
+    app: &mut App,
+    mut page: Explain,
+    message: &Message,
+) -> Option<Effect> {
+    let count = DESCRIPTORS.len();
+    let now = page.descriptor;
+    match message {
+        Message::Choose(Arrow::Left) => page.descriptor = around(now, -1, count),
+        Message::Choose(_) => page.descriptor = around(now, 1, count),
+        Message::ScrollTo(Endpoint::First) => page.descriptor = 0,
+        Message::ScrollTo(Endpoint::Last) => page.descriptor = count - 1,
+        Message::Scroll(by) => {
+            let (columns, rows) = app.body_size();
+            let last = narrow(page.lines(columns).len()).saturating_sub(rows.saturating_sub(2));
+            let top = narrow(page.top).saturating_add_signed(*by);
+            page.top = top.min(last).into();
+        }
+        _ => {}
+    }
+    if page.descriptor != now {
+        page.top = 0;
+    }
+    app.dialogs.push(Dialog::Explain(page));
+    None
+}
