@@ -4,24 +4,17 @@
 //! arguments is shortened before it is quoted, and escaped when it is printed.
 
 use std::io;
-use std::path::{Path, PathBuf};
 
 use taxel_core::frame::FrameError;
-use taxel_core::parameter::ParameterError;
-use taxel_core::parameter::number::short;
-use taxel_core::pose::GridError;
 use taxel_core::quote::shortened_message;
 use taxel_core::recognition::{NoiseError, TrainingError};
-use taxel_core::sweep::MergeError;
 use taxel_files::acquire::RecorderError;
 use taxel_files::formats::file::{system_reason, write_reason};
 use taxel_files::formats::recording::RecordingNote;
-use taxel_files::formats::value::counted;
 use taxel_files::storage::{FileError, LibraryError};
 use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::failure::Failure;
-use crate::cli::input::content::InputError;
 
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CliError {
@@ -38,23 +31,13 @@ pub(crate) enum CliError {
         complaint: String,
     },
     #[error("{name}: {error}")]
-    Input { name: String, error: InputError },
+    Input { name: String, error: ReadError },
     #[error("{name}: empty, expected frames of a sensor")]
     Empty { name: String },
-    #[error("{bad} of {} could not be answered", counted(*lines, "line"))]
-    Lines { bad: u64, lines: u64 },
-    #[error("{name}: cannot read: {}", system_reason(error))]
-    Read { name: String, error: io::Error },
     #[error("cannot write to standard output: {}", system_reason(.0))]
     Write(io::Error),
     #[error("{}{}", shortened_message(&.0.to_string()), place_advice(.0))]
     Library(#[from] LibraryError),
-    #[error("no stored shape or file named {name:?}{near}")]
-    Nowhere { name: String, near: String },
-    #[error("{}{near}", shortened_message(&error.to_string()))]
-    NoShape { error: LibraryError, near: String },
-    #[error("{place}: {error}")]
-    Set { place: String, error: String },
     #[error(transparent)]
     Training(#[from] TrainingError),
     #[error(transparent)]
@@ -65,16 +48,10 @@ pub(crate) enum CliError {
     File { name: String, error: io::Error },
     #[error("{name} does not exist; it is made when a shape is saved")]
     NoFolder { name: String },
-    #[error("{name}: the library is read-only")]
-    ReadOnlyLibrary { name: String },
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes { broken: usize, shapes: usize },
     #[error("{place}: {message}")]
     Settings { place: String, message: String },
-    #[error("{0}")]
-    Memory(String),
-    #[error("{}", with_flag(.0))]
-    Grid(#[from] GridError),
     #[error("{name}: {}{}", shortened_message(&.error.to_string()), size_advice(.error))]
     Recording { name: String, error: ReadError },
     #[error("{error}{help}", error = .0, help = advice(.0))]
@@ -83,27 +60,10 @@ pub(crate) enum CliError {
     Frames { name: String, message: String },
     #[error(transparent)]
     Archive(ReadError),
-    #[error("{}: {reason}", shortened_message(&path.to_string_lossy()))]
-    Shard { path: PathBuf, reason: String },
-    #[error("{count} of {of} shards are missing: {numbers}")]
-    MissingShards {
-        count: u64,
-        of: u32,
-        numbers: String,
-    },
-    #[error(transparent)]
-    Merge(#[from] MergeError),
     #[error("stopped; nothing was written")]
     Stopped { status: u8 },
     #[error("{}", system_reason(.0))]
     System(io::Error),
-}
-
-impl CliError {
-    pub(crate) fn of_file(path: &Path, error: io::Error) -> Self {
-        let name = path.to_string_lossy().into_owned();
-        Self::File { name, error }
-    }
 }
 
 impl From<FileError> for CliError {
@@ -153,17 +113,6 @@ pub(crate) fn frame_advice(error: &FrameError) -> &'static str {
     match error {
         FrameError::NoTare => ", such as --tare 30",
         _ => "",
-    }
-}
-
-fn with_flag(error: &GridError) -> String {
-    match error {
-        GridError::Parameter(error @ ParameterError::Range { value, .. }) => {
-            let flag = error.parameter().flag();
-            format!("--{flag} {} {}", short(*value), error.complaint())
-        }
-        GridError::Zoom(_) => "--zoom-x and --zoom-y are for pictures only (--picture)".to_owned(),
-        error => error.to_string(),
     }
 }
 

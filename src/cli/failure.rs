@@ -45,6 +45,19 @@ impl Failure {
         Self::usage(text.trim_end()).with_lines()
     }
 
+    /// Puts the flag that gave a file before the file's name.
+    pub(crate) fn of_flag(mut self, flag: &str) -> Self {
+        self.text = format!("{flag} {}", self.text);
+        self
+    }
+
+    /// The answers cannot be written.
+    pub(crate) fn of_output(error: io::Error) -> Self {
+        let failure = Self::from(error);
+        let text = format!("cannot write to standard output: {}", failure.text);
+        Self { text, ..failure }
+    }
+
     /// Only an exit status, after everything is said.
     pub(crate) fn silent(status: u8) -> Self {
         Self::new("").with_status(status)

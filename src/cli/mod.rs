@@ -42,8 +42,6 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::FromArgMatches;
-use taxel_core::sensor::Sensor;
-use taxel_core::source::Source;
 
 use arguments::flags::Form;
 use arguments::frames::FramesArguments;
@@ -51,21 +49,24 @@ use arguments::help::{ABOUT, EXAMPLES};
 use arguments::library::LibraryCommand;
 use arguments::parameters::Given;
 use arguments::request::{self, Request};
-use arguments::sweep::{SweepArguments, Swept};
-use arguments::touch::Kept;
+use commands::batch::Batch;
 use commands::completions::Completions;
 use commands::config::Config;
-use commands::export::{self, Exported};
+use commands::describe::Describe;
+use commands::export::{ExportCommand, Kept};
+use commands::figure::Figure;
 use commands::frames::{self, FramesOutput};
 use commands::man::Man;
+use commands::merge::Merge;
 use commands::model::ModelCommand;
+use commands::picture::Picture;
 use commands::recognise::Recognise;
 use commands::screen::{self, Look, Screen};
 use commands::script::Script;
-use commands::{Summary, library, sweep, touch, watch};
+use commands::sweep::Sweep;
+use commands::{library, watch};
 use error::CliError;
 use failure::Failure;
-use input::lines::LineInput;
 use input::shapes::Shelf;
 use output::charset::Charset;
 use settings::resolved::{Chosen, Effective, Loaded};
@@ -98,6 +99,14 @@ struct Global {
 /// The commands; those that are still read by hand are in `arguments/request.rs`.
 #[derive(Debug, clap::Subcommand)]
 enum Command {
+    Figure(Figure),
+    Picture(Picture),
+    Describe(Describe),
+    #[command(name = "export")]
+    Export(ExportCommand),
+    Batch(Batch),
+    Sweep(Box<Sweep>),
+    Merge(Merge),
     Model(ModelCommand),
     #[command(alias = "recognize")]
     Recognise(Recognise),
@@ -110,6 +119,13 @@ enum Command {
 impl Command {
     fn run(self, cx: &Context) -> Result<(), Failure> {
         match self {
+            Self::Figure(command) => command.run(cx),
+            Self::Picture(command) => command.run(cx),
+            Self::Describe(command) => command.run(cx),
+            Self::Export(command) => command.run(cx),
+            Self::Batch(command) => command.run(cx),
+            Self::Sweep(command) => command.run(cx),
+            Self::Merge(command) => command.run(cx),
             Self::Model(command) => command.run(cx),
             Self::Recognise(command) => command.run(cx),
             Self::Config(command) => command.run(cx),
@@ -139,7 +155,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 }
 
 fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
-    let (matches, mut definition) = match request::read(arguments) {
+    let matches = match request::read(arguments) {
         Ok(read) => read,
         Err(error) if error.use_stderr() => return Err(error.into()),
         Err(help) => {
@@ -179,7 +195,7 @@ fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
         charset,
     };
     if let Some((name, own)) = by_hand {
-        let request = request::request(name, own, &mut definition, &cx.settings)?;
+        let request = request::request(name, own, &cx.settings)?;
         return Ok(cx.run(request)?);
     }
     let program = Program::from_arg_matches(&matches)?;
@@ -216,13 +232,13 @@ impl Context {
 fn write(bytes: &[u8]) -> Result<(), Failure> {
     let mut output = io::stdout().lock();
     let written = output.write_all(bytes).and_then(|()| output.flush());
-    Ok(written.map_err(CliError::Write)?)
+    written.map_err(Failure::of_output)
 }
 
 // The commands that are still read by hand.
 impl Context {
     fn run(&self, request: Request) -> Result<(), CliError> {
-        let (shelf, charset) = (&self.shelf, self.charset);
+        let shelf = &self.shelf;
         match request {
             // On a terminal, a page shows the frames; in a pipeline, they are answered in lines.
             Request::Watch(asked) if !asked.json && io::stdout().is_terminal() => {
@@ -241,69 +257,10 @@ impl Context {
                     status => return Err(Failure::silent(status).into()),
                 }
             }
-            Request::Figure(figure, sensor, form, kept) => {
-                self.touch(&figure, sensor, form, &kept)?;
-            }
-            Request::Picture(what, given, form, kept) => {
-                let (picture, sensor) = touch::picture(&what, &given, shelf)?;
-                self.touch(&picture, sensor, form, &kept)?;
-            }
-            Request::Describe(what, form) => {
-                self.print(&touch::content(&shelf.find(&what)?, form, charset))?;
-            }
-            Request::Export(what, export, pitch) => {
-                match export::export(shelf, &what, &export, pitch)? {
-                    Exported::Content(content) => self.write(&content)?,
-                    Exported::Said(said) => self.print(&(said + "\n"))?,
-                }
-            }
-            Request::Batch(file, sensor, jobs) => {
-                let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
-                let input = match file {
-                    Some(path) => LineInput::at(path)?,
-                    None => LineInput::standard()?,
-                };
-                touch::answer_lines(sensor, jobs, &by_name, input, io::stdout().lock())?;
-            }
-            Request::Sweep(asked) => self.sweep(*asked)?,
-            Request::Merge(files, wanted) => {
-                self.print_summary(sweep::merge(&files, &wanted, charset)?)?;
-            }
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
             Request::Library(asked) => self.library(asked)?,
         }
         Ok(())
-    }
-
-    fn touch(
-        &self,
-        source: &Source,
-        sensor: Sensor,
-        form: Form,
-        kept: &Kept,
-    ) -> Result<(), CliError> {
-        let touched = touch::touch(source, sensor, form, kept, &self.shelf, self.charset)?;
-        self.write(&touched.answer)?;
-        for text in &touched.notes {
-            self.note(text);
-        }
-        Ok(())
-    }
-
-    /// Runs `taxel sweep`. Notes on standard error warn of ranges that were chosen because they were not given.
-    fn sweep(&self, asked: SweepArguments) -> Result<(), CliError> {
-        let (source, sensor) = match asked.what {
-            Swept::Figure(figure, sensor) => (figure, sensor),
-            Swept::Picture(what, given) => touch::picture(&what, &given, &self.shelf)?,
-        };
-        let (grid, taken) = sweep::grid(source, sensor, asked.anchor, &asked.ranges)?;
-        if !asked.wanted.quiet {
-            for text in &taken {
-                self.note(text);
-            }
-        }
-        let (shard, jobs, wanted) = (asked.shard, asked.jobs, &asked.wanted);
-        self.print_summary(sweep::sweep(&grid, shard, jobs, wanted, self.charset)?)
     }
 
     /// Runs `taxel frames`. If an error occurs, the answers made before it are still printed.
@@ -331,11 +288,6 @@ impl Context {
         done
     }
 
-    fn print_summary(&self, summary: Summary) -> Result<(), CliError> {
-        self.print(&summary.text)?;
-        summary.written
-    }
-
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let is_list = matches!(asked, LibraryCommand::List(_));
@@ -345,8 +297,8 @@ impl Context {
         let text = match asked {
             LibraryCommand::List(json) => library::list(shelf, json, charset)?,
             LibraryCommand::Show(name, form) => library::show(shelf, name.as_str(), form, charset)?,
-            LibraryCommand::Save(saving, what) => {
-                charset.lines(&library::save(shelf, saving, &what)?)
+            LibraryCommand::Save(name, existing, what) => {
+                charset.lines(&library::save(shelf, name, existing, &what)?)
             }
             LibraryCommand::Delete(name) => library::delete(shelf, name.as_str(), charset)?,
             LibraryCommand::Restore(name) => {

@@ -3,20 +3,13 @@
 use clap::{Command, CommandFactory};
 
 use crate::cli::Program;
-use crate::cli::arguments::{frames, library, sweep, touch};
+use crate::cli::arguments::{frames, library};
 
 /// Defines the program with all its commands. Completions and manual pages are made from this too, so a new command
 /// appears in them by itself.
 pub(crate) fn all() -> Command {
     let program = Program::command()
         .term_width(80)
-        .subcommand(touch::figure())
-        .subcommand(touch::picture())
-        .subcommand(touch::describe())
-        .subcommand(touch::export())
-        .subcommand(touch::batch())
-        .subcommand(sweep::command())
-        .subcommand(sweep::merge_command())
         .subcommand(frames::command())
         .subcommand(frames::watch())
         .subcommand(library::command());

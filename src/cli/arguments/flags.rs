@@ -13,17 +13,14 @@ use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, PossibleValuesParser, StyledStr, TypedValueParser};
 use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, ArgMatches, Args, Command};
+use clap::{Arg, ArgAction, ArgMatches};
 use taxel_core::parameter::{Parameter, UnknownName, number};
-use taxel_core::pose::{Anchor, Axis, GivenRanges};
-use taxel_core::sensor::SENSOR_PARAMETERS;
 use taxel_core::sweep::{Shard, ShardError};
 use taxel_files::formats::Name;
 use taxel_files::formats::file::has_ending;
-use taxel_files::memory::MemorySize;
 use taxel_files::storage::Existing;
 
-use crate::cli::arguments::parameters::{self, RangeFlags};
+use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::{Effective, Pitch};
 
@@ -81,56 +78,7 @@ where
     }
 }
 
-pub(crate) fn ranges_of(matches: &ArgMatches) -> GivenRanges {
-    GivenRanges::from_fn(|axis| {
-        let range = matches.get_one(&format!("range_{}", axis.name()));
-        range.copied()
-    })
-}
-
-pub(crate) fn anchor() -> Arg {
-    option(
-        "anchor",
-        "POINT",
-        "Point that x0 and y0 place: corner (default)\nor centre",
-    )
-    .value_parser(one_of::<Anchor, _>(Anchor::NAMES))
-    .hide_possible_values(true)
-    .help_heading("Grid")
-}
-
-pub(crate) fn jobs() -> Arg {
-    option("jobs", "N", "Threads; default all cores").value_parser(whole::<u16>(1..=1024))
-}
-
-pub(crate) fn jobs_of(matches: &ArgMatches) -> usize {
-    matches
-        .get_one::<u16>("jobs")
-        .map_or(0, |&jobs| jobs.into())
-}
-
-pub(crate) fn memory() -> Arg {
-    option(
-        "memory",
-        "SIZE",
-        "Most memory to use, such as 500M or 2G;\ndefault all that is free",
-    )
-    .value_parser(|text: &str| text.parse::<MemorySize>())
-}
-
 pub(crate) const TOO_LITTLE_MEMORY: &str = "take coarser steps, work in shards (--shard 1/8, ..., then taxel merge), or allow more (--memory)";
-
-pub(crate) fn memory_of(matches: &ArgMatches) -> Option<MemorySize> {
-    matches.get_one("memory").copied()
-}
-
-pub(crate) fn shard() -> Arg {
-    option("shard", "K/N", "Compute only shard K of N of the grid").value_parser(parse_shard)
-}
-
-pub(crate) fn shard_of(matches: &ArgMatches) -> Shard {
-    matches.get_one("shard").copied().unwrap_or(Shard::WHOLE)
-}
 
 pub(crate) fn replace() -> Arg {
     force().help("Replace an existing file")
@@ -142,10 +90,6 @@ pub(crate) fn existing(matches: &ArgMatches) -> Existing {
     } else {
         Existing::Kept
     }
-}
-
-pub(crate) fn quiet() -> Arg {
-    switch("quiet", "Show no progress and no notes")
 }
 
 pub(crate) fn force() -> Arg {
@@ -227,27 +171,9 @@ pub(crate) fn unhandled_subcommand(name: &str) -> CliError {
     clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
 }
 
-pub(crate) fn misused(command: &mut Command, name: &str, message: &str) -> CliError {
-    let error = command.find_subcommand_mut(name).map_or_else(
-        || clap::Error::raw(ErrorKind::ArgumentConflict, format!("{message}\n")),
-        |command| command.error(ErrorKind::ArgumentConflict, message),
-    );
-    error.into()
-}
-
 // What commands need that are still read by hand.
 
-pub(crate) use crate::cli::arguments::parameters::{
-    Given, Group, OfMatrix, OfPicture, OfSensor, figure_parameters,
-};
-
-pub(crate) fn sensor() -> Vec<Arg> {
-    of_sensor(SENSOR_PARAMETERS)
-}
-
-pub(crate) fn sensor_of_imprints() -> Vec<Arg> {
-    of_sensor(&OfMatrix::parameters())
-}
+pub(crate) use crate::cli::arguments::parameters::{Given, Group, OfSensor};
 
 pub(crate) fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
     let flag = |&parameter: &Parameter| arg(parameter).help_heading("Sensor");
@@ -256,20 +182,6 @@ pub(crate) fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
 
 pub(crate) fn arg(parameter: Parameter) -> Arg {
     parameters::arg(parameter, &OfSensor::default(parameter))
-}
-
-pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
-    parameters::arg(parameter, &OfPicture::default(parameter))
-}
-
-pub(crate) fn range(axis: Axis, _default: &str) -> Arg {
-    let ranges = RangeFlags::augment_args(Command::new(""));
-    let id = format!("range_{}", axis.name());
-    let mut flags = ranges.get_arguments();
-    flags
-        .find(|own| own.get_id() == id.as_str())
-        .cloned()
-        .unwrap_or_else(|| Arg::new(id))
 }
 
 pub(crate) fn wrapped(text: &str, _width: usize) -> String {

@@ -23,7 +23,7 @@ use crate::cli::arguments::flags::{
     self, json, name_or_path, of_sensor, option, parse_number, required, switch, whole,
 };
 use crate::cli::arguments::help::{FRAMES_EXAMPLES, WATCH_EXAMPLES};
-use crate::cli::arguments::touch;
+use crate::cli::commands::export::KeepFlags;
 use crate::cli::commands::recognise::NamingFlags;
 use crate::cli::commands::screen::Look;
 use crate::cli::error::CliError;
@@ -92,7 +92,7 @@ pub(crate) fn command() -> Command {
         "How often taxels flip, and which are dead or stuck",
     );
     let choices = ["frame", "label", "peak", "all", "noise-report"];
-    Command::new("frames")
+    let command = Command::new("frames")
         .about("List a recording of a real sensor, or describe its frames")
         .after_help(FRAMES_EXAMPLES)
         .arg(file)
@@ -120,9 +120,8 @@ pub(crate) fn command() -> Command {
                 .into_iter()
                 .map(|arg| arg.requires("choice").conflicts_with("noise-report")),
         )
-        .args(keeping())
-        .group(touch::keeping_group())
-        .args([json().conflicts_with_all(["heat", "csv"]), csv(), heat()])
+        .args([json().conflicts_with_all(["heat", "csv"]), csv(), heat()]);
+    keeping(command)
 }
 
 /// Defines `--csv`, which has a line for each frame and no place for other answers.
@@ -142,22 +141,20 @@ fn heat() -> Arg {
 
 /// Defines the flags that keep frames. With `--export`, each frame gets its own file. `--save` stores a single
 /// shape, so it excludes `--all`, and fails for a label that several frames have.
-fn keeping() -> [Arg; 4] {
-    touch::keeping().map(|arg| match arg.get_id().as_str() {
-        "save" => arg
-            .requires("choice")
-            .conflicts_with_all(["all", "noise-report"]),
-        "export" => arg.requires("choice").help(flags::wrapped(
-            "Write the imprint, or a drawing of it, with the frame's number in the name, such as touch-0.svg for touch.svg; \
-             with --noise-report the mask",
-            52,
-        )),
-        "force" => arg.help(flags::wrapped(
-            "Replace existing shapes and files, but never the recording",
-            52,
-        )),
-        _ => arg,
-    })
+fn keeping(command: Command) -> Command {
+    KeepFlags::augment_args(command)
+        .mut_arg("save", |arg| {
+            arg.requires("choice").conflicts_with_all(["all", "noise-report"])
+        })
+        .mut_arg("export", |arg| {
+            arg.requires("choice").help(
+                "Write the imprint, or a drawing of it, with the frame's number in the name, such as touch-0.svg for \
+                 touch.svg; with --noise-report the mask",
+            )
+        })
+        .mut_arg("force", |arg| {
+            arg.help("Replace existing shapes and files, but never the recording")
+        })
 }
 
 /// Defines the flags that prepare frames. `--rows` and `--columns` have ids of their own: they are not those of a

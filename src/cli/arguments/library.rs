@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use clap::{ArgMatches, Command};
 use taxel_core::parameter::Parameter;
 use taxel_files::formats::Name;
+use taxel_files::storage::Existing;
 
 use crate::cli::arguments::flags::{
     Form, existing, force, json, name, of_sensor, required, unhandled_subcommand, what,
@@ -13,7 +14,6 @@ use crate::cli::arguments::help::{
     CHECK_EXAMPLES, DELETE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, PATH_EXAMPLES,
     RESTORE_EXAMPLES, SAVE_EXAMPLES, SHOW_EXAMPLES,
 };
-use crate::cli::arguments::touch::Saving;
 use crate::cli::error::CliError;
 use crate::cli::settings::resolved::Effective;
 
@@ -21,7 +21,7 @@ use crate::cli::settings::resolved::Effective;
 pub(crate) enum LibraryCommand {
     List(bool),
     Show(Name, Form),
-    Save(Saving, OsString),
+    Save(Name, Existing, OsString),
     Delete(Name),
     Restore(Name),
     Path,
@@ -77,7 +77,7 @@ impl LibraryCommand {
             ("show", Some(name)) => Self::Show(name, Form::of(own, settings)?),
             ("save", Some(name)) => {
                 let existing = existing(own);
-                Self::Save(Saving { name, existing }, required(own, "what")?)
+                Self::Save(name, existing, required(own, "what")?)
             }
             ("delete", Some(name)) => Self::Delete(name),
             ("restore", Some(name)) => Self::Restore(name),

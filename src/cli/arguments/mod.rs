@@ -9,10 +9,6 @@ pub(super) mod flags;
 #[allow(dead_code, reason = "for commands that are still read by hand")]
 pub(crate) mod parameters;
 
-pub(super) mod touch;
-
-pub(super) mod sweep;
-
 pub(super) mod library;
 
 pub(super) mod frames;

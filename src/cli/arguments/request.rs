@@ -4,39 +4,28 @@
 //! Settings are resolved here, since they provide defaults: the sensor of a figure, the pitch of a table.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Command};
+use clap::{ArgMatches, Command, FromArgMatches};
 use taxel_core::figure::FigureKind;
 use taxel_core::quote::{as_argument, joined};
-use taxel_core::sensor::Sensor;
-use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
 
 use crate::cli::arguments::definitions;
-use crate::cli::arguments::flags::{self, Form, Given, required, unhandled_subcommand};
+use crate::cli::arguments::flags::{Form, Given, unhandled_subcommand};
 use crate::cli::arguments::frames::{FramesArguments, WatchArguments};
 use crate::cli::arguments::library::LibraryCommand;
-use crate::cli::arguments::sweep::{SweepArguments, Wanted};
-use crate::cli::arguments::touch::{self, Export, Kept};
+use crate::cli::commands::export::{KeepFlags, Kept};
 use crate::cli::error::CliError;
-use crate::cli::settings::resolved::{Effective, Pitch};
+use crate::cli::failure::Failure;
+use crate::cli::settings::resolved::Effective;
 
 /// A command that is read by hand.
 #[derive(Clone, Debug)]
 pub(crate) enum Request {
-    Figure(Box<Source>, Sensor, Form, Kept),
-    Picture(OsString, Given, Form, Kept),
-    Describe(OsString, Form),
-    Export(OsString, Export, Pitch),
-    /// Answer lines of JSON from a file or standard input; with the sensor for lines without one, and the number of
-    /// threads (0 means the default).
-    Batch(Option<PathBuf>, Sensor, usize),
-    Sweep(Box<SweepArguments>),
-    Merge(Vec<PathBuf>, Wanted),
     Frames(Box<FramesArguments>, Form, Kept),
     Watch(Box<WatchArguments>),
     Library(LibraryCommand),
@@ -50,8 +39,8 @@ fn without_notes(command: Command) -> Command {
         .mut_subcommands(without_notes)
 }
 
-/// What clap makes of the arguments, and the program's definition; or the help, if it is asked for.
-pub(crate) fn read(arguments: Vec<OsString>) -> Result<(ArgMatches, Command), clap::Error> {
+/// What clap makes of the arguments; or the help, if it is asked for.
+pub(crate) fn read(arguments: Vec<OsString>) -> Result<ArgMatches, clap::Error> {
     let has = |flag: &str| arguments.iter().any(|argument| argument == flag);
     let is_short = has("-h") && !has("--help");
     let all = definitions::all();
@@ -69,7 +58,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<(ArgMatches, Command), cl
             return Err(command.error(ErrorKind::ArgumentConflict, message));
         }
     }
-    Ok((matches, command))
+    Ok(matches)
 }
 
 fn deepest(matches: &ArgMatches) -> &ArgMatches {
@@ -123,45 +112,23 @@ fn too_early(flag: &str, name: &str, command: &Command) -> String {
 pub(crate) fn request(
     name: &str,
     own: &ArgMatches,
-    command: &mut Command,
     settings: &Effective,
 ) -> Result<Request, CliError> {
-    let what = || required::<OsString>(own, "what");
     let form = || Form::of(own, settings);
     Ok(match name {
-        "figure" => {
-            let (figure, sensor) = touch::source(own, settings)?;
-            let kept = Kept::of(own, command, "figure")?;
-            Request::Figure(Box::new(figure), sensor, form()?, kept)
-        }
-        "picture" => {
-            let kept = Kept::of(own, command, "picture")?;
-            Request::Picture(what()?, Given::of(own), form()?, kept)
-        }
-        "describe" => Request::Describe(what()?, form()?),
-        "export" => {
-            let to = required::<PathBuf>(own, "to")?;
-            let export = Export::of(own, &to, command, "export")?;
-            let pitch = export.pitch(own, settings)?;
-            Request::Export(what()?, export, pitch)
-        }
         "watch" => Request::Watch(Box::new(WatchArguments::of(own, settings.sensors())?)),
         "frames" => {
-            let kept = Kept::of(own, command, "frames")?;
+            let kept = KeepFlags::from_arg_matches(own)?.kept(own.get_flag("json"))?;
+            let to = kept.export.as_ref().map(|export| export.path.is_none());
+            if to == Some(true) && own.get_flag("all") {
+                let text = "the argument '--all' cannot be used with '--export -', which takes one frame; \
+                            with a name each frame has a file of its own";
+                return Err(Failure::usage(text).into());
+            }
             let asked = FramesArguments::of(own, settings.sensors())?;
             Request::Frames(Box::new(asked), form()?, kept)
         }
         "library" => Request::Library(LibraryCommand::of(own, settings)?),
-        "sweep" => Request::Sweep(Box::new(SweepArguments::of(own, command, settings)?)),
-        "merge" => {
-            let files = own.get_many::<PathBuf>("files").into_iter().flatten();
-            Request::Merge(files.cloned().collect(), Wanted::of(own))
-        }
-        "batch" => {
-            let file = own.get_one::<PathBuf>("file").cloned();
-            let file = file.filter(|file| file.as_os_str() != "-");
-            Request::Batch(file, settings.sensor, flags::jobs_of(own))
-        }
         other => return Err(unhandled_subcommand(other)),
     })
 }

@@ -1,29 +1,169 @@
-//! `taxel export`, and `--export` of a touch: writes an imprint in a format for other programs, or draws it.
-//!
-//! A file is complete or does not exist: it is written under another name in the same folder and then renamed.
-//! Standard output, `-`, gets the same bytes.
+//! `taxel export`, and `--save` and `--export` of other commands: writes an imprint in a format for other programs, or
+//! draws it. Standard output, `-`, gets the same bytes as a file.
 
-use std::ffi::OsStr;
-use std::path::Path;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+use clap::ArgGroup;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use taxel_core::imprint::Imprint;
-use taxel_core::matrix::Matrix;
 use taxel_core::source::Source;
-use taxel_files::formats::{Content, Drawing, Name, StoredShape};
-use taxel_files::storage::{self, Existing, NewFile, check_writable};
+use taxel_files::formats::{Content, Drawing, ExportFormat, Name, StoredShape};
+use taxel_files::storage::{self, Existing, FileError, NewFile};
 
-use crate::cli::arguments::touch::{Export, Kept, Saving};
-use crate::cli::error::CliError;
-use crate::cli::input::recording::RecordingFile;
+use crate::cli::Context;
+use crate::cli::arguments::flags::name_or_path;
+use crate::cli::arguments::parameters::PitchFlag;
+use crate::cli::failure::Failure;
 use crate::cli::input::shapes::Shelf;
-use crate::cli::settings::resolved::Pitch;
+
+const EXAMPLES: &str = "\
+The extension of TO decides the format:
+  .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline (if known),
+  .pbm  a bitmap, P4                      rectangle, CG, CD, axes, legend
+  .csv  a table of 0 and 1
+  .npy  a numpy array of bool
+Drawings are grey; with a pitch they are in mm. An existing file is replaced
+only with --force. To export a figure, use 'taxel figure ... --export'.
+
+Examples:
+  taxel export washer washer.svg --pitch 2.5
+  taxel export imprint.txt imprint.npy --force
+  taxel export key - --format pbm-plain
+  taxel figure hexagon --angle 17 --export hexagon.svg";
+
+/// Write a shape for other programs, or draw it
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct ExportCommand {
+    /// Shape of the library, or file; '-' for standard input
+    #[arg(value_name = "NAME|FILE", value_parser = name_or_path())]
+    what: OsString,
+    /// File to write; '-' for standard output
+    #[arg(value_name = "TO")]
+    to: PathBuf,
+    #[command(flatten)]
+    pitch: PitchFlag,
+    /// Format, if not given by the extension
+    #[arg(long, value_name = "FORMAT", value_parser = format())]
+    format: Option<&'static ExportFormat>,
+    /// Replace an existing file
+    #[arg(long)]
+    force: bool,
+}
+
+impl ExportCommand {
+    pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        let export = Export::new(self.to, self.format, replacing(self.force))?;
+        export.check_force(false)?;
+        let pitch = self.pitch.pitch(&cx.settings)?;
+        if pitch.given.is_some() && export.format.name != ExportFormat::SVG {
+            let text = "--pitch has no effect on this format: it is for drawings";
+            return Err(Failure::usage(text));
+        }
+        let drawing = match cx.shelf.find(&self.what)? {
+            Content::Imprint(imprint) => {
+                let title = Path::new(&self.what).file_name().unwrap_or(&self.what);
+                drawing(&imprint, None, &title.to_string_lossy(), pitch.of(None))
+            }
+            Content::Shape(shape) => {
+                let (source, pitch) = (shape.source.as_ref(), pitch.of(Some(&shape.sensor)));
+                let made = source.map_or(String::new(), |source| format!(": {source}"));
+                let title = format!("{}{made}", shape.name);
+                drawing(&shape.imprint, source, &title, pitch)
+            }
+        };
+        let content = (export.format.write)(&drawing);
+        let Some(path) = &export.path else {
+            return cx.write(&content);
+        };
+        storage::write(path, &content, export.existing)?;
+        cx.print(&(written(path) + "\n"))
+    }
+}
+
+fn format() -> impl TypedValueParser<Value = &'static ExportFormat> {
+    let names = ExportFormat::ALL.iter().map(|format| format.name);
+    PossibleValuesParser::new(names).try_map(|name| {
+        let mut all = ExportFormat::ALL.iter();
+        all.find(|format| format.name == name).ok_or("unknown")
+    })
+}
+
+pub(crate) fn replacing(force: bool) -> Existing {
+    if force {
+        Existing::Replaced
+    } else {
+        Existing::Kept
+    }
+}
+
+/// Makes the drawing of an imprint, with the outline of `source` if there is one, and in mm if there is a `pitch`.
+pub(crate) fn drawing(
+    imprint: &Imprint,
+    source: Option<&Source>,
+    title: &str,
+    pitch: Option<f64>,
+) -> Drawing {
+    let mut drawing = Drawing::new(imprint);
+    title.clone_into(&mut drawing.title);
+    drawing.pitch_mm = pitch;
+    let Some(source) = source else {
+        return drawing;
+    };
+    if pitch.is_some() {
+        // The title describes the source.
+        drawing.title += " (in cells)";
+    }
+    drawing.with_outline(source)
+}
+
+/// The file that an imprint is written to.
+#[derive(Clone, Debug)]
+pub(crate) struct Export {
+    /// Its path; None for standard output.
+    pub(crate) path: Option<PathBuf>,
+    pub(crate) format: &'static ExportFormat,
+    pub(crate) existing: Existing,
+}
 
 impl Export {
+    fn new(
+        path: PathBuf,
+        format: Option<&'static ExportFormat>,
+        existing: Existing,
+    ) -> Result<Self, Failure> {
+        let path = Some(path).filter(|path| path.as_os_str() != "-");
+        let of_path = || path.as_deref().and_then(ExportFormat::of_path);
+        let format = format.or_else(of_path).ok_or_else(|| {
+            Failure::usage(match &path {
+                None => "writing to standard output needs '--format'".to_owned(),
+                Some(path) => format!(
+                    "'{}': expected a name that ends in .txt, .pbm, .csv, .npy or .svg, or a '--format'",
+                    path.display()
+                ),
+            })
+        })?;
+        Ok(Self {
+            path,
+            format,
+            existing,
+        })
+    }
+
+    /// Refuses `--force` if there is nothing that it could replace. With `--save` it may be meant for the shape.
+    fn check_force(&self, saves: bool) -> Result<(), Failure> {
+        if self.path.is_none() && self.existing == Existing::Replaced && !saves {
+            return Err(Failure::usage("--force has no effect on standard output"));
+        }
+        Ok(())
+    }
+
+    /// The file of one of several imprints: its name has the number at its end.
     pub(crate) fn numbered(&self, number: u64) -> Self {
         let path = self.path.as_ref().map(|path| {
-            let stem = path.file_stem().unwrap_or(path.as_os_str());
-            let mut name = stem.to_owned();
+            let mut name = path.file_stem().unwrap_or(path.as_os_str()).to_owned();
             name.push(format!("-{number}"));
             if let Some(ending) = path.extension() {
                 name.push(".");
@@ -33,166 +173,115 @@ impl Export {
         });
         Self { path, ..*self }
     }
+}
 
-    /// Refuses a file that would replace the recording being read, or that cannot be written. So one of
-    /// several files that cannot be written is an error before the first of them is written.
-    pub(crate) fn check(&self, recording: &RecordingFile) -> Result<(), CliError> {
-        let Some(path) = &self.path else {
-            return Ok(());
-        };
-        recording.refuse_as_target(path)?;
-        Ok(check_writable(path, self.existing)?)
-    }
+/// The flags that keep what a command makes.
+#[derive(Clone, Debug, clap::Args)]
+#[command(group = ArgGroup::new("kept").args(["save", "export"]).multiple(true))]
+pub(crate) struct KeepFlags {
+    /// Also store the shape in the library
+    #[arg(long, value_name = "NAME", value_parser = Name::new, help_heading = "Library")]
+    save: Option<Name>,
+    /// Write the imprint, or a drawing of it; '-' for standard output, instead of the table
+    #[arg(long, value_name = "FILE", help_heading = "Export")]
+    export: Option<PathBuf>,
+    /// Format, if not given by the extension
+    #[arg(long, value_name = "FORMAT", value_parser = format(), requires = "export", help_heading = "Export")]
+    format: Option<&'static ExportFormat>,
+    /// Replace an existing shape or file
+    #[arg(long, requires = "kept")]
+    force: bool,
+}
 
-    pub(crate) fn begin_frame(
-        &self,
-        imprint: &Imprint,
-        heat: Option<&Matrix<f64>>,
-        title: &str,
-        pitch: Option<f64>,
-    ) -> Result<Begun, CliError> {
-        let mut drawing = Drawing::new(imprint);
-        title.clone_into(&mut drawing.title);
-        drawing.heat = heat.cloned();
-        drawing.pitch_mm = pitch;
-        self.begin_with(&drawing)
-    }
-
-    /// Writes the file completely, but does not give it its name yet.
-    ///
-    /// A drawing shows the outline of `source` if there is one, `title` above it, and axes in mm if there is a
-    /// `pitch`.
-    pub(crate) fn begin(
-        &self,
-        imprint: &Imprint,
-        source: Option<&Source>,
-        title: &str,
-        pitch: Option<f64>,
-    ) -> Result<Begun, CliError> {
-        let mut drawing = Drawing::new(imprint);
-        if let Some(source) = source {
-            drawing = drawing.with_outline(source);
+impl KeepFlags {
+    pub(crate) fn kept(&self, json: bool) -> Result<Kept, Failure> {
+        let (save, existing) = (self.save.clone(), replacing(self.force));
+        let export = self.export.clone();
+        let export = export.map(|path| Export::new(path, self.format, existing));
+        let export = export.transpose()?;
+        if let Some(export) = &export {
+            export.check_force(save.is_some())?;
+            if export.path.is_none() && json {
+                return Err(Failure::usage(
+                    "the argument '--json' cannot be used with '--export -': both write to standard output",
+                ));
+            }
         }
-        drawing.pitch_mm = pitch;
-        drawing.title = match (source, pitch) {
-            // The title describes the source, which is always in cells.
-            (Some(_), Some(_)) => format!("{title} (in cells)"),
-            _ => title.to_owned(),
-        };
-        self.begin_with(&drawing)
-    }
-
-    /// Makes the content and writes the file, which gets its name only in [`Begun::end`].
-    fn begin_with(&self, drawing: &Drawing) -> Result<Begun, CliError> {
-        let content = (self.format.write)(drawing);
-        match &self.path {
-            None => Ok(Begun::Content(content)),
-            Some(path) => Ok(Begun::File(NewFile::with_content(
-                path,
-                &content,
-                self.existing,
-            )?)),
-        }
+        Ok(Kept {
+            save,
+            existing,
+            export,
+        })
     }
 }
 
+/// What is kept of a touch.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept {
+    pub(crate) save: Option<Name>,
+    pub(crate) existing: Existing,
+    pub(crate) export: Option<Export>,
+}
+
 impl Kept {
+    /// The same, for one of several imprints.
+    pub(crate) fn numbered(&self, number: u64) -> Self {
+        Self {
+            save: self.save.clone(),
+            export: self.export.as_ref().map(|export| export.numbered(number)),
+            ..*self
+        }
+    }
+
+    pub(crate) fn is_asked(&self) -> bool {
+        self.save.is_some() || self.export.is_some()
+    }
+
     /// Keeps a touch: the file is written, then the shape is stored, then the file gets its name, which hardly ever
     /// fails. So both are kept or neither. Notes of what was kept are added to `notes`. Returns the content for
     /// standard output that takes the place of the answer, if any.
     pub(crate) fn keep(
         &self,
-        begin: impl FnOnce(&Export) -> Result<Begun, CliError>,
+        drawing: impl FnOnce() -> Drawing,
         shape: impl FnOnce(Name) -> StoredShape,
         shelf: &Shelf,
         notes: &mut Vec<String>,
-    ) -> Result<Option<Vec<u8>>, CliError> {
-        let begun = self.export.as_ref().map(begin).transpose()?;
-        if let Some(Saving { name, existing }) = &self.saving {
-            let saved = shelf.save(&shape(name.clone()), *existing)?;
+    ) -> Result<Option<Vec<u8>>, Failure> {
+        let export = self.export.as_ref();
+        let content = export.map(|export| (export.format.write)(&drawing()));
+        let file = export
+            .and_then(|export| export.path.as_ref())
+            .zip(content.as_ref());
+        let file = file.map(|(path, content)| NewFile::with_content(path, content, self.existing));
+        let file = file.transpose()?;
+        if let Some(name) = &self.save {
+            let saved = shelf.save(&shape(name.clone()), self.existing)?;
             notes.push(format!("saved as {saved}"));
         }
-        Ok(match begun.map(Begun::end).transpose()? {
-            Some(Exported::Content(content)) => Some(content),
-            Some(Exported::Said(said)) => {
-                notes.push(said);
-                None
-            }
-            None => None,
-        })
+        let Some(file) = file else {
+            return Ok(content);
+        };
+        notes.push(written(&file.path));
+        file.persist()?;
+        Ok(None)
     }
-}
-
-#[derive(Debug)]
-pub(crate) enum Begun {
-    /// The bytes for standard output.
-    Content(Vec<u8>),
-    File(NewFile),
-}
-
-impl Begun {
-    pub(crate) fn end(self) -> Result<Exported, CliError> {
-        match self {
-            Self::Content(content) => Ok(Exported::Content(content)),
-            Self::File(file) => {
-                let said = written(&file.path);
-                file.persist()?;
-                Ok(Exported::Said(said))
-            }
-        }
-    }
-}
-
-/// The output after an export.
-#[derive(Clone, Debug)]
-pub(crate) enum Exported {
-    /// The exported bytes.
-    Content(Vec<u8>),
-    Said(String),
 }
 
 pub(crate) fn written(path: &Path) -> String {
     format!("written: {}", path.display())
 }
 
-pub(crate) fn make_folder(folder: &Path) -> Result<(), CliError> {
-    fs::create_dir_all(folder).map_err(|error| {
+pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), Failure> {
+    Ok(storage::write(path, content, existing)?)
+}
+
+pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
+    Ok(fs::create_dir_all(folder).map_err(|error| {
         let error = if folder.exists() {
             io::Error::other("a file, expected a folder")
         } else {
             error
         };
-        CliError::of_file(folder, error)
-    })
-}
-
-pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
-    Ok(storage::write(path, content, existing)?)
-}
-
-pub(crate) fn export(
-    shelf: &Shelf,
-    what: &OsStr,
-    export: &Export,
-    pitch: Pitch,
-) -> Result<Exported, CliError> {
-    let begun = match shelf.find(what)? {
-        Content::Imprint(imprint) => {
-            let title = Path::new(what)
-                .file_name()
-                .unwrap_or(what)
-                .to_string_lossy();
-            export.begin(&imprint, None, &title, pitch.of(None))
-        }
-        Content::Shape(shape) => {
-            let source = shape.source.as_ref();
-            let title = match source {
-                Some(source) => format!("{}: {source}", shape.name),
-                None => shape.name.to_string(),
-            };
-            let pitch = pitch.of(Some(&shape.sensor));
-            export.begin(&shape.imprint, source, &title, pitch)
-        }
-    };
-    begun?.end()
+        FileError::cannot("write", folder)(error)
+    })?)
 }

@@ -34,11 +34,11 @@ use taxel_core::sensor::Sensor;
 use taxel_files::formats::recording::{ChannelInfo, FrameAnswer, unshaped};
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{Name, StoredShape, json};
+use taxel_files::storage::{self, check_writable};
 
 use crate::cli::arguments::flags::Form;
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
-use crate::cli::arguments::touch::{Export, Kept};
-use crate::cli::commands::export::{Begun, Exported};
+use crate::cli::commands::export::{Export, Kept, drawing, written};
 use crate::cli::commands::recognise::Namer;
 use crate::cli::commands::recording_scan::{self, Scan};
 use crate::cli::error::{CliError, frame_advice};
@@ -160,6 +160,15 @@ fn list(
     })
 }
 
+/// Refuses a file that would replace the recording, or that cannot be written, before the first of several is written.
+fn check(export: &Export, recording: &RecordingFile) -> Result<(), CliError> {
+    let Some(path) = &export.path else {
+        return Ok(());
+    };
+    recording.refuse_as_target(path)?;
+    Ok(check_writable(path, export.existing)?)
+}
+
 /// Reports which taxels of a channel flip or are stuck, and writes the mask of the stuck ones if a file is given.
 /// Returns false, and reports nothing, if the channel has no frames.
 fn report_noise(
@@ -169,7 +178,7 @@ fn report_noise(
     output: &mut FramesOutput<'_>,
 ) -> Result<bool, CliError> {
     let export = output.kept.export.as_ref();
-    export.map_or(Ok(()), |export| export.check(recording))?;
+    export.map_or(Ok(()), |export| check(export, recording))?;
     let found = recording_scan::gather(recording, channel, processing)?;
     let found = found.map(|found| write_noise(&found, recording.name(), output));
     Ok(found.transpose()?.is_some())
@@ -180,14 +189,16 @@ fn write_noise(
     name: &str,
     output: &mut FramesOutput<'_>,
 ) -> Result<(), CliError> {
-    let export = output.kept.export.as_ref();
     let title = format!("{name}: dead and stuck taxels");
-    let begun = export.map(|export| export.begin_frame(&found.mask(), None, &title, None));
-    let said = match begun.transpose()?.map(Begun::end).transpose()? {
-        Some(Exported::Content(content)) => return output.write(content),
-        Some(Exported::Said(said)) => Some(said),
-        None => None,
-    };
+    let mut said = None;
+    if let Some(export) = &output.kept.export {
+        let content = (export.format.write)(&drawing(&found.mask(), None, &title, None));
+        let Some(path) = &export.path else {
+            return output.write(content);
+        };
+        storage::write(path, &content, export.existing)?;
+        said = Some(written(path));
+    }
     if let Form::Json(_) = output.form {
         if let Some(said) = said {
             (output.notes)(&said);
@@ -324,7 +335,7 @@ impl Selection {
         export.map_or(Ok(()), |export| {
             numbers
                 .map(|number| export.numbered(number))
-                .try_for_each(|export| export.check(recording))
+                .try_for_each(|export| check(&export, recording))
         })
     }
 
@@ -412,12 +423,14 @@ impl Selection {
             lines.extend(without_pitch);
             lines.push(report::size(&imprint, None, pitch));
         }
-        let begin = |export: &Export| {
-            let export = export.numbered(found.frame.number);
-            export.begin_frame(&imprint, heat, &titles[0], pitch)
+        let drawn = || {
+            let mut drawing = drawing(&imprint, None, &titles[0], pitch);
+            drawing.heat = heat.cloned();
+            drawing
         };
         let shape = |name| stored(name, &imprint, pitch);
-        let instead = output.kept.keep(begin, shape, output.shelf, &mut lines)?;
+        let kept = output.kept.numbered(found.frame.number);
+        let instead = kept.keep(drawn, shape, output.shelf, &mut lines)?;
         let text = match (instead, output.form) {
             (Some(content), _) => content,
             (None, Form::Json(_)) => {

@@ -12,12 +12,14 @@ use taxel_core::description::{RegionKind, regions};
 use taxel_core::quote::{as_argument, shortened_message};
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::{Content, Name, StoredShape, json};
-use taxel_files::storage::{Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
+use taxel_files::storage::{
+    Existing, Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin,
+};
 
 use crate::cli::arguments::flags::Form;
-use crate::cli::arguments::touch::Saving;
-use crate::cli::commands::touch;
+use crate::cli::commands::describe::described;
 use crate::cli::error::CliError;
+use crate::cli::failure::Failure;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 
@@ -146,37 +148,43 @@ pub(crate) fn show(
 ) -> Result<String, CliError> {
     let loaded = shelf.readable().load(name);
     let shape = loaded.map_err(|error| shelf.refused(error))?.shape;
-    Ok(touch::content(&Content::Shape(shape), form, charset))
+    let (Form::Json(pitch) | Form::Table(pitch)) = form;
+    let is_json = matches!(form, Form::Json(_));
+    Ok(described(&Content::Shape(shape), is_json, pitch, charset))
 }
 
 /// Stores a shape of the library or of a file under another name. An imprint without a sensor gets one of its own
 /// size.
-pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, CliError> {
+pub(crate) fn save(
+    shelf: &Shelf,
+    name: Name,
+    existing: Existing,
+    what: &OsStr,
+) -> Result<String, CliError> {
     let found = shelf.find(what);
-    let shape = match found.map_err(|error| in_order(error, saving.name.as_str()))? {
-        Content::Shape(shape) => shape.renamed(saving.name),
+    let shape = match found.map_err(|error| in_order(error, what, name.as_str()))? {
+        Content::Shape(shape) => shape.renamed(name),
         Content::Imprint(imprint) => StoredShape {
-            name: saving.name,
+            name,
             sensor: Sensor::of_size(imprint.size()),
             imprint,
             source: None,
         },
     };
-    let name = shelf.save(&shape, saving.existing)?;
+    let name = shelf.save(&shape, existing)?;
     Ok(format!("saved as {name}\n"))
 }
 
 /// Adds the right order of the arguments to the error, if a file was given in place of the name and the shape cannot
 /// be found.
-fn in_order(error: CliError, file: &str) -> CliError {
-    match error {
-        CliError::Nowhere { name, .. } if Path::new(file).is_file() => {
-            let (first, then) = (as_argument(&name), as_argument(file));
-            let near = format!("; the name comes first: taxel library save {first} {then}");
-            CliError::Nowhere { name, near }
-        }
-        error => error,
+fn in_order(failure: Failure, what: &OsStr, file: &str) -> Failure {
+    if Path::new(what).exists() || !Path::new(file).is_file() {
+        return failure;
     }
+    let (first, then) = (as_argument(&what.to_string_lossy()), as_argument(file));
+    failure.with_hint(format!(
+        "; the name comes first: taxel library save {first} {then}"
+    ))
 }
 
 pub(crate) fn delete(shelf: &Shelf, name: &str, charset: Charset) -> Result<String, CliError> {

@@ -4,11 +4,19 @@
 
 pub(super) mod export;
 
-pub(super) mod touch;
+pub(super) mod figure;
+
+pub(super) mod picture;
+
+pub(super) mod describe;
+
+pub(super) mod batch;
 
 pub(super) mod library;
 
 pub(super) mod sweep;
+
+pub(super) mod merge;
 
 pub(super) mod model;
 
@@ -29,20 +37,3 @@ pub(super) mod man;
 pub(super) mod config;
 
 pub(super) mod completions;
-
-use crate::cli::error::CliError;
-
-#[derive(Debug)]
-pub(super) struct Summary {
-    pub(super) text: String,
-    /// Whether the files were written. An error is reported after the text is printed, so that the work is not lost.
-    pub(super) written: Result<(), CliError>,
-}
-
-/// Returns the outcome of writing files unless a signal stopped it: then there is no summary.
-fn unless_stopped(written: Result<(), CliError>) -> Result<Result<(), CliError>, CliError> {
-    match written {
-        Err(stopped @ CliError::Stopped { .. }) => Err(stopped),
-        written => Ok(written),
-    }
-}

@@ -32,8 +32,8 @@ use crate::cli::arguments::flags::{name_or_path, parse_number, parse_probability
 use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::commands::model;
 use crate::cli::failure::{Failure, Named};
-use crate::cli::input::content;
-use crate::cli::input::lines::{self, LineInput, MAX_LINE};
+use crate::cli::input::content::{self, Input};
+use crate::cli::input::lines::{self, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText, PoseReport};
 use crate::cli::output::charset::Charset;
@@ -261,45 +261,44 @@ impl Recognise {
             pitch_mm,
         };
         match input {
-            Input::Touch(content) => {
+            Question::Touch(content) => {
                 if let Some(text) = recogniser.other_threshold(&content) {
                     cx.note(&text);
                 }
                 recogniser.answer_imprint(content.imprint(), cx)
             }
-            Input::Lines(input) => recogniser.answer_lines(input),
+            Question::Lines(input) => recogniser.answer_lines(input),
         }
     }
 
     /// Finds out whether the input is lines: whether it begins with one, after any blank ones.
-    fn input(&self, cx: &Context) -> Result<Input, Failure> {
-        let LineInput { name, read } = match cx.shelf.locate(&self.what)? {
-            Located::Shape(shape) => return Ok(Input::Touch(Content::Shape(shape))),
-            Located::File(path, file) => LineInput::of_file(path, file),
-            Located::Standard => LineInput::standard()?,
+    fn input(&self, cx: &Context) -> Result<Question, Failure> {
+        let Input { name, read } = match cx.shelf.locate(&self.what)? {
+            Located::Shape(shape) => return Ok(Question::Touch(Content::Shape(shape))),
+            Located::Input(input) => input,
         };
         let (mut input, mut start) = (BufReader::new(read), Vec::new());
         let mut lines = Read::by_ref(&mut input).take(MAX_LINE as u64);
         while start.trim_ascii().is_empty() {
             let read = lines.read_until(b'\n', &mut start);
-            if read.map_err(content::InputError::from).named(&name)? == 0 {
+            if read.map_err(ReadError::from).named(&name)? == 0 {
                 break;
             }
         }
         let is_line = is_line(&start);
-        let whole = Cursor::new(start).chain(input);
-        if is_line {
-            let read = Box::new(whole);
-            return Ok(Input::Lines(LineInput { name, read }));
-        }
-        Ok(Input::Touch(content::read_from(whole).named(&name)?))
+        let read = Box::new(Cursor::new(start).chain(input));
+        let whole = Input { name, read };
+        Ok(match is_line {
+            true => Question::Lines(whole),
+            false => Question::Touch(whole.content()?),
+        })
     }
 }
 
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
-enum Input {
+enum Question {
     Touch(Content),
-    Lines(LineInput),
+    Lines(Input),
 }
 
 fn check_expected(name: &str, shapes: &[NamedShape]) -> Result<(), Failure> {
@@ -362,7 +361,7 @@ impl Recogniser<'_> {
         }
     }
 
-    fn answer_lines(&self, input: LineInput) -> Result<(), Failure> {
+    fn answer_lines(&self, input: Input) -> Result<(), Failure> {
         let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
         let answer = |line: &[u8], text: &mut Vec<u8>| {
             let (touches, copied) = read_line(line).map_err(|error| error.to_string())?;

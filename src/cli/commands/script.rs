@@ -23,7 +23,7 @@ use taxel_files::storage::{self, Existing};
 use crate::cli::Context;
 use crate::cli::commands::export;
 use crate::cli::failure::{Failure, Named};
-use crate::cli::input::content::{InputError, InputSource};
+use crate::cli::input::content::InputSource;
 use crate::cli::output::charset::Charset;
 use crate::tui::app::state::Options;
 use crate::tui::keys::key::{Key, parse};
@@ -174,7 +174,7 @@ impl Script {
         let name = source.map(InputSource::name).unwrap_or_default();
         let script = match source {
             Some(source) => bytes(source)
-                .map_err(|error| Failure::usage(InputError::from(error).to_string()))
+                .map_err(|error| Failure::usage(taxel_files::ReadError::from(error).to_string()))
                 .named(&name)?,
             None => Vec::new(),
         };

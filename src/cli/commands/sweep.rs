@@ -1,52 +1,175 @@
 //! `taxel sweep`: sweeps a grid of poses, writes the atlas, and prints statistics.
 //!
-//! Files are written under another name in the same folder and renamed when all of them are complete. A file that
-//! exists is replaced only with `--force`; this is checked before the work begins.
-//!
-//! SIGINT, SIGTERM and SIGHUP, unless they are ignored, stop a sweep within a few thousand poses and a file at its next
-//! block. Incomplete files are removed, and the exit status is 128 plus the number of the signal. A second signal
-//! ends the program at once.
-//!
-//! The result of a sweep: `--atlas` writes every distinct imprint with its number of poses, `--poses` writes the
-//! number of its imprint for each pose, and standard output gets a summary.
+//! `--atlas` writes every distinct imprint with its number of poses, `--poses` the number of its imprint for each pose.
+//! Files get their names when all of them are complete. SIGINT, SIGTERM and SIGHUP, unless they are ignored, stop a
+//! sweep within a few thousand poses; then there are no files, and the exit status is 128 plus the number of the
+//! signal. A second signal ends the program at once.
 
-use std::collections::HashSet;
-use std::fmt;
-use std::io::BufReader;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use taxel_core::pose::{Anchor, Axis, GivenRanges, PoseGrid, default_ranges, figure_ranges};
-use taxel_core::recognition::{Evaluation, Model, ModelError, ModelMerge, TrainingError};
+use clap::ArgGroup;
+use clap::builder::{OsStringValueParser, TypedValueParser};
+use taxel_core::figure::FigureKind;
+use taxel_core::parameter::ParameterError;
+use taxel_core::parameter::number::short;
+use taxel_core::pose::{
+    Anchor, Axis, GivenRanges, GridError, PoseGrid, default_ranges, figure_ranges,
+};
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
-use taxel_core::sweep::{MergeError, Shard, ShardOrderError, Sweep, SweepMerge, SweepResult};
+use taxel_core::sweep::{Shard, Sweep as Sweeping, SweepResult};
 use taxel_files::formats::value::{counted, grouped};
-use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
-use taxel_files::memory::MemoryGuard;
-use taxel_files::storage::{
-    self, FileError, NewFile, PoseFile, check_writable, load_atlas, load_model, save_model,
-    write_atlas,
-};
+use taxel_files::memory::{MemoryGuard, MemorySize};
+use taxel_files::storage::{Existing, NewFile, PoseFile, atlas_path, check_writable, write_atlas};
 
-use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
-use crate::cli::arguments::sweep::Wanted;
-use crate::cli::commands::export::written;
-use crate::cli::commands::model::{fits_in_table, model_file};
-use crate::cli::commands::{Summary, unless_stopped};
-use crate::cli::error::CliError;
-use crate::cli::output::charset::{Charset, note};
-use crate::cli::output::evaluation::{self, EvaluationJson};
+use crate::cli::Context;
+use crate::cli::arguments::flags::{
+    TOO_LITTLE_MEMORY, name_or_path, npy, one_of, parse_shard, whole,
+};
+use crate::cli::arguments::parameters::{Given, MatrixFlags, RangeFlags, SizeFlags};
+use crate::cli::commands::export::{replacing, written};
+use crate::cli::commands::picture::moved;
+use crate::cli::failure::Failure;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::sweep_summary;
 use crate::cli::signals::{self, Signals};
 
-impl Wanted {
-    pub(super) fn note_written(&self, summary: &Summary, charset: Charset) {
-        let files = self.atlas.iter().chain(&self.poses);
-        for path in files.filter(|_| summary.written.is_ok() && !self.quiet) {
-            note(&written(path), charset);
+const EXAMPLES: &str = "\
+A range is START:END:STEP with the end included, or one number; decimals are
+exact. By default, x0 and y0 run over one cell in steps of 0.01, at every whole
+degree: 3.6 million poses. The cell of a figure starts at x0 = y0 = 5; that of a
+picture is the cell that it lies in. If the sensor would cut off the shape there
+at some angle, taxel takes the cell nearest to the middle of the sensor in which
+nothing is cut off. The summary states the ranges. Figures are solid without
+--thickness. A picture keeps its own sensor, unless flags change it.
+
+Examples:
+  taxel sweep rectangle --length 6 --width 3
+  taxel sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --json
+  taxel sweep --picture key --columns 32 --rows 32 --x0 11:11.9:0.1 \\
+    --y0 11:11.9:0.1 --zoom-x 0.8:1.2:0.1 --atlas key.csv
+  taxel sweep hexagon --side 12 --columns 64 --rows 64 --x0 20:20.99:0.01 \\
+    --shard 3/40 --atlas hexagon-3.npz --quiet";
+
+/// Find every imprint that a shape can leave
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+#[command(group = ArgGroup::new("shape").args(["kind", "picture"]).required(true))]
+#[command(group = ArgGroup::new("files").args(["atlas", "poses"]).multiple(true))]
+pub(crate) struct Sweep {
+    /// Kind of figure, as in 'taxel figure'; or --picture
+    #[arg(value_name = "KIND", value_parser = one_of::<FigureKind, _>(FigureKind::names()))]
+    #[arg(hide_possible_values = true)]
+    kind: Option<FigureKind>,
+    /// Sweep a stored shape instead
+    #[arg(long, value_name = "NAME|FILE", value_parser = name_or_path())]
+    picture: Option<OsString>,
+    #[command(flatten)]
+    sizes: SizeFlags,
+    #[command(flatten)]
+    ranges: RangeFlags,
+    /// Point that x0 and y0 place: corner (default) or centre
+    #[arg(long, value_name = "POINT", value_parser = one_of::<Anchor, _>(Anchor::NAMES))]
+    #[arg(hide_possible_values = true, help_heading = "Grid")]
+    anchor: Option<Anchor>,
+    #[command(flatten)]
+    sensor: MatrixFlags,
+    /// Write the atlas, a list of all imprints found, as .csv, .jsonl or .npz
+    #[arg(long, value_name = "FILE", value_parser = atlas())]
+    atlas: Option<PathBuf>,
+    /// Write which imprint each pose leaves
+    #[arg(long, value_name = "FILE.npy", value_parser = npy(), conflicts_with = "shard")]
+    poses: Option<PathBuf>,
+    /// Replace an existing file
+    #[arg(long, requires = "files")]
+    force: bool,
+    /// Threads; default all cores
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
+    jobs: Option<u16>,
+    /// Most memory to use, such as 500M or 2G; default all that is free
+    #[arg(long, value_name = "SIZE")]
+    memory: Option<MemorySize>,
+    /// Compute only shard K of N of the grid
+    #[arg(long, value_name = "K/N", value_parser = parse_shard)]
+    shard: Option<Shard>,
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
+    /// Show no progress and no notes
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// The name of an atlas. Its extension decides the format, so there is no flag for this.
+pub(crate) fn atlas() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(atlas_path)
+}
+
+impl Sweep {
+    pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        let (source, sensor) = self.shape(cx)?;
+        let anchor = self.anchor.unwrap_or_default();
+        let (grid, notes) = grid(source, sensor, anchor, &self.ranges.0)?;
+        for text in notes.iter().filter(|_| !self.quiet) {
+            cx.note(text);
         }
+        let start = Instant::now();
+        let signals = Signals::catch()?;
+        let existing = replacing(self.force);
+        if let Some(file) = &self.atlas {
+            check_writable(file, existing)?;
+        }
+        let pool = signals::pool(self.jobs.unwrap_or(0).into())?;
+        let memory = MemoryGuard::new(self.memory, TOO_LITTLE_MEMORY);
+        let new = |path| PoseFile::new(path, &grid, existing);
+        let mut poses = self.poses.as_ref().map(new).transpose()?;
+        let shard = self.shard.unwrap_or(Shard::WHOLE);
+        let display = ProgressDisplay::new(shard.poses(&grid), self.quiet, cx.charset);
+        let result = memory.limit(&signals.progress(&display), |progress| {
+            let sweep = Sweeping::new(&grid)
+                .with_shard(shard)
+                .with_progress(progress);
+            pool.install(|| match &mut poses {
+                Some(file) => sweep.run_with_rows(&mut |row, ids| file.take(row, ids)),
+                None => sweep.run(),
+            })
+        });
+        drop(display);
+        let result = result.map_err(Failure::new)?;
+        let poses = poses.map(PoseFile::finish).transpose().map(Option::flatten);
+        if !result.complete() {
+            poses?;
+            return Err(signals.failure().into());
+        }
+        let write = |poses| write(&result, self.atlas.as_deref(), existing, poses, &signals);
+        let done = poses.map_err(Failure::from).and_then(write);
+        if done.is_err() && !signals.goes_on() {
+            return done;
+        }
+        // The work is not lost if its files cannot be written.
+        let took = start.elapsed();
+        cx.write(sweep_summary::of(&result, took, self.json, cx.charset).as_bytes())?;
+        done?;
+        let files = self.atlas.iter().chain(&self.poses);
+        for path in files.filter(|_| !self.quiet) {
+            cx.note(&written(path));
+        }
+        Ok(())
+    }
+
+    fn shape(&self, cx: &Context) -> Result<(Source, Sensor), Failure> {
+        if let Some(picture) = &self.picture {
+            if let Some(size) = self.sizes.first() {
+                let text = format!("'--{size}' does not belong to a picture");
+                return Err(Failure::usage(text));
+            }
+            return moved(picture, &Given::default(), &self.sensor, &cx.shelf);
+        }
+        let sensor = self.sensor.sensor(cx.settings.sensor)?;
+        let kind = self.kind.unwrap_or(FigureKind::Ellipse);
+        Ok((Source::Figure(self.sizes.figure(kind, &sensor)?), sensor))
     }
 }
 
@@ -55,34 +178,36 @@ impl Wanted {
 ///
 /// A figure on the command line has no position, so it is swept in the [`figure_ranges`]; a picture is swept in the
 /// cell that it lies in.
-pub(crate) fn grid(
+fn grid(
     source: Source,
     sensor: Sensor,
     anchor: Anchor,
     given: &GivenRanges,
-) -> Result<(PoseGrid, Vec<String>), CliError> {
-    let mut missing = vec![Axis::X0, Axis::Y0];
-    missing.retain(|&axis| given[axis].is_none());
+) -> Result<(PoseGrid, Vec<String>), Failure> {
     let ranges = match source {
-        Source::Figure(_) => figure_ranges(&source, &sensor, anchor, given)?,
-        Source::Picture(_) => default_ranges(&source, &sensor, anchor, given)?,
+        Source::Figure(_) => figure_ranges(&source, &sensor, anchor, given),
+        Source::Picture(_) => default_ranges(&source, &sensor, anchor, given),
     };
-    let grid = PoseGrid::new(source, sensor, anchor, ranges)?;
-    if missing.is_empty() {
-        return Ok((grid, Vec::new()));
-    }
-    let mut notes = Vec::new();
+    let ranges = ranges.map_err(grid_refused)?;
+    let grid = PoseGrid::new(source, sensor, anchor, ranges).map_err(grid_refused)?;
     let zoomed = [(Axis::X0, Axis::ZoomX), (Axis::Y0, Axis::ZoomY)];
-    let mut zoomed = zoomed.iter().filter(|(axis, _)| missing.contains(axis));
-    if anchor == Anchor::Corner && zoomed.any(|&(_, zoom)| grid.ranges()[zoom].value(0) < 1.0) {
+    let mut missing = zoomed
+        .iter()
+        .filter(|(axis, _)| given[*axis].is_none())
+        .peekable();
+    let mut notes = Vec::new();
+    if missing.peek().is_none() {
+        return Ok((grid, notes));
+    }
+    if anchor == Anchor::Corner && missing.any(|&(_, zoom)| grid.ranges()[zoom].value(0) < 1.0) {
         let note = "the corner is zoomed, too: it moves by less than a cell; '--anchor centre' moves the shape by a cell";
         notes.push(note.to_owned());
     }
     let cut = grid.poses_beyond_sensor();
     if cut > 0 {
-        let noun = grid.source().noun();
         notes.push(format!(
-            "the {noun} reaches beyond the sensor in {} of {}",
+            "the {} reaches beyond the sensor in {} of {}",
+            grid.source().noun(),
             grouped(cut),
             counted(grid.poses(), "pose")
         ));
@@ -90,288 +215,34 @@ pub(crate) fn grid(
     Ok((grid, notes))
 }
 
-pub(crate) fn sweep(
-    grid: &PoseGrid,
-    shard: Shard,
-    jobs: usize,
-    wanted: &Wanted,
-    charset: Charset,
-) -> Result<Summary, CliError> {
-    let start = Instant::now();
-    let signals = Signals::catch()?;
-    if let Some(file) = &wanted.atlas {
-        check_writable(file, wanted.existing)?;
+/// Says which flag gives a range that the grid cannot have.
+pub(crate) fn grid_refused(error: GridError) -> Failure {
+    match error {
+        GridError::Parameter(error @ ParameterError::Range { value, .. }) => {
+            let flag = error.parameter().flag();
+            Failure::new(format!("--{flag} {} {}", short(value), error.complaint()))
+        }
+        GridError::Zoom(_) => {
+            Failure::new("--zoom-x and --zoom-y are for pictures only (--picture)")
+        }
+        error => error.into(),
     }
-    let pool = signals::pool(jobs)?;
-    let memory = MemoryGuard::new(wanted.memory, TOO_LITTLE_MEMORY);
-    let new = |path| PoseFile::new(path, grid, wanted.existing);
-    let mut poses = wanted.poses.as_ref().map(new).transpose()?;
-    let display = ProgressDisplay::new(shard.poses(grid), wanted.quiet, charset);
-    let result = memory.limit(&signals.progress(&display), |progress| {
-        let sweep = Sweep::new(grid).with_shard(shard).with_progress(progress);
-        pool.install(|| match &mut poses {
-            Some(file) => sweep.run_with_rows(&mut |row, ids| file.take(row, ids)),
-            None => sweep.run(),
-        })
-    });
-    drop(display);
-    let result = result.map_err(CliError::Memory)?;
-    let poses = poses.map(PoseFile::finish).transpose().map(Option::flatten);
-    if !result.complete() {
-        poses?;
-        return Err(signals.failure());
-    }
-    let left = leave(&result, start, wanted, poses, charset, &signals)?;
-    wanted.note_written(&left, charset);
-    Ok(left)
 }
 
-/// Writes the atlas, gives the files their names, and returns the summary to print, with the error if there are no
-/// files.
-pub(super) fn leave(
-    result: &SweepResult,
-    start: Instant,
-    wanted: &Wanted,
-    poses: Result<Option<NewFile>, FileError>,
-    charset: Charset,
-    signals: &Signals,
-) -> Result<Summary, CliError> {
-    let poses = poses.map_err(CliError::from);
-    let written = poses.and_then(|poses| write(result, wanted, poses, signals));
-    Ok(Summary {
-        text: text(result, start, wanted, charset),
-        written: unless_stopped(written)?,
-    })
-}
-
+/// Writes the atlas and gives the files their names.
 fn write(
     result: &SweepResult,
-    wanted: &Wanted,
+    atlas: Option<&Path>,
+    existing: Existing,
     poses: Option<NewFile>,
     signals: &Signals,
-) -> Result<(), CliError> {
-    let atlas = match &wanted.atlas {
-        Some(file) => {
-            let whole = write_atlas(file, result, wanted.existing);
-            if !signals.goes_on() {
-                return Err(signals.failure());
-            }
-            Some(whole?)
-        }
-        None => None,
-    };
-    for file in [atlas, poses].into_iter().flatten() {
+) -> Result<(), Failure> {
+    let atlas = atlas.map(|file| write_atlas(file, result, existing));
+    if !signals.goes_on() {
+        return Err(signals.failure().into());
+    }
+    for file in [atlas.transpose()?, poses].into_iter().flatten() {
         file.persist()?;
     }
     Ok(())
-}
-
-fn text(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset) -> String {
-    if wanted.json {
-        sweep_summary::json(result, start.elapsed())
-    } else {
-        sweep_summary::text(result, start.elapsed(), charset)
-    }
-}
-
-struct Part {
-    path: PathBuf,
-    format: String,
-    shard: Shard,
-}
-
-impl Part {
-    fn of(path: &Path) -> Result<Self, CliError> {
-        let read = |error: FileError| CliError::Archive(error.into());
-        let kind = archive_kind(BufReader::new(storage::open(path).map_err(read)?));
-        let (format, shard) = kind.map_err(|error| CliError::Shard {
-            path: path.to_owned(),
-            reason: error.to_string(),
-        })?;
-        Ok(Self {
-            path: path.to_owned(),
-            format,
-            shard,
-        })
-    }
-
-    fn refused(&self, error: &dyn fmt::Display) -> CliError {
-        CliError::Shard {
-            path: self.path.clone(),
-            reason: error.to_string(),
-        }
-    }
-
-    fn other_study(&self, first: &Self) -> CliError {
-        self.refused(&format_args!(
-            "shard {}, but {} is shard {}: not the same study",
-            self.shard,
-            first.path.display(),
-            first.shard
-        ))
-    }
-}
-
-/// Refuses to replace one of the shards by the result: the shards could not be merged again.
-fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
-    let written = wanted.atlas.iter().chain(&wanted.poses);
-    for written in written.filter_map(|path| path.canonicalize().ok()) {
-        let own = |path: &&PathBuf| path.canonicalize().is_ok_and(|path| path == written);
-        if let Some(path) = files.iter().find(own) {
-            return Err(CliError::Shard {
-                path: path.clone(),
-                reason: "one of the shards; write to another file".to_owned(),
-            });
-        }
-    }
-    Ok(())
-}
-
-const MOST_LISTED: usize = 10;
-
-fn check_one_kind(parts: &[Part]) -> Result<(), CliError> {
-    let noun = |part: &Part| match part.format.as_str() {
-        MODEL_FORMAT => "a model",
-        _ => "an atlas",
-    };
-    let Some((first, others)) = parts.split_first() else {
-        return Ok(());
-    };
-    match others.iter().find(|part| noun(part) != noun(first)) {
-        Some(other) => Err(other.refused(&format_args!(
-            "{}, but {} is {}; give the shards of one sweep or of one training",
-            noun(other),
-            first.path.display(),
-            noun(first),
-        ))),
-        None => Ok(()),
-    }
-}
-
-/// Refuses shards of which two or more are missing, and lists these. The merge names a single one, and reports shards
-/// of different numbers of shards.
-fn check_all_there(parts: &[Part]) -> Result<(), CliError> {
-    let Some(of) = parts.first().map(|part| part.shard.of()) else {
-        return Ok(());
-    };
-    if parts.iter().any(|part| part.shard.of() != of) {
-        return Ok(());
-    }
-    let given: HashSet<u32> = parts.iter().map(|part| part.shard.number()).collect();
-    let count = u64::from(of) - given.len() as u64;
-    // The merge also names a shard that is given twice.
-    if count < 2 || given.len() < parts.len() {
-        return Ok(());
-    }
-    let missing = (1..=of).filter(|number| !given.contains(number));
-    let mut numbers: Vec<String> = missing.take(MOST_LISTED).map(|it| it.to_string()).collect();
-    if count > MOST_LISTED as u64 {
-        numbers.push("…".to_owned());
-    }
-    let numbers = numbers.join(", ");
-    Err(CliError::MissingShards { count, of, numbers })
-}
-
-pub(crate) fn merge(
-    files: &[PathBuf],
-    wanted: &Wanted,
-    charset: Charset,
-) -> Result<Summary, CliError> {
-    let start = Instant::now();
-    if let Some(file) = &wanted.atlas {
-        check_writable(file, wanted.existing)?;
-    }
-    check_no_shard(files, wanted)?;
-    let parts = files.iter().map(|path| Part::of(path));
-    let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
-    let is_model = parts
-        .first()
-        .is_some_and(|part| part.format == MODEL_FORMAT);
-    check_one_kind(&parts)?;
-    if is_model {
-        check_model_file(wanted)?;
-    }
-    parts.sort_by_key(|part| part.shard.number());
-    check_all_there(&parts)?;
-    let memory = MemoryGuard::new(
-        wanted.memory,
-        "allow more (--memory), or merge on a machine that has more",
-    );
-    let summary = if is_model {
-        leave_model(&models(&parts, wanted, &memory)?, wanted)
-    } else {
-        let result = sweeps(&parts, &memory)?;
-        // Until here nothing is written, so a signal may just end the program.
-        let signals = Signals::catch()?;
-        leave(&result, start, wanted, Ok(None), charset, &signals)?
-    };
-    wanted.note_written(&summary, charset);
-    Ok(summary)
-}
-
-fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
-    match &wanted.atlas {
-        Some(file) => Ok(model_file(file)?),
-        None => Ok(()),
-    }
-}
-
-fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError> {
-    let mut merge = SweepMerge::default();
-    for part in parts {
-        let shard = load_atlas(&part.path).map_err(CliError::Archive)?;
-        merge.add(shard).map_err(|error| match error {
-            MergeError::Foreign { .. } if part.shard.of() != parts[0].shard.of() => {
-                part.other_study(&parts[0])
-            }
-            MergeError::Foreign { difference, .. } => part.refused(&format_args!(
-                "differs from {} in {difference}",
-                parts[0].path.display()
-            )),
-            MergeError::Order(ShardOrderError::Twice(_)) => part.refused(&error),
-            other => other.into(),
-        })?;
-        memory.check().map_err(CliError::Memory)?;
-    }
-    Ok(merge.finish()?)
-}
-
-/// Merges the shards of a training. They are refused at the first one if the result has too many shapes for what is to
-/// be printed.
-fn models(parts: &[Part], wanted: &Wanted, memory: &MemoryGuard) -> Result<Model, CliError> {
-    let mut merge = ModelMerge::default();
-    for part in parts {
-        let model = load_model(&part.path).map_err(CliError::Archive)?;
-        if wanted.json {
-            fits_in_table("confusion matrix", model.shapes().len())?;
-        }
-        merge.add(&model).map_err(|error| match error {
-            ModelError::Foreign { .. } if part.shard.of() != parts[0].shard.of() => {
-                part.other_study(&parts[0])
-            }
-            ModelError::Foreign { .. } => part.refused(&format_args!(
-                "belongs to another training than {}",
-                parts[0].path.display()
-            )),
-            ModelError::Shards(ShardOrderError::Twice(_)) => part.refused(&error),
-            other => TrainingError::from(other).into(),
-        })?;
-        memory.check().map_err(CliError::Memory)?;
-    }
-    Ok(merge.finish().map_err(TrainingError::from)?)
-}
-
-fn leave_model(model: &Model, wanted: &Wanted) -> Summary {
-    let save = |file: &PathBuf| Ok(save_model(model, file, wanted.existing)?);
-    let written = wanted.atlas.as_ref().map_or(Ok(()), save);
-    let limit = Evaluation::of(model);
-    let text = if wanted.json {
-        json::ascii(&EvaluationJson {
-            evaluation: &limit,
-            classifier: None,
-        }) + "\n"
-    } else {
-        evaluation::summary(&limit, evaluation::NamedBy::Imprint)
-    };
-    Summary { text, written }
 }

@@ -1,7 +1,5 @@
-//! Reads an imprint in any format, or a stored shape, from a file or standard input.
-//!
-//! The format is recognised by the content, never by the file's name ([`read_content`]). At most [`MAX_BYTES`] are
-//! read.
+//! Opens a file or standard input, and reads an imprint in any format, or a stored shape, from it. The format is
+//! recognised by the content, never by the file's name.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -11,10 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use taxel_files::ReadError;
-use taxel_files::formats::file::{system_reason, without_mark};
+use taxel_files::formats::file::without_mark;
 use taxel_files::formats::imprint_file::MAX_BYTES;
 use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, read_content};
+
+use crate::cli::failure::{Failure, Named};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum InputSource {
@@ -55,43 +55,44 @@ pub(crate) fn standard() -> io::Result<io::Stdin> {
     Ok(io::stdin())
 }
 
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum InputError {
-    #[error("cannot read: {}", system_reason(.0))]
-    Read(#[from] io::Error),
-    #[error("{0}")]
-    Content(#[from] ReadError),
-    #[error("{error}; if this is {what}, use taxel {command}")]
-    Elsewhere {
-        error: Box<InputError>,
-        what: &'static str,
-        command: &'static str,
-    },
+/// An open file or standard input.
+pub(crate) struct Input {
+    pub(crate) name: String,
+    pub(crate) read: Box<dyn Read>,
 }
 
-pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
-    let bytes = bytes(source)?;
-    read_content(&bytes).map_err(|error| {
-        let error = error.into();
-        let other = may_be_recording(&bytes).then_some(("a recording", "frames"));
-        match other.or_else(|| lines_of(&bytes)) {
-            Some((what, command)) => InputError::Elsewhere {
-                error: Box::new(error),
-                what,
-                command,
-            },
-            None => error,
-        }
-    })
-}
+impl Input {
+    /// Opens a file; `-` is standard input.
+    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
+        let source = InputSource::of(path);
+        let name = source.name();
+        let read = source.open().map_err(ReadError::from).named(&name)?;
+        Ok(Self { name, read })
+    }
 
-/// Returns what JSON lines are if not imprints, a list of poses or a set of shapes, and the command that reads them.
-/// The first line decides.
-fn lines_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
-    let bytes = without_mark(bytes);
-    let mut lines = bytes.split(|&byte| byte == b'\n');
-    let first = lines.find(|line| !line.trim_ascii().is_empty())?;
-    line_of_sources(first)
+    /// Reads an imprint or a stored shape. If another command reads what is there, the error names it.
+    pub(crate) fn content(self) -> Result<Content, Failure> {
+        let mut bytes = Vec::new();
+        let mut limited = self.read.take(MAX_BYTES as u64 + 1);
+        let read = limited.read_to_end(&mut bytes).map_err(ReadError::from);
+        read.and_then(|_| read_content(&bytes))
+            .named(&self.name)
+            .map_err(|failure| {
+                let other = if may_be_recording(&bytes) {
+                    Some(("a recording", "frames"))
+                } else {
+                    let mut lines = without_mark(&bytes).split(|&byte| byte == b'\n');
+                    let first = lines.find(|line| !line.trim_ascii().is_empty());
+                    first.and_then(line_of_sources)
+                };
+                match other {
+                    Some((what, command)) => {
+                        failure.with_hint(format!("; if this is {what}, use taxel {command}"))
+                    }
+                    None => failure,
+                }
+            })
+    }
 }
 
 /// Returns what a JSON line is, a pose or a shape of a set, and the command that reads it; None if it is neither. A
@@ -109,11 +110,4 @@ pub(crate) fn line_of_sources(line: &[u8]) -> Option<(&'static str, &'static str
         Some(_) => ("a set of shapes", "model train"),
         None => ("a list of poses", "batch"),
     })
-}
-
-fn bytes(source: impl Read) -> Result<Vec<u8>, InputError> {
-    let mut bytes = Vec::new();
-    let limit = MAX_BYTES as u64;
-    source.take(limit + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
 }

@@ -23,7 +23,7 @@ use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::arguments::frames::ProcessingArguments;
 use crate::cli::error::{CliError, frame_advice};
-use crate::cli::input::content::{self, InputError, InputSource};
+use crate::cli::input::content::{self, Input, InputSource};
 use crate::cli::output::recording_list::ListedChannel;
 
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
@@ -90,7 +90,7 @@ impl RecordingFile {
             }),
             Err(error) => Err(CliError::Input {
                 name,
-                error: InputError::Read(error),
+                error: error.into(),
             }),
         }
     }
@@ -205,15 +205,9 @@ impl RecordingFile {
 }
 
 pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
-    let source = InputSource::of(path);
-    let opened = source.open().map_err(InputError::Read);
-    match opened.and_then(content::read_from) {
-        Ok(content) => Ok(*content.imprint()),
-        Err(error) => Err(CliError::Input {
-            name: format!("--mask {}", source.name()),
-            error,
-        }),
-    }
+    let mut input = Input::open(path).map_err(|failure| failure.of_flag("--mask"))?;
+    input.name.insert_str(0, "--mask ");
+    Ok(*input.content()?.imprint())
 }
 
 fn unended(path: &Path, metadata: &RecordingMetadata) -> Option<String> {

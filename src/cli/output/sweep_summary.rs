@@ -34,7 +34,15 @@ struct SummaryJson<'a> {
     descriptors: Object<'a, Object<'a, Option<f64>>>,
 }
 
-pub(crate) fn json(result: &SweepResult, took: Duration) -> String {
+/// Returns the summary: for people, or as a line of JSON.
+pub(crate) fn of(result: &SweepResult, took: Duration, as_json: bool, charset: Charset) -> String {
+    if as_json {
+        return json(result, took);
+    }
+    text(result, took, charset)
+}
+
+fn json(result: &SweepResult, took: Duration) -> String {
     let SweepResult { grid, atlas, .. } = result;
     let range = |axis: Axis| (axis.name(), grid.ranges()[axis].to_string());
     let classes = atlas.distinct_classes();
@@ -58,7 +66,7 @@ pub(crate) fn json(result: &SweepResult, took: Duration) -> String {
     json::text(&summary) + "\n"
 }
 
-pub(crate) fn text(result: &SweepResult, took: Duration, charset: Charset) -> String {
+fn text(result: &SweepResult, took: Duration, charset: Charset) -> String {
     let SweepResult { grid, atlas, .. } = result;
     let part = match result.shard.of() {
         1 => String::new(),
