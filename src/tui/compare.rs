@@ -19,14 +19,12 @@ use taxel_core::parameter::number::differing;
 use taxel_files::formats::value;
 
 use crate::tui::app::change::refuse;
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::{Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::grid::{CellSize, Grid, Look, RULER, Window};
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::theme::{Role, Theme, spelling};
 use crate::tui::widget::write;
 use crate::tui::widget::write::{around, narrow};
@@ -352,6 +350,28 @@ fn difference(descriptor: &Descriptor, first: Value, second: Value) -> Value {
 }
 
 impl Page for Comparison {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let by = match *message {
+            Message::Scroll(lines) => Some((0, lines)),
+            Message::ScrollTo(Endpoint::First) => Some((0, i16::MIN)),
+            Message::ScrollTo(Endpoint::Last) => Some((0, i16::MAX)),
+            Message::Choose(Arrow::Left) => Some((-1, 0)),
+            Message::Choose(Arrow::Right) => Some((1, 0)),
+            _ => None,
+        };
+        if let Some(panes) = app.panes() {
+            let area = panes.area(self.slot());
+            if let Message::Field(by) = *message {
+                self.next_view(by, area.width);
+            } else if let Some(by) = by
+                && !self.scroll(by, area)
+            {
+                refuse(app, "all of it is visible");
+            }
+        }
+        Flow::Stay
+    }
+
     fn context(&self) -> Context {
         Context::Compare
     }
@@ -421,30 +441,3 @@ pub fn heading(what: &str) -> String {
 }
 
 const LONGEST: usize = 24;
-
-pub(in crate::tui) fn in_comparison(
-    app: &mut App,
-    mut page: Comparison,
-    message: &Message,
-) -> Option<Effect> {
-    let by = match *message {
-        Message::Scroll(lines) => Some((0, lines)),
-        Message::ScrollTo(Endpoint::First) => Some((0, i16::MIN)),
-        Message::ScrollTo(Endpoint::Last) => Some((0, i16::MAX)),
-        Message::Choose(Arrow::Left) => Some((-1, 0)),
-        Message::Choose(Arrow::Right) => Some((1, 0)),
-        _ => None,
-    };
-    if let Some(panes) = app.panes() {
-        let area = panes.area(page.slot());
-        if let Message::Field(by) = *message {
-            page.next_view(by, area.width);
-        } else if let Some(by) = by
-            && !page.scroll(by, area)
-        {
-            refuse(app, "all of it is visible");
-        }
-    }
-    app.dialogs.push(Dialog::Compare(page));
-    None
-}

@@ -6,13 +6,11 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::description::{DESCRIPTORS, Descriptor};
 use taxel_files::formats::value;
 
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::{Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, around, broken, narrow};
 
@@ -91,6 +89,28 @@ impl Explain {
 }
 
 impl Page for Explain {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let count = DESCRIPTORS.len();
+        let now = self.descriptor;
+        match message {
+            Message::Choose(Arrow::Left) => self.descriptor = around(now, -1, count),
+            Message::Choose(_) => self.descriptor = around(now, 1, count),
+            Message::ScrollTo(Endpoint::First) => self.descriptor = 0,
+            Message::ScrollTo(Endpoint::Last) => self.descriptor = count - 1,
+            Message::Scroll(by) => {
+                let (columns, rows) = app.body_size();
+                let last = narrow(self.lines(columns).len()).saturating_sub(rows.saturating_sub(2));
+                let top = narrow(self.top).saturating_add_signed(*by);
+                self.top = top.min(last).into();
+            }
+            _ => {}
+        }
+        if self.descriptor != now {
+            self.top = 0;
+        }
+        Flow::Stay
+    }
+
     fn context(&self) -> Context {
         Context::Explain
     }
@@ -123,31 +143,4 @@ impl Page for Explain {
     fn wheel(&self) -> Wheel {
         Wheel::Rows
     }
-}
-
-pub(in crate::tui) fn update(
-    app: &mut App,
-    mut page: Explain,
-    message: &Message,
-) -> Option<Effect> {
-    let count = DESCRIPTORS.len();
-    let now = page.descriptor;
-    match message {
-        Message::Choose(Arrow::Left) => page.descriptor = around(now, -1, count),
-        Message::Choose(_) => page.descriptor = around(now, 1, count),
-        Message::ScrollTo(Endpoint::First) => page.descriptor = 0,
-        Message::ScrollTo(Endpoint::Last) => page.descriptor = count - 1,
-        Message::Scroll(by) => {
-            let (columns, rows) = app.body_size();
-            let last = narrow(page.lines(columns).len()).saturating_sub(rows.saturating_sub(2));
-            let top = narrow(page.top).saturating_add_signed(*by);
-            page.top = top.min(last).into();
-        }
-        _ => {}
-    }
-    if page.descriptor != now {
-        page.top = 0;
-    }
-    app.dialogs.push(Dialog::Explain(page));
-    None
 }

@@ -11,13 +11,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::refuse;
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{LinePrompt, Page, Slot, Wheel};
+use crate::tui::app::page::{Flow, LinePrompt, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, HelpLine, Keymap, help};
-use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::rows::{Search, contains, marked, number};
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
@@ -132,6 +130,34 @@ impl Help {
 }
 
 impl Page for Help {
+    /// Cancel leaves the search; without a search, help closes before Cancel and Quit come here.
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let (keymap, room) = (app.keymap(), app.body_size());
+        // One line of the screenful before stays visible, for the reader's orientation.
+        let page = room.1.saturating_sub(1).max(1).cast_signed();
+        match *message {
+            Message::Scroll(lines) => self.scroll(lines, keymap, room),
+            Message::ScrollScreen(by) => self.scroll(page.saturating_mul(by.into()), keymap, room),
+            Message::ScrollTo(Endpoint::First) => self.top = 0,
+            Message::ScrollTo(Endpoint::Last) => self.scroll(i16::MAX, keymap, room),
+            Message::Match(by) if self.go_to_match(by, keymap, room).is_none() => {
+                let search = keymap.label(Context::Help, &action::SEARCH);
+                refuse(app, format!("nothing to go to: {search} searches"));
+            }
+            Message::Search => {
+                return Flow::push(SearchDialog {
+                    field: TextField::new("", 60),
+                    before: self.clone(),
+                    found: None,
+                });
+            }
+            Message::Cancel => self.search.end(),
+            Message::Quit => return Flow::Close,
+            _ => {}
+        }
+        Flow::Stay
+    }
+
     fn context(&self) -> Context {
         Context::Help
     }
@@ -206,42 +232,6 @@ impl Page for Help {
     }
 }
 
-/// Cancel leaves the search; without a search, help closes before Cancel and Quit come here.
-pub(in crate::tui) fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
-    let (keymap, room) = (app.keymap(), app.body_size());
-    // One line of the screenful before stays visible, for the reader's orientation.
-    let page = room.1.saturating_sub(1).max(1).cast_signed();
-    let mut refused = None;
-    match *message {
-        Message::Scroll(lines) => help.scroll(lines, keymap, room),
-        Message::ScrollScreen(by) => help.scroll(page.saturating_mul(by.into()), keymap, room),
-        Message::ScrollTo(Endpoint::First) => help.top = 0,
-        Message::ScrollTo(Endpoint::Last) => help.scroll(i16::MAX, keymap, room),
-        Message::Match(by) if help.go_to_match(by, keymap, room).is_none() => {
-            let search = keymap.label(Context::Help, &action::SEARCH);
-            refused = Some(format!("nothing to go to: {search} searches"));
-        }
-        Message::Search => {
-            let dialog = SearchDialog {
-                field: TextField::new("", 60),
-                before: help.clone(),
-                found: None,
-            };
-            app.dialogs
-                .extend([Dialog::Help(help), Dialog::Search(dialog)]);
-            return None;
-        }
-        Message::Cancel => help.search.end(),
-        Message::Quit => return None,
-        _ => {}
-    }
-    app.dialogs.push(Dialog::Help(help));
-    if let Some(text) = refused {
-        refuse(app, text);
-    }
-    None
-}
-
 #[derive(Clone, Debug)]
 pub struct SearchDialog {
     field: TextField,
@@ -253,6 +243,28 @@ pub struct SearchDialog {
 impl LinePrompt for SearchDialog {
     const CONTEXT: Context = Context::Search;
     const RESTORES: bool = true;
+
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let mut help = self.before.clone();
+        let cancelled = matches!(message, Message::Cancel | Message::Quit);
+        if !cancelled {
+            self.field.take(message);
+            self.found = help.search(self.field.text(), app.keymap(), app.body_size());
+        }
+        if let Some(below) = app.top_mut::<Help>() {
+            *below = help;
+        }
+        let text = self.field.text();
+        match message {
+            Message::Accept if self.found.is_none() && !text.is_empty() => {
+                refuse(app, format!("no match for {text:?}"));
+            }
+            Message::Accept => {}
+            _ if cancelled => {}
+            _ => return Flow::Stay,
+        }
+        Flow::Close
+    }
 
     fn label(&self) -> &'static str {
         "Search: "
@@ -269,30 +281,4 @@ impl LinePrompt for SearchDialog {
             Some((number, all)) => format!("   {number} of {all}").into(),
         }
     }
-}
-
-pub(in crate::tui) fn in_search(
-    app: &mut App,
-    mut dialog: SearchDialog,
-    message: &Message,
-) -> Option<Effect> {
-    let mut help = dialog.before.clone();
-    let cancelled = matches!(message, Message::Cancel | Message::Quit);
-    if !cancelled {
-        dialog.field.take(message);
-        dialog.found = help.search(dialog.field.text(), app.keymap(), app.body_size());
-    }
-    if let Some(below) = app.dialogs.last_mut() {
-        *below = Dialog::Help(help);
-    }
-    let text = dialog.field.text();
-    match message {
-        Message::Accept if dialog.found.is_none() && !text.is_empty() => {
-            refuse(app, format!("no match for {text:?}"));
-        }
-        Message::Accept => {}
-        _ if cancelled => {}
-        _ => app.dialogs.push(Dialog::Search(dialog)),
-    }
-    None
 }

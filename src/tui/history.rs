@@ -14,13 +14,11 @@ use ratatui::layout::{Position, Rect};
 use taxel_files::formats::value::counted;
 
 use crate::tui::app::change::{compare_with, go_to};
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::{Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -62,6 +60,30 @@ impl HistoryDialog {
 }
 
 impl Page for HistoryDialog {
+    /// Comparing leaves the list open below.
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let step = self.selected;
+        match message {
+            Message::Compare => {
+                let state = app.history.after(step);
+                if let Some(imprint) = state.map(|state| Reading::of(state).imprint) {
+                    compare_with(app, &format!("the state after step {step}"), &imprint);
+                }
+            }
+            Message::Quit => return Flow::Close,
+            Message::Accept => {
+                go_to(app, step);
+                return Flow::Close;
+            }
+            _ => {
+                if let Some(row) = moved(step, message) {
+                    self.select(row);
+                }
+            }
+        }
+        Flow::Stay
+    }
+
     fn context(&self) -> Context {
         Context::History
     }
@@ -101,38 +123,4 @@ impl Page for HistoryDialog {
     fn wheel(&self) -> Wheel {
         Wheel::Rows
     }
-}
-
-/// Comparing leaves the list open below.
-pub(in crate::tui) fn in_history(
-    app: &mut App,
-    mut list: HistoryDialog,
-    message: &Message,
-) -> Option<Effect> {
-    match *message {
-        Message::Compare => {
-            let step = list.selected;
-            let state = app
-                .history
-                .after(step)
-                .map(|state| Reading::of(state).imprint);
-            app.dialogs.push(Dialog::History(list));
-            if let Some(imprint) = state {
-                compare_with(app, &format!("the state after step {step}"), &imprint);
-            }
-            return None;
-        }
-        Message::Quit => return None,
-        Message::Accept => {
-            go_to(app, list.selected);
-            return None;
-        }
-        _ => {
-            if let Some(row) = moved(list.selected, message) {
-                list.select(row);
-            }
-        }
-    }
-    app.dialogs.push(Dialog::History(list));
-    None
 }

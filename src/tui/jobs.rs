@@ -484,7 +484,7 @@ impl Jobs {
         let is_change = |request: &Pending| request.of == Asker::Program;
         let mut lines = Vec::new();
         loop {
-            while let Some(answer) = app.jobs.next_answer(app.dialogs.len()) {
+            while let Some(answer) = app.jobs.next_answer(app.pages.len()) {
                 app.notice = None;
                 answer(app);
                 app.read();

@@ -15,16 +15,16 @@ use taxel_core::source::Source;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::Existing;
 
-use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, History};
+use crate::tui::app::page::Page;
+use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, MoveKind, Notice};
 use crate::tui::compare::{Comparison, heading};
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::runtime::disk::files;
-use crate::tui::runtime::effect::Effect;
 
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Info(text.into()));
@@ -34,7 +34,7 @@ pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
 pub(in crate::tui) fn compare_with(app: &mut App, name: &str, other: &Imprint) {
     let own = ("the matrix".to_owned(), &app.reading().imprint);
     let comparison = Comparison::new((heading(name), other), own);
-    app.dialogs.push(Dialog::Compare(comparison));
+    app.open(comparison);
 }
 
 /// Shows a notice that says why something was not done, whatever the reason: an `!` stands before it.
@@ -320,7 +320,7 @@ pub(crate) fn write_file(
                     write_file(app, again, Ok(content), Existing::Replaced);
                 };
                 let question = Question::replaces(&name, yes);
-                app.dialogs.push(Dialog::Question(question));
+                app.open(question);
             }
             Err(reason) => refuse(app, reason),
         })
@@ -329,28 +329,23 @@ pub(crate) fn write_file(
 
 /// Carries out the request of a prompt. The prompt stays open if the request is refused and no other page opens. If
 /// the answer comes later, or if there is a question first, the prompt opens again if that is a refusal.
-pub(in crate::tui) fn from_prompt(
-    app: &mut App,
-    prompt: Dialog,
-    act: impl FnOnce(&mut App) -> Option<Effect>,
-) -> Option<Effect> {
-    let pages = app.dialogs.len();
-    let effect = act(app);
-    let refused = matches!(app.notice, Some(Notice::Refusal(_)));
-    if refused && effect.is_none() && app.dialogs.len() == pages {
-        app.dialogs.push(prompt);
+pub(crate) fn from_prompt(app: &mut App, prompt: Box<dyn Page>, act: impl FnOnce(&mut App)) {
+    let pages = app.pages.len();
+    act(app);
+    if matches!(app.notice, Some(Notice::Refusal(_))) && app.pages.len() == pages {
+        app.pages.push(prompt);
     } else {
         app.prompt = Some(prompt);
         give_prompt(app);
     }
-    effect
 }
 
-pub(in crate::tui) fn give_prompt(app: &mut App) {
-    if let Some(Dialog::Question(question)) = app.dialogs.last_mut()
-        && let Some(prompt) = app.prompt.take()
-    {
-        question.prompt = Some(Box::new(prompt));
+pub(crate) fn give_prompt(app: &mut App) {
+    if let Some(prompt) = app.prompt.take() {
+        match app.top_mut::<Question>() {
+            Some(question) => question.prompt = Some(prompt),
+            None => app.prompt = Some(prompt),
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 //! ```text
 //! document   the document on the matrix, and its reading   history: all its states
 //! message    what a key means                          worker_event: what workers report
-//! page       the trait of pages                        dialog: the table of pages
+//! page       the trait of pages                        question: the smallest of them
 //! state      App                                       update: all changes begin there
 //! change     changes of the document                   mouse: what clicks and drags do
 //! unsaved    what would be lost                        quit: the end, and the question before it
@@ -16,7 +16,7 @@ pub mod message;
 
 pub mod page;
 
-pub mod dialog;
+pub(crate) mod question;
 
 pub mod state;
 

@@ -1,8 +1,9 @@
 //! The trait of pages: all forms, lists, prompts, questions and results that lie over the matrix.
 //!
-//! [`crate::tui::app::dialog`] has the table of pages. Through this trait the screen draws them, shows their keys and
+//! They are a stack; the top one receives the keys. Through this trait the screen draws them, shows their keys and
 //! finds what the mouse points at, without naming any of them.
 
+use std::any::Any;
 use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
@@ -11,6 +12,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::recognition::PlacedSource;
 
 use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
@@ -52,8 +54,59 @@ pub struct PoseLayer<'a> {
     pub shown: Option<bool>,
 }
 
-/// The top one receives the keys.
-pub trait Page {
+pub type Act = Box<dyn FnOnce(&mut App)>;
+
+/// What a page wants after a message.
+#[expect(missing_debug_implementations, reason = "pages and acts have no text")]
+pub enum Flow {
+    Stay,
+    Close,
+    Push(Box<dyn Page>),
+    Replace(Box<dyn Page>),
+    /// Closes the page and does this. If that is refused, at once or by the answer of a job, the page opens again.
+    Ask(Act),
+}
+
+impl Flow {
+    pub(crate) fn push(page: impl Page) -> Self {
+        Self::Push(Box::new(page))
+    }
+
+    pub(crate) fn ask(act: impl FnOnce(&mut App) + 'static) -> Self {
+        Self::Ask(Box::new(act))
+    }
+}
+
+/// The topmost page of this kind.
+pub(crate) fn find<T: Page>(pages: &[Box<dyn Page>]) -> Option<&T> {
+    let mut pages = pages.iter().rev();
+    pages.find_map(|page| (&**page as &dyn Any).downcast_ref())
+}
+
+pub(crate) fn find_mut<T: Page>(pages: &mut [Box<dyn Page>]) -> Option<&mut T> {
+    let mut pages = pages.iter_mut().rev();
+    pages.find_map(|page| (&mut **page as &mut dyn Any).downcast_mut())
+}
+
+impl dyn Page {
+    pub(crate) fn is<T: Page>(&self) -> bool {
+        (self as &dyn Any).is::<T>()
+    }
+}
+
+/// One place of the screen: what its keys do and what it shows.
+pub trait Page: Any {
+    /// Handles a message. The page is not on the stack meanwhile; pages that are opened lie above it.
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow;
+
+    /// Called when it was closed.
+    fn closed(self: Box<Self>, _app: &mut App) {}
+
+    /// What is drawn in its place, if its state outlasts it.
+    fn of_app<'a>(&self, _app: &'a App) -> Option<&'a dyn Page> {
+        None
+    }
+
     fn context(&self) -> Context;
 
     fn slot(&self) -> Slot;
@@ -125,8 +178,10 @@ pub trait Page {
 }
 
 /// Every type with this trait is a [`Page`].
-pub trait LinePrompt {
+pub trait LinePrompt: Any {
     const CONTEXT: Context;
+
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow;
 
     /// Whether Cancel and Quit go to its own update, because the page below has to be restored.
     const RESTORES: bool = false;
@@ -146,6 +201,10 @@ pub trait LinePrompt {
 }
 
 impl<Prompt: LinePrompt> Page for Prompt {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        LinePrompt::on(self, app, message)
+    }
+
     fn context(&self) -> Context {
         Prompt::CONTEXT
     }

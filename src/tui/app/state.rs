@@ -11,14 +11,13 @@ use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_files::formats::StoredShape;
 
-use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, find, find_mut};
 use crate::tui::app::view::Panes;
 use crate::tui::explore::results::Results;
-use crate::tui::form::state::FormMemory;
+use crate::tui::form::state::{FormDialog, FormMemory};
 use crate::tui::grid::Grid;
 use crate::tui::jobs::Jobs;
 use crate::tui::keys::action::{self, Action};
@@ -152,9 +151,9 @@ pub struct App {
     pub(in crate::tui) layers: Layers,
     pub(in crate::tui) narrow_pane: NarrowPane,
     pub(in crate::tui) step: NudgeStep,
-    pub(in crate::tui) dialogs: Vec<Dialog>,
+    pub(crate) pages: Vec<Box<dyn Page>>,
     /// The prompt that the last message came from, until the next action: it opens again if its request is refused.
-    pub(in crate::tui) prompt: Option<Dialog>,
+    pub(crate) prompt: Option<Box<dyn Page>>,
     pub(in crate::tui) notice: Option<Notice>,
     pub(crate) saving: Option<Saving>,
     pub(in crate::tui) results: Option<Box<Results>>,
@@ -197,7 +196,7 @@ impl App {
             layers: Layers::default(),
             narrow_pane: NarrowPane::Matrix,
             step: NudgeStep::Hundredth,
-            dialogs: Vec::new(),
+            pages: Vec::new(),
             prompt: None,
             notice: None,
             saving: None,
@@ -272,8 +271,27 @@ impl App {
     }
 
     pub(in crate::tui) fn pages(&self) -> impl DoubleEndedIterator<Item = &dyn Page> {
-        let page = |dialog| Dialog::page(dialog, &self.recognition);
-        self.dialogs.iter().map(page)
+        let pages = self.pages.iter();
+        pages.map(|page| page.of_app(self).unwrap_or(&**page))
+    }
+
+    pub(crate) fn open(&mut self, page: impl Page) {
+        self.pages.push(Box::new(page));
+    }
+
+    pub(crate) fn page<T: Page>(&self) -> Option<&T> {
+        find(&self.pages)
+    }
+
+    /// The topmost page of this kind, for the answer of a job.
+    pub(crate) fn page_mut<T: Page>(&mut self) -> Option<&mut T> {
+        find_mut(&mut self.pages)
+    }
+
+    /// The page on top, if it is of this kind.
+    pub(crate) fn top_mut<T: Page>(&mut self) -> Option<&mut T> {
+        let top = self.pages.len().saturating_sub(1);
+        find_mut(&mut self.pages[top..])
     }
 
     pub(in crate::tui) fn top_page(&self) -> Option<&dyn Page> {
@@ -344,7 +362,7 @@ impl App {
     }
 
     pub(in crate::tui) fn results_below(&self) -> Option<&Results> {
-        topmost!(&self.dialogs, Results).map(|results| &**results)
+        self.page()
     }
 
     /// Returns the document that the matrix shows: the one that an open form would make, or the present one.
@@ -366,7 +384,7 @@ impl App {
     }
 
     fn on_matrix(&self) -> &Document {
-        match topmost!(&self.dialogs, Form) {
+        match find::<FormDialog>(&self.pages) {
             Some(form) => form.shown(),
             None => self.history.present(),
         }
@@ -376,7 +394,7 @@ impl App {
     pub(in crate::tui) fn begin_action(&mut self) {
         self.notice = None;
         self.prompt = None;
-        if self.dialogs.is_empty() {
+        if self.pages.is_empty() {
             self.quits_when_saved = false;
         }
         // A key came between press and release: the rest of the drag would change another document than the press

@@ -17,10 +17,10 @@ use taxel_core::sensor::Sensor;
 use taxel_files::formats::value;
 
 use crate::tui::app::change::is_other;
-use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
 use crate::tui::app::menu;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, find};
+use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, Notice};
 use crate::tui::app::view::Panes;
 use crate::tui::keys::action;
@@ -159,7 +159,8 @@ fn taxel(app: &App, seen: &Reading) -> String {
 
 /// A question stands after the notice.
 pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
-    if let Some(Dialog::Question(question)) = app.dialogs.last() {
+    let last = app.pages.len().saturating_sub(1);
+    if let Some(question) = find::<Question>(&app.pages[last..]) {
         return Some((asked(app, panes, question), Role::Error));
     }
     let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
@@ -261,7 +262,7 @@ pub fn title(app: &App) -> String {
 /// name, and if a form shows something else in place of it.
 pub(in crate::tui) fn name(app: &App) -> Option<String> {
     let stored = app.stored_name()?;
-    if !app.dialogs.is_empty() && is_other(app, app.shown()) {
+    if !app.pages.is_empty() && is_other(app, app.shown()) {
         return None;
     }
     let changed = if app.is_changed() { "*" } else { "" };

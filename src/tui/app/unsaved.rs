@@ -9,13 +9,15 @@ use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Library, LibraryError, Orphan, UNNAMED, shipped};
 
 use crate::tui::app::change::{inform, refuse, resume};
-use crate::tui::app::dialog::{Dialog, Question};
+
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, StatePlace, UnsavedState};
+use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::ranges::about;
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
+use crate::tui::live::state::Live;
 use crate::tui::live::update::recording;
 use crate::tui::matrix::update::name_of_copy;
 
@@ -112,7 +114,7 @@ pub(in crate::tui) fn quit(app: &mut App) {
         meanings: Some([lost, "stay"]),
         ..Question::new(about, "Quit anyway?", |app| app.run_state = RunState::Quit)
     };
-    app.dialogs.push(Dialog::Question(question));
+    app.open(question);
 }
 
 /// Returns what would be lost, in words, and the word for losing it; None if nothing would be.
@@ -179,17 +181,16 @@ pub fn offer(app: &mut App) {
         left: Some("ask next time"),
         ..Question::new(text.clone(), "Restore it?", recover)
     };
-    let live = |dialog: &Dialog| matches!(dialog, Dialog::Live(_));
-    match app.dialogs.iter().position(live) {
+    match app.pages.iter().position(|page| page.is::<Live>()) {
         // A user who watches a sensor wants the keys of that page now, not those of a question.
         Some(below) => {
-            app.dialogs.insert(below, Dialog::Question(question));
+            app.pages.insert(below, Box::new(question));
             inform(
                 app,
                 format!("{text} It is offered when this page is closed."),
             );
         }
-        None => app.dialogs.push(Dialog::Question(question)),
+        None => app.open(question),
     }
 }
 

@@ -4,9 +4,9 @@
 //! user.
 
 use crate::tui::app::change::{from_prompt, give_prompt, inform, refuse};
-use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::{Message, WorkerEvent};
 use crate::tui::app::mouse;
+use crate::tui::app::page::{Flow, Page};
 use crate::tui::app::state::{App, Notice, RunState};
 use crate::tui::explain::Explain;
 use crate::tui::help::Help;
@@ -16,22 +16,17 @@ use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Context;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::runtime::{self, reminders};
-use crate::tui::{
-    compare, explain, explore, form, help, history, live, matrix, prompt, recognise, shapes,
-};
+use crate::tui::{explore, live, matrix, recognise};
 
 /// The length, in bytes, from which nothing is added to a failure that nobody has read.
 const MOST_SAID: usize = 300;
 
 /// Handles a message, and applies the answers of jobs that have come. Returns what the terminal is to do.
 pub fn update(app: &mut App, message: Message) -> Option<TerminalEffect> {
-    changing(app, |app| {
-        let effect = handle(app, message);
-        runtime::perform(app, effect);
-    });
+    changing(app, |app| handle(app, message));
     loop {
-        app.jobs.settle(app.dialogs.len());
-        if let Some(answer) = app.jobs.next_answer(app.dialogs.len()) {
+        app.jobs.settle(app.pages.len());
+        if let Some(answer) = app.jobs.next_answer(app.pages.len()) {
             changing(app, |app| on_answer(app, answer));
         } else if let Some(effect) = next_work(app) {
             changing(app, |app| runtime::perform(app, Some(effect)));
@@ -60,35 +55,28 @@ fn next_work(app: &mut App) -> Option<Effect> {
     work.or_else(|| live::update::next_work(app))
 }
 
-fn handle(app: &mut App, message: Message) -> Option<Effect> {
+fn handle(app: &mut App, message: Message) {
     match message {
-        Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),
-        Message::Suspend => return Some(Effect::Terminal(TerminalEffect::Suspend)),
+        Message::Redraw => app.terminal = Some(TerminalEffect::Redraw),
+        Message::Suspend => app.terminal = Some(TerminalEffect::Suspend),
         Message::Resized(columns, rows) => {
             app.screen = (columns, rows);
-            return Some(Effect::Terminal(TerminalEffect::Redraw));
+            app.terminal = Some(TerminalEffect::Redraw);
         }
-        Message::Terminate => {
-            app.run_state = RunState::Terminated;
-            return None;
-        }
-        Message::Unknown(key) => {
-            unknown(app, key);
-            return None;
-        }
-        Message::Answered => return None,
-        Message::Refused(reason) => {
-            refuse(app, reason);
-            return None;
-        }
+        Message::Terminate => app.run_state = RunState::Terminated,
+        Message::Unknown(key) => unknown(app, key),
+        Message::Answered => {}
+        Message::Refused(reason) => refuse(app, reason),
         Message::Mouse(mouse) => {
-            let meant = mouse::act(app, mouse)?;
-            return handle(app, meant);
+            if let Some(meant) = mouse::act(app, mouse) {
+                handle(app, meant);
+            }
         }
-        _ => {}
+        message => {
+            app.notice = None;
+            perform(app, message);
+        }
     }
-    app.notice = None;
-    perform(app, message)
 }
 
 /// Applies the answer of a job. A failure stays until the next key: what is said after it stands beside it, so that it
@@ -114,19 +102,17 @@ fn on_answer(app: &mut App, answer: Answer) {
 /// can correct it, and the next keys do not reach the matrix. An answer without a notice leaves the old notice as it
 /// is.
 fn answered(app: &mut App, answer: Answer) {
-    let before = app.notice.take();
+    let before = app.notice.clone();
     answer(app);
     match app.notice {
-        None => {
-            app.notice = before;
-            give_prompt(app);
-        }
+        _ if app.notice == before => give_prompt(app),
+        None => give_prompt(app),
         Some(Notice::Info(_)) => app.prompt = None,
-        Some(Notice::Refusal(_) | Notice::Failure(_)) => app.dialogs.extend(app.prompt.take()),
+        Some(Notice::Refusal(_) | Notice::Failure(_)) => app.pages.extend(app.prompt.take()),
     }
 }
 
-fn perform(app: &mut App, message: Message) -> Option<Effect> {
+fn perform(app: &mut App, message: Message) {
     app.begin_action();
     if matches!(message, Message::Cancel | Message::Quit) {
         app.quits_when_saved = false;
@@ -136,19 +122,45 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
         app.moves = None;
     }
     if matches!(message, Message::Paste(_)) && !app.context().takes_text() {
-        refuse(app, "pasted text goes into fields only");
-        return None;
+        return refuse(app, "pasted text goes into fields only");
     }
-    match app.dialogs.pop() {
-        Some(dialog) => in_dialog(app, dialog, message),
+    match app.pages.pop() {
+        Some(page) => on_page(app, page, &message),
         None => matrix::update::act(app, message),
+    }
+}
+
+/// Handles a message on a page. Help opens over any page, with the keys of that page.
+fn on_page(app: &mut App, mut page: Box<dyn Page>, message: &Message) {
+    let place = app.pages.len();
+    let shown = page.of_app(app).unwrap_or(&*page);
+    let (context, cancels_itself) = (app.context_on(Some(shown)), shown.cancels_itself());
+    let flow = match message {
+        Message::Cancel | Message::Quit if !cancels_itself => Flow::Close,
+        Message::Help => Flow::push(Help::new(context)),
+        Message::Explain => Flow::push(Explain::new(app)),
+        message => page.on(app, message),
+    };
+    let back = |app: &mut App, page| app.pages.insert(place.min(app.pages.len()), page);
+    match flow {
+        Flow::Stay => back(app, page),
+        Flow::Close => page.closed(app),
+        Flow::Push(next) => {
+            back(app, page);
+            app.pages.push(next);
+        }
+        Flow::Replace(next) => {
+            page.closed(app);
+            app.pages.push(next);
+        }
+        Flow::Ask(act) => from_prompt(app, page, act),
     }
 }
 
 /// Names the key that lists all keys or, in that list, the keys that scroll and search.
 fn unknown(app: &mut App, key: Key) {
     if key == Key::Esc
-        && let Some(what) = app.jobs.give_up_reading(app.dialogs.len())
+        && let Some(what) = app.jobs.give_up_reading(app.pages.len())
     {
         return inform(app, format!("{what}: stopped waiting"));
     }
@@ -171,94 +183,6 @@ fn unknown(app: &mut App, key: Key) {
         format!("{} lists the keys", label(&action::HELP))
     };
     refuse(app, format!("{} does nothing here; {instead}", key.label()));
-}
-
-/// Handles a message on a page, which was taken off the stack and is put back unless it closes. Help opens over any
-/// page, with the keys of that page.
-fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
-    let page = dialog.page(&app.recognition);
-    match message {
-        Message::Cancel | Message::Quit if !page.cancels_itself() => {
-            if let Dialog::Question(question) = dialog {
-                app.dialogs.extend(question.prompt.map(|prompt| *prompt));
-            }
-            return None;
-        }
-        Message::Help => {
-            let help = Help::new(app.context_on(Some(page)));
-            app.dialogs.extend([dialog, Dialog::Help(help)]);
-            return None;
-        }
-        Message::Explain => {
-            app.dialogs.push(dialog);
-            let page = Explain::new(app);
-            app.dialogs.push(Dialog::Explain(page));
-            return None;
-        }
-        _ => {}
-    }
-    match dialog {
-        Dialog::Form(form) => form::view::update(app, form, message),
-        Dialog::List(list) => shapes::update::update(app, list, message),
-        Dialog::Name(name) => prompt::update::in_name(app, name, message),
-        Dialog::Command(command) => prompt::update::in_command(app, command, message),
-        Dialog::Question(question) => at_question(app, question, &message),
-        Dialog::Explain(page) => explain::update(app, page, &message),
-        Dialog::Help(help) => help::in_help(app, help, &message),
-        Dialog::Search(dialog) => help::in_search(app, dialog, &message),
-        Dialog::Compare(page) => compare::in_comparison(app, page, &message),
-        Dialog::History(list) => history::in_history(app, list, &message),
-        Dialog::Ranges(form) => explore::work::in_ranges(app, form, message),
-        Dialog::Running(running) => explore::work::in_running(app, running, &message),
-        Dialog::Results(results) => explore::update::in_results(app, results, message),
-        Dialog::Export(dialog) => explore::update::in_export(app, dialog, &message),
-        Dialog::Filter(dialog) => explore::prompts::in_filter(app, dialog, &message),
-        Dialog::Recognition => recognise::update::in_recognition(app, message),
-        Dialog::Confusion(page) => recognise::update::in_confusion(app, page, &message),
-        Dialog::Live(page) => live::update::in_live(app, page, message),
-    }
-}
-
-/// Handles the answer to a question. Without a yes, the prompt that led to it opens again. Any other message leaves the
-/// question open.
-fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
-    if *message == Message::Save && question.saves_first {
-        let effect = matrix::update::act(app, Message::Save);
-        app.quits_when_saved = true;
-        return effect;
-    }
-    if *message == Message::Save {
-        let text = match question.prompt {
-            Some(_) => "this question has to be answered first",
-            None => "there is nothing to save first",
-        };
-        refuse(app, text);
-    }
-    let Question {
-        yes, no, prompt, ..
-    } = match message {
-        Message::Accept | Message::Decline => question,
-        _ => {
-            app.dialogs.push(Dialog::Question(question));
-            return None;
-        }
-    };
-    match (message, prompt) {
-        (Message::Accept, Some(prompt)) => {
-            return from_prompt(app, *prompt, |app| {
-                yes(app);
-                None
-            });
-        }
-        (Message::Accept, None) => yes(app),
-        (_, prompt) => {
-            app.dialogs.extend(prompt.map(|prompt| *prompt));
-            if let Some(no) = no {
-                no(app);
-            }
-        }
-    }
-    None
 }
 
 /// Handles an event of work that is no closure yet.

@@ -9,54 +9,14 @@ use taxel_files::formats::value::grouped;
 use taxel_files::storage::{atlas_path, is_poses};
 
 use crate::tui::app::change::{inform, refuse};
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::LinePrompt;
+use crate::tui::app::page::{Flow, LinePrompt};
 use crate::tui::app::state::App;
 use crate::tui::explore::results::Results;
+use crate::tui::explore::update::in_export;
 use crate::tui::explore::view;
 use crate::tui::keys::keymap::Context;
-use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::text_field::TextField;
-
-fn results(app: &mut App) -> Option<&mut Results> {
-    match app.dialogs.last_mut() {
-        Some(Dialog::Results(results)) => Some(results),
-        _ => None,
-    }
-}
-
-/// Handles a message in the prompt for a filter, which stays open until the filter can be read.
-pub(in crate::tui) fn in_filter(
-    app: &mut App,
-    mut dialog: FilterDialog,
-    message: &Message,
-) -> Option<Effect> {
-    let results = results(app)?;
-    match message {
-        Message::Cancel | Message::Quit => {
-            dialog.restore(results);
-            return None;
-        }
-        Message::Accept => {
-            dialog.apply(results);
-            let Some(error) = dialog.error() else {
-                let kept = results.kept_of_all();
-                inform(app, format!("{kept} imprints"));
-                return None;
-            };
-            let error = error.to_string();
-            refuse(app, error);
-        }
-        message => {
-            if dialog.field.take(message) {
-                dialog.apply(results);
-            }
-        }
-    }
-    app.dialogs.push(Dialog::Filter(dialog));
-    None
-}
 
 const LONGEST_FILTER: usize = 200;
 
@@ -112,6 +72,35 @@ impl FilterDialog {
 
 impl LinePrompt for FilterDialog {
     const CONTEXT: Context = Context::Filter;
+
+    /// The prompt stays open until the filter can be read.
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let Some(results) = app.top_mut::<Results>() else {
+            return Flow::Close;
+        };
+        match message {
+            Message::Cancel | Message::Quit => {
+                self.restore(results);
+                return Flow::Close;
+            }
+            Message::Accept => {
+                self.apply(results);
+                let Some(error) = self.error() else {
+                    let kept = results.kept_of_all();
+                    inform(app, format!("{kept} imprints"));
+                    return Flow::Close;
+                };
+                let error = error.to_string();
+                refuse(app, error);
+            }
+            message => {
+                if self.field.take(message) {
+                    self.apply(results);
+                }
+            }
+        }
+        Flow::Stay
+    }
     const RESTORES: bool = true;
 
     fn label(&self) -> &'static str {
@@ -204,6 +193,10 @@ impl ExportDialog {
 
 impl LinePrompt for ExportDialog {
     const CONTEXT: Context = Context::Export;
+
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_export(self, app, message)
+    }
 
     /// Says "all", because all imprints are written even if their list is filtered.
     fn label(&self) -> &'static str {

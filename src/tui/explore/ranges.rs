@@ -17,8 +17,10 @@ use taxel_files::formats::value::{counted, grouped, time_in_words};
 
 use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Flow, Page, Slot};
+use crate::tui::app::state::App;
 use crate::tui::explore::message::name_of;
+use crate::tui::explore::work::in_ranges;
 use crate::tui::form::state::RememberedRanges;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
@@ -305,6 +307,10 @@ const LABEL: usize = 8;
 const INPUT: usize = 16;
 
 impl Page for RangesForm {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_ranges(self, app, message)
+    }
+
     fn context(&self) -> Context {
         Context::Ranges
     }

@@ -9,62 +9,38 @@ use taxel_core::touch::Plane;
 use taxel_files::formats::value::{counted, grouped};
 use taxel_files::storage::{Existing, is_poses};
 
-use crate::tui::app::change::{
-    change, compare_with, from_prompt, inform, let_go, refuse, write_file,
-};
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::change::{change, compare_with, inform, let_go, refuse, write_file};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
+use crate::tui::app::page::Flow;
 use crate::tui::app::state::App;
 use crate::tui::explore::message::{ExploreMessage, ExploreTab, name_of};
 use crate::tui::explore::prompts::{ExportDialog, ExportKind, FilterDialog};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::view;
-use crate::tui::explore::work::{act, tab_area};
+use crate::tui::explore::work::{act, open_ranges, tab_area};
 use crate::tui::keys::action;
-use crate::tui::runtime::effect::Effect;
+use crate::tui::runtime::perform;
 
-/// Handles a message over the results. The page was taken off the stack: an arm that opens another page puts it back
-/// first, below that one. Closed results are kept, and Explore opens them again for the same shape.
-pub(in crate::tui) fn in_results(
-    app: &mut App,
-    mut results: Box<Results>,
-    message: Message,
-) -> Option<Effect> {
+/// Closed results are kept, and Explore opens them again for the same shape.
+pub(crate) fn in_results(results: &mut Results, app: &mut App, message: &Message) -> Flow {
     match message {
-        Message::Accept => return put_onto_matrix(app, results),
-        Message::Cancel | Message::Quit => {
-            app.results = Some(results);
-            return None;
-        }
-        Message::Compare => {
-            compare(app, results);
-            return None;
-        }
-        Message::Explore(ExploreMessage::Export) => {
-            let dialog = export_of(&results);
-            app.dialogs.push(Dialog::Results(results));
-            app.dialogs.push(Dialog::Export(dialog));
-            return None;
-        }
-        Message::Explore(ExploreMessage::Filter) => {
-            let dialog = FilterDialog::new(&results);
-            app.dialogs.push(Dialog::Results(results));
-            app.dialogs.push(Dialog::Filter(dialog));
-            return None;
-        }
+        Message::Accept => return put_onto_matrix(results, app),
+        Message::Cancel | Message::Quit => return Flow::Close,
+        Message::Compare => compare(app, results),
+        Message::Explore(ExploreMessage::Export) => return Flow::push(export_of(results)),
+        Message::Explore(ExploreMessage::Filter) => return Flow::push(FilterDialog::new(results)),
         Message::Explore(ExploreMessage::Ranges) => {
-            app.dialogs.push(Dialog::Results(results));
-            return act(app, ExploreMessage::Ranges);
+            open_ranges(app, Some(&results.sweep().grid));
         }
         message => {
-            if let Message::Explore(asked) = &message {
-                change_view(app, &mut results, asked);
+            if let Message::Explore(asked) = message {
+                change_view(app, results, asked);
             }
-            let area = tab_area(app, &results);
+            let area = tab_area(app, results);
             let before = results.map_zoom;
-            (view::row(results.tab).update)(&mut results, &message, area);
-            if let (Message::Zoom(by), ExploreTab::Map) = (&message, results.tab)
+            (view::row(results.tab).update)(results, message, area);
+            if let (Message::Zoom(by), ExploreTab::Map) = (message, results.tab)
                 && results.map_zoom == before
             {
                 let end = ["this is the whole range", "every pose has its letter"];
@@ -72,14 +48,12 @@ pub(in crate::tui) fn in_results(
             }
         }
     }
-    app.dialogs.push(Dialog::Results(results));
-    None
+    Flow::Stay
 }
 
 /// Refused if nothing is selected.
-fn compare(app: &mut App, results: Box<Results>) {
+fn compare(app: &mut App, results: &Results) {
     let entry = results.rows_from(results.list.selected()).next();
-    app.dialogs.push(Dialog::Results(results));
     match entry {
         Some((_, entry)) => compare_with(app, &format!("imprint {}", entry.id), &entry.imprint),
         None => refuse(app, "nothing is selected here"),
@@ -191,19 +165,17 @@ fn follow(app: &mut App, results: &mut Results) {
 
 /// Puts the shape onto the matrix in the present pose, with just the imprint that the sweep found. The user may have
 /// another sensor by now. Taxels that it reads differently are set by hand, so that the imprint is the selected one.
-fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
+fn put_onto_matrix(results: &Results, app: &mut App) -> Flow {
     let grid = &results.sweep().grid;
     let Some(pose) = results.pose() else {
         refuse(app, "nothing is selected here");
-        app.dialogs.push(Dialog::Results(results));
-        return None;
+        return Flow::Stay;
     };
     let source = match grid.source_at(grid.pose(pose)) {
         Ok(source) => source,
         Err(error) => {
             refuse(app, error.to_string());
-            app.dialogs.push(Dialog::Results(results));
-            return None;
+            return Flow::Stay;
         }
     };
     let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
@@ -221,42 +193,36 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
         app,
         format!("{number}on the matrix; {undo} takes it back, {explore} returns to Explore"),
     );
-    app.results = Some(results);
-    None
+    Flow::Close
 }
 
-pub(in crate::tui) fn in_export(
-    app: &mut App,
-    mut dialog: ExportDialog,
-    message: &Message,
-) -> Option<Effect> {
+pub(crate) fn in_export(dialog: &mut ExportDialog, app: &mut App, message: &Message) -> Flow {
     if *message == Message::Accept {
         match dialog.name() {
-            Ok(name) => return export(app, dialog, name),
+            Ok(name) => return export(app, name),
             Err(error) => refuse(app, error),
         }
     } else {
         dialog.field.take(message);
     }
-    app.dialogs.push(Dialog::Export(dialog));
-    None
+    Flow::Stay
 }
 
 /// The export of a sweep shows its progress, and opens the prompt again itself.
-fn export(app: &mut App, dialog: ExportDialog, name: String) -> Option<Effect> {
-    let results = app.results_below()?;
+fn export(app: &mut App, name: String) -> Flow {
+    let Some(results) = app.results_below() else {
+        return Flow::Close;
+    };
     if let Some(file) = view::file(results, &name, tab_area(app, results)) {
-        return from_prompt(app, Dialog::Export(dialog), |app| {
-            write_file(app, name, file, Existing::Kept);
-            None
-        });
+        return Flow::ask(|app| write_file(app, name, file, Existing::Kept));
     }
     if let Some(missing) = missing_poses(results, &name) {
         refuse(app, missing);
-        app.dialogs.push(Dialog::Export(dialog));
-        return None;
+        return Flow::Stay;
     }
-    act(app, ExploreMessage::Write(name, Existing::Kept))
+    let effect = act(app, ExploreMessage::Write(name, Existing::Kept));
+    perform(app, effect);
+    Flow::Close
 }
 
 /// Returns why a file of poses cannot be written; None if all poses were swept, or if the file holds something else.

@@ -13,10 +13,12 @@ use taxel_core::pose::Axis;
 use taxel_files::formats::file::has_ending;
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::state::App;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::message::{ExploreMessage, ExploreTab};
 use crate::tui::explore::results::Results;
+use crate::tui::explore::update::in_results;
 use crate::tui::explore::{angles, histogram, imprints, map, scatter, statistics};
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::rows::moved;
@@ -24,6 +26,14 @@ use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
 
 impl Page for Results {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_results(self, app, message)
+    }
+
+    fn closed(self: Box<Self>, app: &mut App) {
+        app.results = Some(self);
+    }
+
     fn context(&self) -> Context {
         row(self.tab).context
     }

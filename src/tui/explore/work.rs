@@ -20,9 +20,9 @@ use taxel_files::formats::value::{counted, grouped};
 use taxel_files::storage::{Existing, is_poses};
 
 use crate::tui::app::change::{inform, refuse};
-use crate::tui::app::dialog::{Dialog, Question, topmost};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Flow, Page, Slot, find_mut};
+use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress, name_of};
@@ -39,16 +39,17 @@ use crate::tui::widget::write;
 pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
     match asked {
         ExploreMessage::Open => open(app),
-        ExploreMessage::Ranges => open_ranges(app),
-        ExploreMessage::Start(grid) => Some(start(app, *grid)),
+        ExploreMessage::Ranges => open_ranges(app, None),
+        ExploreMessage::Start(grid) => start(app, *grid),
         ExploreMessage::Write(name, existing) => {
             let found = Arc::clone(&app.results_below()?.findings);
             let poses = is_poses(&name).then(|| found.sweep.grid.poses());
             let number = begin(app, WorkKind::Write(name.clone(), poses));
-            Some(Effect::Work(Work::Write(number, found, name, existing)))
+            return Some(Effect::Work(Work::Write(number, found, name, existing)));
         }
-        _ => None,
+        _ => {}
     }
+    None
 }
 
 pub(super) fn tab_area(app: &App, results: &Results) -> Rect {
@@ -58,15 +59,12 @@ pub(super) fn tab_area(app: &App, results: &Results) -> Rect {
 
 /// Opens the last results if they belong to the shape on the matrix, otherwise the form. Results of another shape are
 /// kept: the form opens, and they are there again with their shape.
-fn open(app: &mut App) -> Option<Effect> {
+fn open(app: &mut App) {
     match app.results.take() {
-        Some(results) if is_of(app, &results) => {
-            app.dialogs.push(Dialog::Results(results));
-            None
-        }
+        Some(results) if is_of(app, &results) => app.pages.push(results),
         others => {
             app.results = others;
-            open_ranges(app)
+            open_ranges(app, None);
         }
     }
 }
@@ -92,21 +90,18 @@ fn is_of(app: &App, results: &Results) -> bool {
     explored(app).is_some_and(|source| grid.is_of(&source, &present.sensor))
 }
 
-fn open_ranges(app: &mut App) -> Option<Effect> {
-    let below = app.dialogs.last().and_then(|dialog| match dialog {
-        Dialog::Results(results) => Some(results.sweep().grid.clone()),
-        _ => None,
-    });
+/// Opens the form, above the results of this grid.
+pub(super) fn open_ranges(app: &mut App, below: Option<&PoseGrid>) {
     let present = app.history.present();
     let Some(source) = explored(app) else {
-        refuse(app, app.nothing_to_explore());
-        return None;
+        let text = app.nothing_to_explore();
+        return refuse(app, text);
     };
     let last = app.forms.ranges.as_ref();
-    let mut form = RangesForm::new(present, source, below.as_ref(), last);
+    let mut form = RangesForm::new(present, source, below, last);
     let effect = measure(&mut form);
-    app.dialogs.push(Dialog::Ranges(Box::new(form)));
-    effect
+    app.open(form);
+    perform(app, effect);
 }
 
 fn measure(form: &mut RangesForm) -> Option<Effect> {
@@ -114,49 +109,41 @@ fn measure(form: &mut RangesForm) -> Option<Effect> {
     Some(Effect::Work(Work::Measure(Box::new(grid))))
 }
 
-fn start(app: &mut App, grid: PoseGrid) -> Effect {
+fn start(app: &mut App, grid: PoseGrid) {
     let number = begin(app, WorkKind::Sweep(Box::new(grid.clone())));
-    Effect::Work(Work::Sweep(number, Box::new(grid)))
+    perform(app, Some(Effect::Work(Work::Sweep(number, Box::new(grid)))));
 }
 
 fn begin(app: &mut App, job: WorkKind) -> u64 {
     app.works += 1;
-    app.dialogs
-        .push(Dialog::Running(Running::new(app.works, job)));
+    app.open(Running::new(app.works, job));
     app.works
 }
 
-pub(in crate::tui) fn in_ranges(
-    app: &mut App,
-    mut form: Box<RangesForm>,
-    message: Message,
-) -> Option<Effect> {
+pub(super) fn in_ranges(form: &mut RangesForm, app: &mut App, message: &Message) -> Flow {
     match message {
         Message::Accept => match form.accepted() {
             Ok(grid) => {
                 app.forms.ranges = Some(form.remembered());
-                return Some(start(app, grid));
+                start(app, grid);
+                return Flow::Close;
             }
             Err(error) => refuse(app, error.full),
         },
-        Message::Type(character) if form.form.focus().is_none() && character != ' ' => {
+        Message::Type(character) if form.form.focus().is_none() && *character != ' ' => {
             refuse(app, "an arrow or Space chooses the other anchor");
         }
-        message => form.take(&message),
+        message => form.take(message),
     }
-    let effect = measure(&mut form);
-    app.dialogs.push(Dialog::Ranges(form));
-    effect
+    let effect = measure(form);
+    perform(app, effect);
+    Flow::Stay
 }
 
 /// Handles a message over work in progress. Closing the page stops the work; the page stays until the worker has
 /// answered, because only then is it known what is complete. Quitting meanwhile ends the program at once: nothing
 /// else would while a worker hangs, and unsaved work is offered at the next start.
-pub(in crate::tui) fn in_running(
-    app: &mut App,
-    mut running: Running,
-    message: &Message,
-) -> Option<Effect> {
+fn in_running(running: &mut Running, app: &mut App, message: &Message) -> Flow {
     let stops = matches!(
         message,
         Message::Explore(ExploreMessage::Stop) | Message::Cancel | Message::Quit
@@ -167,8 +154,8 @@ pub(in crate::tui) fn in_running(
         running.stopping = true;
         inform(app, "stopping");
     }
-    app.dialogs.push(Dialog::Running(running));
-    stops.then_some(Effect::Work(Work::Stop))
+    perform(app, stops.then_some(Effect::Work(Work::Stop)));
+    Flow::Stay
 }
 
 /// Returns true if this work is awaited.
@@ -182,15 +169,13 @@ pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepPro
 }
 
 pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration) {
-    if let Some(form) = topmost!(&mut app.dialogs, Ranges) {
+    if let Some(form) = app.page_mut::<RangesForm>() {
         form.take_estimate(grid, time);
     }
 }
 
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
-    let Some(Dialog::Results(results)) = app.dialogs.last_mut() else {
-        return None;
-    };
+    let results = app.top_mut::<Results>()?;
     let place = results.missing_angles()?;
     let findings = Arc::clone(&results.findings);
     Some(Effect::Work(Work::Angles(findings, place)))
@@ -202,7 +187,7 @@ pub(in crate::tui) fn on_angles(
     place: PoseIndex,
     curve: Result<Arc<AngleCurve>, String>,
 ) {
-    let results = topmost!(&mut app.dialogs, Results).or(app.results.as_mut());
+    let results = find_mut::<Results>(&mut app.pages).or(app.results.as_deref_mut());
     let Some(results) = results.filter(|own| Arc::ptr_eq(&own.findings, findings)) else {
         return;
     };
@@ -227,12 +212,12 @@ pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: &str) {
             perform(app, effect);
         };
         let kind = app.results_below().map(ExportKind::of);
-        let prompt = kind.map(|kind| Dialog::Export(ExportDialog::new(name, kind)));
+        let prompt = kind.map(|kind| Box::new(ExportDialog::new(name, kind)));
         let question = Question {
-            prompt: prompt.map(Box::new),
+            prompt: prompt.map(|prompt| prompt as Box<dyn Page>),
             ..Question::replaces(name, yes)
         };
-        ask(app, place, Dialog::Question(question));
+        ask(app, place, question);
     }
 }
 
@@ -247,7 +232,7 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
     };
     let kind = app.results_below().map(ExportKind::of);
     if let Some((name, kind)) = name.zip(kind) {
-        ask(app, place, Dialog::Export(ExportDialog::new(&name, kind)));
+        ask(app, place, ExportDialog::new(&name, kind));
     }
     refuse(app, reason);
     true
@@ -265,21 +250,21 @@ fn filter_remark(app: &App, name: &str) -> String {
     }
 }
 
-fn ask(app: &mut App, place: usize, dialog: Dialog) {
-    app.dialogs.truncate(place);
-    app.dialogs.push(dialog);
+fn ask(app: &mut App, place: usize, page: impl Page) {
+    app.pages.truncate(place);
+    app.open(page);
 }
 
 fn running(app: &mut App, number: u64) -> Option<&mut Running> {
-    topmost!(&mut app.dialogs, Running).filter(|running| running.number == number)
+    app.page_mut::<Running>()
+        .filter(|running| running.number == number)
 }
 
 /// Returns its index among the pages; None if it is not awaited.
 fn finish(app: &mut App, number: u64) -> Option<usize> {
-    let own =
-        |dialog: &Dialog| matches!(dialog, Dialog::Running(running) if running.number == number);
-    let place = app.dialogs.iter().position(own)?;
-    app.dialogs.remove(place);
+    running(app, number)?;
+    let place = app.pages.iter().rposition(|page| page.is::<Running>())?;
+    app.pages.remove(place);
     app.notice = None;
     Some(place)
 }
@@ -304,13 +289,11 @@ pub(in crate::tui) fn take_findings(app: &mut App, number: u64, findings: Arc<Fi
             ),
         );
     }
-    let results = Dialog::Results(Box::new(Results::new(findings)));
-    app.dialogs.insert(place, results);
-    let earlier = app.dialogs[..place]
-        .iter()
-        .position(|dialog| matches!(dialog, Dialog::Results(_)));
-    if let Some(earlier) = earlier {
-        app.dialogs.remove(earlier);
+    let results = Box::new(Results::new(findings));
+    app.pages.insert(place, results);
+    let mut before = app.pages[..place].iter();
+    if let Some(earlier) = before.position(|page| page.is::<Results>()) {
+        app.pages.remove(earlier);
     }
     app.results = None;
 }
@@ -363,6 +346,10 @@ impl Running {
 const WIDEST: u16 = 60;
 
 impl Page for Running {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_running(self, app, message)
+    }
+
     fn context(&self) -> Context {
         Context::Running
     }

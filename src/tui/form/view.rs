@@ -19,14 +19,12 @@ use taxel_core::quote::quoted_character;
 use taxel_core::source::Source;
 
 use crate::tui::app::change::{refuse, replace};
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Flow, Page, Slot};
 use crate::tui::app::state::App;
 use crate::tui::form::state::{FormDialog, ParameterField};
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::runtime::effect::Effect;
 use crate::tui::widget::field_list::{FieldRows, FormField};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -37,6 +35,52 @@ const LETTERS: usize = LABEL + 2 + NAME + 3;
 const INPUT: usize = 9;
 
 impl Page for FormDialog {
+    /// The form stays open unless it is accepted.
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let on_kind = self.form().focus().is_none();
+        match message.clone() {
+            Message::Accept => match self.form().error() {
+                None => {
+                    if let Some(figure) = self.made_figure() {
+                        app.forms.note_figure(figure, &self.shown().sensor);
+                    }
+                    replace(app, self.shown().clone());
+                    return Flow::Close;
+                }
+                Some((index, error)) => {
+                    self.edit(|form| form.set_focus(Some(index)));
+                    refuse(app, error.full);
+                }
+            },
+            // A click on the kind, if it already has the focus, chooses the next kind.
+            Message::ToField(None) | Message::Choose(Arrow::Right) if on_kind => {
+                self.choose_next_kind();
+            }
+            Message::Choose(Arrow::Left) if on_kind => self.choose_previous_kind(),
+            Message::Type(character) => {
+                if !self.insert(character) {
+                    let kind = quoted_character(character);
+                    refuse(
+                        app,
+                        format!("no kind begins with {kind}; kinds: {}", kinds()),
+                    );
+                }
+            }
+            Message::Paste(text) => {
+                if !self.paste(&text) {
+                    refuse(app, format!("no kind named {text:?}; kinds: {}", kinds()));
+                }
+            }
+            Message::Defaults => self.set_defaults(),
+            Message::Step(_) | Message::Erase(_) | Message::ToEdge(_) if on_kind => {
+                refuse(app, "an arrow or a letter chooses the kind");
+            }
+            Message::Step(direction) => self.edit(|form| form.step(direction)),
+            other => self.edit(|form| form.take(&other)),
+        }
+        Flow::Stay
+    }
+
     fn context(&self) -> Context {
         Context::Form
     }
@@ -154,57 +198,6 @@ fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<&'static str> {
         }
         _ => Some("empty: solid"),
     }
-}
-
-/// Handles a message. The form stays open unless it is accepted.
-pub(in crate::tui) fn update(
-    app: &mut App,
-    mut dialog: Box<FormDialog>,
-    message: Message,
-) -> Option<Effect> {
-    let on_kind = dialog.form().focus().is_none();
-    match message {
-        Message::Accept => match dialog.form().error() {
-            None => {
-                if let Some(figure) = dialog.made_figure() {
-                    app.forms.note_figure(figure, &dialog.shown().sensor);
-                }
-                replace(app, dialog.shown().clone());
-                return None;
-            }
-            Some((index, error)) => {
-                dialog.edit(|form| form.set_focus(Some(index)));
-                refuse(app, error.full);
-            }
-        },
-        // A click on the kind, if it already has the focus, chooses the next kind.
-        Message::ToField(None) | Message::Choose(Arrow::Right) if on_kind => {
-            dialog.choose_next_kind();
-        }
-        Message::Choose(Arrow::Left) if on_kind => dialog.choose_previous_kind(),
-        Message::Type(character) => {
-            if !dialog.insert(character) {
-                let kind = quoted_character(character);
-                refuse(
-                    app,
-                    format!("no kind begins with {kind}; kinds: {}", kinds()),
-                );
-            }
-        }
-        Message::Paste(text) => {
-            if !dialog.paste(&text) {
-                refuse(app, format!("no kind named {text:?}; kinds: {}", kinds()));
-            }
-        }
-        Message::Defaults => dialog.set_defaults(),
-        Message::Step(_) | Message::Erase(_) | Message::ToEdge(_) if on_kind => {
-            refuse(app, "an arrow or a letter chooses the kind");
-        }
-        Message::Step(direction) => dialog.edit(|form| form.step(direction)),
-        other => dialog.edit(|form| form.take(&other)),
-    }
-    app.dialogs.push(Dialog::Form(dialog));
-    None
 }
 
 fn kinds() -> String {

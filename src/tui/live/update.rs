@@ -12,10 +12,10 @@ use taxel_files::formats::value::{counted, grouped};
 use taxel_files::storage::{Existing, ModelChoice, ModelFolder};
 
 use crate::tui::app::change::{begin, inform, refuse};
-use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::{Flow, find_mut};
 use crate::tui::app::state::App;
 use crate::tui::app::status;
 use crate::tui::jobs::answer;
@@ -77,8 +77,7 @@ fn watch_with(app: &mut App, size: FrameSize) -> Option<Effect> {
 
 /// Handles a message over the page. Esc goes back to the source from a frozen frame; otherwise it leaves the page, and
 /// ends the source. Enter keeps the source, because users often come back for the next imprint.
-pub fn in_live(app: &mut App, mut page: Box<Live>, message: Message) -> Option<Effect> {
-    let mut effect = None;
+pub fn in_live(page: &mut Live, app: &mut App, message: &Message) -> Flow {
     page.see_notices();
     match message {
         Message::Cancel if !page.history.follows() && !page.status.state.is_final() => {
@@ -86,34 +85,31 @@ pub fn in_live(app: &mut App, mut page: Box<Live>, message: Message) -> Option<E
         }
         Message::Cancel | Message::Quit => {
             page.stop();
-            app.live = Some(page);
-            return Some(Effect::Frames(FrameWork::StopWatching));
+            perform(app, Some(Effect::Frames(FrameWork::StopWatching)));
+            return Flow::Close;
         }
-        Message::Accept => match reading::document(&page) {
+        Message::Accept => match reading::document(page) {
             Some(document) => {
                 put_on_matrix(app, page, document);
-                return None;
+                return Flow::Close;
             }
-            None => refuse_imprint(app, &page),
+            None => refuse_imprint(app, page),
         },
         Message::Scroll(by) => {
-            let found = page.scrub(by.into());
-            say_if_not(app, found, &page, by.into(), "frame");
+            let found = page.scrub((*by).into());
+            say_if_not(app, found, page, (*by).into(), "frame");
         }
         Message::ScrollTo(Endpoint::First) => drop(page.stay_at(0)),
         Message::ScrollTo(Endpoint::Last) => page.follow(),
         Message::SwitchPane => page.only_panel ^= true,
-        Message::Live(asked) => effect = adjust(app, &mut page, &asked),
-        Message::Command => {
-            let prompt = CommandDialog::new(Context::Live, &app.commands);
-            app.dialogs
-                .extend([Dialog::Live(page), Dialog::Command(prompt)]);
-            return None;
+        Message::Live(asked) => {
+            let effect = adjust(app, page, asked);
+            perform(app, effect);
         }
+        Message::Command => return Flow::push(CommandDialog::new(Context::Live, &app.commands)),
         _ => {}
     }
-    app.dialogs.push(Dialog::Live(page));
-    effect
+    Flow::Stay
 }
 
 /// Says that there is no earlier or later one of what was looked for in the history, unless it was found.
@@ -222,7 +218,7 @@ fn next_layer(app: &mut App, page: &mut Live) {
 
 pub fn name_by_next(app: &mut App, own: &[String]) -> Option<Effect> {
     let number = app.works + 1;
-    let page = topmost!(&mut app.dialogs, Live)?;
+    let page = find_mut::<Live>(&mut app.pages)?;
     if !std::mem::take(&mut page.names.awaits_models) {
         return None;
     }
@@ -249,12 +245,11 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
 
 /// Puts the imprint onto the matrix; the source keeps running. The imprint counts as unsaved, because no source sends
 /// the same frame again. If the recording gives the size of its cells but lengths are not in mm, the notice says why.
-fn put_on_matrix(app: &mut App, page: Box<Live>, document: Document) {
+fn put_on_matrix(app: &mut App, page: &Live, document: Document) {
     let number = page.reading.as_ref().map(|reading| reading.frame.number);
     let channel = page.status.channel.as_deref();
     let without_mm = channel.and_then(ChannelInfo::why_not_in_mm);
     let source = page.request.name();
-    app.live = Some(page);
     let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
     // Not every source has a name that a shape may have.
     let stem = source.rsplit_once('.').map_or(&*source, |(stem, _)| stem);
@@ -342,7 +337,7 @@ pub fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
         LiveEvent::NotFinished(reason) => return refuse(app, reason.clone()),
         _ => {}
     }
-    let is_open = matches!(app.dialogs.last(), Some(Dialog::Live(_)));
+    let is_open = app.top_mut::<Live>().is_some();
     let Some(page) = watched(app, number) else {
         return;
     };
@@ -376,8 +371,7 @@ const NO_SOURCE: &str = "no source yet: ':watch SOURCE' watches a sensor or play
 const OPEN_ALREADY: &str = "this is the watched source; ':watch SOURCE' watches another one";
 
 pub fn last_page(app: &App) -> Option<&Live> {
-    let page = topmost!(&app.dialogs, Live).or(app.live.as_ref())?;
-    Some(page)
+    app.page().or(app.live.as_deref())
 }
 
 /// Returns the file in which frames are recorded now, whether the page is open or not; None if nothing is recorded.
@@ -388,16 +382,12 @@ pub fn recording(app: &App) -> Option<&str> {
 
 /// Returns the page of the source that was watched last, open or not, to change it.
 pub fn page(app: &mut App) -> Option<&mut Live> {
-    let page = topmost!(&mut app.dialogs, Live).or(app.live.as_mut())?;
-    Some(page)
+    find_mut(&mut app.pages).or(app.live.as_deref_mut())
 }
 
 pub fn set_aside(app: &mut App) {
-    if let Some(Dialog::Live(page)) = app
-        .dialogs
-        .pop_if(|dialog| matches!(dialog, Dialog::Live(_)))
-    {
-        app.live = Some(page);
+    if let Some(page) = app.pages.pop_if(|page| page.is::<Live>()) {
+        page.closed(app);
     }
 }
 
@@ -441,9 +431,8 @@ pub fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
     // It has led to this page, and is not opened again by what is refused here.
     app.prompt = None;
     app.live = None;
-    app.dialogs
-        .retain(|dialog| !matches!(dialog, Dialog::Live(_)));
-    app.dialogs.push(Dialog::Live(Box::new(page)));
+    app.pages.retain(|page| !page.is::<Live>());
+    app.open(page);
     watched
 }
 
@@ -459,7 +448,7 @@ fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
 /// Opens the page of the last source as it was left. If the source can go on, its frames are watched again; those that
 /// came meanwhile are lost. A finished recording is played again only when asked for.
 pub fn open(app: &mut App) -> Option<Effect> {
-    if topmost!(&app.dialogs, Live).is_some() {
+    if app.page::<Live>().is_some() {
         refuse(app, OPEN_ALREADY);
         return None;
     }
@@ -479,7 +468,7 @@ pub fn open(app: &mut App) -> Option<Effect> {
             watch_source(&page, None)
         });
     }
-    app.dialogs.push(Dialog::Live(page));
+    app.pages.push(page);
     effect
 }
 

@@ -20,7 +20,8 @@ use taxel_files::formats::recording::FrameMark;
 use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
@@ -30,6 +31,7 @@ use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::{Live, NO_FRAME};
 use crate::tui::live::threshold::{self, progress_text};
 use crate::tui::live::trend;
+use crate::tui::live::update::in_live;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -41,6 +43,15 @@ const SHOWN: [&str; 5] = ["na", "nae", "p", "f", "cg"];
 const LISTED: usize = 20;
 
 impl Page for Live {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_live(self, app, message)
+    }
+
+    /// The source of a page that is closed may be watched again.
+    fn closed(self: Box<Self>, app: &mut App) {
+        app.live = Some(self);
+    }
+
     fn context(&self) -> Context {
         Context::Live
     }

@@ -21,7 +21,6 @@ use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
     settle, shift, travel, turn, write_file, zoom,
 };
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
@@ -40,7 +39,8 @@ use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::commands::page_below;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::disk::files;
-use crate::tui::runtime::effect::{Effect, TerminalEffect};
+use crate::tui::runtime::effect::TerminalEffect;
+use crate::tui::runtime::perform;
 use crate::tui::shapes::state::ListPurpose;
 use crate::tui::shapes::update::open_list;
 use crate::tui::widget::write::around;
@@ -51,7 +51,7 @@ use crate::tui::{explore, live, recognise, shapes};
 const NO_REGION: &str = "no region: the matrix is empty";
 
 /// A new message has to be added here or to those that mean nothing.
-pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
+pub(in crate::tui) fn act(app: &mut App, message: Message) {
     use Message::{
         Accept, Answered, Cancel, Choose, Decline, Defaults, Erase, Field, Match, Mouse, Paste,
         Redraw, Resized, Scroll, ScrollScreen, ScrollTo, Search, Select, Step, Suspend, Terminate,
@@ -64,10 +64,19 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::WriteFile(name) => write(app, name),
         Message::Quit => quit(app),
         Message::QuitNow => app.run_state = RunState::Quit,
-        Message::Copy(what) => return copy(app, what),
-        Message::Explore(asked) => return explore::work::act(app, asked),
-        Message::Live(asked) => return live::update::act(app, &asked),
-        Message::Recognise(asked) => return recognise::update::act(app, asked),
+        Message::Copy(what) => copy(app, what),
+        Message::Explore(asked) => {
+            let effect = explore::work::act(app, asked);
+            perform(app, effect);
+        }
+        Message::Live(asked) => {
+            let effect = live::update::act(app, &asked);
+            perform(app, effect);
+        }
+        Message::Recognise(asked) => {
+            let effect = recognise::update::act(app, asked);
+            perform(app, effect);
+        }
         Message::Request(request) => shapes::update::act(app, request),
         Message::Compare => compare_with_before(app),
         Message::Load => open_list(app, ListPurpose::Load),
@@ -80,10 +89,10 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::History => open_history(app),
         Message::Explain => {
             let page = Explain::new(app);
-            app.dialogs.push(Dialog::Explain(page));
+            app.open(page);
         }
         Message::Draw => draw_on(app),
-        Message::Help => app.dialogs.push(Dialog::Help(Help::new(app.context()))),
+        Message::Help => app.open(Help::new(app.context())),
         Message::Cursor(arrow) => move_cursor(app, arrow),
         Message::PointAt(column, row) => point_at(app, column, row),
         Message::ToColumn(end) => to_column(app, end),
@@ -130,7 +139,6 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         | Answered
         | Message::Refused(_) => {}
     }
-    None
 }
 
 fn empty(app: &mut App) {
@@ -152,13 +160,13 @@ fn compare_with_before(app: &mut App) {
 
 fn open_command(app: &mut App) {
     let prompt = CommandDialog::new(page_below(app), &app.commands);
-    app.dialogs.push(Dialog::Command(prompt));
+    app.open(prompt);
 }
 
 fn open_history(app: &mut App) {
     let (steps, present) = app.history.steps();
     let page = HistoryDialog::new(app.history.start(), steps, present);
-    app.dialogs.push(Dialog::History(page));
+    app.open(page);
 }
 
 /// Opens the form of the picture on the matrix, or of the stored shape on the matrix as a picture; without either, the
@@ -202,7 +210,7 @@ fn save(app: &mut App) {
         None => free_name(app, &name_of_origin(app)),
     };
     let dialog = NameDialog::proposing(&name);
-    app.dialogs.push(Dialog::Name(dialog));
+    app.open(dialog);
 }
 
 fn outdated(app: &App, stored: &str) -> Option<String> {
@@ -317,13 +325,12 @@ fn hold_or_let_go(app: &mut App) {
 
 /// Sends a text to the terminal, which may put it into its clipboard, but never reports whether it does. Descriptors
 /// are one to a line, key and value with a tab between; the imprint is in the form of its text files.
-fn copy(app: &mut App, what: Copied) -> Option<Effect> {
+fn copy(app: &mut App, what: Copied) {
     let seen = app.reading();
     let (name, text) = match (what, seen.description(app.chosen())) {
         (Copied::Imprint, _) => ("imprint", seen.imprint.to_string() + "\n"),
         (Copied::Descriptors, None) => {
-            refuse(app, NO_REGION);
-            return None;
+            return refuse(app, NO_REGION);
         }
         (Copied::Descriptors, Some(description)) => {
             let line = |descriptor: &Descriptor| {
@@ -338,12 +345,12 @@ fn copy(app: &mut App, what: Copied) -> Option<Effect> {
         app,
         format!("{name} sent to your terminal's clipboard ({length})"),
     );
-    Some(Effect::Terminal(TerminalEffect::Copy(text)))
+    app.terminal = Some(TerminalEffect::Copy(text));
 }
 
 /// Opens a form. A held shape stays held, so that a form that is cancelled changes nothing.
 fn open_form(app: &mut App, form: FormDialog) {
-    app.dialogs.push(Dialog::Form(Box::new(form)));
+    app.open(form);
 }
 
 fn has_none(app: &App) -> String {

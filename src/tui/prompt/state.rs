@@ -12,9 +12,11 @@ use taxel_files::formats::Name;
 use taxel_files::formats::name::LONGEST;
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::LinePrompt;
+use crate::tui::app::page::{Flow, LinePrompt};
+use crate::tui::app::state::App;
 use crate::tui::keys::keymap::Context;
 use crate::tui::prompt::commands::{Offer, complete, offers};
+use crate::tui::prompt::update::{in_command, in_name};
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
@@ -189,6 +191,10 @@ const MOST_INDENT: usize = 40;
 impl LinePrompt for NameDialog {
     const CONTEXT: Context = Context::Name;
 
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_name(self, app, message)
+    }
+
     fn label(&self) -> &'static str {
         "Save as: "
     }
@@ -209,6 +215,10 @@ impl LinePrompt for NameDialog {
 
 impl LinePrompt for CommandDialog {
     const CONTEXT: Context = Context::Command;
+
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_command(self, app, message)
+    }
 
     fn label(&self) -> &'static str {
         ":"

@@ -7,31 +7,26 @@
 use taxel_files::formats::value::counted;
 use taxel_files::storage::{Library, ModelChoice, ModelFolder, ShapeOrigin};
 
-use crate::tui::app::change::{from_prompt, refuse};
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::change::refuse;
 use crate::tui::app::message::{LibraryRequest, Message};
+use crate::tui::app::page::Flow;
 use crate::tui::app::state::App;
 use crate::tui::jobs::answer;
 use crate::tui::keys::key::Arrow;
 use crate::tui::prompt::commands::{Names, read, wants_names};
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::disk::files;
-use crate::tui::runtime::effect::Effect;
 use crate::tui::shapes::update::sentence;
 use crate::tui::widget::text_field::TextField;
-use crate::tui::{live, matrix};
+use crate::tui::{live, matrix, shapes};
 
-/// Handles a message in the `:` prompt, which stays open until a command was understood.
-pub(in crate::tui) fn in_command(
-    app: &mut App,
-    mut dialog: CommandDialog,
-    message: Message,
-) -> Option<Effect> {
+/// The prompt stays open until a command was understood.
+pub(crate) fn in_command(dialog: &mut CommandDialog, app: &mut App, message: &Message) -> Flow {
     match message {
         Message::Accept => {
             let line = dialog.field.text().trim().to_owned();
             if line.is_empty() {
-                return None;
+                return Flow::Close;
             }
             let has_arguments = line.contains(' ');
             match read(&line, app) {
@@ -47,15 +42,16 @@ pub(in crate::tui) fn in_command(
                         live::update::set_aside(app);
                     }
                     // Without arguments there is nothing to correct.
-                    if !has_arguments {
-                        return matrix::update::act(app, message);
+                    if has_arguments {
+                        return Flow::ask(|app| matrix::update::act(app, message));
                     }
-                    return ask(app, message, Dialog::Command(dialog));
+                    matrix::update::act(app, message);
+                    return Flow::Close;
                 }
                 Err(error) => refuse(app, error),
             }
         }
-        Message::Field(_) => return complete(app, dialog),
+        Message::Field(_) => complete(app, dialog),
         Message::Choose(Arrow::Down) => {
             if !dialog.later() {
                 dialog.pick(true);
@@ -67,12 +63,11 @@ pub(in crate::tui) fn in_command(
             }
         }
         other => {
-            dialog.edit(&other);
+            dialog.edit(other);
             say_left_out(app, &dialog.field);
         }
     }
-    app.dialogs.push(Dialog::Command(dialog));
-    None
+    Flow::Stay
 }
 
 fn say_left_out(app: &mut App, field: &TextField) {
@@ -85,7 +80,7 @@ fn say_left_out(app: &mut App, field: &TextField) {
     }
 }
 
-fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
+fn complete(app: &mut App, dialog: &mut CommandDialog) {
     let wanted = wants_names(dialog.field.text());
     match wanted {
         None => dialog.complete(&[]),
@@ -94,11 +89,9 @@ fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
     let line = dialog.field.text().trim_start();
     let rest = line.split_once(' ').map_or("", |(_, rest)| rest);
     let last_word = rest.trim_start().to_owned();
-    app.dialogs.push(Dialog::Command(dialog));
     if let Some(wanted) = wanted {
         complete_from_disk(app, wanted, last_word);
     }
-    None
 }
 
 /// Completes the last word by the names that may stand there. A model may also be a path.
@@ -107,7 +100,7 @@ fn complete_from_disk(app: &mut App, wanted: Names, last_word: String) {
         let names = names(library, wanted, &last_word);
         answer(|app| match names {
             Ok(names) => {
-                if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+                if let Some(command) = app.top_mut::<CommandDialog>() {
                     command.complete_asked(&names);
                 }
             }
@@ -140,29 +133,19 @@ fn names(library: &Library, wanted: Names, last_word: &str) -> Result<Vec<String
     }
 }
 
-fn ask(app: &mut App, message: Message, prompt: Dialog) -> Option<Effect> {
-    from_prompt(app, prompt, |app| matrix::update::act(app, message))
-}
-
-/// Handles a message in the prompt for a name, which stays open until the name is valid.
-pub(in crate::tui) fn in_name(
-    app: &mut App,
-    mut dialog: NameDialog,
-    message: Message,
-) -> Option<Effect> {
-    match message {
-        Message::Accept => match dialog.name() {
+/// The prompt stays open until the name is valid.
+pub(crate) fn in_name(dialog: &mut NameDialog, app: &mut App, message: &Message) -> Flow {
+    if *message == Message::Accept {
+        match dialog.name() {
             Ok(name) => {
-                let save = Message::Request(LibraryRequest::Save(name));
-                return ask(app, save, Dialog::Name(dialog));
+                let save = LibraryRequest::Save(name);
+                return Flow::ask(|app| shapes::update::act(app, save));
             }
             Err(error) => refuse(app, error.to_string()),
-        },
-        other => {
-            dialog.field.take(&other);
-            say_left_out(app, &dialog.field);
         }
+    } else {
+        dialog.field.take(message);
+        say_left_out(app, &dialog.field);
     }
-    app.dialogs.push(Dialog::Name(dialog));
-    None
+    Flow::Stay
 }

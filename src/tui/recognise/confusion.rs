@@ -13,12 +13,14 @@ use taxel_core::sensor::Sensor;
 use taxel_files::formats::value::{counted, grouped, percent};
 
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::recognise::state::RecogniseMessage;
 use crate::tui::recognise::trained::{TrainedModel, onto};
+use crate::tui::recognise::update::in_confusion;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
 
@@ -150,6 +152,10 @@ impl ConfusionPanes {
 }
 
 impl Page for Confusion {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_confusion(self, app, message)
+    }
+
     fn context(&self) -> Context {
         Context::Confusion
     }

@@ -5,14 +5,17 @@ use std::sync::Arc;
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
 use taxel_files::storage::ModelChoice;
 
 use crate::tui::app::change::{begin_drawn, inform, let_go, refuse};
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
+use crate::tui::app::page::{Flow, Page, Slot};
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::keys::action;
+use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::confusion::Confusion;
@@ -21,13 +24,38 @@ use crate::tui::recognise::state::{
 };
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::effect::{Effect, Work};
+use crate::tui::runtime::perform;
+use crate::tui::widget::theme::Theme;
 
-fn is_page(dialog: &Dialog) -> bool {
-    matches!(dialog, Dialog::Recognition)
+/// The page of recognition on the stack. Its state outlasts it, so the program keeps that.
+struct RecognisePage;
+
+impl Page for RecognisePage {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let effect = in_recognition(app, message.clone());
+        perform(app, effect);
+        Flow::Close
+    }
+
+    fn of_app<'a>(&self, app: &'a App) -> Option<&'a dyn Page> {
+        Some(&app.recognition)
+    }
+
+    fn context(&self) -> Context {
+        Context::Recognise
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Panel
+    }
+
+    fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
+        None
+    }
 }
 
 fn is_open(app: &App) -> bool {
-    app.dialogs.iter().any(is_page)
+    app.page::<RecognisePage>().is_some()
 }
 
 fn open_for(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
@@ -73,8 +101,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
         }
         RecogniseMessage::Confusion => {
             with_model(app, asked, |app, trained| {
-                let page = Box::new(Confusion::new(trained));
-                app.dialogs.push(Dialog::Confusion(page));
+                app.open(Confusion::new(trained));
             });
             None
         }
@@ -113,7 +140,7 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     let opened = !is_open(app);
     let looks_again = opened || choice.is_some();
     if opened {
-        app.dialogs.push(Dialog::Recognition);
+        app.open(RecognisePage);
         app.narrow_pane = NarrowPane::Panel;
     }
     let page = &mut app.recognition;
@@ -230,7 +257,7 @@ pub(in crate::tui) fn in_recognition(app: &mut App, message: Message) -> Option<
     match message {
         Message::Cancel | Message::Quit => {
             if app.recognition.stop() {
-                app.dialogs.push(Dialog::Recognition);
+                app.open(RecognisePage);
                 inform(app, "stopping");
                 return Some(Effect::Work(Work::StopPreparing));
             }
@@ -238,10 +265,13 @@ pub(in crate::tui) fn in_recognition(app: &mut App, message: Message) -> Option<
         }
         message => {
             app.recognition.withdraw();
-            app.dialogs.push(Dialog::Recognition);
+            app.open(RecognisePage);
             match message {
                 Message::Accept => prepare_again(app),
-                message => matrix::update::act(app, message),
+                message => {
+                    matrix::update::act(app, message);
+                    None
+                }
             }
         }
     }
@@ -271,26 +301,21 @@ fn close(app: &mut App) -> Option<Effect> {
 
 /// Handles a message over the confusion matrix. Enter puts the imprint of the cell onto the matrix and closes the
 /// page; it is refused if the cell has no imprint.
-pub(in crate::tui) fn in_confusion(
-    app: &mut App,
-    mut page: Box<Confusion>,
-    message: &Message,
-) -> Option<Effect> {
+pub(crate) fn in_confusion(page: &mut Confusion, app: &mut App, message: &Message) -> Flow {
     if *message == Message::Accept {
         let sensor = app.history.present().sensor;
         if let Some((sensor, imprint)) = page.imprint_on(sensor) {
             begin_drawn(app, sensor, &imprint, &page.of_cell());
-            return None;
+            return Flow::Close;
         }
         refuse(app, "there is no imprint in this cell");
     }
     page.take(message);
-    app.dialogs.push(Dialog::Confusion(page));
-    None
+    Flow::Stay
 }
 
 pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) -> Option<Effect> {
-    let has_keys = app.dialogs.last().is_some_and(is_page);
+    let has_keys = app.top_mut::<RecognisePage>().is_some();
     let page = &mut app.recognition;
     match event {
         RecognitionEvent::Begun(number, poses) => page.take_poses(number, poses),
@@ -325,8 +350,8 @@ fn without_model(app: &mut App, failed: Option<NoModel>) -> Option<Effect> {
         closes,
         prepares_again,
     } = failed?;
-    if closes && let Some(at) = app.dialogs.iter().position(is_page) {
-        app.dialogs.remove(at);
+    if closes && is_open(app) {
+        app.pages.retain(|page| !page.is::<RecognisePage>());
         // While a model is prepared, no search is in progress.
         let _ = close(app);
     }

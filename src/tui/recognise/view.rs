@@ -25,7 +25,8 @@ use taxel_core::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
 use taxel_files::formats::value::{self, counted, decimal, grouped, percent};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, PoseLayer, Slot};
+use crate::tui::app::page::{Flow, Page, PoseLayer, Slot};
+use crate::tui::app::state::App;
 use crate::tui::explore::work::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
@@ -45,6 +46,11 @@ const NAME: usize = 14;
 const BELOW: usize = 6;
 
 impl Page for Recognition {
+    /// Messages go to the page that stands for it.
+    fn on(&mut self, _: &mut App, _: &Message) -> Flow {
+        Flow::Stay
+    }
+
     fn context(&self) -> Context {
         Context::Recognise
     }

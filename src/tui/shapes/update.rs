@@ -12,17 +12,17 @@ use taxel_core::picture::Picture;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Expected, Library, LibraryError, LoadedShape, ShapeOrigin};
 
-use crate::tui::app::change::{begin, compare_with, from_prompt, inform, refuse};
-use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::change::{begin, compare_with, inform, refuse};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, StoredName};
 use crate::tui::app::message::{LibraryRequest, Message, Purpose};
+use crate::tui::app::page::{Flow, find_mut};
+use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, Saving};
 use crate::tui::app::unsaved::quit;
 use crate::tui::form::state::FormDialog;
 use crate::tui::jobs::{answer, caught};
 use crate::tui::keys::action;
-use crate::tui::runtime::effect::Effect;
 use crate::tui::shapes::state::{ListDialog, ListPurpose};
 use crate::tui::widget::rows::moved;
 
@@ -37,47 +37,42 @@ pub(crate) fn act(app: &mut App, request: LibraryRequest) {
 
 /// Opens the list of shapes, empty until the library answers.
 pub(crate) fn open_list(app: &mut App, purpose: ListPurpose) {
-    app.dialogs.push(Dialog::List(ListDialog::new(purpose)));
+    app.open(ListDialog::new(purpose));
     app.jobs.read("Listing the shapes", |library| {
         let listed = library.list().map_err(|error| sentence(library, &error));
         answer(|app| match listed {
             Ok(entries) => {
-                if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
-                    list.fill(entries);
-                    read_visible(app);
+                if let Some(mut list) = app.pages.pop() {
+                    if let Some(list) = find_mut::<ListDialog>(std::slice::from_mut(&mut list)) {
+                        list.fill(entries);
+                        read_visible(list, app);
+                    }
+                    app.pages.push(list);
                 }
             }
             Err(reason) => {
-                app.dialogs.pop();
+                app.pages.pop();
                 refuse(app, reason);
             }
         })
     });
 }
 
-/// Handles a message. The list goes back onto the stack unless a shape is taken.
-pub(in crate::tui) fn update(
-    app: &mut App,
-    mut list: ListDialog,
-    message: Message,
-) -> Option<Effect> {
+/// The list closes when a shape is taken.
+pub(crate) fn in_list(list: &mut ListDialog, app: &mut App, message: &Message) -> Flow {
     match message {
-        Message::Accept => return choose(app, list),
-        other => match moved(list.selected(), &other) {
+        Message::Accept => return choose(list, app),
+        other => match moved(list.selected(), other) {
             Some(row) => list.select(row),
-            None => list.edit(&other),
+            None => list.edit(other),
         },
     }
-    app.dialogs.push(Dialog::List(list));
-    read_visible(app);
-    None
+    read_visible(list, app);
+    Flow::Stay
 }
 
 /// A library may be large, and only rows in sight need their size and preview.
-fn read_visible(app: &mut App) {
-    let Some(Dialog::List(list)) = app.dialogs.last_mut() else {
-        return;
-    };
+fn read_visible(list: &mut ListDialog, app: &mut App) {
     let unread = list.ask();
     if unread.is_empty() {
         return;
@@ -90,7 +85,7 @@ fn read_visible(app: &mut App) {
         });
         let read: Vec<_> = read.collect();
         answer(|app| {
-            if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
+            if let Some(list) = app.top_mut::<ListDialog>() {
                 list.take(read);
             }
         })
@@ -98,24 +93,20 @@ fn read_visible(app: &mut App) {
 }
 
 /// Takes the selected shape, for the purpose of the list, which opens again if that is refused.
-fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
+fn choose(list: &ListDialog, app: &mut App) -> Flow {
     let Some((entry, _)) = list.choice() else {
         let text = match list.listed {
             true => "there is no shape to choose",
             false => "the library is being read",
         };
-        app.dialogs.push(Dialog::List(list));
         refuse(app, text);
-        return None;
+        return Flow::Stay;
     };
     let (name, purpose) = (entry.name.clone(), list.purpose);
-    from_prompt(app, Dialog::List(list), |app| {
-        match purpose {
-            ListPurpose::Delete => ask_to_delete(app, name),
-            ListPurpose::Load => load(app, Purpose::Load, name),
-            ListPurpose::Picture => load(app, Purpose::Picture, name),
-        }
-        None
+    Flow::ask(move |app| match purpose {
+        ListPurpose::Delete => ask_to_delete(app, name),
+        ListPurpose::Load => load(app, Purpose::Load, name),
+        ListPurpose::Picture => load(app, Purpose::Picture, name),
     })
 }
 
@@ -140,7 +131,7 @@ fn load(app: &mut App, purpose: Purpose, name: String) {
 fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
     let picture = Picture::at_home(*imprint).named(&name);
     let form = FormDialog::picture(app.history.present(), picture, name);
-    app.dialogs.push(Dialog::Form(Box::new(form)));
+    app.open(form);
 }
 
 /// Brings a shape onto the matrix: with its sensor and source if that sensor has the same number of columns and rows,
@@ -187,7 +178,7 @@ fn ask_to_delete(app: &mut App, name: String) {
                 Ok(name) => {
                     let text = format!("Delete {name:?}?");
                     let question = Question::new("", text, move |app| delete(app, name));
-                    app.dialogs.push(Dialog::Question(question));
+                    app.open(question);
                 }
                 Err(reason) => refuse(app, reason),
             })
@@ -327,7 +318,7 @@ fn ask_to_replace(app: &mut App, saving: Saving, stamp: u64, reason: String) {
     }
     let yes = move |app: &mut App| store(app, saving, Expected::Stamp(stamp));
     let question = Question::new(format!("{reason}."), "Replace it?", yes);
-    app.dialogs.push(Dialog::Question(question));
+    app.open(question);
 }
 
 /// Why nothing in the library can be changed.

@@ -16,11 +16,13 @@ use taxel_core::description::{Region, RegionKind, regions};
 use taxel_files::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::shapes::state::{ListDialog, ListPurpose};
+use crate::tui::shapes::update::in_list;
 use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
@@ -33,6 +35,10 @@ const SHORTEST: usize = 8;
 const USUAL: usize = 24;
 
 impl Page for ListDialog {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        in_list(self, app, message)
+    }
+
     fn context(&self) -> Context {
         Context::List
     }

@@ -135,45 +135,17 @@ fn undo_also_restores_the_name() {
 }
 
 #[test]
-fn deleting_asks_and_can_be_undone() {
+fn deleting_asks_and_can_be_taken_back() {
     let mut session = session("<Space>sone<Enter>dn");
     shows(&session, &["Delete  filter: n", "> one"]);
     then(&mut session, "<Enter>", &["Delete \"one\"? (y/n)"]);
     // Without a yes, the list opens again for another choice.
     then(&mut session, "n", &["Delete  filter: n", "> one"]);
-    then(
-        &mut session,
-        "<Enter>y",
-        &["one deleted; u restores it now, :restore one later"],
-    );
+    let deleted = "one deleted; :restore one brings it back";
+    then(&mut session, "<Enter>y", &[deleted]);
     then(&mut session, "d", &["there are no shapes of your own"]);
-    then(&mut session, "<Esc>u", &["one is back"]);
+    then(&mut session, "<Esc>:restore<Enter>", &["one is back"]);
     then(&mut session, "lone<Enter>", &["one loaded"]);
-    // After another action, u undoes that action instead.
-    then(&mut session, "d<Enter>y<Right><Space>u", &["NA 1 in all"]);
-    // The same after a save, even with the same name.
-    let mut session = self::session("<Space><Right><Space>sone<Enter>done<Enter>ysone<Enter>");
-    then(&mut session, "<Right>u", &["undone: taxel 9, 8 on"]);
-}
-
-#[test]
-fn deletions_are_undone_one_after_the_other() {
-    let mut session =
-        session("<Space>sone<Enter><Right><Space>stwo<Enter>done<Enter>ydtwo<Enter>y");
-    then(&mut session, "u", &["two is back"]);
-    then(&mut session, "u", &["one is back"]);
-    then(&mut session, "u", &["undone: taxel 9, 8 on"]);
-    // After a change of the matrix, undo is about the matrix.
-    press(&mut session, "done<Enter>y<Space>");
-    then(&mut session, "uu", &["undone: taxel 8, 8 on"]);
-    then(&mut session, ":restore one<Enter>", &["one is back"]);
-}
-
-#[test]
-fn the_last_version_of_a_shape_deleted_twice_is_restored() {
-    let mut session =
-        session("<Space>sone<Enter><Right><Space>done<Enter>ysone<Enter>done<Enter>y");
-    then(&mut session, "u", &["one is back", "· one\n"]);
 }
 
 #[test]

@@ -221,7 +221,7 @@ fn work_that_vanished_from_the_disk_is_written_again_at_the_end() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let library = folder.path().join("library");
     let world = World::new(Library::open(library.clone()));
-    let session = started(world, "<Space>");
+    let session = started(world.with_threads(Arc::new(|| {})), "<Space>");
     journal_is_written(&library);
     std::fs::remove_dir_all(&library).expect("removed");
     drop(session);
@@ -263,10 +263,12 @@ fn all_unsaved_work_that_is_thrown_away_can_be_restored() {
     then(
         &mut later,
         "n",
-        &["the unsaved work is in the trash as unsaved 2; u restores it now"],
+        &["the unsaved work is in the trash as unsaved 2; :restore unsaved 2"],
     );
-    then(&mut later, "u", &["unsaved 2 is back"]);
-    then(&mut later, "u", &["unsaved 1 is back"]);
+    for name in ["unsaved 2", "unsaved 1"] {
+        let keys = format!(":restore {name}<Enter>");
+        then(&mut later, &keys, &[&format!("{name} is back")]);
+    }
     then(&mut later, "lunsaved 1<Enter>", &["unsaved 1 loaded"]);
 }
 

@@ -1,0 +1,118 @@
+//! A question in the line of notices, with what its answers do.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::tui::app::change::{from_prompt, refuse};
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Act, Flow, Page, Slot};
+use crate::tui::app::state::App;
+use crate::tui::keys::action;
+use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::matrix;
+use crate::tui::widget::theme::Theme;
+
+/// Leaving it without an answer does nothing.
+pub(crate) struct Question {
+    pub(crate) about: String,
+    pub(crate) text: String,
+    pub(crate) yes: Option<Act>,
+    pub(crate) no: Option<Act>,
+    /// The prompt that led to it: without a yes, it opens again.
+    pub(crate) prompt: Option<Box<dyn Page>>,
+    pub(crate) saves_first: bool,
+    pub(crate) meanings: Option<[&'static str; 2]>,
+    pub(crate) left: Option<&'static str>,
+}
+
+impl Question {
+    pub(crate) fn new(
+        about: impl Into<String>,
+        text: impl Into<String>,
+        yes: impl FnOnce(&mut App) + 'static,
+    ) -> Self {
+        Self {
+            about: about.into(),
+            text: text.into(),
+            yes: Some(Box::new(yes)),
+            no: None,
+            prompt: None,
+            saves_first: false,
+            meanings: None,
+            left: None,
+        }
+    }
+
+    pub(crate) fn replaces(name: &str, yes: impl FnOnce(&mut App) + 'static) -> Self {
+        Self::new(format!("{name:?} already exists."), "Replace it?", yes)
+    }
+
+    pub(crate) fn answers(&self, keymap: &Keymap) -> String {
+        let key = |answer| keymap.label(Context::Question, answer);
+        let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
+        let mut answers = match self.meanings {
+            Some([of_yes, of_no]) => format!("{yes}: {of_yes}, {no}: {of_no}"),
+            None => format!("{yes}/{no}"),
+        };
+        let save = self.saves_first.then_some("save first");
+        for (answer, meaning) in [(&action::SAVE, save), (&action::CANCEL, self.left)] {
+            let key = key(answer);
+            if let Some(meaning) = meaning.filter(|_| !key.is_empty()) {
+                answers += &format!(", {key}: {meaning}");
+            }
+        }
+        format!("({answers})")
+    }
+}
+
+impl Page for Question {
+    fn context(&self) -> Context {
+        Context::Question
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Question
+    }
+
+    fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
+        None
+    }
+
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        match message {
+            Message::Accept => match (self.yes.take(), self.prompt.take()) {
+                (Some(yes), Some(prompt)) => from_prompt(app, prompt, yes),
+                (Some(yes), None) => yes(app),
+                _ => {}
+            },
+            Message::Decline => {
+                app.pages.extend(self.prompt.take());
+                if let Some(no) = self.no.take() {
+                    no(app);
+                }
+            }
+            Message::Save if self.saves_first => {
+                matrix::update::act(app, Message::Save);
+                app.quits_when_saved = true;
+            }
+            Message::Save => {
+                let text = match self.prompt {
+                    Some(_) => "this question has to be answered first",
+                    None => "there is nothing to save first",
+                };
+                refuse(app, text);
+                return Flow::Stay;
+            }
+            _ => return Flow::Stay,
+        }
+        Flow::Close
+    }
+
+    fn closed(self: Box<Self>, app: &mut App) {
+        app.pages.extend(self.prompt);
+    }
+
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
+        self.saves_first || *message != Message::Save
+    }
+}
