@@ -50,8 +50,6 @@ pub(crate) enum CliError {
     NoFolder { name: String },
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes { broken: usize, shapes: usize },
-    #[error("{place}: {message}")]
-    Settings { place: String, message: String },
     #[error("{name}: {}{}", shortened_message(&.error.to_string()), size_advice(.error))]
     Recording { name: String, error: ReadError },
     #[error("{error}{help}", error = .0, help = advice(.0))]
@@ -137,7 +135,7 @@ impl CliError {
         match self {
             _ if self.is_closed_pipe() => 0,
             Self::Failure(failure) => failure.status,
-            Self::Usage(_) | Self::Unused { .. } | Self::Settings { .. } => 2,
+            Self::Usage(_) | Self::Unused { .. } => 2,
             Self::Stopped { status } => *status,
             _ => 1,
         }

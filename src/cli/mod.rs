@@ -69,7 +69,7 @@ use error::CliError;
 use failure::Failure;
 use input::shapes::Shelf;
 use output::charset::Charset;
-use settings::resolved::{Chosen, Effective, Loaded};
+use settings::{Choice, Settings};
 
 #[derive(Debug, clap::Parser)]
 #[command(name = "taxel", version = env!("TAXEL_VERSION"), about = ABOUT, after_help = EXAMPLES)]
@@ -164,31 +164,30 @@ fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
         }
     };
     let global = Global::from_arg_matches(&matches)?;
-    let loaded = match (matches.subcommand_name(), global.config) {
+    let mut settings = match (matches.subcommand_name(), global.config) {
         // The output of these does not depend on settings.
-        (Some("completions" | "man"), _) | (Some("script"), None) => Loaded::default(),
-        (_, asked) => Loaded::find(asked)?,
-    };
+        (Some("completions" | "man"), _) | (Some("script"), None) => Settings::default(),
+        (_, asked) => Settings::find(asked)?,
+    }
+    .with_environment();
+    if global.ascii {
+        settings.charset = Choice::Made(Charset::Ascii);
+    }
+    let is_library_named = global.library.is_some();
+    settings.library = global.library.or(settings.library);
     let by_hand = matches
         .subcommand()
         .filter(|(name, _)| !<Command as clap::Subcommand>::has_subcommand(name));
-    let watch = by_hand.filter(|(name, _)| *name == "watch");
-    let look = watch
-        .map(|(_, own)| Look::from_arg_matches(own))
-        .transpose()?;
-    let look = look.unwrap_or_default();
-    let chosen = Chosen {
-        color: look.color,
-        theme: look.theme,
-        no_mouse: look.no_mouse,
-        ascii: global.ascii,
-        library: global.library.clone(),
-        sensor: by_hand.map_or_else(Given::default, |(_, own)| Given::of(own)),
-    };
-    let settings = Effective::new(loaded, chosen, std::env::var_os)?;
-    let charset = settings.charset(Charset::current());
+    if let Some((name, own)) = by_hand {
+        let look = match name {
+            "watch" => Look::from_arg_matches(own)?,
+            _ => Look::default(),
+        };
+        settings = settings.with(&look, &Given::of(own))?;
+    }
+    let charset = settings.charset.made().unwrap_or(Charset::current());
     charset.set();
-    let shelf = Shelf::new(settings.library.clone(), global.library.is_some());
+    let shelf = Shelf::new(settings.library.clone(), is_library_named);
     let cx = Context {
         settings,
         shelf,
@@ -208,7 +207,7 @@ fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
 /// What every command has at hand.
 #[derive(Debug)]
 pub(crate) struct Context {
-    pub(crate) settings: Effective,
+    pub(crate) settings: Settings,
     pub(crate) shelf: Shelf,
     pub(crate) charset: Charset,
 }

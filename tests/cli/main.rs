@@ -15,8 +15,6 @@ mod skip;
 #[path = "../common/wait.rs"]
 mod wait;
 
-mod config;
-
 mod figure;
 
 mod describe;

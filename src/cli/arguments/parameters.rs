@@ -18,7 +18,7 @@ use taxel_core::quote::joined;
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 
 use crate::cli::failure::Failure;
-use crate::cli::settings::resolved::{Effective, Pitch};
+use crate::cli::settings::{Pitch, Settings};
 
 /// The flags of some parameters, under one heading.
 pub(crate) trait Group: Clone + Debug + Send + Sync + 'static {
@@ -326,11 +326,11 @@ impl Given {
     }
 
     /// The pitch that the flag gives, and that of the settings.
-    pub(crate) fn pitch(&self, settings: &Effective) -> Result<Pitch, Failure> {
+    pub(crate) fn pitch(&self, settings: &Settings) -> Result<Pitch, Failure> {
         let given = self.fold(&[Parameter::Pitch], None, |_, parameter, value| {
             Sensor::LARGEST.check(parameter, value).map(Some)
         })?;
-        let usual = settings.pitch;
+        let usual = settings.pitch();
         Ok(Pitch { given, usual })
     }
 

@@ -37,6 +37,6 @@ pub(crate) struct Config {
 impl Config {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         let settings = cx.settings.with(&self.look, &self.sensor)?;
-        cx.print(&settings.text(cx.charset))
+        cx.print(&settings.text()?)
     }
 }

@@ -6,7 +6,6 @@
 use std::fs::File;
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, ErrorKind, Write};
-use std::iter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -19,8 +18,7 @@ use crate::cli::Context;
 use crate::cli::arguments::parameters::{Given, SensorFlags};
 use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
-use crate::cli::settings::file::AUTO;
-use crate::cli::settings::resolved::{Choice, Effective};
+use crate::cli::settings::{Choice, Choosable, Settings};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
 use crate::tui::live::message::{LiveMessage, WatchRequest};
@@ -35,24 +33,19 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 #[derive(Debug, Default, clap::Args)]
 pub(crate) struct Look {
     /// Colours: auto, never, 16, 256 or true
-    #[arg(long, value_parser = choice(&ColorDepth::NAMES), value_name = "COLOR", hide_possible_values = true, help_heading = "Terminal")]
+    #[arg(long, value_parser = choice::<ColorDepth>(), value_name = "COLOR", hide_possible_values = true, help_heading = "Terminal")]
     pub(crate) color: Option<Choice<ColorDepth>>,
     /// Theme: auto, dark, light or mono
-    #[arg(long, value_parser = choice(&Palette::NAMES), value_name = "THEME", hide_possible_values = true, help_heading = "Terminal")]
+    #[arg(long, value_parser = choice::<Palette>(), value_name = "THEME", hide_possible_values = true, help_heading = "Terminal")]
     pub(crate) theme: Option<Choice<Palette>>,
     /// Leave the mouse to the terminal
     #[arg(long, help_heading = "Terminal")]
     pub(crate) no_mouse: bool,
 }
 
-fn choice<T: Copy + Send + Sync + 'static>(
-    names: &'static [(&'static str, T)],
-) -> impl TypedValueParser<Value = Choice<T>> {
-    let all = iter::once(AUTO).chain(names.iter().map(|(name, _)| *name));
-    PossibleValuesParser::new(all).map(|name| {
-        let found = names.iter().find(|(own, _)| *own == name);
-        found.map_or(Choice::Auto, |(_, value)| Choice::Made(*value))
-    })
+fn choice<T: Choosable>() -> impl TypedValueParser<Value = Choice<T>> {
+    PossibleValuesParser::new(Choice::<T>::names())
+        .map(|name| Choice::named(&name).unwrap_or_default())
 }
 
 #[derive(Debug, clap::Args)]
@@ -86,24 +79,25 @@ pub(crate) fn watch(cx: &Context, look: &Look, watched: WatchRequest) -> Result<
 /// Runs the screen until the user quits.
 pub(crate) fn open(
     cx: &Context,
-    settings: &Effective,
+    settings: &Settings,
     size: Option<(u16, u16)>,
     record: Option<PathBuf>,
     watched: Option<WatchRequest>,
 ) -> Result<(), Failure> {
     let flags = Flags {
-        color: settings.color,
-        palette: settings.theme,
+        color: settings.color.made(),
+        palette: settings.theme.made(),
         // A locale that is not UTF-8 means ASCII; a UTF-8 locale tells nothing about the terminal's font.
-        ascii: settings
-            .ascii
-            .or((cx.charset == Charset::Ascii).then_some(true)),
+        ascii: match settings.charset {
+            Choice::Made(charset) => Some(charset == Charset::Ascii),
+            Choice::Auto => (cx.charset == Charset::Ascii).then_some(true),
+        },
         no_mouse: !settings.mouse,
         size,
     };
     let terminal = TerminalSettings::from_environment(std::env::var_os, &flags);
     let options = Options {
-        sensor: settings.sensor,
+        sensor: settings.sensor(),
         theme: terminal.theme,
         // A different seed each time.
         seed: RandomState::new().hash_one(0),
@@ -111,7 +105,7 @@ pub(crate) fn open(
     let mut world = World::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
     let app = App::new(&options)
         .with_keymap(settings.keymap().clone())
-        .with_watch_settings(settings.sensors().request());
+        .with_watch_settings(settings.watch_request());
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
     let mut record = match record {
         Some(path) => {

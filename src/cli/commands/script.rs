@@ -98,7 +98,7 @@ pub(crate) struct Script {
 impl Script {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         // Whatever the locale: a script, its screens and its messages are the same everywhere.
-        cx.settings.charset(Charset::Unicode).set();
+        cx.settings.charset.made().unwrap_or(Charset::Unicode).set();
         let keys = parse(self.keys.as_deref().unwrap_or(""));
         let keys = keys.map_err(|error| Failure::usage(format!("-k: {error}")))?;
         if let Some(folder) = &self.svg {
@@ -154,7 +154,7 @@ impl Script {
         };
         let options = ScriptOptions {
             options: Options {
-                sensor: cx.settings.sensor,
+                sensor: cx.settings.sensor(),
                 theme,
                 seed: 0,
             },

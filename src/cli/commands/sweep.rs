@@ -167,7 +167,7 @@ impl Sweep {
             }
             return moved(picture, &Given::default(), &self.sensor, &cx.shelf);
         }
-        let sensor = self.sensor.sensor(cx.settings.sensor)?;
+        let sensor = self.sensor.sensor(cx.settings.sensor())?;
         let kind = self.kind.unwrap_or(FigureKind::Ellipse);
         Ok((Source::Figure(self.sizes.figure(kind, &sensor)?), sensor))
     }

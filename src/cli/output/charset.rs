@@ -110,7 +110,7 @@ impl Charset {
         column
     }
 
-    fn has(self, character: char) -> bool {
+    pub(crate) fn has(self, character: char) -> bool {
         match self {
             Self::Ascii => matches!(character, ' '..='~'),
             Self::Unicode => !character.is_control() && !is_invisible(character),

@@ -11,7 +11,7 @@ use crate::tui::keys::default_keys::{PLACES, Place};
 use crate::tui::keys::key::{Arrow, Key, parse};
 
 /// The places in which keys have a meaning: pages, and parts of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Context {
     Matrix,
     Hold,

@@ -1,9 +1,9 @@
 //! Texts and arrays: shapes, jobs, imprints in every format, ranges, numpy headers, settings.
 
-use taxel::cli::settings::file::Config;
+use taxel::cli::settings::Settings;
 use taxel_core::imprint::Imprint;
 use taxel_core::pose::{DecimalRange, MAX_VALUES};
-use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::sensor::Sensor;
 use taxel_core::sweep::Shard;
 use taxel_core::touch::Plane;
 use taxel_files::formats::numpy::{Elements, Header, Number, header};
@@ -80,15 +80,19 @@ pub(crate) fn config(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
         return false;
     };
-    match Config::read(text) {
-        Ok(config) => {
-            assert!(config.sensor_entries().len() <= SENSOR_PARAMETERS.len());
-            true
-        }
+    match Settings::read(text) {
+        Ok(_) => true,
         Err(error) => {
+            let line = error
+                .strip_prefix("line ")
+                .and_then(|error| error.split(',').next());
+            let line = line.and_then(|line| line.parse::<usize>().ok());
             let lines = text.split('\n').count();
-            assert!((1..=lines).contains(&error.line), "{error}");
-            refused(&error.to_string())
+            assert!(
+                line.is_some_and(|line| (1..=lines).contains(&line)),
+                "{error}"
+            );
+            refused(&error)
         }
     }
 }
