@@ -5,14 +5,10 @@
 
 use std::io;
 
-use taxel_core::frame::FrameError;
 use taxel_core::quote::shortened_message;
 use taxel_core::recognition::{NoiseError, TrainingError};
-use taxel_files::acquire::RecorderError;
 use taxel_files::formats::file::{system_reason, write_reason};
-use taxel_files::formats::recording::RecordingNote;
 use taxel_files::storage::{FileError, LibraryError};
-use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::failure::Failure;
 
@@ -22,20 +18,6 @@ pub(crate) enum CliError {
     Failure(Failure),
     #[error(transparent)]
     Usage(#[from] clap::Error),
-    #[error("--{flag} has no effect {reason}")]
-    Unused { flag: &'static str, reason: String },
-    #[error("--{flag} {text} {complaint}")]
-    Range {
-        flag: String,
-        text: String,
-        complaint: String,
-    },
-    #[error("{name}: {error}")]
-    Input { name: String, error: ReadError },
-    #[error("{name}: empty, expected frames of a sensor")]
-    Empty { name: String },
-    #[error("cannot write to standard output: {}", system_reason(.0))]
-    Write(io::Error),
     #[error("{}{}", shortened_message(&.0.to_string()), place_advice(.0))]
     Library(#[from] LibraryError),
     #[error(transparent)]
@@ -50,14 +32,6 @@ pub(crate) enum CliError {
     NoFolder { name: String },
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes { broken: usize, shapes: usize },
-    #[error("{name}: {}{}", shortened_message(&.error.to_string()), size_advice(.error))]
-    Recording { name: String, error: ReadError },
-    #[error("{error}{help}", error = .0, help = advice(.0))]
-    Recorder(RecorderError),
-    #[error("{name}: {}", shortened_message(.message))]
-    Frames { name: String, message: String },
-    #[error(transparent)]
-    Archive(ReadError),
     #[error("stopped; nothing was written")]
     Stopped { status: u8 },
     #[error("{}", system_reason(.0))]
@@ -76,13 +50,6 @@ impl From<FileError> for CliError {
     }
 }
 
-fn advice(error: &RecorderError) -> &'static str {
-    match error {
-        RecorderError::Exists { .. } => "; --force replaces it",
-        _ => "",
-    }
-}
-
 fn place_advice(error: &LibraryError) -> &'static str {
     match error {
         LibraryError::NoPlace => "; name a folder with --library DIR or TAXEL_LIBRARY",
@@ -90,52 +57,11 @@ fn place_advice(error: &LibraryError) -> &'static str {
     }
 }
 
-/// Returns the end of a message that says what to do if a recording does not state the size of its frames; empty for
-/// other errors.
-fn size_advice(error: &ReadError) -> &'static str {
-    if error.kind == ReadErrorKind::Unsized {
-        "; give --rows and --columns"
-    } else {
-        ""
-    }
-}
-
-pub(crate) fn note_advice(note: &RecordingNote) -> &'static str {
-    match note {
-        RecordingNote::Flat(_) => "; if so, give --rows and --columns",
-        _ => "",
-    }
-}
-
-pub(crate) fn frame_advice(error: &FrameError) -> &'static str {
-    match error {
-        FrameError::NoTare => ", such as --tare 30",
-        _ => "",
-    }
-}
-
 impl CliError {
-    /// Puts the flag that gave a file before the file's name, if the error is in the file.
-    pub(crate) fn of_flag(self, flag: &str) -> Self {
-        match self {
-            Self::Input { name, error } => {
-                let name = format!("{flag} {name}");
-                Self::Input { name, error }
-            }
-            error => error,
-        }
-    }
-
-    /// Returns true if the reader of our output has closed it, as in `taxel batch | head -1`. This is not an error.
-    pub(crate) fn is_closed_pipe(&self) -> bool {
-        matches!(self, Self::Write(error) if error.kind() == io::ErrorKind::BrokenPipe)
-    }
-
     pub(crate) fn status(&self) -> u8 {
         match self {
-            _ if self.is_closed_pipe() => 0,
             Self::Failure(failure) => failure.status,
-            Self::Usage(_) | Self::Unused { .. } => 2,
+            Self::Usage(_) => 2,
             Self::Stopped { status } => *status,
             _ => 1,
         }

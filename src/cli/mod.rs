@@ -38,13 +38,11 @@ pub mod settings;
 mod commands;
 
 use std::ffi::OsString;
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::FromArgMatches;
 
-use arguments::flags::Form;
-use arguments::frames::FramesArguments;
 use arguments::help::{ABOUT, EXAMPLES};
 use arguments::library::LibraryCommand;
 use arguments::parameters::Given;
@@ -53,18 +51,19 @@ use commands::batch::Batch;
 use commands::completions::Completions;
 use commands::config::Config;
 use commands::describe::Describe;
-use commands::export::{ExportCommand, Kept};
+use commands::export::ExportCommand;
 use commands::figure::Figure;
-use commands::frames::{self, FramesOutput};
+use commands::frames::Frames;
+use commands::library;
 use commands::man::Man;
 use commands::merge::Merge;
 use commands::model::ModelCommand;
 use commands::picture::Picture;
 use commands::recognise::Recognise;
-use commands::screen::{self, Look, Screen};
+use commands::screen::{Look, Screen};
 use commands::script::Script;
 use commands::sweep::Sweep;
-use commands::{library, watch};
+use commands::watch::Watch;
 use error::CliError;
 use failure::Failure;
 use input::shapes::Shelf;
@@ -110,6 +109,8 @@ enum Command {
     Model(ModelCommand),
     #[command(alias = "recognize")]
     Recognise(Recognise),
+    Frames(Box<Frames>),
+    Watch(Box<Watch>),
     Config(Config),
     Completions(Completions),
     Man(Man),
@@ -128,6 +129,8 @@ impl Command {
             Self::Merge(command) => command.run(cx),
             Self::Model(command) => command.run(cx),
             Self::Recognise(command) => command.run(cx),
+            Self::Frames(command) => command.run(cx),
+            Self::Watch(command) => command.run(cx),
             Self::Config(command) => command.run(cx),
             Self::Completions(command) => command.run(cx),
             Self::Man(command) => command.run(cx),
@@ -178,12 +181,8 @@ fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
     let by_hand = matches
         .subcommand()
         .filter(|(name, _)| !<Command as clap::Subcommand>::has_subcommand(name));
-    if let Some((name, own)) = by_hand {
-        let look = match name {
-            "watch" => Look::from_arg_matches(own)?,
-            _ => Look::default(),
-        };
-        settings = settings.with(&look, &Given::of(own))?;
+    if let Some((_, own)) = by_hand {
+        settings = settings.with(&Look::default(), &Given::of(own))?;
     }
     let charset = settings.charset.made().unwrap_or(Charset::current());
     charset.set();
@@ -237,54 +236,10 @@ fn write(bytes: &[u8]) -> Result<(), Failure> {
 // The commands that are still read by hand.
 impl Context {
     fn run(&self, request: Request) -> Result<(), CliError> {
-        let shelf = &self.shelf;
         match request {
-            // On a terminal, a page shows the frames; in a pipeline, they are answered in lines.
-            Request::Watch(asked) if !asked.json && io::stdout().is_terminal() => {
-                let request = watch::request(&asked, shelf)?;
-                return Ok(screen::open(
-                    self,
-                    &self.settings,
-                    None,
-                    None,
-                    Some(request),
-                )?);
-            }
-            Request::Watch(asked) => {
-                match watch::watch(&asked, shelf, &mut |text| self.note(text))? {
-                    0 => {}
-                    status => return Err(Failure::silent(status).into()),
-                }
-            }
-            Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
             Request::Library(asked) => self.library(asked)?,
         }
         Ok(())
-    }
-
-    /// Runs `taxel frames`. If an error occurs, the answers made before it are still printed.
-    fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
-        let processing = input::recording::processing(&asked.processing)?;
-        let found = asked
-            .naming
-            .find(processing.view.mask.as_ref(), &self.shelf)?;
-        let recording = frames::open(asked)?;
-        let namer = found
-            .map(|found| found.ready(false, self.charset))
-            .transpose()?;
-        let mut answers = BufWriter::new(io::stdout().lock());
-        let output = FramesOutput {
-            form,
-            kept,
-            shelf: &self.shelf,
-            charset: self.charset,
-            namer,
-            answers: &mut answers,
-            notes: &mut |text| self.note(text),
-        };
-        let done = frames::frames(asked, recording, &processing, output);
-        answers.flush().map_err(CliError::Write)?;
-        done
     }
 
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {

@@ -578,31 +578,3 @@ impl Pitch {
 pub(crate) mod resolved {
     pub(crate) use super::{Pitch, Settings as Effective};
 }
-
-pub(crate) mod sensors {
-    pub(crate) use super::Settings as SensorSettings;
-
-    pub(crate) const LEAST: std::ops::RangeInclusive<u32> = 1..=4096;
-}
-
-impl Settings {
-    pub(crate) fn sensors(&self) -> &Self {
-        self
-    }
-
-    pub(crate) fn rule(&self) -> Option<Rule> {
-        self.frames.rule()
-    }
-
-    pub(crate) fn tare(&self) -> Option<u64> {
-        self.frames.tare
-    }
-
-    pub(crate) fn least(&self) -> Option<u32> {
-        self.frames.least
-    }
-
-    pub(crate) fn history_bytes(&self) -> usize {
-        self.frames.history_bytes
-    }
-}

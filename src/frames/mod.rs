@@ -119,6 +119,15 @@ impl Pipeline {
         pipeline
     }
 
+    /// The same tare for another processing.
+    #[must_use]
+    pub fn with(&self, processing: Processing) -> Self {
+        Self {
+            processing,
+            ..self.clone()
+        }
+    }
+
     pub fn rule(&self) -> Option<SetRule> {
         self.processing.applied_rule()
     }

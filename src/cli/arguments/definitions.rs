@@ -3,15 +3,13 @@
 use clap::{Command, CommandFactory};
 
 use crate::cli::Program;
-use crate::cli::arguments::{frames, library};
+use crate::cli::arguments::library;
 
 /// Defines the program with all its commands. Completions and manual pages are made from this too, so a new command
 /// appears in them by itself.
 pub(crate) fn all() -> Command {
     let program = Program::command()
         .term_width(80)
-        .subcommand(frames::command())
-        .subcommand(frames::watch())
         .subcommand(library::command());
     in_order(with_negative_numbers(program))
 }

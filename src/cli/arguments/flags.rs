@@ -11,7 +11,7 @@ use std::ops::{Bound, RangeBounds};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{OsStringValueParser, PossibleValuesParser, StyledStr, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches};
 use taxel_core::parameter::{Parameter, UnknownName, number};
@@ -29,13 +29,6 @@ pub(crate) fn switch(name: &'static str, help: &'static str) -> Arg {
         .long(name)
         .action(ArgAction::SetTrue)
         .help(help)
-}
-
-pub(crate) fn option(name: &'static str, value: &'static str, help: impl Into<StyledStr>) -> Arg {
-    Arg::new(name)
-        .long(name)
-        .value_name(value)
-        .help(help.into())
 }
 
 /// Parses a name, file or other source, which must not be empty.
@@ -79,10 +72,6 @@ where
 }
 
 pub(crate) const TOO_LITTLE_MEMORY: &str = "take coarser steps, work in shards (--shard 1/8, ..., then taxel merge), or allow more (--memory)";
-
-pub(crate) fn replace() -> Arg {
-    force().help("Replace an existing file")
-}
 
 pub(crate) fn existing(matches: &ArgMatches) -> Existing {
     if matches.get_flag("force") {

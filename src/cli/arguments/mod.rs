@@ -11,8 +11,6 @@ pub(crate) mod parameters;
 
 pub(super) mod library;
 
-pub(super) mod frames;
-
 pub(super) mod definitions;
 
 pub(super) mod request;

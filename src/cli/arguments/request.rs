@@ -9,25 +9,20 @@ use std::path::Path;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Command, FromArgMatches};
+use clap::{ArgMatches, Command};
 use taxel_core::figure::FigureKind;
 use taxel_core::quote::{as_argument, joined};
 use taxel_files::formats::file::has_ending;
 
 use crate::cli::arguments::definitions;
-use crate::cli::arguments::flags::{Form, Given, unhandled_subcommand};
-use crate::cli::arguments::frames::{FramesArguments, WatchArguments};
+use crate::cli::arguments::flags::{Given, unhandled_subcommand};
 use crate::cli::arguments::library::LibraryCommand;
-use crate::cli::commands::export::{KeepFlags, Kept};
 use crate::cli::error::CliError;
-use crate::cli::failure::Failure;
 use crate::cli::settings::resolved::Effective;
 
 /// A command that is read by hand.
 #[derive(Clone, Debug)]
 pub(crate) enum Request {
-    Frames(Box<FramesArguments>, Form, Kept),
-    Watch(Box<WatchArguments>),
     Library(LibraryCommand),
 }
 
@@ -114,20 +109,7 @@ pub(crate) fn request(
     own: &ArgMatches,
     settings: &Effective,
 ) -> Result<Request, CliError> {
-    let form = || Form::of(own, settings);
     Ok(match name {
-        "watch" => Request::Watch(Box::new(WatchArguments::of(own, settings.sensors())?)),
-        "frames" => {
-            let kept = KeepFlags::from_arg_matches(own)?.kept(own.get_flag("json"))?;
-            let to = kept.export.as_ref().map(|export| export.path.is_none());
-            if to == Some(true) && own.get_flag("all") {
-                let text = "the argument '--all' cannot be used with '--export -', which takes one frame; \
-                            with a name each frame has a file of its own";
-                return Err(Failure::usage(text).into());
-            }
-            let asked = FramesArguments::of(own, settings.sensors())?;
-            Request::Frames(Box::new(asked), form()?, kept)
-        }
         "library" => Request::Library(LibraryCommand::of(own, settings)?),
         other => return Err(unhandled_subcommand(other)),
     })

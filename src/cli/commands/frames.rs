@@ -1,425 +1,761 @@
 //! `taxel frames`: lists a recording, or answers its frames as imprints.
 //!
 //! A recording is read once to list it, and again for each step that needs all frames first: the tare, and the peak
-//! after a tare. So memory does not grow with its length.
-//!
-//! A listing shows what the recording states about each channel; an answer is an imprint with what was measured:
-//! ```text
-//! $ taxel frames plain.csv …                             $ taxel frames plain.csv … --peak --at-least 3
-//! csv, 1 channel                                             0   2   4
-//!                                                         0  · · · · ·
-//! frames    1                                             1  · ██████·
-//! size      4 rows × 5 columns, 20 cells                  2  · · ████·
-//! peak      frame 0                                       3  · · · · ·
-//!
-//!                                                        plain.csv, frame 0
-//!                                                        raw sum 42, raw max 9
-//!                                                        force 34, centre of pressure (2.71, 1.85)
-//!                                                        active: 3 or more (from a flag)
-//! ```
-//! A damage does not stop the command at once: everything before it is listed or answered, then it is reported as the
-//! error.
+//! after a tare. So memory does not grow with its length. A damage does not stop the command at once: everything before
+//! it is listed or answered, then it is reported as the error.
 
-use std::io::Write;
+use std::fmt::Display;
+use std::io::{self, BufWriter, Write};
 use std::ops::{ControlFlow, Range};
-use std::slice;
+use std::path::PathBuf;
 
+use clap::{Arg, ArgGroup};
+use serde::Serialize;
 use taxel_core::frame::{
-    FlipReport, Frame, Label, Processed, Processing, Rule, RuleOrigin, SetRule,
+    FlipCounter, FlipReport, Frame, FrameError, FrameSize, Label, Peak, Processed, Rule,
+    RuleOrigin, SetRule, View,
 };
 use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::short;
 use taxel_core::sensor::Sensor;
-use taxel_files::formats::recording::{ChannelInfo, FrameAnswer, unshaped};
-use taxel_files::formats::value::counted;
+use taxel_files::ReadError;
+use taxel_files::formats::recording::{
+    ChannelInfo, Format, FrameAnswer, RecordingEvent, RecordingNote, no_channel, unshaped,
+};
+use taxel_files::formats::value::{counted, decimal, grouped};
 use taxel_files::formats::{Name, StoredShape, json};
 use taxel_files::storage::{self, check_writable};
 
-use crate::cli::arguments::flags::Form;
-use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
-use crate::cli::commands::export::{Export, Kept, drawing, written};
-use crate::cli::commands::recognise::Namer;
-use crate::cli::commands::recording_scan::{self, Scan};
-use crate::cli::error::{CliError, frame_advice};
-use crate::cli::input::recording::{self, RecordingFile};
-use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::Charset;
+use crate::cli::Context;
+use crate::cli::arguments::flags::whole;
+use crate::cli::arguments::parameters::PitchFlag;
+use crate::cli::commands::export::{Export, KeepFlags, Kept, drawing, written};
+use crate::cli::commands::frame_flags::FrameFlags;
+use crate::cli::commands::recognise::{Namer, NamingFlags};
+use crate::cli::failure::Failure;
+use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::output::plot::heat_map;
-use crate::cli::output::recording_list::{self, ListedChannel};
 use crate::cli::output::report;
-use crate::cli::settings::resolved::Pitch;
+use crate::frames::{Pipeline, Taring};
 
-pub(crate) struct FramesOutput<'a> {
-    pub(crate) form: Form,
-    pub(crate) kept: Kept,
-    pub(crate) shelf: &'a Shelf,
-    pub(crate) charset: Charset,
-    pub(crate) namer: Option<Namer>,
-    pub(crate) answers: &'a mut dyn Write,
-    pub(crate) notes: &'a mut dyn FnMut(&str),
-}
-
-impl FramesOutput<'_> {
-    fn write(&mut self, text: impl AsRef<[u8]>) -> Result<(), CliError> {
-        self.answers
-            .write_all(text.as_ref())
-            .map_err(CliError::Write)
-    }
-}
-
-pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
-    RecordingFile::open(&asked.file, asked.processing.reading())
-}
-
-pub(crate) fn frames(
-    asked: &FramesArguments,
-    mut recording: RecordingFile,
-    processing: &Processing,
-    mut output: FramesOutput<'_>,
-) -> Result<(), CliError> {
-    let mut scan = Scan::of(&mut recording, &processing.view);
-    for warning in recording
-        .complaint()
-        .map(str::to_owned)
-        .into_iter()
-        .chain(scan.warnings(recording.name()))
-    {
-        (output.notes)(&format!("warning: {warning}"));
-    }
-    let wanted = asked.processing.channel.as_deref();
-    if let Some(unused) = scan.unused_size(asked.processing.size, wanted) {
-        (output.notes)(&format!("warning: {}: {unused}", recording.name()));
-    }
-    let damage = scan.error.take().map(|error| recording.damaged(error));
-    if scan.channels.is_empty() {
-        return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
-    }
-    let choice = match &asked.choice {
-        None if !asked.csv => {
-            list(&scan, &recording, asked, &mut output)?;
-            return damage.map_or(Ok(()), Err);
-        }
-        choice => choice.clone().unwrap_or(FrameChoice::All),
-    };
-    let every = asked.choice.is_none() && wanted.is_none();
-    let channels = if every {
-        0..scan.channels.len()
-    } else {
-        let channel = scan.channel(&recording, wanted)?;
-        channel..channel + 1
-    };
-    let mut answered = false;
-    for channel in channels.clone() {
-        let listed = &scan.channels[channel];
-        let tare = recording::unused_tare(&asked.processing, &listed.info, &processing.view);
-        tare.inspect(|unused| (output.notes)(&format!("warning: {}: {unused}", recording.name())));
-        let own = (&choice, processing.clone());
-        let selected = Selection::new(asked, own, &mut recording, (channel, listed));
-        let (selection, mut processing) = match selected {
-            Ok(selected) => selected,
-            // If frames are missing, the damage is the reason.
-            Err(error) => return Err(damage.unwrap_or(error)),
-        };
-        if let Some(unknown) = recording::unknown_step(&processing) {
-            (output.notes)(&format!("warning: {}: {unknown}", recording.name()));
-        }
-        if asked.csv && channel == channels.start {
-            output.write(FrameAnswer::csv_header())?;
-        }
-        answered |= if choice == FrameChoice::NoiseReport {
-            report_noise(&mut recording, channel, &mut processing, &mut output)?
-        } else {
-            selection.answer(&mut recording, listed, &mut processing, &mut output)?
-        };
-    }
-    match damage {
-        Some(damage) => Err(damage),
-        None if answered => Ok(()),
-        None => Err(recording.refused(&missing(&choice, &scan.channels[channels.start]))),
-    }
-}
-
-fn list(
-    scan: &Scan,
-    recording: &RecordingFile,
-    asked: &FramesArguments,
-    output: &mut FramesOutput<'_>,
-) -> Result<(), CliError> {
-    if let Some(misfit) = &scan.misfit {
-        return Err(recording.refused(misfit));
-    }
-    let wanted = asked.processing.channel.as_deref();
-    let listed = match wanted {
-        Some(_) => slice::from_ref(&scan.channels[scan.channel(recording, wanted)?]),
-        None => &scan.channels[..],
-    };
-    output.write(match output.form {
-        Form::Json(_) => recording_list::json(scan.format, listed, &scan.plain),
-        Form::Table(_) => recording_list::text(scan.format, listed, &scan.plain, output.charset),
-    })
-}
-
-/// Refuses a file that would replace the recording, or that cannot be written, before the first of several is written.
-fn check(export: &Export, recording: &RecordingFile) -> Result<(), CliError> {
-    let Some(path) = &export.path else {
-        return Ok(());
-    };
-    recording.refuse_as_target(path)?;
-    Ok(check_writable(path, export.existing)?)
-}
-
-/// Reports which taxels of a channel flip or are stuck, and writes the mask of the stuck ones if a file is given.
-/// Returns false, and reports nothing, if the channel has no frames.
-fn report_noise(
-    recording: &mut RecordingFile,
-    channel: usize,
-    processing: &mut Processing,
-    output: &mut FramesOutput<'_>,
-) -> Result<bool, CliError> {
-    let export = output.kept.export.as_ref();
-    export.map_or(Ok(()), |export| check(export, recording))?;
-    let found = recording_scan::gather(recording, channel, processing)?;
-    let found = found.map(|found| write_noise(&found, recording.name(), output));
-    Ok(found.transpose()?.is_some())
-}
-
-fn write_noise(
-    found: &FlipReport,
-    name: &str,
-    output: &mut FramesOutput<'_>,
-) -> Result<(), CliError> {
-    let title = format!("{name}: dead and stuck taxels");
-    let mut said = None;
-    if let Some(export) = &output.kept.export {
-        let content = (export.format.write)(&drawing(&found.mask(), None, &title, None));
-        let Some(path) = &export.path else {
-            return output.write(content);
-        };
-        storage::write(path, &content, export.existing)?;
-        said = Some(written(path));
-    }
-    if let Form::Json(_) = output.form {
-        if let Some(said) = said {
-            (output.notes)(&said);
-        }
-        return output.write(recording_scan::json(found));
-    }
-    let text = said.map_or(String::new(), |said| said + "\n") + &recording_scan::text(found);
-    output.write(output.charset.lines(&text))
-}
-
-fn missing(choice: &FrameChoice, listed: &ListedChannel) -> String {
-    match choice {
-        FrameChoice::Label(label) if listed.frames > 0 => {
-            let found = match &listed.labels {
-                None => {
-                    ": the frames have no labels, only numbers; choose one with --frame".to_owned()
-                }
-                Some((least, greatest)) if least == greatest => {
-                    format!("; the only label is {least}")
-                }
-                Some((least, greatest)) => format!("; the labels go from {least} to {greatest}"),
-            };
-            format!("no frame is labelled {label}{found}")
-        }
-        FrameChoice::Number(number) if listed.frames > 0 => match listed.frames - 1 {
-            0 => format!("no frame {number}; the recording has only frame 0"),
-            last => format!("no frame {number}, expected 0 to {last}"),
-        },
-        FrameChoice::Peak if listed.frames > 0 => {
-            "no frame has a cell with a value, so none is the peak".to_owned()
-        }
-        _ => "no frames".to_owned(),
-    }
-}
-
-struct FoundFrame<'a> {
-    name: &'a str,
-    listed: &'a ListedChannel,
-    frame: &'a Frame,
-    processed: Processed<'a>,
-}
-
-impl FoundFrame<'_> {
-    fn answer(&self) -> FrameAnswer<'_> {
-        FrameAnswer {
-            frame: self.frame,
-            channel: self.listed.info.name.as_deref(),
-            processed: self.processed,
-        }
-    }
-
-    fn line(&self, imprint: &Imprint, output: &mut FramesOutput<'_>) -> Vec<u8> {
-        let mut line = json::ascii(&self.answer()).into_bytes();
-        match &mut output.namer {
-            Some(namer) => namer.extend(&mut line, Some(imprint)),
-            None => line.push(b'\n'),
-        }
-        line
-    }
-}
-
-struct Selection {
-    choice: FrameChoice,
-    number: Option<u64>,
-    channel: usize,
+#[derive(Debug, clap::Args)]
+#[command(about = "List a recording of a real sensor, or describe its frames")]
+#[command(after_help = EXAMPLES)]
+#[command(group = ArgGroup::new("choice").args(CHOICES))]
+#[command(group = ArgGroup::new("answered").args(CHOICES).arg("csv").multiple(true))]
+#[command(mut_args(of_answers))]
+pub(crate) struct Frames {
+    /// Recording; '-' for standard input
+    file: PathBuf,
+    /// Frame N of the channel, from 0
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0..), help_heading = "Frames")]
+    frame: Option<u64>,
+    /// The frame with the label L in the recording
+    #[arg(
+        long,
+        value_name = "L",
+        allow_hyphen_values = true,
+        help_heading = "Frames"
+    )]
+    label: Option<Label>,
+    /// The frame with the greatest sum, after tare and gain
+    #[arg(long, help_heading = "Frames")]
+    peak: bool,
+    /// All frames, one after the other
+    #[arg(long, help_heading = "Frames")]
+    all: bool,
+    /// How often taxels flip, and which are dead or stuck
+    #[arg(long, help_heading = "Frames")]
+    noise_report: bool,
+    /// Print JSON, one line per answer
+    #[arg(long, conflicts_with_all = ["heat", "csv"])]
+    json: bool,
+    // A table has a line for each frame and no place for other answers.
+    #[arg(long, conflicts_with_all = ["noise_report", "heat", "model", "save", "export"])]
+    #[arg(
+        help = "Print CSV, one line per frame: force, contact,\ncentre of pressure, descriptors"
+    )]
     csv: bool,
+    /// Show the values as shades, also in drawings
+    #[arg(long, requires = "choice", conflicts_with = "noise_report")]
     heat: bool,
+    #[command(flatten)]
+    frames: FrameFlags,
+    #[command(flatten)]
+    naming: NamingFlags,
+    #[command(flatten)]
+    pitch: PitchFlag,
+    #[command(flatten)]
+    keep: KeepFlags,
 }
 
-impl Selection {
-    /// Selects the frames of the flags, and completes their processing: with the rule, and with the tare and the
-    /// peak, for which the recording is read again.
-    fn new(
-        asked: &FramesArguments,
-        (choice, mut processing): (&FrameChoice, Processing),
-        recording: &mut RecordingFile,
-        (channel, listed): (usize, &ListedChannel),
-    ) -> Result<(Self, Processing), CliError> {
-        if listed.info.size.is_none() {
-            let given = asked.processing.size;
-            return Err(recording.damaged(unshaped(listed.values, given)));
+const EXAMPLES: &str = "\
+A recording is a file from Tekscan or XSENSOR, or is MCAP, NPY, NPZ, JSON lines,
+the output of 'ros2 topic echo' or a table of numbers.
+taxel recognises the format from the content. Without a flag under Frames, it
+lists the channels. Frames are cropped, flipped, turned, masked, tared and
+multiplied by the gain, in this order; then the threshold makes the imprint.
+Values are in the recording's own unit.
+
+If a recording is damaged, taxel processes the complete frames before the
+damage and reports where the damage is; the exit status is 1.
+
+Examples:
+  taxel frames recording.csv
+  taxel frames recording.csv --peak --at-least 10
+  taxel frames recording.csv --all --percent 25 --tare 2 --json
+  taxel frames recording.csv --csv --tare 2 > force.csv
+  taxel frames recording.csv --frame 3 --low 5 --high 20 --heat --ascii
+  taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
+  taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
+  taxel frames recording.csv --noise-report --at-least 10 --export mask.txt
+  taxel frames plain.csv --rows 4 --columns 5 --label-column 21 \\
+    --time-column 22:ms --crop 1,0,3x3 --json";
+
+const EXPORT: &str = "Write the imprint, or a drawing of it, with the frame's number in the name, such as touch-0.svg for touch.svg; with --noise-report the mask";
+
+const CHOICES: [&str; 5] = ["frame", "label", "peak", "all", "noise_report"];
+
+/// A listing shows values as they are, wherever they lie, and a report on many frames has no place for one.
+fn of_answers(arg: Arg) -> Arg {
+    match arg.get_id().as_str() {
+        "tare" | "gain" | "flip" | "turn" | "at_least" | "percent" | "low" | "high"
+        | "deviations" | "least" => arg.requires("answered"),
+        "model" | "noise" | "pitch" => arg.requires("choice").conflicts_with("noise_report"),
+        "save" => arg
+            .requires("choice")
+            .conflicts_with_all(["all", "noise_report"]),
+        "export" => arg.requires("choice").help(EXPORT),
+        "force" => arg.help("Replace existing shapes and files, but never the recording"),
+        _ => arg,
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Choice {
+    Number(u64),
+    Label(Label),
+    Peak,
+    All,
+}
+
+impl Frames {
+    fn choice(&self) -> Option<Choice> {
+        match (self.frame, &self.label) {
+            (Some(number), _) => Some(Choice::Number(number)),
+            (_, Some(label)) => Some(Choice::Label(label.clone())),
+            _ if self.peak => Some(Choice::Peak),
+            _ if self.all || self.noise_report || self.csv => Some(Choice::All),
+            _ => None,
         }
-        let rule = recording::rule(recording, &asked.processing, &listed.info);
-        // Force and contact exist without a threshold, too.
-        processing.apply_rule(if asked.csv { rule.ok() } else { Some(rule?) });
-        match asked.processing.tare {
-            Some(0) => {}
-            Some(wanted) => {
-                let asked = &asked.processing;
-                recording::tare(recording, (channel, wanted), asked, &mut processing)?;
+    }
+
+    /// Whether a table is asked for and no choice of frames.
+    fn is_table_of_all(&self) -> bool {
+        self.csv && !self.all && self.choice() == Some(Choice::All)
+    }
+
+    /// If an error occurs, the answers made before it are still printed.
+    pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        let kept = self.keep.kept(self.json)?;
+        if self.all
+            && kept
+                .export
+                .as_ref()
+                .is_some_and(|export| export.path.is_none())
+        {
+            return Err(Failure::usage(
+                "the argument '--all' cannot be used with '--export -', which takes one frame; \
+                 with a name each frame has a file of its own",
+            ));
+        }
+        let pipeline = self
+            .frames
+            .pipeline(&cx.settings.watch_request().pipeline)?;
+        let mask = pipeline.processing.view.mask.as_ref();
+        let found = self.naming.find(mask, &cx.shelf)?;
+        let recording = RecordingFile::open(&self.file, self.frames.reading())?;
+        let namer = found
+            .map(|found| found.ready(false, cx.charset))
+            .transpose()?;
+        let mut output = BufWriter::new(io::stdout().lock());
+        let answering = Answering {
+            asked: &self,
+            cx,
+            name: recording.name.clone(),
+            pipeline,
+            namer,
+            pitch: self.pitch.pitch(&cx.settings)?.given,
+            kept,
+            output: &mut output,
+        };
+        let done = answering.run(recording);
+        output.flush().map_err(Failure::of_output)?;
+        done
+    }
+}
+
+/// What a first look at a recording finds: its channels, its oddities, and the damage at which it ends.
+#[derive(Debug, Default)]
+struct Scan {
+    /// None if a damage comes before the format is certain.
+    format: Option<&'static Format>,
+    channels: Vec<Channel>,
+    /// How the recording is read: what its times, labels and cells are.
+    plain: Vec<String>,
+    notes: Vec<RecordingNote>,
+    error: Option<ReadError>,
+    misfit: Option<FrameError>,
+}
+
+#[derive(Debug, Default)]
+struct Channel {
+    info: ChannelInfo,
+    /// The size of the visible part of its frames.
+    seen: Option<FrameSize>,
+    frames: u64,
+    peak: Peak,
+    values: u64,
+    cells: usize,
+    /// The least and the greatest label.
+    labels: Option<(Label, Label)>,
+    times: Option<Times>,
+    marked: Vec<u64>,
+}
+
+/// The times at which frames were taken, in seconds.
+#[derive(Clone, Copy, Debug)]
+struct Times {
+    first: f64,
+    last: f64,
+    /// The first frame that is earlier than the one before it: a clock was set back, or the column is not a time.
+    backwards: Option<u64>,
+}
+
+impl Scan {
+    fn of(recording: &mut RecordingFile, view: &View) -> Self {
+        let mut scan = Self::default();
+        let mut seen = Matrix::default();
+        let result = recording.read(&mut |event| {
+            match event {
+                RecordingEvent::Channel(info) => scan.channels.push(Channel {
+                    info: info.clone(),
+                    seen: info.size.map(|size| view.size(size).unwrap_or(size)),
+                    ..Channel::default()
+                }),
+                RecordingEvent::Frame(frame) => {
+                    let values = match view.apply_to(frame, &mut seen) {
+                        Ok(()) => seen.values(),
+                        Err(error) => {
+                            if view.crop.is_some() {
+                                scan.misfit.get_or_insert(error);
+                            }
+                            frame.values()
+                        }
+                    };
+                    if let Some(channel) = scan.channels.get_mut(frame.channel) {
+                        channel.add(frame, values);
+                    }
+                }
+                RecordingEvent::Note(note) if note.is_plain() => scan.plain.push(note.to_string()),
+                RecordingEvent::Note(note) => scan.notes.push(note.clone()),
+                RecordingEvent::Damage { .. }
+                | RecordingEvent::Provisional(_)
+                | RecordingEvent::Withdrawn => {}
             }
-            None => processing.tare = listed.info.tare_for(&processing.view).cloned(),
+            ControlFlow::Continue(())
+        });
+        match result {
+            Ok(format) => scan.format = Some(format),
+            Err(error) => {
+                scan.format = recording.format();
+                scan.error = Some(error);
+                recording.is_damaged = true;
+            }
         }
-        let number = match choice {
-            FrameChoice::Peak => recording::peak(recording, channel, listed, &mut processing)?,
-            FrameChoice::Number(number) => Some(*number),
-            FrameChoice::Label(_) | FrameChoice::All | FrameChoice::NoiseReport => None,
+        scan
+    }
+}
+
+impl Channel {
+    fn add(&mut self, frame: &Frame, values: &[f64]) {
+        let present = values.iter().filter(|value| !value.is_nan());
+        let cells = present.clone().count();
+        self.cells = self.cells.max(cells);
+        if cells > 0 {
+            self.peak.add(frame.number, Some(present.sum()));
+        }
+        if let Some(time) = frame.time {
+            let times = self.times.get_or_insert(Times {
+                first: time,
+                last: time,
+                backwards: None,
+            });
+            if time < times.last {
+                times.backwards.get_or_insert(frame.number);
+            }
+            times.last = time;
+        }
+        if let Some(label) = &frame.label {
+            let (least, greatest) = self
+                .labels
+                .get_or_insert_with(|| (label.clone(), label.clone()));
+            if label < least {
+                least.clone_from(label);
+            }
+            if label > greatest {
+                greatest.clone_from(label);
+            }
+        }
+        let number = frame.label.as_ref().and_then(Label::number);
+        let is_marked = |number| self.info.marks.iter().any(|mark| mark.number == number);
+        if number
+            .and_then(|number| u64::try_from(number).ok())
+            .is_some_and(is_marked)
+        {
+            self.marked.push(frame.number);
+        }
+        self.frames += 1;
+        self.values = self.info.values.unwrap_or(frame.values().len() as u64);
+    }
+
+    fn json(&self) -> ChannelJson<'_> {
+        let info = &self.info;
+        ChannelJson {
+            name: info.name.as_deref(),
+            frames: self.frames,
+            rows: self.seen.map(FrameSize::rows),
+            columns: self.seen.map(FrameSize::columns),
+            cells: self.cells,
+            unit: info.unit.as_deref(),
+            start: info.start.as_deref(),
+            seconds_per_frame: info.seconds_per_frame,
+            pitch_mm: info.pitch_mm,
+            threshold: info.threshold,
+            peak: self.peak.number(),
+            marks: &self.marked,
+        }
+    }
+
+    fn lines(&self) -> Vec<String> {
+        let info = &self.info;
+        let pitch = info.pitch_mm.map(|[x, y]| match info.square_pitch_mm() {
+            Some(side) => format!("{} mm", short(side)),
+            None => format!("{} mm across, {} mm down", short(x), short(y)),
+        });
+        let time = self.times.map(|times| {
+            let [first, last] = [times.first, times.last].map(|time| decimal(time, 9));
+            let back = times
+                .backwards
+                .map(|number| format!(", goes back at frame {number}"));
+            format!("{first} to {last} s{}", back.unwrap_or_default())
+        });
+        let marks: Vec<String> = self.marked.iter().map(u64::to_string).collect();
+        let step = info
+            .seconds_per_frame
+            .map(|step| format!("{} s", decimal(step, 6)));
+        let rows = [
+            ("channel", info.name.clone()),
+            ("frames", Some(self.frames.to_string())),
+            ("size", Some(self.size())),
+            ("unit", info.unit.clone()),
+            ("start", info.start.clone()),
+            ("time", time),
+            ("step", step),
+            ("pitch", pitch),
+            (
+                "threshold",
+                info.threshold.map(|value| short(value) + &unit(info)),
+            ),
+            ("marks", (!marks.is_empty()).then(|| marks.join(", "))),
+            (
+                "peak",
+                self.peak.number().map(|number| format!("frame {number}")),
+            ),
+        ];
+        let rows = rows.into_iter();
+        rows.filter_map(|(name, value)| Some(format!("{name:<10}{}", value?)))
+            .collect()
+    }
+
+    fn size(&self) -> String {
+        let Some(seen) = self.seen else {
+            let values = counted(self.values, "value");
+            return format!("{values} a frame; give --rows and --columns");
         };
-        let selection = Self {
-            choice: choice.clone(),
-            number,
-            channel,
-            csv: asked.csv,
-            heat: asked.heat,
+        let whole = self.info.size.filter(|whole| *whole != seen);
+        let whole = whole.map(|whole| format!(" of {} × {}", whole.rows(), whole.columns()));
+        format!(
+            "{} × {}{}, {}",
+            counted(seen.rows(), "row"),
+            counted(seen.columns(), "column"),
+            whole.unwrap_or_default(),
+            counted(self.cells as u64, "cell")
+        )
+    }
+
+    /// Why none of its frames is the chosen one.
+    fn missing(&self, choice: &Choice) -> String {
+        if self.frames == 0 {
+            return "no frames".to_owned();
+        }
+        match choice {
+            Choice::Label(label) => {
+                let found = match &self.labels {
+                    None => ": the frames have no labels, only numbers; choose one with --frame"
+                        .to_owned(),
+                    Some((least, greatest)) if least == greatest => {
+                        format!("; the only label is {least}")
+                    }
+                    Some((least, greatest)) => {
+                        format!("; the labels go from {least} to {greatest}")
+                    }
+                };
+                format!("no frame is labelled {label}{found}")
+            }
+            Choice::Number(number) => match self.frames - 1 {
+                0 => format!("no frame {number}; the recording has only frame 0"),
+                last => format!("no frame {number}, expected 0 to {last}"),
+            },
+            Choice::Peak => "no frame has a cell with a value, so none is the peak".to_owned(),
+            Choice::All => "no frames".to_owned(),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct ListJson<'a> {
+    /// Null if a damage comes before the format is certain.
+    format: Option<&'static str>,
+    channels: Vec<ChannelJson<'a>>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    notes: &'a [String],
+}
+
+#[derive(Serialize)]
+struct ChannelJson<'a> {
+    name: Option<&'a str>,
+    frames: u64,
+    rows: Option<u16>,
+    columns: Option<u16>,
+    cells: usize,
+    unit: Option<&'a str>,
+    start: Option<&'a str>,
+    seconds_per_frame: Option<f64>,
+    pitch_mm: Option<[f64; 2]>,
+    threshold: Option<f64>,
+    peak: Option<u64>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    marks: &'a [u64],
+}
+
+const MOST_WARNINGS: usize = 20;
+
+struct Answering<'a> {
+    asked: &'a Frames,
+    cx: &'a Context,
+    /// The name of the recording.
+    name: String,
+    pipeline: Pipeline,
+    namer: Option<Namer>,
+    pitch: Option<f64>,
+    kept: Kept,
+    output: &'a mut dyn Write,
+}
+
+impl Answering<'_> {
+    fn warn(&self, text: impl Display) {
+        self.cx.note(&format!("warning: {}: {text}", self.name));
+    }
+
+    fn refused(&self, why: impl Display) -> Failure {
+        refused(&self.name, why)
+    }
+
+    fn write(&mut self, text: impl AsRef<[u8]>) -> Result<(), Failure> {
+        let written = self.output.write_all(text.as_ref());
+        written.map_err(Failure::of_output)
+    }
+
+    fn run(mut self, mut recording: RecordingFile) -> Result<(), Failure> {
+        let mut scan = Scan::of(&mut recording, &self.pipeline.processing.view);
+        let wanted = self.asked.frames.channel.as_deref();
+        if let Some(complaint) = &recording.complaint {
+            self.cx.note(&format!("warning: {complaint}"));
+        }
+        self.remark(&scan, wanted);
+        let damage = scan.error.take().map(|error| damaged(&self.name, &error));
+        if scan.channels.is_empty() {
+            return Err(damage.unwrap_or_else(|| self.refused("no frames")));
+        }
+        let Some(choice) = self.asked.choice() else {
+            self.list(&scan, wanted)?;
+            return damage.map_or(Ok(()), Err);
         };
-        Ok((selection, processing))
-    }
-
-    fn has(&self, frame: &Frame) -> bool {
-        match &self.choice {
-            FrameChoice::All | FrameChoice::NoiseReport => true,
-            FrameChoice::Label(label) => frame.label.as_ref() == Some(label),
-            FrameChoice::Number(_) | FrameChoice::Peak => Some(frame.number) == self.number,
-        }
-    }
-
-    /// Checks what can be checked of the frames to keep before the first of them is answered: that no file that may
-    /// not be replaced has the name of an export.
-    fn check_kept(
-        &self,
-        recording: &mut RecordingFile,
-        listed: &ListedChannel,
-        kept: &Kept,
-    ) -> Result<(), CliError> {
-        if !kept.is_asked() {
-            return Ok(());
-        }
-        let numbers = match (&self.choice, self.number) {
-            (FrameChoice::Label(label), _) => self.numbers_labelled(recording, label)?,
-            (_, Some(number)) => number..number + 1,
-            _ => 0..listed.frames,
+        // A table without a choice has all channels.
+        let of_all = self.asked.is_table_of_all() && wanted.is_none();
+        let channels = if of_all {
+            0..scan.channels.len()
+        } else {
+            let channel = self.channel(&scan, wanted)?;
+            channel..channel + 1
         };
-        let export = kept.export.as_ref();
-        export.map_or(Ok(()), |export| {
-            numbers
-                .map(|number| export.numbered(number))
-                .try_for_each(|export| check(&export, recording))
-        })
-    }
-
-    /// Returns the number of the frame with a label, if there is one. A label that several frames have is refused: it
-    /// is not clear which of them is meant.
-    fn numbers_labelled(
-        &self,
-        recording: &mut RecordingFile,
-        label: &Label,
-    ) -> Result<Range<u64>, CliError> {
-        let mut numbers = Vec::new();
-        recording.frames_again(self.channel, |frame| {
-            numbers.extend(self.has(frame).then_some(frame.number));
-            Ok::<_, CliError>(match numbers.len() {
-                0 | 1 => ControlFlow::Continue(()),
-                _ => ControlFlow::Break(()),
-            })
-        })??;
-        match numbers[..] {
-            [first, second] => Err(recording.refused(&format!(
-                "frames {first} and {second} are both labelled {label}; choose one with --frame"
-            ))),
-            [number] => Ok(number..number + 1),
-            _ => Ok(0..0),
-        }
-    }
-
-    /// Answers the selected frames; returns true if there were any. The recording is read from its beginning again,
-    /// but not beyond a frame whose number is known.
-    fn answer(
-        &self,
-        recording: &mut RecordingFile,
-        listed: &ListedChannel,
-        processing: &mut Processing,
-        output: &mut FramesOutput<'_>,
-    ) -> Result<bool, CliError> {
-        self.check_kept(recording, listed, &output.kept)?;
         let mut answered = false;
-        let name = recording.name().to_owned();
-        recording.frames_again(self.channel, |frame| {
-            if !self.has(frame) {
-                return Ok::<_, CliError>(ControlFlow::Continue(()));
+        for index in channels.clone() {
+            let channel = &scan.channels[index];
+            let (mut pipeline, number) =
+                match self.prepared(&mut recording, &choice, (index, channel)) {
+                    Ok(prepared) => prepared,
+                    // If frames are missing, the damage is the reason.
+                    Err(failure) => return Err(damage.unwrap_or(failure)),
+                };
+            if self.asked.csv && index == channels.start {
+                self.write(FrameAnswer::csv_header())?;
             }
-            let processed = processing.run(frame).map_err(|error| CliError::Frames {
-                name: name.clone(),
-                message: error.to_string() + frame_advice(&error),
-            })?;
-            let found = FoundFrame {
-                name: &name,
-                listed,
-                frame,
-                processed,
+            answered |= if self.asked.noise_report {
+                self.report_noise(&mut recording, index, &mut pipeline)?
+            } else {
+                self.answer(
+                    &mut recording,
+                    (&choice, number),
+                    (index, channel),
+                    &mut pipeline,
+                )?
             };
-            self.give(&found, answered, output)?;
+        }
+        match damage {
+            Some(damage) => Err(damage),
+            None if answered => Ok(()),
+            None => Err(self.refused(scan.channels[channels.start].missing(&choice))),
+        }
+    }
+
+    /// The index of the chosen channel. Without a name there must be only one.
+    fn channel(&self, scan: &Scan, asked: Option<&str>) -> Result<usize, Failure> {
+        let names = scan.channels.iter();
+        let names: Vec<&str> = names.map(|channel| channel.info.shown_name()).collect();
+        match asked {
+            None if names.len() == 1 => Ok(0),
+            None => Err(self.refused(format!(
+                "{} channels, choose one with --channel: {}",
+                names.len(),
+                names.join(", ")
+            ))),
+            Some(asked) => {
+                let found = names.iter().position(|name| *name == asked);
+                found.ok_or_else(|| self.refused(no_channel(asked, &names)))
+            }
+        }
+    }
+
+    /// Warns of what is odd in the recording, and of rows and columns that it states otherwise than the flags.
+    fn remark(&self, scan: &Scan, wanted: Option<&str>) {
+        for note in scan.notes.iter().take(MOST_WARNINGS) {
+            self.warn(noted(note));
+        }
+        if let more @ 1.. = scan.notes.len().saturating_sub(MOST_WARNINGS) {
+            self.warn(format!("{more} more of these"));
+        }
+        let channels = scan.channels.iter().map(|channel| &channel.info);
+        let stated = channels
+            .filter(|info| wanted.is_none_or(|wanted| wanted == info.shown_name()))
+            .find_map(|info| info.size);
+        if let (Some(given), Some(stated)) = (self.asked.frames.size(), stated)
+            && given != stated
+        {
+            let rows = counted(stated.rows(), "row");
+            let columns = counted(stated.columns(), "column");
+            self.warn(format!(
+                "it states {rows} and {columns}; --rows and --columns have no effect"
+            ));
+        }
+    }
+
+    fn list(&mut self, scan: &Scan, wanted: Option<&str>) -> Result<(), Failure> {
+        if let Some(misfit) = &scan.misfit {
+            return Err(self.refused(misfit));
+        }
+        let channels = match wanted {
+            Some(_) => std::slice::from_ref(&scan.channels[self.channel(scan, wanted)?]),
+            None => &scan.channels[..],
+        };
+        let format = scan.format.map(|format| format.name);
+        if self.asked.json {
+            let list = ListJson {
+                format,
+                channels: channels.iter().map(Channel::json).collect(),
+                notes: &scan.plain,
+            };
+            return self.write(json::ascii(&list) + "\n");
+        }
+        let count = counted(channels.len() as u64, "channel");
+        let mut lines = vec![format!("{}, {count}", format.unwrap_or("damaged"))];
+        lines.extend_from_slice(&scan.plain);
+        for channel in channels {
+            lines.push(String::new());
+            lines.extend(channel.lines());
+        }
+        let lines = lines.iter().map(|line| self.cx.charset.line(line) + "\n");
+        self.write(lines.collect::<String>())
+    }
+
+    /// Completes the processing of a channel with its threshold and its tare, for which the recording is read again.
+    /// Also returns the number of the frame to answer, if it is known to be a single one.
+    fn prepared(
+        &self,
+        recording: &mut RecordingFile,
+        choice: &Choice,
+        (index, channel): (usize, &Channel),
+    ) -> Result<(Pipeline, Option<u64>), Failure> {
+        let mut pipeline = self.pipeline.clone();
+        if let Some(unused) = pipeline.begin(&channel.info) {
+            self.warn(unused);
+        }
+        if channel.info.size.is_none() {
+            let given = self.asked.frames.size();
+            return Err(damaged(&self.name, &unshaped(channel.values, given)));
+        }
+        // Force and contact exist without a threshold, too. There is no default: the meaning of values differs from
+        // sensor to sensor.
+        if pipeline.rule().is_none() && !self.asked.csv {
+            return Err(self.refused(
+                "the recording has no threshold of its own: set one with --at-least, --percent, \
+                 --low and --high, or --deviations",
+            ));
+        }
+        let refused = |pipeline: &Pipeline, error| self.refused(pipeline.explained(&error));
+        if pipeline.progress().is_some() {
+            // Damage after the tare's frames does not matter here.
+            recording.frames_again(index, |frame| match pipeline.add_to_tare(frame) {
+                Ok(Taring::Made) => Ok(ControlFlow::Break(())),
+                Ok(Taring::LeftOut(error)) | Err(error) => Err(self.refused(error)),
+                Ok(_) => Ok(ControlFlow::Continue(())),
+            })?;
+        }
+        if let Some(lacking) = pipeline.lacking() {
+            return Err(refused(&pipeline, lacking));
+        }
+        if let Some(unknown) = pipeline.unknown_step() {
+            self.warn(unknown);
+        }
+        let processing = &pipeline.processing;
+        let number = match choice {
+            Choice::Number(number) => Some(*number),
+            Choice::Label(_) | Choice::All => None,
+            // Without tare and gain the listing has it already.
+            Choice::Peak if processing.tare.is_none() && processing.gain.is_none() => {
+                channel.peak.number()
+            }
+            Choice::Peak => {
+                let mut peak = Peak::default();
+                recording.frames_again(index, |frame| {
+                    let sum = pipeline.run(frame).map(|processed| processed.tared_sum);
+                    let sum = sum.map_err(|error| refused(&self.pipeline, error))?;
+                    peak.add(frame.number, sum);
+                    Ok::<_, Failure>(ControlFlow::Continue(()))
+                })?;
+                peak.number()
+            }
+        };
+        Ok((pipeline, number))
+    }
+
+    /// Answers the chosen frames; returns true if there were any. The recording is read from its beginning again, but
+    /// not beyond a frame whose number is known.
+    fn answer(
+        &mut self,
+        recording: &mut RecordingFile,
+        (choice, number): (&Choice, Option<u64>),
+        (index, channel): (usize, &Channel),
+        pipeline: &mut Pipeline,
+    ) -> Result<bool, Failure> {
+        let has = |frame: &Frame| match choice {
+            Choice::All => true,
+            Choice::Label(label) => frame.label.as_ref() == Some(label),
+            Choice::Number(_) | Choice::Peak => Some(frame.number) == number,
+        };
+        if self.kept.is_asked() {
+            let numbers = match (choice, number) {
+                (Choice::Label(label), _) => self.labelled(recording, index, label)?,
+                (_, Some(number)) => number..number + 1,
+                _ => 0..channel.frames,
+            };
+            // No file is written if a later one cannot be.
+            if let Some(export) = &self.kept.export {
+                let mut exports = numbers.map(|number| export.numbered(number));
+                exports.try_for_each(|export| check(&export, recording))?;
+            }
+        }
+        let mut answered = false;
+        recording.frames_again(index, |frame| {
+            if !has(frame) {
+                return Ok(ControlFlow::Continue(()));
+            }
+            let processed = pipeline.processing.run(frame);
+            let processed =
+                processed.map_err(|error| self.refused(self.pipeline.explained(&error)))?;
+            self.give(channel, frame, processed, answered)?;
             answered = true;
-            Ok(match self.number {
+            Ok::<_, Failure>(match number {
                 Some(_) => ControlFlow::Break(()),
                 None => ControlFlow::Continue(()),
             })
-        })??;
+        })?;
         Ok(answered)
     }
 
-    /// Answers a frame. Notes about it are lines below the matrix; with JSON they go to standard error. An export to
-    /// standard output takes the place of the answer. `again` tells whether other frames came before, so that an
-    /// empty line separates them.
-    fn give(
+    /// The number of the frame with a label. A label that several frames have is refused: it is not clear which of
+    /// them is to be kept.
+    fn labelled(
         &self,
-        found: &FoundFrame<'_>,
+        recording: &mut RecordingFile,
+        index: usize,
+        label: &Label,
+    ) -> Result<Range<u64>, Failure> {
+        let mut found = None;
+        recording.frames_again(index, |frame| {
+            if frame.label.as_ref() != Some(label) {
+                return Ok(ControlFlow::Continue(()));
+            }
+            match found.replace(frame.number) {
+                None => Ok(ControlFlow::Continue(())),
+                Some(first) => Err(self.refused(format!(
+                    "frames {first} and {} are both labelled {label}; choose one with --frame",
+                    frame.number
+                ))),
+            }
+        })?;
+        Ok(found.map_or(0..0, |number| number..number + 1))
+    }
+
+    /// Answers a frame. Notes about it are lines below the matrix; with JSON they go to standard error. An export to
+    /// standard output takes the place of the answer. An empty line separates it from frames before it.
+    fn give(
+        &mut self,
+        channel: &Channel,
+        frame: &Frame,
+        processed: Processed<'_>,
         again: bool,
-        output: &mut FramesOutput<'_>,
-    ) -> Result<(), CliError> {
-        if self.csv {
-            return output.write(found.answer().csv_line());
+    ) -> Result<(), Failure> {
+        let info = &channel.info;
+        let answer = FrameAnswer {
+            frame,
+            channel: info.name.as_deref(),
+            processed,
+        };
+        if self.asked.csv {
+            return self.write(answer.csv_line());
         }
-        let Some((imprint, rule)) = found.processed.imprint.zip(found.processed.rule) else {
+        let Some((imprint, rule)) = processed.imprint.zip(processed.rule) else {
             return Ok(());
         };
-        let (Form::Json(pitch) | Form::Table(pitch)) = output.form;
-        let (pitch, without_pitch) = cell_size(found.name, pitch, &found.listed.info)?;
-        let heat = self.heat.then_some(found.processed.tared);
-        let titles = titles(found, rule);
+        let (pitch, without_pitch) = self.cell_size(info)?;
+        let heat = self.asked.heat.then_some(processed.tared);
+        let titles = self.titles(info, frame, &processed, rule);
         let mut lines = titles.clone();
-        if let Form::Table(_) = output.form {
+        if !self.asked.json {
             lines.extend(without_pitch);
             lines.push(report::size(&imprint, None, pitch));
         }
@@ -429,77 +765,143 @@ impl Selection {
             drawing
         };
         let shape = |name| stored(name, &imprint, pitch);
-        let kept = output.kept.numbered(found.frame.number);
-        let instead = kept.keep(drawn, shape, output.shelf, &mut lines)?;
-        let text = match (instead, output.form) {
-            (Some(content), _) => content,
-            (None, Form::Json(_)) => {
-                for note in lines.split_off(titles.len()) {
-                    (output.notes)(&note);
-                }
-                found.line(&imprint, output)
+        let kept = self.kept.numbered(frame.number);
+        if let Some(content) = kept.keep(drawn, shape, &self.cx.shelf, &mut lines)? {
+            return self.write(content);
+        }
+        let charset = self.cx.charset;
+        if self.asked.json {
+            for note in &lines[titles.len()..] {
+                self.cx.note(note);
             }
-            (None, Form::Table(_)) => {
-                let gap = if again { "\n" } else { "" };
-                let map = heat.map_or_else(String::new, |values| {
-                    let unit = unit(&found.listed.info);
-                    heat_map(values, &output.charset.line(&unit), output.charset) + "\n"
-                });
-                let table = report::table(&imprint, &lines, pitch, output.charset);
-                let namer = output.namer.as_mut();
-                let mut named = namer.map(|namer| namer.text(&imprint, output.charset));
-                if let Some(named) = named.as_mut().filter(|named| !named.is_empty()) {
-                    named.insert(0, '\n');
-                }
-                let named = named.as_deref().unwrap_or("");
-                [gap, &map, &table, named].concat().into_bytes()
+            let mut line = json::ascii(&answer).into_bytes();
+            match &self.namer {
+                Some(namer) => namer.extend(&mut line, Some(&imprint)),
+                None => line.push(b'\n'),
             }
+            return self.write(line);
+        }
+        let mut text = if again { "\n" } else { "" }.to_owned();
+        if let Some(values) = heat {
+            text += &heat_map(values, &charset.line(&unit(info)), charset);
+            text.push('\n');
+        }
+        text += &report::table(&imprint, &lines, pitch, charset);
+        let named = self
+            .namer
+            .as_ref()
+            .map(|namer| namer.text(&imprint, charset));
+        if let Some(named) = named.filter(|named| !named.is_empty()) {
+            text.push('\n');
+            text += &named;
+        }
+        self.write(text)
+    }
+
+    /// Lines about a frame: `iscan.csv, frame 65 (label 66), 6.5 s`, then sum and maximum, then force and centre, then
+    /// the threshold.
+    fn titles(
+        &self,
+        info: &ChannelInfo,
+        frame: &Frame,
+        processed: &Processed<'_>,
+        rule: SetRule,
+    ) -> Vec<String> {
+        let file = self.name.rsplit('/').next().unwrap_or(&self.name);
+        let mut title = format!("{file}, frame {}", frame.number);
+        if let Some(label) = &frame.label {
+            title += &format!(" (label {label})");
+        }
+        if let Some(time) = frame.time {
+            title += &format!(", {} s", short(time));
+        }
+        if let Some(channel) = &info.name {
+            title += &format!(", {channel}");
+        }
+        let unit = unit(info);
+        let (sum, max) = (
+            short(processed.sum),
+            processed.max.map_or("–".to_owned(), short),
+        );
+        let mut values = format!("raw sum {sum}{unit}, raw max {max}{unit}");
+        if processed.tare > 0 {
+            values += &format!(", tare of {}", counted(processed.tare, "frame"));
+        }
+        if processed.gain {
+            values += ", gain applied";
+        }
+        let mut contact = format!("force {}{unit}", short(processed.force));
+        if let Some([x, y]) = processed.cop {
+            contact += &format!(", centre of pressure ({x:.2}, {y:.2})");
+        }
+        vec![title, values, contact, rule_text(rule, &unit)]
+    }
+
+    /// The side of a cell in mm, and a line if the recording's cells are not square. `--pitch` overrides the recording.
+    /// The pitch of the settings is not used: it is that of the simulated sensor.
+    fn cell_size(&self, info: &ChannelInfo) -> Result<(Option<f64>, Option<String>), Failure> {
+        match (info.why_not_in_mm(), self.pitch) {
+            (None, pitch) => Ok((pitch.or(info.square_pitch_mm()), None)),
+            (Some(why), None) => Ok((None, Some(why))),
+            (Some(why), Some(_)) => Err(self.refused(format!("--pitch: {why}"))),
+        }
+    }
+
+    /// Reports which taxels of a channel flip or are stuck, and writes the mask of the stuck ones if a file is given.
+    /// Returns false, and reports nothing, if the channel has no frames.
+    fn report_noise(
+        &mut self,
+        recording: &mut RecordingFile,
+        index: usize,
+        pipeline: &mut Pipeline,
+    ) -> Result<bool, Failure> {
+        if let Some(export) = &self.kept.export {
+            check(export, recording)?;
+        }
+        let mut counter: Option<FlipCounter> = None;
+        recording.frames_again(index, |frame| {
+            let processed = pipeline.run(frame).map_err(|error| self.refused(error))?;
+            let counter = counter.get_or_insert_with(|| FlipCounter::new(cells(processed.raw)));
+            if let Some(imprint) = &processed.imprint {
+                counter.add(imprint);
+            }
+            Ok::<_, Failure>(ControlFlow::Continue(()))
+        })?;
+        let Some(found) = counter.map(|counter| counter.finish()) else {
+            return Ok(false);
         };
-        output.write(&text)
+        let title = format!("{}: dead and stuck taxels", self.name);
+        let mut said = None;
+        if let Some(export) = &self.kept.export {
+            let content = (export.format.write)(&drawing(&found.mask(), None, &title, None));
+            let Some(path) = &export.path else {
+                return self.write(content).map(|()| true);
+            };
+            storage::write(path, &content, export.existing)?;
+            said = Some(written(path));
+        }
+        if self.asked.json {
+            said.iter().for_each(|said| self.cx.note(said));
+            self.write(json::text(&NoiseJson::of(&found)) + "\n")?;
+        } else {
+            let said = said.map_or(String::new(), |said| said + "\n");
+            let text = self.cx.charset.lines(&(said + &noise_text(&found)));
+            self.write(text)?;
+        }
+        Ok(true)
     }
 }
 
-/// Returns lines about the frame: `iscan.csv, frame 65 (label 66), 6.5 s`, then sum and maximum, then
-/// force and centre, then the threshold.
-fn titles(found: &FoundFrame<'_>, rule: SetRule) -> Vec<String> {
-    let &FoundFrame {
-        name,
-        listed,
-        frame,
-        processed,
-    } = found;
-    let file = name.rsplit('/').next().unwrap_or(name);
-    let mut title = format!("{file}, frame {}", frame.number);
-    if let Some(label) = &frame.label {
-        title += &format!(" (label {label})");
-    }
-    if let Some(time) = frame.time {
-        title += &format!(", {} s", short(time));
-    }
-    if let Some(channel) = &listed.info.name {
-        title += &format!(", {channel}");
-    }
-    let unit = unit(&listed.info);
-    let max = processed.max.map_or("–".to_owned(), short);
-    let mut values = format!(
-        "raw sum {}{unit}, raw max {max}{unit}",
-        short(processed.sum)
-    );
-    if processed.tare > 0 {
-        values += &format!(", tare of {}", counted(processed.tare, "frame"));
-    }
-    if processed.gain {
-        values += ", gain applied";
-    }
-    let mut contact = format!("force {}{unit}", short(processed.force));
-    if let Some([x, y]) = processed.cop {
-        contact += &format!(", centre of pressure ({x:.2}, {y:.2})");
-    }
-    vec![title, values, contact, rule_text(rule, &unit)]
+/// Refuses a file that would replace the recording, or that cannot be written.
+fn check(export: &Export, recording: &RecordingFile) -> Result<(), Failure> {
+    let Some(path) = &export.path else {
+        return Ok(());
+    };
+    recording.refuse_as_target(path)?;
+    Ok(check_writable(path, export.existing)?)
 }
 
-/// Returns the threshold in words, with its origin:
-/// `active: 20 kPa or more, in pieces of 3 taxels or more (from a flag)`.
+/// The threshold in words, with its origin: `active: 20 kPa or more, in pieces of 3 taxels or more (from a flag)`.
 fn rule_text(set: SetRule, unit: &str) -> String {
     let mut text = match set.rule {
         Rule::AtLeast(threshold) => format!("active: {}{unit} or more", short(threshold)),
@@ -531,25 +933,6 @@ fn unit(info: &ChannelInfo) -> String {
     unit.map_or(String::new(), |unit| format!(" {unit}"))
 }
 
-/// Returns the side of a cell in mm, and a line if the recording's cells are not square. `--pitch` overrides the
-/// recording. The pitch of the settings is not used: it is that of the simulated sensor.
-fn cell_size(
-    name: &str,
-    pitch: Pitch,
-    info: &ChannelInfo,
-) -> Result<(Option<f64>, Option<String>), CliError> {
-    let Some(reason) = info.why_not_in_mm() else {
-        return Ok((pitch.given.or(info.square_pitch_mm()), None));
-    };
-    if pitch.given.is_some() {
-        return Err(CliError::Frames {
-            name: name.to_owned(),
-            message: format!("--pitch: {reason}"),
-        });
-    }
-    Ok((None, Some(reason)))
-}
-
 fn stored(name: Name, imprint: &Imprint, pitch: Option<f64>) -> StoredShape {
     let sensor = Sensor::of_size(imprint.size());
     let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
@@ -559,4 +942,78 @@ fn stored(name: Name, imprint: &Imprint, pitch: Option<f64>) -> StoredShape {
         imprint: *imprint,
         source: None,
     }
+}
+
+/// The cells that have a value.
+fn cells(values: &Matrix<f64>) -> Imprint {
+    let mut cells = Imprint::empty(values.size());
+    for row in 0..values.rows() {
+        for (column, value) in (0..values.columns()).zip(values.row(row)) {
+            cells.set(column, row, !value.is_nan());
+        }
+    }
+    cells
+}
+
+#[derive(Serialize)]
+struct NoiseJson {
+    frames: u64,
+    cells: u32,
+    noise: Option<f64>,
+    standard_error: Option<f64>,
+    flips: u64,
+    repeated: u64,
+    stuck_on: Vec<[u8; 2]>,
+    stuck_off: Vec<[u8; 2]>,
+    mask: Vec<String>,
+}
+
+impl NoiseJson {
+    fn of(found: &FlipReport) -> Self {
+        Self {
+            frames: found.frames,
+            cells: found.cells,
+            noise: found.noise,
+            standard_error: found.standard_error,
+            flips: found.flips,
+            repeated: found.repeated,
+            stuck_on: taxels(&found.stuck_on),
+            stuck_off: taxels(&found.stuck_off),
+            mask: found.mask().lines().collect(),
+        }
+    }
+}
+
+fn taxels(imprint: &Imprint) -> Vec<[u8; 2]> {
+    let rows = 0..imprint.rows();
+    let all = rows.flat_map(|row| (0..imprint.columns()).map(move |column| [column, row]));
+    all.filter(|&[column, row]| imprint.get(column, row))
+        .collect()
+}
+
+fn noise_text(found: &FlipReport) -> String {
+    let frames = counted(found.frames, "frame");
+    let cells = counted(found.cells, "taxel");
+    let of = format!(
+        "a taxel changed for a single frame in {} of {} cases",
+        grouped(found.flips),
+        grouped(found.repeated)
+    );
+    let noise = match (found.noise, found.standard_error) {
+        (Some(noise), Some(error)) => format!("noise {noise:.5} ± {error:.5}: {of}"),
+        _ if found.repeated == 0 => "too few frames to tell how often taxels flip".to_owned(),
+        _ => format!("noise 0.5 or more: {of}"),
+    };
+    let [on, off] = [&found.stuck_on, &found.stuck_off].map(|stuck| {
+        let taxels = taxels(stuck).into_iter();
+        let taxels: Vec<String> = taxels
+            .map(|[column, row]| format!("{column},{row}"))
+            .collect();
+        if taxels.is_empty() {
+            "none".to_owned()
+        } else {
+            taxels.join("  ")
+        }
+    });
+    format!("{frames} of {cells}\n{noise}\nstuck on: {on}\nstuck off or dead: {off}\n")
 }

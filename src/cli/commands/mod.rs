@@ -22,9 +22,9 @@ pub(super) mod model;
 
 pub(super) mod recognise;
 
-pub(super) mod frames;
+pub(crate) mod frame_flags;
 
-pub(super) mod recording_scan;
+pub(super) mod frames;
 
 pub(super) mod watch;
 

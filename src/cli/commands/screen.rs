@@ -70,7 +70,6 @@ impl Screen {
 }
 
 /// Shows the frames of a source on the screen.
-#[allow(dead_code, reason = "for commands that are still read by hand")]
 pub(crate) fn watch(cx: &Context, look: &Look, watched: WatchRequest) -> Result<(), Failure> {
     let settings = cx.settings.with(look, &Given::default())?;
     open(cx, &settings, None, None, Some(watched))

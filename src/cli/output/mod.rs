@@ -4,10 +4,6 @@ pub(super) mod charset;
 
 pub(super) mod report;
 
-pub(super) mod line_writer;
-
-pub(super) mod recording_list;
-
 pub(super) mod sweep_summary;
 
 pub(super) mod progress;

@@ -1,0 +1,738 @@
+//! `taxel watch`: prints a line of JSON for each frame of a source, and records all frames if a file is given. On a
+//! terminal, the screen's live page opens instead.
+//!
+//! ```text
+//! acquire -> one channel -> Recording: each frame as it came
+//!                        -> Pipeline; the first frames wait, if a tare is made -> LineWriter -> standard output
+//!         -> what is odd or wrong -> standard error, a line each
+//! ```
+//! A live source that is recorded is never held up: if the reader of the answers is slow, some frames get no answer, and
+//! their number is reported. If the reader is gone, or answers cannot be written, a recording continues; without one
+//! the command ends. If the recording fails, as on a full disk, the answers go on; the error is reported at once, and is
+//! that of the command at its end.
+
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::io::{self, IsTerminal, Write};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{
+    Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, channel, sync_channel,
+};
+use std::time::{Duration, Instant};
+
+use clap::Arg;
+use taxel_core::frame::{Frame, FrameSize, TareFrames};
+use taxel_core::imprint::Imprint;
+use taxel_core::quote::as_argument;
+use taxel_files::acquire::{
+    AcquireEvent, FrameRecorder, FrameSource, Playback, RecorderError, acquire,
+};
+use taxel_files::formats::json;
+use taxel_files::formats::recording::{
+    ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingMetadata, StreamCounts,
+    no_channel,
+};
+use taxel_files::formats::value::counted;
+use taxel_files::{ReadError, ReadErrorKind};
+
+use crate::cli::Context;
+use crate::cli::arguments::flags::{name_or_path, npy};
+use crate::cli::commands::export::replacing;
+use crate::cli::commands::frame_flags::WatchFlags;
+use crate::cli::commands::model;
+use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
+use crate::cli::commands::screen::{self, Look};
+use crate::cli::failure::Failure;
+use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
+use crate::cli::output::charset::Charset;
+use crate::cli::signals::Signals;
+use crate::frames::recording::Recording;
+use crate::frames::{Pipeline, Taring, WatchRequest};
+use crate::tui::runtime::check_source;
+
+#[derive(Debug, clap::Args)]
+#[command(about = "Show or describe the frames of a sensor, live or played back")]
+#[command(after_help = EXAMPLES, mut_args(of_screen))]
+pub(crate) struct Watch {
+    #[arg(value_name = "SOURCE", value_parser = name_or_path())]
+    #[arg(help = "Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input")]
+    source: OsString,
+    /// Record all frames, for numpy and 'taxel frames'
+    #[arg(long, value_name = "FILE.npy", value_parser = npy())]
+    write: Option<PathBuf>,
+    /// Replace an existing file
+    #[arg(long, requires = "write")]
+    force: bool,
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    flags: WatchFlags,
+    #[command(flatten)]
+    look: Look,
+}
+
+const EXAMPLES: &str = "\
+On a terminal, a page shows the frames; it stays open when the source has ended,
+even with --once. With --json, or in a pipeline, taxel prints a line for each
+frame, like 'taxel frames --all --json'; without a threshold, the imprint in it
+is null. A stream consists of lines of numbers, JSON lines, the output of
+'ros2 topic echo', or the bytes of FlexiTac or MatSense; taxel recognises the
+format from the content. A recording is played at its own rate. If a serial line
+or connection is lost, taxel tries again every second, unless --once is given;
+on a terminal, it also waits for one that does not exist yet. Torn, short, long
+and garbled frames are dropped and counted.
+
+--write records every frame, shown or not; numpy can open the file at any time.
+A .json file of the same name describes the values. The source's own labels are
+not recorded; the lines of --json have them.
+
+Examples:
+  taxel watch recording.csv --once --at-least 10
+  taxel watch - --format lines --percent 50 --write touch.npy < rows.txt
+  taxel watch touch.npy --speed 10 --at-least 9
+  taxel watch recording.csv --once --percent 40 --model parts
+  taxel watch touch.npy --once --at-least 9 | taxel recognise - --model parts";
+
+fn of_screen(arg: Arg) -> Arg {
+    match arg.get_id().as_str() {
+        "color" | "theme" | "no_mouse" => arg.conflicts_with("json"),
+        _ => arg,
+    }
+}
+
+impl Watch {
+    pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        let usual = cx.settings.watch_request();
+        let naming = self.flags.naming.clone();
+        let mut request = self.flags.request(&self.source, &usual)?;
+        let source = FrameSource::new(&self.source);
+        request.write = self.write.map(|path| (path, replacing(self.force)));
+        let on_screen = !self.json && io::stdout().is_terminal();
+        // The user's terminal would be set up as a serial line, on which Ctrl-C is only a byte.
+        if on_screen || matches!(source, FrameSource::Serial(_)) {
+            check_source(&source).map_err(|why| refused(&source.name(), why))?;
+        }
+        if !on_screen {
+            request.source = source;
+            return watch(&request, &naming, cx);
+        }
+        check(&source, &request)?;
+        // The recording is created and dropped again: no file appears before the first frame.
+        drop(recording(&source, &request)?);
+        let choice = request
+            .model
+            .take()
+            .map(|model| model::models(&cx.shelf).locate(model));
+        request.model = choice.transpose()?;
+        screen::watch(cx, &self.look, request)
+    }
+}
+
+/// Answers the frames of a source until it ends, or a signal stops it.
+fn watch(request: &WatchRequest, naming: &NamingFlags, cx: &Context) -> Result<(), Failure> {
+    let source = &request.source;
+    let signals = Signals::catch()?;
+    check(source, request)?;
+    // Errors in these are reported before a recording begins. Training shows no progress: standard error is for
+    // oddities of the source.
+    let mask = request.pipeline.processing.view.mask.as_ref();
+    let namer = naming.find(mask, &cx.shelf)?;
+    let lines = LineWriter::start(&signals.stopped, namer)?;
+    let recording = recording(source, request)?;
+    let mut watcher = Watcher {
+        request,
+        cx,
+        name: source.name(),
+        channels: ChannelChoice::new(request.options.channel.as_deref()),
+        names: Vec::new(),
+        has_frame: false,
+        held: None,
+        pipeline: request.pipeline.clone(),
+        waiting: Vec::new(),
+        size: None,
+        may_give_up: source.arrives(request.options.playback) && recording.is_some(),
+        recording,
+        unrecorded: None,
+        lines: Some(lines),
+        unwritten: None,
+        answered: 0,
+        unfit: 0,
+        dropped: 0,
+        reported: None,
+    };
+    let mut failed = None;
+    let acquired = acquire(
+        source,
+        &request.options,
+        &signals.stopped,
+        &mut |event| match watcher.on(event) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(failure) => {
+                failed = Some(failure);
+                ControlFlow::Break(())
+            }
+        },
+    );
+    let stopped = !signals.goes_on();
+    watcher.finish(failed, acquired, stopped)?;
+    if stopped {
+        Err(Failure::silent(signals.status()))
+    } else {
+        Ok(())
+    }
+}
+
+/// Refuses flags that have no effect for a source: those of serial lines for others, those of playing for a stream,
+/// and a channel that a recording does not have, which would be played to its end without an answer.
+fn check(source: &FrameSource, request: &WatchRequest) -> Result<(), Failure> {
+    let options = &request.options;
+    if let Some(why) = source.unused_baud().filter(|_| request.baud_named) {
+        return Err(Failure::usage(format!("--baud has no effect {why}")));
+    }
+    // A source that cannot be read is reported when it is watched.
+    if let Playback::Paced { repeat, .. } = options.playback
+        && source.is_recording(options) == Ok(false)
+    {
+        let flag = if repeat { "loop" } else { "speed" };
+        let why = "has no effect on a stream: it is for recordings";
+        return Err(Failure::usage(format!("--{flag} {why}")));
+    }
+    let (FrameSource::File(path), None, Some(wanted)) = (source, options.format, &options.channel)
+    else {
+        return Ok(());
+    };
+    let (names, is_whole) = channels(path, request, Some(wanted))?;
+    // A damage is reported when the source is watched.
+    if names.contains(wanted) || !is_whole {
+        return Ok(());
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Err(refused(&source.name(), no_channel(wanted, &names)))
+}
+
+fn channels(
+    path: &Path,
+    request: &WatchRequest,
+    up_to: Option<&str>,
+) -> Result<(Vec<String>, bool), Failure> {
+    let options = ReadOptions {
+        size: request.options.size,
+        time_column: request.options.time_column.clone(),
+        label_column: request.options.label_column.clone(),
+        ..ReadOptions::default()
+    };
+    Ok(RecordingFile::open(path, options)?.channel_names(up_to))
+}
+
+fn recording(source: &FrameSource, request: &WatchRequest) -> Result<Option<Recording>, Failure> {
+    let Some((path, existing)) = &request.write else {
+        return Ok(None);
+    };
+    let metadata = RecordingMetadata {
+        source: source.name(),
+        rule: request.pipeline.rule(),
+        ..RecordingMetadata::default()
+    };
+    let created = source
+        .refuse_as_target(path)
+        .and_then(|()| Recording::create(path, *existing, &metadata));
+    created.map(Some).map_err(unrecorded)
+}
+
+fn unrecorded(error: RecorderError) -> Failure {
+    let hint = matches!(error, RecorderError::Exists { .. }).then_some("; --force replaces it");
+    Failure::new(format!("{error}{}", hint.unwrap_or_default()))
+}
+
+/// The shortest time between two reports of dropped frames.
+const REPORT: Duration = Duration::from_secs(1);
+
+struct Watcher<'a> {
+    request: &'a WatchRequest,
+    cx: &'a Context,
+    /// The name of the source.
+    name: String,
+    channels: ChannelChoice,
+    /// The names of all channels.
+    names: Vec<Option<String>>,
+    has_frame: bool,
+    /// The first frame of a recording, if no channel is named: a second channel before the next frame is an error, a
+    /// later one is left out.
+    held: Option<(Frame, Option<f64>)>,
+    pipeline: Pipeline,
+    /// The frames that wait for the tare.
+    waiting: Vec<Frame>,
+    /// Rows and columns of the last frame.
+    size: Option<FrameSize>,
+    recording: Option<Recording>,
+    unrecorded: Option<Failure>,
+    /// None once nothing can be written any more.
+    lines: Option<LineWriter>,
+    unwritten: Option<Failure>,
+    /// Whether frames may be left unanswered if the reader is slow.
+    may_give_up: bool,
+    answered: u64,
+    /// The number of frames not answered because crop, tare, mask or gain do not fit their size.
+    unfit: u64,
+    dropped: u64,
+    reported: Option<Instant>,
+}
+
+impl Watcher<'_> {
+    fn say(&self, text: impl Display) {
+        self.cx.note(&format!("{}: {text}", self.name));
+    }
+
+    fn warn(&self, text: impl Display) {
+        self.cx.note(&format!("warning: {}: {text}", self.name));
+    }
+
+    fn refused(&self, why: impl Display) -> Failure {
+        refused(&self.name, why)
+    }
+
+    fn on(&mut self, event: AcquireEvent<'_>) -> Result<(), Failure> {
+        match event {
+            AcquireEvent::Channel(info) => return self.add_channel(info),
+            AcquireEvent::Frame { frame, time } => return self.add_frame(frame, time),
+            AcquireEvent::Tick(counts) => {
+                self.record(FrameRecorder::tick)?;
+                if self.lines.as_ref().is_some_and(LineWriter::has_ended) {
+                    self.end_lines()?;
+                }
+                if self.reported.is_none_or(|last| last.elapsed() >= REPORT) {
+                    self.report_dropped(counts);
+                }
+            }
+            AcquireEvent::Ended(counts) => return self.end_stream(counts),
+            AcquireEvent::Silent { reason, .. } | AcquireEvent::Anew(reason) => self.say(reason),
+            AcquireEvent::Lost(error) => self.say(AcquireEvent::lost(error)),
+            AcquireEvent::Back { gap } => self.say(AcquireEvent::back_after(gap)),
+            AcquireEvent::Note(note) if !note.is_plain() => self.warn(noted(note)),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), Failure> {
+        self.names.push(info.name.clone());
+        let is_chosen = self.channels.add(info);
+        let names = self.channels.names();
+        if self.request.options.channel.is_none() && names.len() > 1 {
+            if self.has_frame && self.held.is_none() {
+                let (own, other) = (&names[0], info.shown_name());
+                let flag = as_argument(other);
+                self.say(format!(
+                    "channel {other} is left out, since {own} came first; --channel {flag} takes it"
+                ));
+                return Ok(());
+            }
+            let all = match &self.request.source {
+                FrameSource::File(path) => channels(path, self.request, None)?.0,
+                _ => names.to_vec(),
+            };
+            let why = "several channels, choose one with --channel";
+            return Err(self.refused(format!("{why}: {}", all.join(", "))));
+        }
+        if !is_chosen {
+            return Ok(());
+        }
+        if let Some(unused) = self.pipeline.begin(info) {
+            self.warn(unused);
+        }
+        let (tare, rule) = (self.pipeline.processing.tare.clone(), self.pipeline.rule());
+        self.record(|recorder| {
+            recorder.describe(|metadata| {
+                metadata.tare = tare;
+                metadata.seconds_per_frame = info.seconds_per_frame;
+                metadata.unit.clone_from(&info.unit);
+                metadata.pitch_mm = info.pitch_mm;
+                metadata.rule = rule;
+            })
+        })
+    }
+
+    fn add_frame(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), Failure> {
+        if !self.channels.takes(frame.channel) {
+            return Ok(());
+        }
+        if !std::mem::replace(&mut self.has_frame, true) {
+            match &self.request.options.channel {
+                None if !self.names.is_empty() => {
+                    self.held = Some((frame.clone(), time));
+                    return Ok(());
+                }
+                Some(wanted) if self.names.is_empty() => self.say(format!(
+                    "no channel named {wanted:?}: a stream has none, and all frames are taken"
+                )),
+                _ => {}
+            }
+        }
+        self.release()?;
+        self.take(frame, time)
+    }
+
+    fn release(&mut self) -> Result<(), Failure> {
+        let held = self.held.take();
+        held.map_or(Ok(()), |(frame, time)| self.take(&frame, time))
+    }
+
+    fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), Failure> {
+        let size = frame.size();
+        let before = self.size.replace(size);
+        // In a recording, each frame may have a size of its own.
+        if before.is_some_and(|before| before != size) && self.names.is_empty() {
+            let (number, size) = (frame.number, size.in_words());
+            self.say(format!("{size} cells from frame {number} on"));
+        }
+        self.record(|recorder| recorder.add(frame, time))?;
+        let mut frame = frame.clone();
+        frame.time = time;
+        // A sensor that was lost may come back with another size: then the tare begins again with its frames.
+        match self
+            .pipeline
+            .add_to_tare(&frame)
+            .map_err(|error| self.refused(error))?
+        {
+            Taring::Done => return self.answer(&frame),
+            Taring::LeftOut(error) if self.waiting.is_empty() => return Err(self.refused(error)),
+            Taring::LeftOut(_) => {}
+            Taring::Again => self.waiting.retain(|frame: &Frame| frame.size() == size),
+            Taring::Added | Taring::Made => {}
+        }
+        if let Some((_, wanted)) = self.pipeline.progress() {
+            let fits = TareFrames::new(wanted).check_memory(frame.values().len());
+            fits.map_err(|error| self.refused(error))?;
+            self.waiting.push(frame);
+            return Ok(());
+        }
+        self.waiting.push(frame);
+        let tare = self.pipeline.processing.tare.clone();
+        self.record(|recorder| recorder.describe(|metadata| metadata.tare = tare))?;
+        if let Some(unknown) = self.pipeline.unknown_step() {
+            self.warn(unknown);
+        }
+        let waiting = std::mem::take(&mut self.waiting);
+        waiting.iter().try_for_each(|frame| self.answer(frame))
+    }
+
+    /// Answers a frame. One whose size does not fit crop, tare, mask or gain is left out if others did fit: the sensor
+    /// continues.
+    fn answer(&mut self, frame: &Frame) -> Result<(), Failure> {
+        let Some(lines) = &mut self.lines else {
+            return Ok(());
+        };
+        let processed = match self.pipeline.processing.run(frame) {
+            Ok(processed) => processed,
+            Err(error) if self.answered > 0 && error.is_of_size() => {
+                self.unfit += 1;
+                if self.unfit == 1 {
+                    self.say(format!("frame {} is not printed: {error}", frame.number));
+                }
+                return Ok(());
+            }
+            Err(error) => return Err(self.refused(error)),
+        };
+        self.answered += 1;
+        let answer = FrameAnswer {
+            frame,
+            channel: self.names.get(frame.channel).and_then(Option::as_deref),
+            processed,
+        };
+        let line = json::ascii(&answer) + "\n";
+        let line = (line.into_bytes(), processed.imprint);
+        if lines.send(line, self.may_give_up) {
+            Ok(())
+        } else {
+            self.end_lines()
+        }
+    }
+
+    fn record(
+        &mut self,
+        write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError>,
+    ) -> Result<(), Failure> {
+        let Some(Err(error)) = self.recording.as_ref().map(|own| own.write(write)) else {
+            return Ok(());
+        };
+        self.recording = None;
+        if self.lines.is_none() {
+            return Err(unrecorded(error));
+        }
+        self.say(format!("{error}; the answers go on"));
+        self.may_give_up = false;
+        self.unrecorded = Some(unrecorded(error));
+        Ok(())
+    }
+
+    /// Ends the answers. If they cannot be written while frames are recorded, the watch goes on.
+    fn end_lines(&mut self) -> Result<(), Failure> {
+        let Some(lines) = self.lines.take() else {
+            return Ok(());
+        };
+        let given_up = lines.given_up;
+        let Err(error) = lines.finish()? else {
+            if given_up > 0 {
+                let frames = counted(given_up, "frame");
+                self.say(format!("{frames} recorded but not printed"));
+            }
+            return Ok(());
+        };
+        let is_closed = error.kind() == io::ErrorKind::BrokenPipe;
+        let failure = Failure::of_output(error);
+        if self.recording.is_none() {
+            return Err(failure);
+        }
+        if is_closed {
+            self.say("standard output is closed; the recording continues");
+        } else {
+            self.say(format!("{}; the recording continues", failure.text));
+            self.unwritten = Some(failure);
+        }
+        Ok(())
+    }
+
+    fn report_dropped(&mut self, counts: &StreamCounts) {
+        if counts.dropped <= self.dropped {
+            return;
+        }
+        self.dropped = counts.dropped;
+        self.reported = Some(Instant::now());
+        let dropped = counted(counts.dropped, "frame");
+        let mut text = format!("{dropped} dropped so far (torn, short, long or garbled)");
+        if let Some(sample) = &counts.sample {
+            text += &format!(", the last: {sample}");
+        }
+        if let Some(reason) = &counts.reason {
+            text += &format!(" ({reason})");
+        }
+        self.warn(text);
+    }
+
+    /// Reports dropped frames at the end of a stream, and that there was no frame at all.
+    fn end_stream(&mut self, counts: &StreamCounts) -> Result<(), Failure> {
+        self.report_dropped(counts);
+        let Some(why) = counts.no_frame() else {
+            return Ok(());
+        };
+        if counts.bytes == 0 {
+            return Err(self.refused("empty, expected frames of a sensor"));
+        }
+        let advice = match counts.reason {
+            None => "; check --rows, --columns and --format",
+            Some(_) => "",
+        };
+        Err(self.refused(format!("{why}{advice}{}", self.format_advice())))
+    }
+
+    fn format_advice(&self) -> String {
+        let format = self.request.options.stream_format;
+        format.map_or_else(String::new, |format| {
+            let name = format.stream.unwrap_or(format.name);
+            format!("; the settings say format {name:?}, which --format overrides")
+        })
+    }
+
+    /// The failure that ended the source. If a stream cannot be decoded without more flags, it says which of them
+    /// help.
+    fn damage(&self, error: &ReadError) -> Failure {
+        let advice = match (error.kind, &self.request.source) {
+            (_, FrameSource::File(_)) => return damaged(&self.name, error),
+            (ReadErrorKind::UnknownFormat, _) => "; --format names one",
+            (ReadErrorKind::Unsized, _) => "; give --rows and --columns",
+            _ => return damaged(&self.name, error),
+        };
+        self.refused(format!("{error}{advice}{}", self.format_advice()))
+    }
+
+    /// Ends recording and answers. Returns the first error in this order: of recording, of writing answers, of the
+    /// frames, of the source.
+    fn finish(
+        mut self,
+        failed: Option<Failure>,
+        acquired: Result<(), ReadError>,
+        stopped: bool,
+    ) -> Result<(), Failure> {
+        let ended_well = acquired.is_ok() && !stopped;
+        let is_unreadable =
+            (acquired.as_ref()).is_err_and(|error| matches!(error.kind, ReadErrorKind::Io(_)));
+        let mut failed = failed.or_else(|| self.release().err());
+        let damage = acquired.err().map(|error| self.damage(&error));
+        if let (Some(failure), Some(recording)) =
+            (failed.as_ref().or(damage.as_ref()), &self.recording)
+        {
+            let noted = |recorder: &mut FrameRecorder| {
+                recorder.note_reason(&failure.text);
+                Ok(())
+            };
+            // Nothing is written yet.
+            let _ = recording.write(noted);
+        }
+        if ended_well {
+            failed = failed.or_else(|| self.unfinished());
+        }
+        let recorded = self.end_recording(is_unreadable);
+        if self.unfit > 1 {
+            let frames = counted(self.unfit, "frame");
+            self.say(format!("{frames} of another size not printed"));
+        }
+        let written = self.end_lines();
+        recorded?;
+        self.unrecorded.map_or(Ok(()), Err)?;
+        written?;
+        self.unwritten.map_or(Ok(()), Err)?;
+        failed.or(damage).map_or(Ok(()), Err)
+    }
+
+    /// The error of a source that has ended before a tare was complete, or without a frame of the channel. For a
+    /// stream, the latter is an error already.
+    fn unfinished(&self) -> Option<Failure> {
+        if let Some(lacking) = self.pipeline.lacking() {
+            return Some(self.refused(self.pipeline.explained(&lacking)));
+        }
+        let missing = || {
+            self.channels
+                .missing()
+                .unwrap_or_else(|| "no frames".to_owned())
+        };
+        (!self.has_frame).then(|| self.refused(missing()))
+    }
+
+    /// Ends the recording, and reports the frames that are not in it. That no frame came is no news if the source
+    /// cannot be read.
+    fn end_recording(&mut self, is_unreadable: bool) -> Result<(), Failure> {
+        let Some(recording) = &self.recording else {
+            return Ok(());
+        };
+        let Some(recorded) = recording.finish().map_err(unrecorded)? else {
+            return Ok(());
+        };
+        if recorded.left_out > 0 {
+            let frames = counted(recorded.left_out, "frame");
+            self.say(format!("{frames} of another size not recorded"));
+        }
+        if recorded.frames == 0 && !is_unreadable {
+            let path = recording.path().display();
+            self.say(format!("no frame came, so {path} was not written"));
+        }
+        Ok(())
+    }
+}
+
+/// The most lines that may wait; for frames of 64 × 64 they take about 5 MB.
+const WAITING: usize = 1000;
+
+/// The time after which a line is sent again if too many are waiting, and a signal is looked for.
+const PAUSE: Duration = Duration::from_millis(1);
+
+/// The time that a reader has, after a signal, to read what is waiting.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+type Line = (Vec<u8>, Option<Imprint>);
+
+/// Writes lines to standard output on a thread of its own, so that a slow reader does not hold up a recording. With a
+/// model, that thread also names each imprint.
+struct LineWriter {
+    lines: SyncSender<Line>,
+    ended: Receiver<Result<io::Result<()>, Failure>>,
+    is_over: Arc<AtomicBool>,
+    stopped: Arc<AtomicBool>,
+    /// The number of lines dropped because too many were waiting.
+    given_up: u64,
+}
+
+impl LineWriter {
+    fn start(stopped: &Arc<AtomicBool>, namer: Option<FoundNamer>) -> Result<Self, Failure> {
+        let (lines, waiting) = sync_channel(WAITING);
+        let (ends, ended) = channel();
+        let is_over = Arc::new(AtomicBool::new(false));
+        let over = Arc::clone(&is_over);
+        let write = move || {
+            let namer = namer
+                .map(|found| found.ready(true, Charset::Ascii))
+                .transpose()?;
+            Ok(write_lines(&waiting, namer.as_ref()))
+        };
+        let thread = std::thread::Builder::new().spawn(move || {
+            // The receiver may have given up.
+            let _ = ends.send(write());
+            over.store(true, Ordering::Release);
+        });
+        thread.map_err(|error| Failure::new(format!("cannot start a thread: {error}")))?;
+        Ok(Self {
+            lines,
+            ended,
+            is_over,
+            stopped: Arc::clone(stopped),
+            given_up: 0,
+        })
+    }
+
+    fn has_ended(&self) -> bool {
+        self.is_over.load(Ordering::Acquire)
+    }
+
+    /// Sends a line. If too many are waiting, it waits until there is room, or drops the line if `may_give_up`; after
+    /// a signal, it drops the line, uncounted. Returns false once nothing can be written.
+    fn send(&mut self, mut line: Line, may_give_up: bool) -> bool {
+        loop {
+            line = match self.lines.try_send(line) {
+                Ok(()) => return true,
+                Err(TrySendError::Disconnected(_)) => return false,
+                Err(TrySendError::Full(_)) if may_give_up => {
+                    self.given_up += 1;
+                    return true;
+                }
+                Err(TrySendError::Full(_)) if self.stopped.load(Ordering::Relaxed) => return true,
+                Err(TrySendError::Full(line)) => line,
+            };
+            std::thread::sleep(PAUSE);
+        }
+    }
+
+    /// Waits until all lines are written; after a signal, for a second at most. Lines that nobody has read by then are
+    /// lost. The inner error is that of standard output.
+    fn finish(self) -> Result<io::Result<()>, Failure> {
+        drop(self.lines);
+        let mut stopped_at = None;
+        loop {
+            match self.ended.recv_timeout(10 * PAUSE) {
+                Ok(ended) => return ended,
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(Failure::new("the thread that writes has failed"));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if self.stopped.load(Ordering::Relaxed)
+                && stopped_at.get_or_insert_with(Instant::now).elapsed() > PATIENCE
+            {
+                // The thread ends with the program.
+                return Ok(Ok(()));
+            }
+        }
+    }
+}
+
+fn write_lines(waiting: &Receiver<Line>, namer: Option<&Namer>) -> io::Result<()> {
+    let mut output = io::BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    loop {
+        let next = match waiting.try_recv() {
+            Err(TryRecvError::Empty) => {
+                output.flush()?;
+                waiting.recv().ok()
+            }
+            next => next.ok(),
+        };
+        let Some((mut line, imprint)) = next else {
+            return output.flush();
+        };
+        if let Some(namer) = namer {
+            namer.extend(&mut line, imprint.as_ref());
+        }
+        output.write_all(&line)?;
+    }
+}
