@@ -49,6 +49,8 @@ pub mod recognise;
 
 pub mod live;
 
+mod models;
+
 pub mod runtime;
 
 pub mod jobs;

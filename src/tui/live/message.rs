@@ -6,9 +6,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use taxel_core::frame::{FrameError, FrameSize, Rule, RuleOrigin, SetRule};
-use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number;
-use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
 use taxel_files::acquire::{AcquireOptions, FrameSource, Playback};
 use taxel_files::formats::recording::Format;
 use taxel_files::storage::ModelChoice;
@@ -63,94 +61,6 @@ pub enum LiveEvent {
     /// The reason why the recording cannot be begun.
     NotRecorded(String),
     NotFinished(String),
-    Named(u64, Box<NamedImprint>),
-    /// The number of the work that would name imprints, and the reason why there is no model.
-    NotNamed(u64, String),
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedImprint {
-    pub imprint: Imprint,
-    pub state: AnswerState,
-    /// The likeliest shapes: one, several in a tie, or none for an imprint that no shape leaves.
-    pub names: Vec<String>,
-    pub probability: Option<f64>,
-    pub nearest: Option<(String, u32)>,
-    pub unexplained: Option<UnexplainedDifference>,
-}
-
-impl NamedImprint {
-    /// Computes the answer of a model about an imprint, under a noise if one is given. A single touch is the
-    /// evidence, because the frames of a source may show different shapes.
-    pub fn new(model: &Model, imprint: &Imprint, noise: Option<&Noise>) -> Self {
-        let touches = [*imprint];
-        let evidence = Evidence::of(&touches).under(noise);
-        let answer = model.recognise(evidence);
-        let name = |shape: usize| model.shapes()[shape].name.clone();
-        let shapes = match answer.state {
-            AnswerState::Tied => answer.tied,
-            _ => answer.shape.into_iter().collect(),
-        };
-        let nearest = model.nearest_of(evidence);
-        let distance = nearest.as_ref().map_or(0, |nearest| nearest.distance);
-        let unexplained = noise.and_then(|noise| noise.unexplained(imprint, distance));
-        Self {
-            imprint: *imprint,
-            state: answer.state,
-            names: shapes.into_iter().map(name).collect(),
-            probability: answer.ranking.first().map(|&(_, probability)| probability),
-            nearest: nearest.map(|nearest| (name(nearest.shape), nearest.distance)),
-            unexplained: unexplained.filter(|_| !answer.ranking.is_empty()),
-        }
-    }
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamingRequest {
-    /// The number of this request. Answers carry it, so late ones of an earlier model can be dropped.
-    pub number: u64,
-    pub choice: ModelChoice,
-    /// The noise: how often a taxel flips.
-    pub noise: Option<Noise>,
-}
-
-#[derive(Clone, Debug)]
-pub struct Naming {
-    pub request: NamingRequest,
-    pub answer: Option<Box<NamedImprint>>,
-    pub failure: Option<String>,
-    asked: bool,
-}
-
-impl Naming {
-    pub fn new(request: NamingRequest) -> Self {
-        Self {
-            request,
-            answer: None,
-            failure: None,
-            asked: false,
-        }
-    }
-
-    pub fn ask(&mut self, imprint: &Imprint) -> bool {
-        let known = self
-            .answer
-            .as_ref()
-            .is_some_and(|own| own.imprint == *imprint);
-        let asks = !self.asked && !known && self.failure.is_none() && !imprint.is_empty();
-        self.asked |= asks;
-        asks
-    }
-
-    pub fn take(&mut self, answer: NamedImprint) {
-        self.asked = false;
-        self.answer = Some(Box::new(answer));
-    }
-
-    pub fn fail(&mut self, reason: String) {
-        self.asked = false;
-        self.failure = Some(reason);
-    }
 }
 
 /// What follows `:watch`: a source, whose name may contain spaces, then flags as on the command line:

@@ -5,6 +5,7 @@
 //! feed             the frames of the source that the page has not taken yet
 //! history          the most recent frames, as many as fit into a given amount of memory
 //! reading          values, imprint and descriptors of one frame
+//! names            the shapes that leave the imprints, by a model
 //! threshold        the threshold, as keys change it
 //! state            the state of the page: how the shown frame is processed
 //! trend            force and contact over the history
@@ -20,6 +21,8 @@ pub mod feed;
 pub mod history;
 
 pub mod reading;
+
+mod names;
 
 mod threshold;
 

@@ -3,18 +3,13 @@
 use std::sync::Arc;
 
 use taxel_core::frame::{Frame, FrameError, Rule, RuleOrigin, SetRule};
-use taxel_core::imprint::Imprint;
-use taxel_core::recognition::Noise;
 use taxel_files::acquire::FrameSource;
 use taxel_files::formats::recording::{FrameMark, RecordedView};
-use taxel_files::storage::ModelChoice;
 
 use crate::frames::{Pipeline, Taring};
 use crate::tui::live::history::FrameHistory;
-use crate::tui::live::message::{
-    FeedStatus, FrameBatch, NamedImprint, Naming, NamingRequest, SourceGaps, SourceState,
-    WatchRequest,
-};
+use crate::tui::live::message::{FeedStatus, FrameBatch, SourceGaps, SourceState, WatchRequest};
+use crate::tui::live::names::ShapeNames;
 use crate::tui::live::reading::{HeatLayer, LiveReading, ShadeRange};
 use crate::tui::live::threshold;
 use crate::tui::live::trend::{Plotted, Trend};
@@ -82,7 +77,7 @@ impl Live {
             marks: Vec::new(),
             trend: Trend::default(),
             plotted: Plotted::default(),
-            names: ShapeNames::new(&request, number),
+            names: ShapeNames::new(&request),
             reading: None,
             error: None,
             tare_error: None,
@@ -211,11 +206,9 @@ impl Live {
         Some((frame.number, index.is_err()))
     }
 
-    /// Returns the imprint to name now, and notes that it was asked for. Returns None if an answer is still expected
-    /// or already known, or if no taxel is active.
-    pub fn ask_name(&mut self) -> Option<Imprint> {
-        let imprint = self.reading.as_ref()?.imprint?;
-        self.names.ask(&imprint).then_some(imprint)
+    pub fn name(&mut self) {
+        let imprint = self.reading.as_ref().and_then(|reading| reading.imprint);
+        self.names.name(imprint.as_ref());
     }
 
     /// Returns the unit of the values, with a space before it; empty if it is not known.
@@ -499,7 +492,6 @@ impl Live {
         self.status.state = SourceState::Waiting;
         (self.status.gaps, self.seen_gaps) = (SourceGaps::default(), SourceGaps::default());
         (self.status.note, self.seen_notes) = (None, 0);
-        self.names.restart(number);
         self.read();
     }
 
@@ -508,6 +500,7 @@ impl Live {
             Some(frame) => self.read_frame(frame),
             None => (None, None),
         };
+        self.name();
     }
 
     /// Processes a frame. Returns the result, and the error if there is one.
@@ -549,106 +542,4 @@ pub struct RecordingState {
     pub refusal: Option<String>,
     /// Why the recording that was requested together with the source has failed. Later recordings do not change that.
     pub write_failure: Option<String>,
-}
-
-/// The model that names imprints, and its last answer.
-#[derive(Clone, Debug)]
-pub struct ShapeNames {
-    /// The set that was requested with the source; None if none was.
-    asked: Option<ModelChoice>,
-    /// The noise: how often a taxel flips.
-    noise: Option<Noise>,
-    /// None if imprints are not named.
-    pub naming: Option<Naming>,
-    pub awaits_models: bool,
-}
-
-impl ShapeNames {
-    pub fn new(request: &WatchRequest, number: u64) -> Self {
-        let mut names = Self {
-            asked: request.model.clone(),
-            noise: request.noise(),
-            naming: None,
-            awaits_models: false,
-        };
-        names.begin(request.model.clone(), number);
-        names
-    }
-
-    /// Returns the request to name imprints; None if imprints are not named.
-    pub fn request(&self) -> Option<&NamingRequest> {
-        self.naming.as_ref().map(|naming| &naming.request)
-    }
-
-    /// Names imprints by a set, as the work of this number; None stops naming. Earlier answers are dropped.
-    fn begin(&mut self, choice: Option<ModelChoice>, number: u64) {
-        let noise = self.noise;
-        self.naming = choice.map(|choice| {
-            Naming::new(NamingRequest {
-                number,
-                choice,
-                noise,
-            })
-        });
-    }
-
-    pub fn restart(&mut self, number: u64) {
-        let choice = self.naming.take().map(|naming| naming.request.choice);
-        self.begin(choice, number);
-    }
-
-    /// Names imprints by the next set: first the requested one, then the built-in ones, then the user's own models,
-    /// then none. `number` is the number of this work.
-    pub fn next(&mut self, own: impl Iterator<Item = ModelChoice>, number: u64) {
-        let asked = self.asked.clone();
-        let sets = ModelChoice::BUILT_IN.iter().cloned().chain(own);
-        let sets = sets.filter(|set| Some(set) != asked.as_ref());
-        let sets: Vec<ModelChoice> = asked.iter().cloned().chain(sets).collect();
-        let chosen = self.request().map(|naming| &naming.choice);
-        let next = match chosen {
-            None => sets.first(),
-            Some(chosen) => (sets.iter().skip_while(|set| *set != chosen)).nth(1),
-        };
-        self.begin(next.cloned(), number);
-    }
-
-    pub fn ask(&mut self, imprint: &Imprint) -> bool {
-        let naming = self.naming.as_mut();
-        naming.is_some_and(|naming| naming.ask(imprint))
-    }
-
-    /// Takes the answer, or the reason why the model cannot be used, of the work of this number.
-    pub fn take(&mut self, number: u64, named: Result<NamedImprint, String>) {
-        if let Some(naming) = &mut self.naming
-            && naming.request.number == number
-        {
-            match named {
-                Ok(named) => naming.take(named),
-                Err(reason) => naming.fail(reason),
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sets_are_the_requested_one_the_built_in_ones_the_own_ones_and_none() {
-        let own = ["asked", "other"].map(ModelChoice::from_text);
-        let mut request = WatchRequest::new("none");
-        request.model = Some(own[0].clone());
-        let mut names = ShapeNames::new(&request, 1);
-        let mut sets = Vec::new();
-        while let Some(naming) = names.request().cloned() {
-            sets.push(naming.choice);
-            names.next(own.clone().into_iter(), naming.number + 1);
-        }
-        let [asked, other] = own;
-        let built_in = ModelChoice::BUILT_IN.to_vec();
-        assert_eq!(sets, [vec![asked.clone()], built_in, vec![other]].concat());
-        names.next(std::iter::once(asked.clone()), 9);
-        assert_eq!(names.request().map(|naming| &naming.choice), Some(&asked));
-    }
 }

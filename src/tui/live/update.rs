@@ -9,7 +9,7 @@ use taxel_files::acquire::FrameSource;
 use taxel_files::formats::Name;
 use taxel_files::formats::recording::{ChannelInfo, RecordingMetadata};
 use taxel_files::formats::value::{counted, grouped};
-use taxel_files::storage::{Existing, ModelChoice, ModelFolder};
+use taxel_files::storage::Existing;
 
 use crate::tui::app::change::{begin, inform, refuse};
 use crate::tui::app::document::Document;
@@ -27,7 +27,7 @@ use crate::tui::live::message::{
 };
 use crate::tui::live::reading::{self, HeatLayer};
 use crate::tui::live::state::{Live, NO_FRAME, READ_ONCE};
-use crate::tui::live::{threshold, view};
+use crate::tui::live::{names, threshold, view};
 use crate::tui::prompt::state::CommandDialog;
 use crate::tui::runtime::disk::files;
 use crate::tui::runtime::effect::{Effect, FrameWork};
@@ -168,18 +168,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             Some((number, false)) => inform(app, format!("frame {number}: mark removed")),
             None => refuse(app, NO_FRAME),
         },
-        // The next one may be a model of the user.
-        LiveMessage::NameShape => {
-            page.names.awaits_models = true;
-            app.jobs.read("Listing the models", |library| {
-                let names = ModelFolder::of(library.folder()).names();
-                let names: Vec<String> = names.iter().map(ToString::to_string).collect();
-                answer(move |app| {
-                    let effect = name_by_next(app, &names);
-                    perform(app, effect);
-                })
-            });
-        }
+        LiveMessage::NameShape => names::name_by_next(app),
         LiveMessage::Again => return watch_again(app, page),
         LiveMessage::Source(source) => return check_source(app, source),
         // These are typed after `:`, and reach the page from there.
@@ -214,24 +203,6 @@ fn next_layer(app: &mut App, page: &mut Live) {
         }
         _ => {}
     }
-}
-
-pub fn name_by_next(app: &mut App, own: &[String]) -> Option<Effect> {
-    let number = app.works + 1;
-    let page = find_mut::<Live>(&mut app.pages)?;
-    if !std::mem::take(&mut page.names.awaits_models) {
-        return None;
-    }
-    app.works = number;
-    let own = own.iter().map(|name| ModelChoice::from_text(name));
-    page.names.next(own, number);
-    let effect = name_by(page);
-    let text = match page.names.request() {
-        Some(naming) => format!("shapes are named by {}", naming.choice),
-        None => "shapes are not named".to_owned(),
-    };
-    inform(app, text);
-    Some(effect)
 }
 
 fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
@@ -276,15 +247,12 @@ fn refuse_imprint(app: &mut App, page: &Live) {
     refuse(app, text);
 }
 
-/// Returns the next work of the page: new metadata of the recording if threshold, tare or marks have changed
-/// since it was written last; otherwise the search for the name of the shown imprint.
+/// Returns the next work of the page: new metadata of the recording, if threshold, tare or marks have changed since it
+/// was written last.
 pub fn next_work(app: &mut App) -> Option<Effect> {
     let page = page(app).filter(|page| !page.stopped)?;
-    if let Some(view) = page.take_changed_view() {
-        return Some(Effect::Frames(FrameWork::WriteMetadata(Box::new(view))));
-    }
-    let imprint = page.ask_name()?;
-    Some(Effect::Frames(FrameWork::Name(Box::new(imprint))))
+    let view = page.take_changed_view()?;
+    Some(Effect::Frames(FrameWork::WriteMetadata(Box::new(view))))
 }
 
 /// Begins a recording, or ends it. The frames are written as they come, without view, tare or threshold; the
@@ -350,8 +318,6 @@ pub fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
             page.begin_recording(Some(name.clone()));
             return inform(app, format!("recording in {name}"));
         }
-        LiveEvent::Named(by, named) => page.names.take(*by, Ok((**named).clone())),
-        LiveEvent::NotNamed(by, reason) => page.names.take(*by, Err(reason.clone())),
         LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
     }
     let (now, refusal) = (wrong(page), page.recording.refusal.clone());
@@ -432,7 +398,9 @@ pub fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
     app.prompt = None;
     app.live = None;
     app.pages.retain(|page| !page.is::<Live>());
+    let model = page.names.choice.clone();
     app.open(page);
+    names::name_by(app, model);
     watched
 }
 
@@ -441,7 +409,6 @@ fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
         number: page.number,
         request: Arc::clone(&page.request),
         write,
-        naming: page.names.request().cloned().map(Box::new),
     })
 }
 
@@ -457,16 +424,10 @@ pub fn open(app: &mut App) -> Option<Effect> {
         return None;
     };
     let mut effect = None;
-    if page.stopped {
+    if std::mem::take(&mut page.stopped) && !page.status.state.is_final() {
         app.works += 1;
-        effect = Some(if page.status.state.is_final() {
-            page.stopped = false;
-            page.names.restart(app.works);
-            name_by(&page)
-        } else {
-            page.restart(app.works);
-            watch_source(&page, None)
-        });
+        page.restart(app.works);
+        effect = Some(watch_source(&page, None));
     }
     app.pages.push(page);
     effect
@@ -480,11 +441,6 @@ pub fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
     app.works += 1;
     page.restart(app.works);
     Some(watch_source(page, None))
-}
-
-pub fn name_by(page: &Live) -> Effect {
-    let naming = page.names.request().cloned().map(Box::new);
-    Effect::Frames(FrameWork::NameBy(page.number, naming))
 }
 
 #[cfg(test)]

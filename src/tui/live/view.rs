@@ -15,7 +15,6 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::description::Descriptor;
 use taxel_core::frame::RuleOrigin;
 use taxel_core::imprint::Imprint;
-use taxel_core::recognition::AnswerState;
 use taxel_files::formats::recording::FrameMark;
 use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 
@@ -26,7 +25,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::live::heat::{HeatGrid, HeatMap, LivePanes, cells, scale};
-use crate::tui::live::message::{LiveMessage, NamedImprint, Naming, SourceState};
+use crate::tui::live::message::{LiveMessage, SourceState};
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::{Live, NO_FRAME};
 use crate::tui::live::threshold::{self, progress_text};
@@ -188,10 +187,9 @@ fn lines(
         lines.extend(shown.map(|own| (own.symbol, described(reading, own, theme))));
         lines.push(("regions", regions(reading)));
     }
-    if let Some(naming) = &live.names.naming {
-        let shown = live.reading.as_ref().and_then(|reading| reading.imprint);
-        lines.extend(named(naming, shown.as_ref(), theme));
-    }
+    let imprint = live.reading.as_ref().and_then(|reading| reading.imprint);
+    let any = imprint.is_some_and(|imprint| !imprint.is_empty());
+    lines.extend(live.names.lines(any, theme));
     lines.push(("threshold", threshold(live, keymap)));
     lines.push(("tare", tare(live)));
     if let Some(reading) = &live.reading {
@@ -285,54 +283,6 @@ fn regions(reading: &LiveReading) -> String {
     match reading.regions {
         count @ 0..2 => count.to_string(),
         count => format!("{count}, largest above; NA {all} in all"),
-    }
-}
-
-/// Returns the lines with the name of the shape, the nearest imprint, and the model with its noise; no name where
-/// nothing is active. Answers about an earlier imprint end in dots.
-fn named(naming: &Naming, shown: Option<&Imprint>, theme: &Theme) -> [(&'static str, String); 3] {
-    let name = naming.request.choice.name();
-    let model = match naming.request.noise {
-        Some(noise) => format!("{name}, noise {}", noise.flip()),
-        None => name.to_owned(),
-    };
-    let shown = shown.filter(|imprint| !imprint.is_empty());
-    let answer = naming.answer.as_ref().filter(|_| shown.is_some());
-    let late = |text: String| match answer {
-        Some(answer) if Some(&answer.imprint) != shown => text + " …",
-        _ => text,
-    };
-    let none = || theme.none().to_owned();
-    let shape = match (&naming.failure, answer) {
-        (Some(reason), _) => format!("! {reason}"),
-        (None, Some(answer)) => late(answered(answer)),
-        (None, None) if shown.is_some() => "training or reading the model".to_owned(),
-        (None, None) => none(),
-    };
-    let nearest = answer.and_then(|answer| answer.nearest.as_ref());
-    let nearest = nearest.map(|(name, distance)| match distance {
-        0 => late(format!("{name}, the same")),
-        1 => late(format!("{name}, 1 taxel differs")),
-        taxels => late(format!("{name}, {taxels} taxels differ")),
-    });
-    [
-        ("shape", shape),
-        ("nearest", nearest.unwrap_or_else(none)),
-        ("model", model),
-    ]
-}
-
-fn answered(answer: &NamedImprint) -> String {
-    let name = answer.names.join(" or ");
-    let how_sure = match (answer.state, answer.unexplained) {
-        (AnswerState::Tied, _) => return format!("{name}: tied"),
-        (AnswerState::Unknown, _) => return "unknown".to_owned(),
-        (_, Some(_)) => "perhaps none",
-        (state, None) => state.name(),
-    };
-    match answer.probability.map(|own| fitting(100.0 * own, 4)) {
-        Some(percent) => format!("{name} {percent} %, {how_sure}"),
-        None => format!("{name}, {how_sure}"),
     }
 }
 

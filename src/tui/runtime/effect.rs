@@ -3,13 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use taxel_core::imprint::Imprint;
 use taxel_core::pose::{PoseGrid, PoseIndex};
 use taxel_files::formats::recording::{RecordedView, RecordingMetadata};
 use taxel_files::storage::{Existing, ModelChoice};
 
 use crate::tui::explore::message::Findings;
-use crate::tui::live::message::{NamingRequest, WatchRequest};
+use crate::tui::live::message::WatchRequest;
 use crate::tui::recognise::state::PoseSearch;
 use crate::tui::recognise::trained::TrainedModel;
 
@@ -49,14 +48,9 @@ pub enum FrameWork {
         /// The file that all frames are recorded in; None to record nothing, as when a source is watched again: a
         /// finished recording is left alone.
         write: Option<(PathBuf, Existing)>,
-        /// The request to name imprints; None to name none.
-        naming: Option<Box<NamingRequest>>,
     },
     StopWatching,
     Record(Box<RecordingMetadata>),
     StopRecording,
     WriteMetadata(Box<RecordedView>),
-    /// Name the imprints of the source of that number; None to stop naming them.
-    NameBy(u64, Option<Box<NamingRequest>>),
-    Name(Box<Imprint>),
 }

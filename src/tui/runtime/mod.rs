@@ -60,15 +60,11 @@ fn frames(app: &mut App, work: FrameWork) {
             number,
             request,
             write,
-            naming,
         } => {
             stop_watching(app);
-            (app.jobs.workers).watch(number, request, write, naming);
+            (app.jobs.workers).watch(number, request, write);
         }
-        FrameWork::StopWatching => {
-            stop_watching(app);
-            app.jobs.workers.namer.end();
-        }
+        FrameWork::StopWatching => stop_watching(app),
         FrameWork::Record(metadata) => match workers.frames.start_recording() {
             Ok(number) => {
                 let access = Arc::clone(&app.jobs.access);
@@ -97,11 +93,6 @@ fn frames(app: &mut App, work: FrameWork) {
                     answer(move |app| after_writing(app, number, written))
                 });
             }
-        }
-        FrameWork::NameBy(number, naming) => workers.name_by(number, naming),
-        FrameWork::Name(imprint) => {
-            let event = workers.namer.name(&imprint);
-            later(app, event);
         }
     }
 }

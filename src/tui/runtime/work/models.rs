@@ -7,31 +7,25 @@
 //! folder of the library, any other from its file. Training goes on while a sweep begins, and stops only on
 //! request.
 
-use std::cell::OnceCell;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use taxel_core::imprint::Imprint;
 use taxel_core::quote::shortened;
 use taxel_core::recognition::{Model, TrainingError};
 use taxel_files::formats::Name;
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
-    Library, ModelCache, ModelChoice, ModelFolder, below_home, cached_or_trained, load_whole_model,
-    unknown_set,
+    Library, ModelCache, ModelChoice, ModelFolder, Models, below_home, cached_or_trained,
+    load_whole_model, unknown_set,
 };
 
 use crate::tui::app::message::WorkerEvent;
-use crate::tui::live::message::{LiveEvent, NamedImprint, NamingRequest};
 use crate::tui::recognise::state::{Prepared, RecognitionEvent};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::work::execution::{
-    Execution, PoseLimit, ProgressReporter, StopFlag, WorkProgress, caught, guarded, on_a_thread,
-    start,
+    Execution, ProgressReporter, StopFlag, WorkProgress, guarded, on_a_thread,
 };
 
 #[derive(Clone, Debug, Default)]
@@ -45,6 +39,13 @@ impl ModelStore {
         Self {
             folder: Some(ModelFolder::of(library.folder())),
             cache: None,
+        }
+    }
+
+    pub(crate) fn models(&self) -> Models {
+        Models {
+            folder: self.folder.clone(),
+            cache: self.cache.clone(),
         }
     }
 
@@ -204,133 +205,4 @@ fn prepare(
         stored: store.names(),
         trained,
     })))
-}
-
-#[derive(Debug)]
-struct OwnModel {
-    store: ModelStore,
-    naming: NamingRequest,
-    limit: PoseLimit,
-    model: OnceCell<Result<Model, String>>,
-}
-
-#[derive(Debug, Default)]
-pub(crate) struct ShapeNamer {
-    number: u64,
-    /// The model to name by, if there is no thread; it is prepared when the first imprint comes.
-    here: Option<OwnModel>,
-    /// The channel to the thread, dropped to end it; None without a thread.
-    imprints: Option<Sender<Imprint>>,
-    /// The flag that stops a training; no events are sent any more then.
-    stop: StopFlag,
-    /// The thread, which is waited for at the end of the program, so that a model is written as a whole.
-    thread: Option<JoinHandle<()>>,
-}
-
-impl ShapeNamer {
-    /// Prepares a model in place of the one before. Events carry the number of the source whose frames are named, and
-    /// the number of the request.
-    pub(crate) fn begin(
-        &mut self,
-        number: u64,
-        store: ModelStore,
-        naming: NamingRequest,
-        execution: &Execution,
-    ) {
-        self.end();
-        self.number = number;
-        let stop = self.stop.renew();
-        let post = match execution {
-            Execution::AtOnce(limit) => {
-                self.here = Some(OwnModel {
-                    store,
-                    naming,
-                    limit: *limit,
-                    model: OnceCell::new(),
-                });
-                return;
-            }
-            Execution::OnThreads(post) => Arc::clone(post),
-        };
-        let (imprints, waiting) = channel::<Imprint>();
-        self.imprints = Some(imprints);
-        let by = naming.number;
-        let refused = Arc::clone(&post);
-        let work = move || {
-            let say = |event| {
-                // Nobody waits for the answers of a model that was given up.
-                if !stop.load(Ordering::Relaxed) {
-                    post(WorkerEvent::Live(number, event));
-                }
-            };
-            let ended = caught(|| answer(&store, &naming, &waiting, &stop, &say));
-            if let Err(reason) = ended.flatten() {
-                say(LiveEvent::NotNamed(by, reason));
-            }
-        };
-        let thread = start(work);
-        match thread {
-            Ok(thread) => self.thread = Some(thread),
-            Err(reason) => {
-                refused(WorkerEvent::Live(number, LiveEvent::NotNamed(by, reason)));
-            }
-        }
-    }
-
-    /// Names an imprint: at once, or later by an event.
-    pub(crate) fn name(&self, imprint: &Imprint) -> Option<WorkerEvent> {
-        if let Some(imprints) = &self.imprints {
-            // A thread that has ended has said why.
-            let _ = imprints.send(*imprint);
-            return None;
-        }
-        let own = self.here.as_ref()?;
-        let NamingRequest {
-            number,
-            choice,
-            noise,
-        } = &own.naming;
-        let train = || {
-            own.store
-                .model(choice, &|_| {}, &WorkProgress::up_to(own.limit))
-        };
-        let event = match own.model.get_or_init(train) {
-            Ok(model) => {
-                let named = NamedImprint::new(model, imprint, noise.as_ref());
-                LiveEvent::Named(*number, Box::new(named))
-            }
-            Err(reason) => LiveEvent::NotNamed(*number, reason.clone()),
-        };
-        Some(WorkerEvent::Live(self.number, event))
-    }
-
-    /// Stops naming. The thread ends by itself: an answer under way is not waited for.
-    pub(crate) fn end(&mut self) {
-        self.stop.stop();
-        self.imprints = None;
-        self.here = None;
-    }
-
-    /// Stops for good. Returns the thread that was begun last, also if it was stopped before: it may still write the
-    /// model.
-    pub(crate) fn leave(&mut self) -> Option<JoinHandle<()>> {
-        self.end();
-        self.thread.take()
-    }
-}
-
-fn answer(
-    store: &ModelStore,
-    naming: &NamingRequest,
-    imprints: &Receiver<Imprint>,
-    stop: &AtomicBool,
-    say: &dyn Fn(LiveEvent),
-) -> Result<(), String> {
-    let progress = WorkProgress::until(stop, None);
-    let model = store.model(&naming.choice, &|_| {}, &progress)?;
-    while let Ok(imprint) = imprints.recv() {
-        let named = NamedImprint::new(&model, &imprint, naming.noise.as_ref());
-        say(LiveEvent::Named(naming.number, Box::new(named)));
-    }
-    Ok(())
 }

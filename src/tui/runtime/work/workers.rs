@@ -25,7 +25,7 @@ use taxel_files::storage::{Existing, FileError, PoseFile, atlas_path, is_poses, 
 use crate::tui::app::message::WorkerEvent;
 use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::message::Findings;
-use crate::tui::live::message::{NamingRequest, WatchRequest};
+use crate::tui::live::message::WatchRequest;
 use crate::tui::recognise::state::{PoseSearch, PoseSearchResult, RecognitionEvent};
 use crate::tui::runtime::disk::files::{WriteAccess, absolute};
 use crate::tui::runtime::effect::Work;
@@ -34,7 +34,7 @@ use crate::tui::runtime::work::execution::{
     Execution, PoseLimit, ProgressReporter, StopFlag, WorkProgress, WorkerEventSink, caught,
     guarded, on_a_thread, start, wait_until_finished,
 };
-use crate::tui::runtime::work::models::{ModelStore, ModelWorker, ShapeNamer};
+use crate::tui::runtime::work::models::{ModelStore, ModelWorker};
 
 const WRITING: Duration = Duration::from_millis(400);
 
@@ -49,7 +49,6 @@ pub(crate) struct Workers {
     writing: Option<JoinHandle<()>>,
     pub(crate) models: ModelWorker,
     pub(crate) frames: FrameWatcher,
-    pub(crate) namer: ShapeNamer,
     pub(crate) access: Arc<WriteAccess>,
 }
 
@@ -106,21 +105,8 @@ impl Workers {
         number: u64,
         request: Arc<WatchRequest>,
         write: Option<(PathBuf, Existing)>,
-        naming: Option<Box<NamingRequest>>,
     ) {
-        self.name_by(number, naming);
         self.frames.watch(number, request, write, &self.execution);
-    }
-
-    /// Prepares the model that names the imprints of the source of that number; without a request, stops naming.
-    pub(crate) fn name_by(&mut self, number: u64, naming: Option<Box<NamingRequest>>) {
-        match naming {
-            Some(naming) => {
-                let store = self.models.store.clone();
-                self.namer.begin(number, store, *naming, &self.execution);
-            }
-            None => self.namer.end(),
-        }
     }
 
     /// Estimates the time of a sweep on a thread of its own. Does nothing without a receiver, as nobody waits for it.
@@ -208,7 +194,7 @@ impl Drop for Workers {
     fn drop(&mut self) {
         self.working.stop();
         // Half-written files are removed, and models are written to the cache as a whole; but a disk may hang.
-        let threads = [self.writing.take(), self.models.end(), self.namer.leave()];
+        let threads = [self.writing.take(), self.models.end()];
         let end = Instant::now() + WRITING;
         for thread in threads.into_iter().flatten() {
             wait_until_finished(&thread, end.saturating_duration_since(Instant::now()));

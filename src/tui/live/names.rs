@@ -1,0 +1,195 @@
+//! The names of the shapes that leave the imprints of a source.
+
+use std::sync::Arc;
+
+use taxel_core::imprint::Imprint;
+use taxel_core::recognition::{AnswerState, Evidence, Model, Noise};
+use taxel_files::formats::value::fitting;
+use taxel_files::storage::ModelChoice;
+
+use crate::frames::WatchRequest;
+use crate::tui::app::change::inform;
+use crate::tui::app::state::App;
+use crate::tui::jobs::{Slot, answer};
+use crate::tui::live::update;
+use crate::tui::models;
+use crate::tui::widget::theme::Theme;
+
+/// The model that names imprints, and its last answer.
+#[derive(Clone, Debug)]
+pub struct ShapeNames {
+    /// The model that was requested with the source; None if none was.
+    asked: Option<ModelChoice>,
+    noise: Option<Noise>,
+    /// None if imprints are not named.
+    pub choice: Option<ModelChoice>,
+    /// The model, or why it cannot be used; None while it is being trained or read.
+    model: Option<Result<Arc<Model>, String>>,
+    answer: Option<NamedImprint>,
+}
+
+#[derive(Clone, Debug)]
+struct NamedImprint {
+    imprint: Imprint,
+    shape: String,
+    nearest: Option<String>,
+}
+
+impl NamedImprint {
+    /// A single touch is the evidence, because the frames of a source may show different shapes.
+    fn new(model: &Model, imprint: &Imprint, noise: Option<&Noise>) -> Self {
+        let touches = [*imprint];
+        let evidence = Evidence::of(&touches).under(noise);
+        let answer = model.recognise(evidence);
+        let name = |shape: usize| model.shapes()[shape].name.as_str();
+        let nearest = model.nearest_of(evidence);
+        let differs = nearest.as_ref().map_or(0, |nearest| nearest.distance);
+        let unexplained = noise.and_then(|noise| noise.unexplained(imprint, differs));
+        let likeliest = answer.shape.map_or("", name);
+        let shape = match (answer.state, answer.ranking.first()) {
+            (AnswerState::Unknown, _) => "unknown".to_owned(),
+            (AnswerState::Tied, _) => {
+                let tied: Vec<&str> = answer.tied.iter().map(|&shape| name(shape)).collect();
+                format!("{}: tied", tied.join(" or "))
+            }
+            (state, None) => format!("{likeliest}, {}", state.name()),
+            (state, Some((_, probability))) => {
+                let sure = unexplained.map_or(state.name(), |_| "perhaps none");
+                format!("{likeliest} {} %, {sure}", fitting(100.0 * probability, 4))
+            }
+        };
+        Self {
+            imprint: *imprint,
+            shape,
+            nearest: nearest.map(|nearest| match nearest.distance {
+                0 => format!("{}, the same", name(nearest.shape)),
+                1 => format!("{}, 1 taxel differs", name(nearest.shape)),
+                taxels => format!("{}, {taxels} taxels differ", name(nearest.shape)),
+            }),
+        }
+    }
+}
+
+impl ShapeNames {
+    pub fn new(request: &WatchRequest) -> Self {
+        Self {
+            asked: request.model.clone(),
+            noise: request.noise(),
+            choice: request.model.clone(),
+            model: None,
+            answer: None,
+        }
+    }
+
+    /// Names an imprint, unless it is the one that was named last.
+    pub fn name(&mut self, imprint: Option<&Imprint>) {
+        let imprint = imprint.filter(|imprint| !imprint.is_empty());
+        if let (Some(imprint), Some(Ok(model))) = (imprint, &self.model) {
+            if self.answer.as_ref().map(|own| &own.imprint) != Some(imprint) {
+                self.answer = Some(NamedImprint::new(model, imprint, self.noise.as_ref()));
+            }
+        } else {
+            self.answer = None;
+        }
+    }
+
+    /// Returns the next model: first the requested one, then the built-in ones, then the user's own, then none.
+    pub fn next(&self, own: impl Iterator<Item = ModelChoice>) -> Option<ModelChoice> {
+        let sets = ModelChoice::BUILT_IN.iter().cloned().chain(own);
+        let sets = sets.filter(|set| Some(set) != self.asked.as_ref());
+        let sets: Vec<ModelChoice> = self.asked.iter().cloned().chain(sets).collect();
+        let Some(chosen) = &self.choice else {
+            return sets.into_iter().next();
+        };
+        sets.into_iter().skip_while(|set| set != chosen).nth(1)
+    }
+
+    /// Returns the lines about the shape, the nearest imprint, and the model with its noise; none if imprints are not
+    /// named. There is no name where nothing is active.
+    pub fn lines(&self, any: bool, theme: &Theme) -> Vec<(&'static str, String)> {
+        let Some(choice) = &self.choice else {
+            return Vec::new();
+        };
+        let none = || theme.none().to_owned();
+        let shape = match (&self.model, &self.answer) {
+            (Some(Err(reason)), _) => format!("! {reason}"),
+            (_, Some(answer)) => answer.shape.clone(),
+            (None, _) if any => "training or reading the model".to_owned(),
+            _ => none(),
+        };
+        let nearest = self.answer.as_ref().and_then(|own| own.nearest.clone());
+        let name = choice.name();
+        let model = match self.noise {
+            Some(noise) => format!("{name}, noise {}", noise.flip()),
+            None => name.to_owned(),
+        };
+        vec![
+            ("shape", shape),
+            ("nearest", nearest.unwrap_or_else(none)),
+            ("model", model),
+        ]
+    }
+}
+
+/// Names the imprints of the source by a model, or no more.
+pub(super) fn name_by(app: &mut App, choice: Option<ModelChoice>) {
+    app.jobs.forget(Slot::Names);
+    let Some(page) = update::page(app) else {
+        return;
+    };
+    (page.names.model, page.names.answer) = (None, None);
+    page.names.choice.clone_from(&choice);
+    let Some(choice) = choice else { return };
+    let models = app.jobs.models().models();
+    app.jobs.run(Slot::Names, move |progress| {
+        let model = models::ready(&models, choice, progress).map(Arc::new);
+        answer(move |app| {
+            if let Some(page) = update::page(app) {
+                page.names.model = Some(model);
+                page.name();
+            }
+        })
+    });
+}
+
+/// Names the imprints of the source by the next model, which may be one of the user's own.
+pub(super) fn name_by_next(app: &mut App) {
+    let models = app.jobs.models().models();
+    app.jobs.read("Listing the models", move |_| {
+        let own = models.names();
+        answer(move |app| {
+            let Some(page) = update::page(app) else {
+                return;
+            };
+            let next = page.names.next(own.into_iter().map(ModelChoice::from_name));
+            let text = match &next {
+                Some(choice) => format!("shapes are named by {choice}"),
+                None => "shapes are not named".to_owned(),
+            };
+            name_by(app, next);
+            inform(app, text);
+        })
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_are_the_requested_one_the_built_in_ones_the_own_ones_and_none() {
+        let own = ["asked", "other"].map(ModelChoice::from_text);
+        let mut request = WatchRequest::new("none");
+        request.model = Some(own[0].clone());
+        let mut names = ShapeNames::new(&request);
+        let mut sets = Vec::new();
+        while let Some(choice) = names.choice.clone() {
+            sets.push(choice);
+            names.choice = names.next(own.clone().into_iter());
+        }
+        let [asked, other] = own;
+        let built_in = ModelChoice::BUILT_IN.to_vec();
+        assert_eq!(sets, [vec![asked.clone()], built_in, vec![other]].concat());
+        assert_eq!(names.next(std::iter::empty()), Some(asked));
+    }
+}
