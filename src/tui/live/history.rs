@@ -100,8 +100,8 @@ impl FrameHistory {
 
     /// Returns the shown frame with its number; None before the first one.
     pub fn shown(&self) -> Option<(u64, Arc<Frame>)> {
-        let numbers = self.numbers();
-        let following = || Some((numbers.end - 1, Arc::clone(self.frames.back()?)));
+        let newest = self.frames.back().map(Arc::clone);
+        let following = || newest.map(|newest| (self.numbers().end - 1, newest));
         self.frozen.clone().or_else(following)
     }
 
